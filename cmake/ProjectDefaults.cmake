@@ -1,0 +1,29 @@
+# Build settings common to every target.
+
+option(MPMBENCH_TESTS "Build the tests" ON)
+option(MPMBENCH_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
+option(MPMBENCH_SANITIZERS "Build with the address and undefined-behaviour sanitizers" OFF)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+# Carried by every target of the project, never by users' code.
+add_library(mpm_build_flags INTERFACE)
+target_compile_options(mpm_build_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+  # No contraction: the same source gives the same bits with and without FMA hardware.
+  -ffp-contract=off
+  $<$<BOOL:${MPMBENCH_WARNINGS_AS_ERRORS}>:-Werror>)
+target_compile_definitions(mpm_build_flags INTERFACE EIGEN_DONT_PARALLELIZE)
+
+if(MPMBENCH_SANITIZERS)
+  # Every target, so that no allocation crosses from instrumented into plain code. A report ends the program.
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -O1)
+  add_link_options(-fsanitize=address,undefined)
+endif()

@@ -1,0 +1,169 @@
+#include "plants/linear_plant.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "plants/channel_table.hpp"
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+void require_input_size(Eigen::Index found, Eigen::Index allowed) {
+  if (found != allowed) {
+    throw InputError("number of plant inputs", fmt::format("{}", found), fmt::format("{}", allowed));
+  }
+}
+
+void require_steady_input(const ChannelTable& table, const Eigen::Ref<const Eigen::VectorXd>& input) {
+  require_input_size(input.size(), table.input_count);
+  for (Eigen::Index col = 0; col < input.size(); ++col) {
+    if (!std::isfinite(input(col))) {
+      throw InputError(fmt::format("steady value of input {}", col), fmt::format("{}", input(col)),
+                       "finite numbers");
+    }
+  }
+  for (const ChannelWiring& channel : table.integrating) {
+    if (input(channel.col) != 0) {
+      throw InputError(fmt::format("steady value of input {}", channel.col),
+                       fmt::format("{}", input(channel.col)),
+                       fmt::format("0, because channel ({}, {}) integrates", channel.row, channel.col));
+    }
+  }
+}
+
+}  // namespace
+
+LinearPlant::LinearPlant(const TransferMatrix& G, double sample_time)
+    : table_(std::make_shared<const ChannelTable>(make_channel_table(G, sample_time))),
+      input_count_(G.cols()),
+      state_(Eigen::VectorXd::Zero(table_->state_per_input.size())),
+      next_state_(Eigen::VectorXd::Zero(table_->max_order)),
+      output_(Eigen::VectorXd::Zero(G.rows())),
+      history_(Eigen::MatrixXd::Zero(G.cols(), 2 * table_->history_length)),
+      newest_(table_->history_length) {}
+
+double LinearPlant::sample_time() const {
+  return table_->sample_time;
+}
+
+void LinearPlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) {
+  require_steady_input(*table_, steady_input);
+  for (Eigen::Index i = 0; i < state_.size(); ++i) {
+    state_(i) = table_->state_per_input(i) * steady_input(table_->state_col[static_cast<std::size_t>(i)]);
+  }
+  history_.colwise() = steady_input;
+  measure();
+}
+
+void LinearPlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
+  require_input_size(input.size(), input_count_);
+  push_input(input);
+  const double* newest = history_.data() + newest_ * input_count_;
+  advance_first_order(newest);
+  advance_second_order(newest);
+  advance_general(newest);
+  measure();
+}
+
+void LinearPlant::push_input(const Eigen::Ref<const Eigen::VectorXd>& input) {
+  const Eigen::Index length = table_->history_length;
+  newest_ = newest_ + 1 < 2 * length ? newest_ + 1 : length;
+  history_.col(newest_) = input;
+  history_.col(newest_ - length) = input;
+}
+
+void LinearPlant::advance_first_order(const double* newest) {
+  double* x = state_.data();
+  for (const FirstOrderChannel& channel : table_->first_order) {
+    *x = channel.a * *x + channel.b_now * newest[channel.wiring.input_now] +
+         channel.b_previous * newest[channel.wiring.input_previous];
+    ++x;
+  }
+}
+
+void LinearPlant::advance_second_order(const double* newest) {
+  double* x = state_.data() + table_->first_order.size();
+  for (const SecondOrderChannel& channel : table_->second_order) {
+    const double now = newest[channel.wiring.input_now];
+    const double previous = newest[channel.wiring.input_previous];
+    const double x1 = x[0];
+    const double x2 = x[1];
+    x[0] = channel.a11 * x1 + channel.a12 * x2 + channel.b1_now * now + channel.b1_previous * previous;
+    x[1] = channel.a21 * x1 + channel.a22 * x2 + channel.b2_now * now + channel.b2_previous * previous;
+    x += 2;
+  }
+}
+
+void LinearPlant::advance_general(const double* newest) {
+  double* x = state_.data() + table_->first_order.size() + 2 * table_->second_order.size();
+  for (const GeneralChannel& channel : table_->general) {
+    const DiscreteChannel& model = channel.model;
+    Eigen::Map<Eigen::VectorXd> state(x, model.A.rows());
+    auto next = next_state_.head(state.size());
+    next.noalias() = model.A * state;
+    next += model.b_now * newest[channel.wiring.input_now] +
+            model.b_previous * newest[channel.wiring.input_previous];
+    state = next;
+    x += state.size();
+  }
+}
+
+/// After an advance to sample k the newest input is u(k-1), so that input_now is the place of u(k - delay -
+/// 1).
+void LinearPlant::measure() {
+  const double* newest = history_.data() + newest_ * input_count_;
+  const double* x = state_.data();
+  output_.setZero();
+  for (const FirstOrderChannel& channel : table_->first_order) {
+    output_(channel.wiring.row) += *x + channel.d * newest[channel.wiring.input_now];
+    ++x;
+  }
+  for (const SecondOrderChannel& channel : table_->second_order) {
+    output_(channel.wiring.row) +=
+        channel.c1 * x[0] + channel.c2 * x[1] + channel.d * newest[channel.wiring.input_now];
+    x += 2;
+  }
+  for (const GeneralChannel& channel : table_->general) {
+    const Eigen::Map<const Eigen::VectorXd> state(x, channel.model.A.rows());
+    output_(channel.wiring.row) +=
+        channel.model.c.dot(state) + channel.model.d * newest[channel.wiring.input_now];
+    x += state.size();
+  }
+}
+
+Eigen::MatrixXd simulate(const TransferMatrix& G, double sample_time,
+                         const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
+  require_input_size(inputs.rows(), G.cols());
+  LinearPlant plant(G, sample_time);
+  Eigen::MatrixXd outputs(G.rows(), inputs.cols());
+  for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
+    outputs.col(k) = plant.output();
+    plant.advance(inputs.col(k));
+  }
+  return outputs;
+}
+
+std::vector<Eigen::MatrixXd> step_response(const TransferMatrix& G, double sample_time,
+                                           Eigen::Index samples) {
+  if (samples < 0) {
+    throw InputError("number of samples of a step response", fmt::format("{}", samples), "numbers >= 0");
+  }
+  const LinearPlant at_rest(G, sample_time);
+  std::vector<Eigen::MatrixXd> responses;
+  for (Eigen::Index col = 0; col < G.cols(); ++col) {
+    LinearPlant plant = at_rest;
+    const Eigen::VectorXd step = Eigen::VectorXd::Unit(G.cols(), col);
+    Eigen::MatrixXd response(G.rows(), samples);
+    for (Eigen::Index k = 0; k < samples; ++k) {
+      plant.advance(step);
+      response.col(k) = plant.output();
+    }
+    responses.push_back(std::move(response));
+  }
+  return responses;
+}
+
+}  // namespace mpm

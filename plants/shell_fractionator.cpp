@@ -1,0 +1,60 @@
+#include "plants/shell_fractionator.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace mpm {
+namespace {
+
+/// gain e^{-dead_time s} / (time_constant s + 1), times in minutes.
+struct Entry {
+  double gain;
+  double dead_time;
+  double time_constant;
+};
+
+// clang-format off
+/// Eq. 6.18.
+constexpr std::array<std::array<Entry, 5>, 7> kModel{{
+  //      u1              u2              u3              d1              d2
+  {{{4.05, 27, 50}, {1.77, 28, 60}, {5.88, 27, 50}, {1.20, 27, 45}, {1.44, 27, 40}}},  // y1
+  {{{5.39, 18, 50}, {5.72, 14, 60}, {6.90, 15, 40}, {1.52, 15, 25}, {1.83, 15, 20}}},  // y2
+  {{{3.66,  2,  9}, {1.65, 20, 30}, {5.53,  2, 40}, {1.16,  0, 11}, {1.27,  0,  6}}},  // y3
+  {{{5.92, 11, 12}, {2.54, 12, 27}, {8.10,  2, 20}, {1.73,  0,  5}, {1.79,  0, 19}}},  // y4
+  {{{4.13,  5,  8}, {2.38,  7, 19}, {6.23,  2, 10}, {1.31,  0,  2}, {1.26,  0, 22}}},  // y5
+  {{{4.06,  8, 13}, {4.18,  4, 33}, {6.53,  1,  9}, {1.19,  0, 19}, {1.17,  0, 24}}},  // y6
+  {{{4.38, 20, 33}, {4.42, 22, 44}, {7.20,  0, 19}, {1.14,  0, 27}, {1.26,  0, 32}}},  // y7
+}};
+// clang-format on
+
+TransferMatrix make_transfer_matrix() {
+  TransferMatrix G(kModel.size(), kModel[0].size());
+  for (std::size_t row = 0; row < kModel.size(); ++row) {
+    for (std::size_t col = 0; col < kModel[row].size(); ++col) {
+      const Entry& entry = kModel[row][col];
+      G(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col)) =
+          TransferFunction::first_order(entry.gain, entry.time_constant, entry.dead_time);
+    }
+  }
+  return G;
+}
+
+}  // namespace
+
+PlantModel shell_fractionator_7x3() {
+  return {.name = "shell-7x3",
+          .title = "Shell heavy oil fractionator, 7 CVs, 3 MVs, 2 measured disturbances",
+          .time_unit = "min",
+          .cvs = {{"y1", "1", "Top End Point"},
+                  {"y2", "1", "Side End Point"},
+                  {"y3", "1", "Top Temperature"},
+                  {"y4", "1", "Upper Reflux Temperature"},
+                  {"y5", "1", "Side Draw Temperature"},
+                  {"y6", "1", "Intermediate Reflux Temperature"},
+                  {"y7", "1", "Bottoms Reflux Temperature"}},
+          .mvs = {{"u1", "1", "Top Draw"}, {"u2", "1", "Side Draw"}, {"u3", "1", "Bottoms Reflux Duty"}},
+          .mds = {{"d1", "1", "Intermediate Reflux Duty"}, {"d2", "1", "Upper Reflux Duty"}},
+          .G = make_transfer_matrix()};
+}
+
+}  // namespace mpm

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <complex>
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+/// A proper rational transfer function with dead time,
+///
+///   G(s) = (b_0 s^m + ... + b_m) / (a_0 s^n + ... + a_n) * e^{-theta s},   m <= n, a_0 != 0, theta >= 0.
+///
+/// | symbol | meaning                 | shape | unit                       |
+/// |--------|-------------------------|-------|----------------------------|
+/// | b      | numerator()             | m + 1 | output / input * time^(-k) |
+/// | a      | denominator()           | n + 1 | time^(-k)                  |
+/// | theta  | dead_time()             | 1     | time                       |
+///
+/// Coefficients stand in descending powers of s. Leading zeros of the numerator are dropped and common
+/// factors s are cancelled, so that a zero at the origin and an integrator are never both present;
+/// otherwise the coefficients stay as given. A value type: the `with_` functions return a changed copy.
+class TransferFunction {
+ public:
+  /// Errors: InputError if a coefficient or the dead time is not finite, a polynomial is empty, the leading
+  /// denominator coefficient is zero, the function is not proper, or the dead time is negative.
+  TransferFunction(Eigen::VectorXd numerator, Eigen::VectorXd denominator, double dead_time = 0);
+
+  /// gain / (time_constant s + 1) * e^{-dead_time s}. Errors: InputError unless `time_constant` > 0.
+  static TransferFunction first_order(double gain, double time_constant, double dead_time = 0);
+
+  /// The channel without any effect: 0 / 1.
+  static TransferFunction zero();
+
+  const Eigen::VectorXd& numerator() const { return numerator_; }
+  const Eigen::VectorXd& denominator() const { return denominator_; }
+  double dead_time() const { return dead_time_; }
+
+  /// Number of poles n.
+  Eigen::Index order() const { return denominator_.size() - 1; }
+
+  /// G = 0 for every s.
+  bool is_zero() const { return numerator_.isZero(0); }
+
+  /// Has a pole at the origin, hence no static gain.
+  bool is_integrating() const { return !is_zero() && denominator_(order()) == 0; }
+
+  /// G(0). Errors: InputError for an integrating channel.
+  double static_gain() const;
+
+  /// G(s), with the dead time as e^{-theta s}. Not finite at a pole.
+  std::complex<double> operator()(std::complex<double> s) const;
+
+  /// factor * G(s): a gain mismatch. Errors: InputError unless `factor` is finite.
+  TransferFunction with_gain_scaled(double factor) const;
+
+  /// R(factor * s) e^{-theta s} for G(s) = R(s) e^{-theta s}: every time constant of the rational part, zeros
+  /// included, is multiplied by `factor`; static gain and dead time stay. The step response of the rational
+  /// part obeys y_scaled(factor * t) = y(t). Errors: InputError unless `factor` is finite and positive.
+  TransferFunction with_time_scaled(double factor) const;
+
+  /// G(s) e^{-delta s}: a dead-time mismatch. Errors: InputError if dead_time() + delta is negative or not
+  /// finite.
+  TransferFunction with_dead_time_shifted(double delta) const;
+
+ private:
+  Eigen::VectorXd numerator_;
+  Eigen::VectorXd denominator_;
+  double dead_time_;
+};
+
+}  // namespace mpm

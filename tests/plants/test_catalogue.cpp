@@ -1,0 +1,111 @@
+#include <catch2/catch.hpp>
+
+#include "plants/catalogue.hpp"
+#include "plants/error.hpp"
+#include "plants/linear_plant.hpp"
+
+namespace mpm {
+namespace {
+
+/// Eq. 6.18 again, property by property (the source has it channel by channel).
+Eigen::MatrixXd shell_gains() {
+  return (Eigen::MatrixXd(7, 5) <<  //
+              4.05,
+          1.77, 5.88, 1.20, 1.44, 5.39, 5.72, 6.90, 1.52, 1.83,  //
+          3.66, 1.65, 5.53, 1.16, 1.27,                          //
+          5.92, 2.54, 8.10, 1.73, 1.79,                          //
+          4.13, 2.38, 6.23, 1.31, 1.26,                          //
+          4.06, 4.18, 6.53, 1.19, 1.17,                          //
+          4.38, 4.42, 7.20, 1.14, 1.26)
+      .finished();
+}
+
+Eigen::MatrixXd shell_dead_times() {
+  return (Eigen::MatrixXd(7, 5) <<  //
+              27,
+          28, 27, 27, 27, 18, 14, 15, 15, 15,  //
+          2, 20, 2, 0, 0,                      //
+          11, 12, 2, 0, 0,                     //
+          5, 7, 2, 0, 0,                       //
+          8, 4, 1, 0, 0,                       //
+          20, 22, 0, 0, 0)
+      .finished();
+}
+
+Eigen::MatrixXd shell_time_constants() {
+  return (Eigen::MatrixXd(7, 5) <<  //
+              50,
+          60, 50, 45, 40, 50, 60, 40, 25, 20,  //
+          9, 30, 40, 11, 6,                    //
+          12, 27, 20, 5, 19,                   //
+          8, 19, 10, 2, 22,                    //
+          13, 33, 9, 19, 24,                   //
+          33, 44, 19, 27, 32)
+      .finished();
+}
+
+}  // namespace
+
+TEST_CASE("every plant of the catalogue is consistent and carries its name", "[catalogue]") {
+  REQUIRE_FALSE(benchmark_plant_names().empty());
+  for (const std::string& name : benchmark_plant_names()) {
+    const PlantModel plant = benchmark_plant(name);
+    CHECK_NOTHROW(plant.validate());
+    CHECK(plant.name == name);
+    CHECK_FALSE(plant.title.empty());
+  }
+}
+
+TEST_CASE("an unknown plant is refused with the known ones", "[catalogue]") {
+  CHECK_THROWS_AS(benchmark_plant("shell"), InputError);
+  CHECK_THROWS_WITH(benchmark_plant("shell"), Catch::Contains("'shell'") && Catch::Contains("shell-7x3"));
+}
+
+TEST_CASE("shell-7x3 has the variables of table 6.1", "[catalogue]") {
+  const PlantModel plant = benchmark_plant("shell-7x3");
+  CHECK(plant.time_unit == "min");
+  REQUIRE(plant.cvs.size() == 7);
+  REQUIRE(plant.mvs.size() == 3);
+  REQUIRE(plant.mds.size() == 2);
+  CHECK(plant.cvs[6].name == "y7");
+  CHECK(plant.cvs[6].description == "Bottoms Reflux Temperature");
+  CHECK(plant.mvs[1].description == "Side Draw");
+  CHECK(plant.mds[1].description == "Upper Reflux Duty");
+}
+
+TEST_CASE("shell-7x3 has the frequency response of eq. 6.18", "[catalogue]") {
+  const TransferMatrix G = benchmark_plant("shell-7x3").G;
+  CHECK(G.static_gain() == shell_gains());
+  for (const double omega : {0.003, 0.02, 0.11}) {
+    const std::complex<double> s(0, omega);
+    const Eigen::MatrixXcd response = G.frequency_response(s);
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      for (Eigen::Index j = 0; j < 5; ++j) {
+        INFO("y" << i + 1 << ", input " << j + 1 << ", omega " << omega);
+        const double gain = shell_gains()(i, j);
+        const double lag = omega * shell_time_constants()(i, j);
+        const double magnitude = gain / std::sqrt(1 + lag * lag);
+        const double phase = -omega * shell_dead_times()(i, j) - std::atan(lag);
+        // Rounding of a few operations on numbers up to 8.
+        CHECK(std::abs(response(i, j) - std::polar(magnitude, phase)) < 1e-13);
+      }
+    }
+  }
+}
+
+TEST_CASE("shell-7x3 steps as first-order lags with dead time", "[catalogue]") {
+  const double Ts = 4;  // table 6.2
+  const std::vector<Eigen::MatrixXd> steps = step_response(benchmark_plant("shell-7x3").G, Ts, 60);
+  for (Eigen::Index j = 0; j < 5; ++j) {
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      for (Eigen::Index k = 1; k <= 60; ++k) {
+        const double since = std::max(0.0, Ts * static_cast<double>(k) - shell_dead_times()(i, j));
+        const double expected = -shell_gains()(i, j) * std::expm1(-since / shell_time_constants()(i, j));
+        // Sixty steps with a rounding of about 1e-15 each.
+        CHECK(std::abs(steps[static_cast<std::size_t>(j)](i, k - 1) - expected) < 1e-12);
+      }
+    }
+  }
+}
+
+}  // namespace mpm
