@@ -1,0 +1,52 @@
+#include "analysis/basis_case.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace mpm {
+namespace {
+
+void check_health(const Study& study, BasisCase& basis) {
+  const DiagnosisOptions& options = study.diagnosis;
+  if (basis.trajectory.status != ControlStatus::ok) {
+    basis.explanation =
+        fmt::format("the nominal loop is {} at sample {}: its excitation is too strong for its limits",
+                    to_string(basis.trajectory.status), basis.trajectory.samples_done);
+    return;
+  }
+  const Eigen::VectorXd& ivar = basis.diagnosis.ivar;
+  Eigen::Index worst = 0;
+  (ivar.array() - 1.0).abs().maxCoeff(&worst);
+  basis.healthy =
+      (ivar.array() >= options.self_check_lower && ivar.array() <= options.self_check_upper).all();
+  const std::string& name = study.plant.cvs[static_cast<std::size_t>(worst)].name;
+  basis.explanation =
+      basis.healthy
+          ? fmt::format(
+                "Ivar of the nominal loop lies within [{}, {}] for every CV; farthest from 1: {} with {:.3f}",
+                options.self_check_lower, options.self_check_upper, name, ivar(worst))
+          : fmt::format(
+                "Ivar of the nominal loop is {:.3f} for {}, outside [{}, {}]: noise outweighs the "
+                "excitation, and every verdict of this study would be unreliable",
+                ivar(worst), name, options.self_check_lower, options.self_check_upper);
+}
+
+}  // namespace
+
+BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory) {
+  BasisCase basis;
+  basis.point = operating_point(study, factory);
+  basis.sensitivity = nominal_sensitivity(study, basis.point, factory);
+  basis.trajectory = simulate_experiment(study, basis_draw(), factory);
+  if (basis.trajectory.status == ControlStatus::ok) {
+    const Eigen::MatrixXd y_sim = simulated_output(study.plant.G, study.controller.sample_time, basis.point.u,
+                                                   basis.trajectory.u, basis.trajectory.d);
+    basis.nominal = nominal_outputs(basis.sensitivity, basis.trajectory.y, y_sim);
+    basis.diagnosis = DiagnosisChain(study).diagnose(basis.trajectory.y, basis.nominal, basis.trajectory.y);
+  }
+  check_health(study, basis);
+  return basis;
+}
+
+}  // namespace mpm

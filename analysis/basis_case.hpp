@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/diagnosis.hpp"
+#include "analysis/nominal_sensitivity.hpp"
+#include "scenarios/closed_loop.hpp"
+
+namespace mpm {
+
+/// The run without mismatch and disturbance, against which every experiment is held, and whether the chain
+/// itself calls it healthy.
+///
+/// With too little excitation the variances of the active CVs are mostly noise, which S0 filters out of y0,
+/// and Ivar of a perfect model is far from 1: every experiment would then count as impactful and the location
+/// of the CV would be chance. A study must therefore pass this check first.
+struct BasisCase {
+  OperatingPoint point;
+  NominalSensitivity sensitivity;
+  Trajectory trajectory;
+  NominalOutputs nominal;
+  Diagnosis diagnosis;
+  bool healthy = false;
+  std::string explanation;  ///< one sentence for people, also when healthy
+};
+
+/// Runs the basis case of the study. Throws InputError when the sensitivity cannot be determined.
+BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory);
+
+}  // namespace mpm

@@ -1,0 +1,68 @@
+#include "analysis/diagnosis.hpp"
+
+#include <cmath>
+
+#include "analysis/variance.hpp"
+
+namespace mpm {
+namespace {
+
+Eigen::VectorXd variance_indices(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& reference) {
+  Eigen::VectorXd index(y.rows());
+  for (Eigen::Index i = 0; i < y.rows(); ++i)
+    index(i) = variance_index(y.row(i).transpose(), reference.row(i).transpose());
+  return index;
+}
+
+}  // namespace
+
+WindowScan window_scan(const Study& study) {
+  const double hp = study.controller.prediction_horizon;
+  WindowScan scan;
+  // Half a sample is rounded up, as in default_window_scan.
+  scan.shortest = static_cast<int>(std::ceil(study.diagnosis.shortest_window * hp));
+  scan.longest = static_cast<int>(std::floor(study.diagnosis.longest_window * hp));
+  scan.stride = study.diagnosis.window_stride;
+  scan.validate();
+  return scan;
+}
+
+Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag,
+                               LocationDistance distance) {
+  Eigen::Index farthest = -1;
+  double largest = -1.0;
+  for (Eigen::Index i = 0; i < ivar_diag.size(); ++i) {
+    const double away = distance == LocationDistance::linear ? std::abs(ivar_diag(i) - 1.0)
+                                                             : std::abs(std::log(ivar_diag(i)));
+    if (away > largest) {
+      largest = away;
+      farthest = i;
+    }
+  }
+  return farthest;
+}
+
+DiagnosisChain::DiagnosisChain(const Study& study)
+    : options_(study.diagnosis), windows_(window_scan(study)), scanner_(study.simulation.samples) {}
+
+Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& y_basis) {
+  Diagnosis diagnosis;
+  diagnosis.ivar = variance_indices(y, nominal.y0);
+  diagnosis.ivar_diag = variance_indices(y, nominal.y0_diag);
+  diagnosis.ivar_basis = variance_indices(y, y_basis);
+  diagnosis.impactful = (diagnosis.ivar.array() < options_.impact_lower).any() ||
+                        (diagnosis.ivar.array() > options_.impact_upper).any();
+  diagnosis.predicted_cv = farthest_from_one(diagnosis.ivar_diag, options_.location_distance);
+  if (diagnosis.predicted_cv < 0)
+    return diagnosis;
+  const Eigen::VectorXd y0_diag = nominal.y0_diag.row(diagnosis.predicted_cv);
+  const Eigen::VectorXd e0_diag = y0_diag - y.row(diagnosis.predicted_cv).transpose();  // (6.9)
+  diagnosis.indicator = scanner_.scan(y0_diag, e0_diag, windows_);
+  diagnosis.predicted_source =
+      diagnosis.indicator.i_mpm > options_.mpm_threshold ? ExperimentKind::mpm : ExperimentKind::ud;
+  return diagnosis;
+}
+
+}  // namespace mpm

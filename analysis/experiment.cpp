@@ -1,0 +1,109 @@
+#include "analysis/experiment.hpp"
+
+#include <utility>
+
+namespace mpm {
+namespace {
+
+ExperimentStatus experiment_status(ControlStatus status) {
+  return status == ControlStatus::ok           ? ExperimentStatus::ok
+         : status == ControlStatus::infeasible ? ExperimentStatus::infeasible
+                                               : ExperimentStatus::failed;
+}
+
+}  // namespace
+
+std::string_view to_string(ExperimentStatus status) {
+  switch (status) {
+    case ExperimentStatus::ok:
+      return "ok";
+    case ExperimentStatus::infeasible:
+      return "infeasible";
+    case ExperimentStatus::failed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(ExperimentKind kind) {
+  switch (kind) {
+    case ExperimentKind::none:
+      return "none";
+    case ExperimentKind::mpm:
+      return "mpm";
+    case ExperimentKind::ud:
+      return "ud";
+    case ExperimentKind::mpm_ud:
+      return "mpm_ud";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(MismatchParameter parameter) {
+  switch (parameter) {
+    case MismatchParameter::gain:
+      return "gain";
+    case MismatchParameter::time_constant:
+      return "time_constant";
+    case MismatchParameter::dead_time:
+      return "dead_time";
+  }
+  return "unknown";
+}
+
+bool ExperimentRecord::wrong() const {
+  if (status != ExperimentStatus::ok || !diagnosis.impactful)
+    return false;
+  const bool single_fault = draw.kind == ExperimentKind::mpm || draw.kind == ExperimentKind::ud;
+  return diagnosis.predicted_cv != draw.true_cv() ||
+         (single_fault && diagnosis.predicted_source != draw.kind);
+}
+
+ExperimentRunner::ExperimentRunner(const Study& study, const BasisCase& basis, QpSolverFactory factory)
+    : study_(study), basis_(basis), factory_(std::move(factory)), chain_(study) {}
+
+ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw& draw) {
+  DiagnosedLoop result;
+  result.loop.trajectory = simulate_experiment(study_, draw, factory_);
+  const Trajectory& loop = result.loop.trajectory;
+  result.status = experiment_status(loop.status);
+  result.loop.y_sim =
+      simulated_output(study_.plant.G, study_.controller.sample_time, basis_.point.u, loop.u, loop.d);
+  if (result.status == ExperimentStatus::ok)
+    result.diagnosis = chain_.diagnose(loop.y, nominal_outputs(basis_.sensitivity, loop.y, result.loop.y_sim),
+                                       basis_.trajectory.y);
+  return result;
+}
+
+ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store) {
+  ExperimentRecord record;
+  record.draw = draw_experiment(study_, index);
+
+  DiagnosedLoop main = run_loop(record.draw);
+  record.status = main.status;
+  record.solver = main.loop.trajectory.solver;
+  if (record.draw.kind == ExperimentKind::mpm_ud && record.status == ExperimentStatus::ok) {
+    const DiagnosedLoop mpm_alone = run_loop(record.draw.mismatch_alone());
+    const DiagnosedLoop ud_alone = run_loop(record.draw.disturbance_alone());
+    for (const DiagnosedLoop* part : {&mpm_alone, &ud_alone}) {
+      record.solver.add(part->loop.trajectory.solver);
+      record.status = std::max(record.status, part->status);
+    }
+    if (record.status == ExperimentStatus::ok) {
+      const Eigen::Index cv = record.draw.true_cv();
+      record.ivar_diag_mpm_alone = mpm_alone.diagnosis.ivar_diag(cv);
+      record.ivar_diag_ud_alone = ud_alone.diagnosis.ivar_diag(cv);
+      record.dominance_mpm =
+          record.ivar_diag_mpm_alone / (record.ivar_diag_mpm_alone + record.ivar_diag_ud_alone);
+    }
+  }
+  if (record.status == ExperimentStatus::ok)
+    record.diagnosis = std::move(main.diagnosis);
+  if (record.status == ExperimentStatus::failed)
+    record.message = "the solver gave no answer";
+  if (store == StorePolicy::all || (store == StorePolicy::flagged && record.wrong()))
+    record.loop = std::move(main.loop);
+  return record;
+}
+
+}  // namespace mpm

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "analysis/basis_case.hpp"
+#include "analysis/diagnosis.hpp"
+#include "scenarios/closed_loop.hpp"
+#include "scenarios/draw.hpp"
+
+namespace mpm {
+
+enum class ExperimentStatus : std::int8_t {
+  ok = 0,
+  infeasible = 1,  ///< some MPC problem had no solution; the experiment is left out, as in the thesis
+  failed = 2,      ///< the solver gave no answer, or the process that ran the experiment died
+};
+
+std::string_view to_string(ExperimentStatus status);
+std::string_view to_string(ExperimentKind kind);
+std::string_view to_string(MismatchParameter parameter);
+
+/// Whose closed-loop data an archive keeps.
+enum class StorePolicy { none, flagged, all };  // flagged: the experiments with a wrong verdict
+
+/// The data of one closed loop as they are kept in an archive.
+struct LoopRecord {
+  Trajectory trajectory;
+  Eigen::MatrixXd y_sim;  ///< ny x N
+};
+
+/// Everything that is known of one experiment.
+///
+/// In an experiment with mismatch and disturbance the loop is run three times: with both, with the mismatch
+/// alone and with the disturbance alone. The diagnosis is that of the loop with both; the other two give the
+/// dominance of the mismatch on the affected CV (6.23),
+///     dominance_MPM = Ivar_diag^MPM / (Ivar_diag^MPM + Ivar_diag^UD).
+struct ExperimentRecord {
+  ExperimentDraw draw;
+  ExperimentStatus status = ExperimentStatus::failed;
+  std::string message;  ///< why it failed; empty otherwise
+  Diagnosis diagnosis;  ///< empty vectors unless the status is ok
+  double ivar_diag_mpm_alone = std::numeric_limits<double>::quiet_NaN();
+  double ivar_diag_ud_alone = std::numeric_limits<double>::quiet_NaN();
+  double dominance_mpm = std::numeric_limits<double>::quiet_NaN();
+  SolverStatistics solver;         ///< of all loops of the experiment
+  std::optional<LoopRecord> loop;  ///< the loop that was diagnosed, when it was asked for
+
+  /// The verdict is wrong: the experiment is impactful and the CV, or the source of a single fault, is not
+  /// the true one.
+  bool wrong() const;
+};
+
+/// Runs experiments of one study; keeps workspaces between them. One a thread; results depend on the index
+/// only.
+class ExperimentRunner {
+ public:
+  /// `study` and `basis` must outlive the runner; the basis case must have status ok.
+  ExperimentRunner(const Study& study, const BasisCase& basis, QpSolverFactory factory);
+
+  /// Experiment `index`, with its loop record when the policy asks for it.
+  ExperimentRecord run(std::int64_t index, StorePolicy store);
+
+ private:
+  struct DiagnosedLoop {
+    ExperimentStatus status;
+    Diagnosis diagnosis;
+    LoopRecord loop;
+  };
+
+  DiagnosedLoop run_loop(const ExperimentDraw& draw);
+
+  const Study& study_;
+  const BasisCase& basis_;
+  QpSolverFactory factory_;
+  DiagnosisChain chain_;
+};
+
+}  // namespace mpm

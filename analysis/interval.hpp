@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+namespace mpm {
+
+/// A closed interval.
+struct Interval {
+  double lower = 0.0;
+  double upper = 0.0;
+
+  bool contains(double value) const { return lower <= value && value <= upper; }
+};
+
+/// z with P(|Z| <= z) = `confidence` for a standard normal Z; 1.96 for 0.95.
+/// @throws InputError unless 0 < confidence < 1
+double two_sided_normal_quantile(double confidence);
+
+/// Wilson's score interval for a probability of which k = `hits` of n = `total` trials are known (Wilson
+/// 1927): the p with |k/n - p| <= z sqrt(p (1 - p)/n), that is
+///
+///   (p + z^2/2n +- z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n),   p = k/n
+///
+/// [0, 1] for n = 0. Covers the truth with `confidence` on the average over p.
+/// @throws InputError unless 0 <= hits <= total and 0 < confidence < 1
+Interval wilson_interval(std::int64_t hits, std::int64_t total, double confidence = 0.95);
+
+/// The exact interval of Clopper and Pearson (1934): each end is the p for which a result as extreme as k or
+/// more has the probability (1 - confidence)/2. [0, 1] for n = 0. Covers the truth with at least `confidence`
+/// for every p, and is wider than Wilson's for it.
+/// @throws InputError unless 0 <= hits <= total and 0 < confidence < 1
+Interval clopper_pearson_interval(std::int64_t hits, std::int64_t total, double confidence = 0.95);
+
+/// A share of trials with its uncertainty.
+struct Rate {
+  std::int64_t hits = 0;
+  std::int64_t total = 0;
+  /// hits/total; NaN without trials.
+  double value = 0.0;
+  /// Wilson's interval.
+  Interval interval;
+};
+
+/// The rate of `hits` in `total` with Wilson's interval.
+/// @throws InputError unless 0 <= hits <= total and 0 < confidence < 1
+Rate rate(std::int64_t hits, std::int64_t total, double confidence = 0.95);
+
+}  // namespace mpm

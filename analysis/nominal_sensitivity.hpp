@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenarios/study.hpp"
+#include "solvers/qp_solver.hpp"
+
+namespace mpm {
+
+/// A CV at one of its soft limits.
+struct ActiveLimit {
+  Eigen::Index cv;
+  bool upper;  ///< at the upper limit, else at the lower one
+};
+
+/// The operating point at which a study is assessed: what the target optimizer chooses for the nominal model
+/// at zero disturbances.
+struct OperatingPoint {
+  Eigen::VectorXd u;                    ///< nu
+  Eigen::VectorXd y;                    ///< ny
+  std::vector<ActiveLimit> active;      ///< CVs at a soft limit
+  std::vector<Eigen::Index> fixed_mvs;  ///< MVs at a hard limit: not available for control
+};
+
+/// The economic optimum of the study at zero disturbances. With `study.sensitivity.active_cvs` the active CVs
+/// are those, at the limit they are nearest to. Throws InputError when the target problem has no solution.
+OperatingPoint operating_point(const Study& study, const QpSolverFactory& factory);
+
+/// The nominal complementary sensitivity T0 of a range MPC as step responses, and S0 = I - T0 (6.3).
+///
+/// A CV at an active soft limit acts as if the limit were its setpoint; a CV inside its range has no
+/// influence on the moves, and T0 = 0 from it (6.3 of the thesis, figure 6.5).
+///
+/// | symbol       | member           | shape           | meaning                                           |
+/// |--------------|------------------|-----------------|---------------------------------------------------|
+/// | j            | active[a].cv     |                 | a CV with an active limit                         |
+/// | T0(:, j) / s | step_response[a] | ny x L          | column l-1: outputs l samples after a unit step   |
+struct NominalSensitivity {
+  Eigen::Index cv_count = 0;
+  std::vector<ActiveLimit> active;
+  std::vector<Eigen::MatrixXd> step_response;
+
+  /// Last values of the step responses, ny x ny; column j is zero for a CV inside its range.
+  Eigen::MatrixXd static_gain() const;
+  /// Largest change over the last tenth of the responses: small when they have settled.
+  double unsettled() const;
+};
+
+/// T0 by simulation of the controller on its own model, appendix A3 of the thesis (steps a to p): limits of
+/// the CVs inside their range and of the available MVs relaxed, MVs at a limit held there, no noise and no
+/// disturbance, then for each active soft limit in turn a step of `study.sensitivity.step_size` into the
+/// range. The thesis fits Box-Jenkins models to these data; with noise-free data of the controller itself the
+/// step response is the model. Throws InputError when the relaxed controller has no solution.
+NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint& point,
+                                       const QpSolverFactory& factory);
+
+}  // namespace mpm

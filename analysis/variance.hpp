@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+/// Sample variance about the mean, sum (x - mean x)^2 / (N - 1).
+/// @throws InputError for fewer than 2 samples or values that are not finite
+double variance(const Eigen::Ref<const Eigen::VectorXd>& signal);
+
+/// Variance about a given setpoint, sum (x - setpoint)^2 / N: the centre is not estimated, so N and not N
+/// - 1.
+/// @throws InputError for no sample or values that are not finite
+double variance_about(const Eigen::Ref<const Eigen::VectorXd>& signal, double setpoint);
+
+/// Variance about a setpoint that changes with time, sum (x_k - setpoint_k)^2 / N.
+/// @throws InputError for no sample, different lengths or values that are not finite
+double variance_about(const Eigen::Ref<const Eigen::VectorXd>& signal,
+                      const Eigen::Ref<const Eigen::VectorXd>& setpoint);
+
+/// Quotient of two variances. A denominator of 0 gives +infinity, and NaN when the numerator is 0 as well.
+double variance_ratio(double numerator, double denominator);
+
+/// Variance index of a measured output y against a reference y_ref,
+///
+///   Ivar = var(y - mean y) / var(y_ref - mean y_ref)
+///
+/// which is Ivar for y_ref = y0 (6.7), Ivar_diag for y_ref = y0_diag (6.8) and Ivar_basis for the output of
+/// the basis case (6.22). 1 means that the reference explains y, a value above 1 a loop made worse by
+/// mismatch or disturbance.
+///
+/// A variance up to (4 eps max|x|)^2, the rounding of a constant signal, counts as 0; see `variance_ratio`.
+/// @throws InputError for fewer than 2 samples, different lengths or values that are not finite
+double variance_index(const Eigen::Ref<const Eigen::VectorXd>& y,
+                      const Eigen::Ref<const Eigen::VectorXd>& y_ref);
+
+/// Variance index about a setpoint, Ivar = var(y - y_set)/var(y_ref - y_set) (3.24), with one setpoint a
+/// sample. Zero variances as in the index about the means.
+/// @throws InputError for no sample, different lengths or values that are not finite
+double variance_index(const Eigen::Ref<const Eigen::VectorXd>& y,
+                      const Eigen::Ref<const Eigen::VectorXd>& y_ref,
+                      const Eigen::Ref<const Eigen::VectorXd>& y_set);
+
+}  // namespace mpm

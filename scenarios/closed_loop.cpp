@@ -1,0 +1,82 @@
+#include "scenarios/closed_loop.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "plants/linear_plant.hpp"
+#include "scenarios/signals.hpp"
+
+namespace mpm {
+namespace {
+
+void require_shape(const char* name, const Eigen::MatrixXd& signal, Eigen::Index rows, Eigen::Index cols) {
+  if (signal.rows() != rows || signal.cols() != cols)
+    throw InputError(name, fmt::format("{} x {}", signal.rows(), signal.cols()),
+                     fmt::format("{} x {}", rows, cols));
+}
+
+Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
+  Trajectory trajectory;
+  const Eigen::Index samples = study.simulation.samples;
+  trajectory.y.setZero(study.cv_count(), samples);
+  trajectory.u.setZero(study.mv_count(), samples);
+  trajectory.u_target.setZero(study.mv_count(), samples);
+  trajectory.d = signals.d;
+  return trajectory;
+}
+
+}  // namespace
+
+void SolverStatistics::add(const SolverStatistics& other) {
+  steps += other.steps;
+  iterations += other.iterations;
+  largest_kkt_residual = std::max(largest_kkt_residual, other.largest_kkt_residual);
+}
+
+Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model, const LoopSignals& signals,
+                           const QpSolverFactory& factory) {
+  const Eigen::Index samples = study.simulation.samples;
+  require_shape("measured disturbances", signals.d, study.md_count(), samples);
+  require_shape("measurement noise", signals.noise, study.cv_count(), samples);
+  require_shape("unmeasured disturbances", signals.y_d, study.cv_count(), samples);
+
+  RangeMpc controller(study.plant.G, study.mv_count(), study.controller, factory);
+  LinearPlant plant(plant_model, study.controller.sample_time);
+  const Eigen::VectorXd d_rest = Eigen::VectorXd::Zero(study.md_count());
+  Eigen::VectorXd input(study.mv_count() + study.md_count());
+  input << controller.nominal_target(d_rest), d_rest;
+  controller.reset(input.head(study.mv_count()), d_rest);
+  plant.reset(input);
+
+  Trajectory trajectory = empty_trajectory(study, signals);
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    trajectory.y.col(k) = plant.output() + signals.y_d.col(k) + signals.noise.col(k);
+    const ControlMove& move = controller.step(trajectory.y.col(k), signals.d.col(k));
+    trajectory.solver.steps += 1;
+    trajectory.solver.iterations += move.iterations;
+    trajectory.status = move.status;
+    if (move.status != ControlStatus::ok)
+      break;
+    trajectory.solver.largest_kkt_residual =
+        std::max(trajectory.solver.largest_kkt_residual, move.kkt_residual);
+    trajectory.u.col(k) = move.u;
+    trajectory.u_target.col(k) = move.u_target;
+    input << move.u, signals.d.col(k);
+    plant.advance(input);
+    trajectory.samples_done = k + 1;
+  }
+  return trajectory;
+}
+
+Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw,
+                               const QpSolverFactory& factory) {
+  const TransferMatrix plant = draw.mismatch ? with_mismatch(study.plant.G, *draw.mismatch) : study.plant.G;
+  return run_closed_loop(study, plant,
+                         {measured_disturbances(study), measurement_noise(study, draw.index),
+                          unmeasured_disturbances(study, draw)},
+                         factory);
+}
+
+}  // namespace mpm

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "plants/transfer_matrix.hpp"
+#include "scenarios/draw.hpp"
+#include "scenarios/study.hpp"
+#include "solvers/range_mpc.hpp"
+
+namespace mpm {
+
+/// How hard the optimisation problems of a closed loop were, and how well they were solved.
+struct SolverStatistics {
+  std::int64_t steps = 0;
+  std::int64_t iterations = 0;
+  double largest_kkt_residual = 0.0;
+
+  void add(const SolverStatistics& other);
+};
+
+/// The data of one closed loop; one row a variable, one column a sample.
+///
+/// | symbol   | member   | shape  | meaning                                      |
+/// |----------|----------|--------|----------------------------------------------|
+/// | y        | y        | ny x N | measured CVs, noise included                 |
+/// | u        | u        | nu x N | MVs, u(k) acts from sample k on              |
+/// | u_target | u_target | nu x N | targets of the optimizer                     |
+/// | d        | d        | nd x N | measured disturbances, d(k) acts from k on   |
+struct Trajectory {
+  ControlStatus status = ControlStatus::ok;
+  Eigen::Index samples_done = 0;  ///< columns after these are zero when the status is not `ok`
+  Eigen::MatrixXd y, u, u_target, d;
+  SolverStatistics solver;
+};
+
+/// The signals that act on a loop from outside.
+struct LoopSignals {
+  Eigen::MatrixXd d;      ///< measured disturbances, nd x N
+  Eigen::MatrixXd noise;  ///< added to the measurements, ny x N
+  Eigen::MatrixXd y_d;    ///< unmeasured disturbances, added to the outputs, ny x N
+};
+
+/// Runs the controller of the study on `plant` from the economic steady state of the nominal model at zero
+/// disturbances. Stops at the first sample whose problem is infeasible or cannot be solved.
+/// Throws InputError when a signal has not the shape that the study asks for.
+Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
+                           const QpSolverFactory& factory);
+
+/// The closed loop of one experiment: its plant and its signals, from (study, draw) alone.
+Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw,
+                               const QpSolverFactory& factory);
+
+}  // namespace mpm

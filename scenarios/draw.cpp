@@ -1,0 +1,162 @@
+#include "scenarios/draw.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "scenarios/random_stream.hpp"
+
+namespace mpm {
+namespace {
+
+using Channel = std::pair<Eigen::Index, Eigen::Index>;
+
+std::vector<Channel> mv_channels(const Study& study) {
+  std::vector<Channel> channels;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
+      if (!study.plant.G(cv, mv).is_zero())
+        channels.emplace_back(cv, mv);
+  if (channels.empty())
+    throw InputError("plant", "no channel from an MV to a CV", "at least one");
+  return channels;
+}
+
+MismatchParameter draw_parameter(const std::array<double, 3>& weight, RandomStream& stream) {
+  const double point = stream.uniform() * (weight[0] + weight[1] + weight[2]);
+  if (point < weight[0])
+    return MismatchParameter::gain;
+  if (point < weight[0] + weight[1])
+    return MismatchParameter::time_constant;
+  return MismatchParameter::dead_time;
+}
+
+// A dead time cannot become negative: a bounded distribution is shrunk onto what is possible, so that the
+// draw still gives a mismatch; an unbounded one is cut off.
+double possible_shift(double shift, const Distribution& distribution, double dead_time) {
+  if (distribution.minimum() >= -dead_time)
+    return shift;
+  const double span = distribution.maximum() - distribution.minimum();
+  if (!std::isfinite(span) || span == 0.0 || distribution.maximum() <= -dead_time)
+    return std::max(shift, -dead_time);
+  const double quantile = (shift - distribution.minimum()) / span;
+  return -dead_time + quantile * (distribution.maximum() + dead_time);
+}
+
+Mismatch draw_mismatch(const Study& study, std::int64_t index) {
+  RandomStream stream(study.seed, static_cast<std::uint64_t>(index), StreamId::mismatch);
+  const std::vector<Channel> channels = mv_channels(study);
+  const auto [cv, mv] = channels[stream.below(channels.size())];
+  const MismatchRanges& ranges = study.mismatch;
+  const MismatchParameter parameter = draw_parameter(ranges.parameter_weight, stream);
+  double value = 0.0;
+  switch (parameter) {
+    case MismatchParameter::gain:
+      value = ranges.gain_factor.sample(stream);
+      break;
+    case MismatchParameter::time_constant:
+      value = ranges.time_constant_factor.sample(stream);
+      break;
+    case MismatchParameter::dead_time:
+      value = possible_shift(ranges.dead_time_shift.sample(stream), ranges.dead_time_shift,
+                             study.plant.G(cv, mv).dead_time());
+      break;
+  }
+  return {cv, mv, parameter, value};
+}
+
+Disturbance draw_disturbance(const Study& study, std::int64_t index) {
+  RandomStream stream(study.seed, static_cast<std::uint64_t>(index), StreamId::disturbance_draw);
+  const auto cv = static_cast<Eigen::Index>(stream.below(static_cast<std::uint64_t>(study.cv_count())));
+  const double gain = study.disturbance.gain.sample(stream);
+  const double time_constant = study.disturbance.time_constant.sample(stream);
+  return {cv, gain, time_constant};
+}
+
+}  // namespace
+
+Eigen::Index ExperimentDraw::true_cv() const {
+  return mismatch ? mismatch->cv : disturbance ? disturbance->cv : -1;
+}
+
+ExperimentDraw ExperimentDraw::mismatch_alone() const {
+  return {index, ExperimentKind::mpm, mismatch, std::nullopt};
+}
+
+ExperimentDraw ExperimentDraw::disturbance_alone() const {
+  return {index, ExperimentKind::ud, std::nullopt, disturbance};
+}
+
+KindSequence::KindSequence(const ExperimentCounts& counts) {
+  const std::array<std::pair<ExperimentKind, int>, 3> wanted{{{ExperimentKind::mpm, counts.mpm},
+                                                              {ExperimentKind::ud, counts.ud},
+                                                              {ExperimentKind::mpm_ud, counts.mpm_ud}}};
+  for (const auto& [kind, count] : wanted)
+    if (count < 0)
+      throw InputError("experiments", fmt::format("{}", count), "counts >= 0");
+  if (counts.total() == 0)
+    throw InputError("experiments", "no experiment at all", "at least one");
+
+  const int divisor = std::gcd(std::gcd(counts.mpm, counts.ud), counts.mpm_ud);
+  const int length = counts.total() / divisor;
+  std::array<int, 3> placed{};
+  for (int i = 0; i < length; ++i) {
+    // The kind that is furthest behind its share of the first i + 1 experiments; ties go in order of kind.
+    std::size_t next = 0;
+    std::array<std::int64_t, 3> behind{};
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      behind[k] = std::int64_t{wanted[k].second / divisor} * (i + 1) - std::int64_t{placed[k]} * length;
+      if (behind[k] > behind[next])
+        next = k;
+    }
+    ++placed[next];
+    period_.push_back(wanted[next].first);
+  }
+}
+
+ExperimentKind KindSequence::operator[](std::int64_t index) const {
+  return period_[static_cast<std::size_t>(index) % period_.size()];
+}
+
+ExperimentDraw draw_experiment(const Study& study, std::int64_t index) {
+  if (index < 0)
+    throw InputError("experiment index", fmt::format("{}", index), ">= 0");
+  ExperimentDraw draw;
+  draw.index = index;
+  draw.kind = KindSequence(study.experiments)[index];
+  if (draw.kind != ExperimentKind::ud)
+    draw.mismatch = draw_mismatch(study, index);
+  if (draw.kind != ExperimentKind::mpm)
+    draw.disturbance = draw_disturbance(study, index);
+  if (draw.mismatch && draw.disturbance)
+    draw.disturbance->cv = draw.mismatch->cv;
+  return draw;
+}
+
+ExperimentDraw basis_draw() {
+  return {kBasisIndex, ExperimentKind::none, std::nullopt, std::nullopt};
+}
+
+TransferMatrix with_mismatch(const TransferMatrix& model, const Mismatch& mismatch) {
+  TransferMatrix plant = model;
+  TransferFunction& channel = plant(mismatch.cv, mismatch.mv);
+  switch (mismatch.parameter) {
+    case MismatchParameter::gain:
+      channel = channel.with_gain_scaled(mismatch.value);
+      break;
+    case MismatchParameter::time_constant:
+      channel = channel.with_time_scaled(mismatch.value);
+      break;
+    case MismatchParameter::dead_time:
+      channel = channel.with_dead_time_shifted(mismatch.value);
+      break;
+  }
+  return plant;
+}
+
+}  // namespace mpm

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <limits>
+#include <string>
+
+namespace mpm {
+
+/// Which numbers a key of a study file takes: an interval with open or closed ends.
+struct NumberRule {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_included = false;
+  bool high_included = false;
+
+  /// x > 0
+  static NumberRule positive() { return {.low = 0}; }
+  /// x >= low, finite
+  static NumberRule at_least(double low) { return {.low = low, .low_included = true}; }
+  /// Any finite number.
+  static NumberRule finite() { return {}; }
+  /// low < x < high
+  static NumberRule inside(double low, double high) { return {.low = low, .high = high}; }
+
+  /// False for NaN.
+  bool contains(double value) const;
+  /// Does a distribution on [minimum, maximum] keep to the rule? An infinite end does where the rule has the
+  /// same one.
+  bool contains_support(double minimum, double maximum) const;
+  /// For messages: "a number > 0".
+  std::string text() const;
+};
+
+}  // namespace mpm

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "scenarios/draw.hpp"
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// The measured disturbances, nd x samples: the same in every experiment of a study, as in figure 6.17.
+Eigen::MatrixXd measured_disturbances(const Study& study);
+
+/// White normal measurement noise of the experiment, ny x samples.
+Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index);
+
+/// The unmeasured disturbances of the experiment on every CV, ny x samples: y_d = G_d v from rest, with v
+/// white, normal and held over a sample (figure 6.1c). Zero where the experiment has none.
+Eigen::MatrixXd unmeasured_disturbances(const Study& study, const ExperimentDraw& draw);
+
+}  // namespace mpm

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plants/plant_model.hpp"
+#include "scenarios/distribution.hpp"
+#include "solvers/range_mpc_options.hpp"
+
+namespace mpm {
+
+/// What is wrong in an experiment. `none` is the basis case.
+enum class ExperimentKind : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3 };
+
+/// Which parameter of a channel a model-plant mismatch changes, as in table 6.4.
+enum class MismatchParameter : std::int8_t { gain = 0, time_constant = 1, dead_time = 2 };
+
+/// One step of a measured disturbance: from `sample` on it has the value `level`.
+struct DisturbanceStep {
+  Eigen::Index md;
+  int sample;
+  double level;
+};
+
+/// Length, noise and excitation of every closed loop of the study.
+struct SimulationOptions {
+  int samples = 400;
+  Eigen::VectorXd noise_standard_deviation;  ///< of the white normal measurement noise, one a CV
+  std::vector<DisturbanceStep> steps;        ///< explicit steps; or
+  bool random_steps = false;                 ///< steps drawn once for the study, the same in every experiment
+  Distribution step_interval = Distribution::uniform(60, 100);  ///< samples between random steps
+  Distribution step_level = Distribution::uniform(-0.4, 0.4);   ///< level after a random step
+};
+
+/// How many experiments of each kind make one full study.
+struct ExperimentCounts {
+  int mpm = 0;
+  int ud = 0;
+  int mpm_ud = 0;
+
+  int total() const { return mpm + ud + mpm_ud; }
+};
+
+/// Ranges of the random mismatches (table 6.4). Channels are pairs of a CV and an MV with non-zero gain.
+struct MismatchRanges {
+  /// Relative frequency of gain, time constant and dead time; they need not sum to one.
+  std::array<double, 3> parameter_weight{1.0, 1.0, 1.0};
+  Distribution gain_factor = Distribution::uniform(0.3, 1.5);
+  Distribution time_constant_factor = Distribution::uniform(0.3, 3.0);
+  /// Added to the dead time, in the time unit of the plant. Where the sum would be negative the draw is
+  /// confined to shifts of at least minus the dead time (docs/methods.md).
+  Distribution dead_time_shift = Distribution::uniform(-2.0, 2.0);
+};
+
+/// Ranges of the random unmeasured disturbances: G_d = gain / (time_constant s + 1) driven by white noise v.
+struct DisturbanceRanges {
+  Distribution gain = Distribution::uniform(0.1, 3.0);
+  Distribution time_constant = Distribution::uniform(30.0, 300.0);
+  double v_standard_deviation = 1.0;  ///< of the white normal sequence, held over a sample
+};
+
+/// How T0 is determined (appendix A3).
+struct SensitivityOptions {
+  int samples = 150;       ///< length of the step responses; the static gain holds after it
+  double step_size = 0.1;  ///< of the active soft limit, in CV units; positive: into the range
+  /// CVs whose soft limit is taken as active, by index; empty: those that the basis case holds at a limit.
+  std::vector<Eigen::Index> active_cvs;
+};
+
+/// How the distance of Ivar_diag from 1 is measured when the CV is located.
+enum class LocationDistance { linear, logarithmic };
+
+/// Which experiments the rates of I_MPM are counted over.
+enum class SourcePopulation { impactful, feasible };
+
+/// The open choices of the diagnosis chain.
+struct DiagnosisOptions {
+  double impact_lower = 0.8;  ///< Ivar outside [impact_lower, impact_upper] is impactful
+  double impact_upper = 1.2;
+  LocationDistance location_distance = LocationDistance::linear;
+  double mpm_threshold = 0.1;    ///< I_MPM above it: model-plant mismatch
+  double shortest_window = 0.5;  ///< of the moving windows, in prediction horizons
+  double longest_window = 2.0;
+  int window_stride = 1;  ///< samples between window lengths
+  SourcePopulation source_population = SourcePopulation::impactful;
+  double self_check_lower = 0.8;  ///< Ivar of the basis case must lie in this band for every CV
+  double self_check_upper = 1.2;
+};
+
+/// How aggregates get their intervals.
+struct AggregateOptions {
+  double confidence = 0.95;
+  int bootstrap_replications = 2000;
+};
+
+/// A number that somebody has reported for an aggregate of this study, by the name of the aggregate.
+struct ReferenceValue {
+  std::string name;
+  double value;
+};
+
+/// A whole study as read from its file: every number that decides its result.
+struct Study {
+  std::string name;
+  std::string title;
+  std::uint64_t seed = 0;
+  PlantModel plant;  ///< the nominal model G0
+  RangeMpcOptions controller;
+  SimulationOptions simulation;
+  ExperimentCounts experiments;
+  MismatchRanges mismatch;
+  DisturbanceRanges disturbance;
+  SensitivityOptions sensitivity;
+  DiagnosisOptions diagnosis;
+  AggregateOptions aggregate;
+  std::vector<ReferenceValue> reference;  ///< shown beside the results, never used to make them
+  std::string source;  ///< the full text of the file
+
+  Eigen::Index cv_count() const { return static_cast<Eigen::Index>(plant.cvs.size()); }
+  Eigen::Index mv_count() const { return static_cast<Eigen::Index>(plant.mvs.size()); }
+  Eigen::Index md_count() const { return static_cast<Eigen::Index>(plant.mds.size()); }
+};
+
+}  // namespace mpm

@@ -1,0 +1,88 @@
+#include "scenarios/study_file.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "scenarios/study_file_keys.hpp"
+#include "scenarios/study_file_parts.hpp"
+#include "scenarios/toml_text.hpp"
+#include "scenarios/toml_values.hpp"
+
+namespace mpm {
+namespace {
+
+/// Kurtosis and skewness (6.10-6.12) of fewer values are constants or functions of one another.
+constexpr double kShortestWindow = 4;
+/// Their derivatives need one value more than windows, and a correlation two of them.
+constexpr double kSamplesBeyondWindow = 2;
+
+void read_heading(const TomlTable& document, Study& study) {
+  const TomlTable table = document.table("study", study_file_keys("study"));
+  study.name = read_name(table, "name");
+  study.title = read_text(table, "title");
+  study.seed =
+      static_cast<std::uint64_t>(read_whole(table, "seed", 0, std::numeric_limits<std::int64_t>::max()));
+}
+
+/// The moving windows of (6.13) and (6.14), in samples, against the horizon and the length of the record.
+void refuse_unusable_windows(const TomlTable& document, const Study& study) {
+  const double horizon = study.controller.prediction_horizon;
+  const double shortest = std::round(study.diagnosis.shortest_window * horizon);
+  const double longest = std::round(study.diagnosis.longest_window * horizon);
+  if (shortest < kShortestWindow) {
+    const TomlTable controller = document.table("controller", study_file_keys("controller"));
+    controller.refuse("prediction_horizon",
+                      fmt::format("{} (the shortest moving window has {} samples)", horizon, shortest),
+                      fmt::format("windows of at least {} samples", kShortestWindow));
+  }
+  if (!(longest < study.simulation.samples - kSamplesBeyondWindow)) {
+    const TomlTable simulation = document.table("simulation", study_file_keys("simulation"));
+    simulation.refuse("samples", fmt::format("{}", study.simulation.samples),
+                      fmt::format("more than {}: the longest moving window has {} samples",
+                                  longest + kSamplesBeyondWindow, longest));
+  }
+}
+
+std::string read_bounded(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kMaxTomlBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!file.is_open() || file.bad() || (file.gcount() == 0 && !file.eof())) {
+    throw InputError(path.string(), "nothing that can be read", "a study file");
+  }
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text;
+}
+
+}  // namespace
+
+Study parse_study(std::string_view text, const std::string& file_name) {
+  const toml::table toml = parse_toml(text, file_name);
+  const TomlTable document(toml, file_name, study_file_keys(""));
+  Study study;
+  read_heading(document, study);
+  study.plant = read_plant(document);
+  study.controller = read_controller(document, study.plant);
+  study.simulation = read_simulation(document, study.plant);
+  study.experiments = read_experiments(document);
+  study.mismatch = read_mismatch(document, study.plant);
+  study.disturbance = read_disturbance(document);
+  study.sensitivity = read_sensitivity(document, study.plant, study.controller);
+  study.diagnosis = read_diagnosis(document);
+  study.aggregate = read_aggregate(document);
+  refuse_unusable_windows(document, study);
+  study.source = text;
+  return study;
+}
+
+Study load_study(const std::filesystem::path& path) {
+  return parse_study(read_bounded(path), path.string());
+}
+
+}  // namespace mpm

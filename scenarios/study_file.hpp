@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// Reads a study from the text of a study file (docs/study_file.md). `file_name` is for messages.
+///
+/// Every key is checked: an unknown one, a missing one, a wrong type, a number that is not finite and a value
+/// that makes no study are refused.
+///
+/// Errors: InputError whose text is "FILE:LINE: KEY: found ...; allowed: ...". LINE is the line of the value,
+/// for a missing key that of its table, and for a text that is no TOML the one where the parser stopped.
+Study parse_study(std::string_view text, const std::string& file_name);
+
+/// Reads a study file. Errors: as parse_study(), and InputError for a file that cannot be read.
+Study load_study(const std::filesystem::path& path);
+
+}  // namespace mpm

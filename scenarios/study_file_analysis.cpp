@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "scenarios/study_file_keys.hpp"
+#include "scenarios/study_file_parts.hpp"
+#include "scenarios/toml_values.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::int64_t kMaxResponse = 100'000;
+constexpr std::int64_t kMaxReplications = 1'000'000;
+constexpr double kMaxWindow = 1000;  // in prediction horizons
+
+/// Section 6.3: at most as many soft limits are active as there are MVs, and a limit must be there to be
+/// active.
+std::vector<Eigen::Index> read_active_cvs(const TomlTable& table, const PlantModel& plant,
+                                          const RangeMpcOptions& controller) {
+  std::vector<Eigen::Index> active;
+  if (!table.has("active_cvs")) {
+    return active;
+  }
+  for (const std::size_t cv : read_some_of(table, "active_cvs", variable_names(plant.cvs))) {
+    const auto i = static_cast<Eigen::Index>(cv);
+    if (std::isinf(controller.cv_soft.lower(i)) && std::isinf(controller.cv_soft.upper(i))) {
+      table.refuse("active_cvs", fmt::format("'{}', which has no soft limit", plant.cvs[cv].name),
+                   "CVs with a soft limit");
+    }
+    active.push_back(i);
+  }
+  if (active.size() > plant.mvs.size()) {
+    table.refuse("active_cvs", fmt::format("{} CVs", active.size()),
+                 fmt::format("at most as many as MVs, {}", plant.mvs.size()));
+  }
+  return active;
+}
+
+/// A step of a soft limit into the range must not cross the opposite one. CVs without a range (equal limits)
+/// have no opposite one.
+double narrowest_range(const RangeMpcOptions& controller, const std::vector<Eigen::Index>& active) {
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < controller.cv_soft.lower.size(); ++i) {
+    const double width = controller.cv_soft.upper(i) - controller.cv_soft.lower(i);
+    const bool counts = active.empty() || std::find(active.begin(), active.end(), i) != active.end();
+    if (counts && width > 0) {
+      narrowest = std::min(narrowest, width);
+    }
+  }
+  return narrowest;
+}
+
+}  // namespace
+
+SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel& plant,
+                                    const RangeMpcOptions& controller) {
+  const TomlTable table = document.table_or_empty("sensitivity", study_file_keys("sensitivity"));
+  SensitivityOptions options;
+  options.samples = static_cast<int>(read_whole_or(table, "samples", 2, kMaxResponse, options.samples));
+  options.active_cvs = read_active_cvs(table, plant, controller);
+  options.step_size = read_number_or(table, "step_size", NumberRule::positive(), options.step_size);
+  const double narrowest = narrowest_range(controller, options.active_cvs);
+  if (options.step_size > narrowest) {
+    table.refuse("step_size", fmt::format("{}", options.step_size),
+                 fmt::format("at most the narrowest range between soft limits, {}", narrowest));
+  }
+  return options;
+}
+
+DiagnosisOptions read_diagnosis(const TomlTable& document) {
+  const TomlTable table = document.table_or_empty("diagnosis", study_file_keys("diagnosis"));
+  DiagnosisOptions options;
+  const NumberRule positive = NumberRule::positive();
+  std::tie(options.impact_lower, options.impact_upper) =
+      read_band_or(table, "impact_band", positive, {options.impact_lower, options.impact_upper});
+  options.location_distance = read_choice_or<LocationDistance>(
+      table, "location_distance",
+      {{"linear", LocationDistance::linear}, {"logarithmic", LocationDistance::logarithmic}},
+      options.location_distance);
+  options.mpm_threshold =
+      read_number_or(table, "mpm_threshold", NumberRule::inside(0, 1), options.mpm_threshold);
+  std::tie(options.shortest_window, options.longest_window) =
+      read_band_or(table, "windows", {.low = 0, .high = kMaxWindow, .high_included = true},
+                   {options.shortest_window, options.longest_window});
+  options.window_stride =
+      static_cast<int>(read_whole_or(table, "window_stride", 1, kMaxResponse, options.window_stride));
+  options.source_population = read_choice_or<SourcePopulation>(
+      table, "source_population",
+      {{"impactful", SourcePopulation::impactful}, {"feasible", SourcePopulation::feasible}},
+      options.source_population);
+  std::tie(options.self_check_lower, options.self_check_upper) =
+      read_band_or(table, "self_check_band", positive, {options.self_check_lower, options.self_check_upper});
+  return options;
+}
+
+AggregateOptions read_aggregate(const TomlTable& document) {
+  const TomlTable table = document.table_or_empty("aggregate", study_file_keys("aggregate"));
+  AggregateOptions options;
+  options.confidence = read_number_or(table, "confidence", NumberRule::inside(0, 1), options.confidence);
+  options.bootstrap_replications = static_cast<int>(
+      read_whole_or(table, "bootstrap_replications", 1, kMaxReplications, options.bootstrap_replications));
+  return options;
+}
+
+}  // namespace mpm

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "scenarios/study_file_keys.hpp"
+#include "scenarios/study_file_parts.hpp"
+#include "scenarios/toml_values.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::int64_t kMaxExperiments = 10'000'000;  // of one kind; the sum still is an int
+
+std::array<double, 3> read_weights(const TomlTable& mismatch, const std::array<double, 3>& fallback) {
+  if (!mismatch.has("parameter_weights")) {
+    return fallback;
+  }
+  const TomlTable table = mismatch.table("parameter_weights", study_file_keys("mismatch.parameter_weights"));
+  const NumberRule rule = NumberRule::at_least(0);
+  const std::array<double, 3> weights{read_number(table, "gain", rule),
+                                      read_number(table, "time_constant", rule),
+                                      read_number(table, "dead_time", rule)};
+  if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0; })) {
+    table.refuse("", "three weights of 0", "at least one > 0");
+  }
+  return weights;
+}
+
+/// Smallest dead time of the channels that a mismatch can change.
+double shortest_dead_time(const PlantModel& plant) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index row = 0; row < plant.G.rows(); ++row) {
+    for (std::size_t mv = 0; mv < plant.mvs.size(); ++mv) {
+      const TransferFunction& channel = plant.G(row, static_cast<Eigen::Index>(mv));
+      if (!channel.is_zero()) {
+        shortest = std::min(shortest, channel.dead_time());
+      }
+    }
+  }
+  return shortest;
+}
+
+/// In each channel some draw must leave a dead time >= 0, since draws are confined to those that do.
+void refuse_impossible_shift(const TomlTable& mismatch, const Distribution& shift, const PlantModel& plant) {
+  const double lowest = -shortest_dead_time(plant);
+  const bool constant = shift.kind() == Distribution::Kind::constant;
+  if (constant ? shift.maximum() < lowest : shift.maximum() <= lowest) {
+    mismatch.refuse("dead_time_shift", fmt::format("draws of at most {}", shift.maximum()),
+                    fmt::format("draws that can be {} {}: the shortest dead time is {}",
+                                constant ? ">=" : ">", lowest, -lowest));
+  }
+}
+
+}  // namespace
+
+ExperimentCounts read_experiments(const TomlTable& document) {
+  const TomlTable table = document.table("experiments", study_file_keys("experiments"));
+  const auto count = [&table](const char* key) {
+    return static_cast<int>(read_whole(table, key, 0, kMaxExperiments));
+  };
+  const ExperimentCounts counts{.mpm = count("mpm"), .ud = count("ud"), .mpm_ud = count("mpm_ud")};
+  if (counts.total() == 0) {
+    table.refuse("", "no experiment", "at least one of any kind");
+  }
+  return counts;
+}
+
+MismatchRanges read_mismatch(const TomlTable& document, const PlantModel& plant) {
+  const TomlTable table = document.table_or_empty("mismatch", study_file_keys("mismatch"));
+  MismatchRanges ranges;
+  ranges.parameter_weight = read_weights(table, ranges.parameter_weight);
+  ranges.gain_factor = read_distribution_or(table, "gain_factor", NumberRule::positive(), ranges.gain_factor);
+  ranges.time_constant_factor = read_distribution_or(table, "time_constant_factor", NumberRule::positive(),
+                                                     ranges.time_constant_factor);
+  ranges.dead_time_shift =
+      read_distribution_or(table, "dead_time_shift", NumberRule::finite(), ranges.dead_time_shift);
+  refuse_impossible_shift(table, ranges.dead_time_shift, plant);
+  return ranges;
+}
+
+DisturbanceRanges read_disturbance(const TomlTable& document) {
+  const TomlTable table = document.table_or_empty("disturbance", study_file_keys("disturbance"));
+  DisturbanceRanges ranges;
+  ranges.gain = read_distribution_or(table, "gain", NumberRule::positive(), ranges.gain);
+  ranges.time_constant =
+      read_distribution_or(table, "time_constant", NumberRule::positive(), ranges.time_constant);
+  ranges.v_standard_deviation =
+      read_number_or(table, "v_standard_deviation", NumberRule::positive(), ranges.v_standard_deviation);
+  return ranges;
+}
+
+}  // namespace mpm

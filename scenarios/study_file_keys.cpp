@@ -1,0 +1,49 @@
+#include "scenarios/study_file_keys.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace mpm {
+
+const std::vector<StudyFileTable>& study_file_tables() {
+  static const std::vector<StudyFileTable> tables{
+      {"",
+       {"study", "plant", "controller", "simulation", "experiments", "mismatch", "disturbance", "sensitivity",
+        "diagnosis", "aggregate"}},
+      {"study", {"name", "title", "seed"}},
+      {"plant", {"catalogue", "name", "title", "time_unit", "cv", "mv", "md", "channel"}},
+      {"plant.cv[]", {"name", "unit", "description"}},
+      {"plant.mv[]", {"name", "unit", "description"}},
+      {"plant.md[]", {"name", "unit", "description"}},
+      {"plant.channel[]", {"cv", "input", "gain", "time_constant", "numerator", "denominator", "dead_time"}},
+      {"controller",
+       {"sample_time", "prediction_horizon", "control_horizon", "weight_convention", "slack",
+        "target_violation_cost", "mv", "cv"}},
+      {"controller.mv.NAME", {"cost", "move_suppression", "target_weight", "hard"}},
+      {"controller.cv.NAME", {"slack_weight", "soft", "hard"}},
+      {"simulation", {"samples", "noise_standard_deviation", "step", "random_steps"}},
+      {"simulation.step[]", {"md", "sample", "level"}},
+      {"simulation.random_steps", {"interval", "level"}},
+      {"experiments", {"mpm", "ud", "mpm_ud"}},
+      {"mismatch", {"parameter_weights", "gain_factor", "time_constant_factor", "dead_time_shift"}},
+      {"mismatch.parameter_weights", {"gain", "time_constant", "dead_time"}},
+      {"disturbance", {"gain", "time_constant", "v_standard_deviation"}},
+      {"sensitivity", {"samples", "step_size", "active_cvs"}},
+      {"diagnosis",
+       {"impact_band", "location_distance", "mpm_threshold", "windows", "window_stride", "source_population",
+        "self_check_band"}},
+      {"aggregate", {"confidence", "bootstrap_replications"}},
+      {"DISTRIBUTION", {"constant", "uniform", "log_uniform", "normal"}},
+  };
+  return tables;
+}
+
+const std::vector<std::string>& study_file_keys(std::string_view table) {
+  const std::vector<StudyFileTable>& tables = study_file_tables();
+  const auto found = std::find_if(tables.begin(), tables.end(),
+                                  [table](const StudyFileTable& entry) { return entry.name == table; });
+  assert(found != tables.end());
+  return found->keys;
+}
+
+}  // namespace mpm

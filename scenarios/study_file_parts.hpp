@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/number_rule.hpp"
+#include "scenarios/study.hpp"
+#include "scenarios/toml_table.hpp"
+
+// The parts of the reader of study files, one source file each. `document` is the whole study file. All
+// refuse what they cannot take as TomlTable does.
+
+namespace mpm {
+
+/// [plant]: a plant of the catalogue, or one that the file defines (study_file_plant.cpp).
+PlantModel read_plant(const TomlTable& document);
+
+/// [controller] (study_file_controller.cpp).
+RangeMpcOptions read_controller(const TomlTable& document, const PlantModel& plant);
+
+/// [simulation] (study_file_simulation.cpp). The steps are returned in the order of their samples.
+SimulationOptions read_simulation(const TomlTable& document, const PlantModel& plant);
+
+/// [experiments] (study_file_draws.cpp), as the next two.
+ExperimentCounts read_experiments(const TomlTable& document);
+
+/// [mismatch]
+MismatchRanges read_mismatch(const TomlTable& document, const PlantModel& plant);
+
+/// [disturbance]
+DisturbanceRanges read_disturbance(const TomlTable& document);
+
+/// [sensitivity] (study_file_analysis.cpp), as the next two.
+SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel& plant,
+                                    const RangeMpcOptions& controller);
+
+/// [diagnosis]
+DiagnosisOptions read_diagnosis(const TomlTable& document);
+
+/// [aggregate]
+AggregateOptions read_aggregate(const TomlTable& document);
+
+/// A distribution written as an inline table with one key, such as {uniform = [0.3, 1.5]}, whose every draw
+/// satisfies `rule` (study_file_distribution.cpp).
+Distribution read_distribution(const TomlTable& table, std::string_view key, const NumberRule& rule);
+Distribution read_distribution_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
+                                  const Distribution& fallback);
+
+/// The names of variables, in their order.
+std::vector<std::string> variable_names(const std::vector<PlantModel::Variable>& variables);
+
+}  // namespace mpm

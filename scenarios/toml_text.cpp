@@ -1,0 +1,90 @@
+#include "scenarios/toml_text.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+/// The parser builds, and destroys by recursion, one table a part of a dotted key, without a limit of its own
+/// up to version 3.3: some 50 000 dots overflow the stack. The limit here, together with the parser's own one
+/// on nested values (256), keeps a factor of several away from that.
+constexpr std::ptrdiff_t kMaxDotsOnLine = 64;
+
+constexpr std::size_t kQuotedLength = 40;
+
+[[noreturn]] void refuse(const std::string& file_name, std::size_t line, const std::string& found,
+                         const std::string& allowed) {
+  throw InputError(fmt::format("{}:{}: TOML", file_name, line), found, allowed);
+}
+
+void refuse_deep_keys(std::string_view text, const std::string& file_name) {
+  std::size_t number = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    const std::ptrdiff_t dots = std::count(line.begin(), line.end(), '.');
+    if (dots > kMaxDotsOnLine) {
+      refuse(file_name, number, fmt::format("{} dots on one line", dots),
+             fmt::format("at most {}", kMaxDotsOnLine));
+    }
+    begin = end + 1;
+  }
+}
+
+/// Without a fraction a float would look like a whole number.
+std::string float_text(double value) {
+  std::string text = fmt::format("{}", value);
+  if (text.find_first_not_of("-0123456789") == std::string::npos) {
+    text += ".0";
+  }
+  return text;
+}
+
+char printable(char c) {
+  return c >= ' ' && c <= '~' ? c : '?';
+}
+
+}  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& file_name) {
+  if (text.size() > kMaxTomlBytes) {
+    refuse(file_name, 1, fmt::format("{} bytes", text.size()), fmt::format("at most {}", kMaxTomlBytes));
+  }
+  refuse_deep_keys(text, file_name);
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    refuse(file_name, error.source().begin.line, std::string(error.description()), "TOML 1.0");
+  }
+}
+
+std::string quoted(std::string_view text) {
+  std::string result(text.substr(0, kQuotedLength));
+  std::transform(result.begin(), result.end(), result.begin(), printable);
+  return fmt::format("'{}{}'", result, text.size() > kQuotedLength ? "..." : "");
+}
+
+std::string describe(const toml::node& node) {
+  if (const auto* text = node.as_string()) {
+    return quoted(text->get());
+  }
+  if (const auto* whole = node.as_integer()) {
+    return fmt::format("{}", whole->get());
+  }
+  if (const auto* number = node.as_floating_point()) {
+    return float_text(number->get());
+  }
+  if (const auto* flag = node.as_boolean()) {
+    return flag->get() ? "true" : "false";
+  }
+  if (const auto* list = node.as_array()) {
+    return fmt::format("a list of {}", list->size());
+  }
+  return node.is_table() ? "a table" : "a date or time";
+}
+
+}  // namespace mpm

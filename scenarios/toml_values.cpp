@@ -1,0 +1,193 @@
+#include "scenarios/toml_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "scenarios/toml_text.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kLongestName = 64;
+
+/// NaN, which no rule takes, for what is no number.
+double number_in(const toml::node& node) {
+  return node.value<double>().value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+std::string describe_pair(double low, double high) {
+  return fmt::format("[{}, {}]", low, high);
+}
+
+/// The two elements under `key`, NaN for what is no number.
+NumberPair raw_pair(const TomlTable& table, std::string_view key, const std::string& allowed) {
+  const toml::node& node = table.require(key, allowed);
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != 2) {
+    table.refuse(key, describe(node), allowed);
+  }
+  for (const toml::node& element : *list) {
+    if (!element.is_number()) {
+      table.refuse(key, describe(element) + " in the list", allowed);
+    }
+  }
+  return {number_in((*list)[0]), number_in((*list)[1])};
+}
+
+bool is_name(const std::string& text) {
+  const auto may_stand_in_name = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !text.empty() && text.size() <= kLongestName &&
+         std::all_of(text.begin(), text.end(), may_stand_in_name);
+}
+
+/// The position of the text `node`, which stands under `key`, in `names`.
+std::size_t position_of(const TomlTable& table, std::string_view key, const toml::node& node,
+                        const std::vector<std::string>& names) {
+  const std::string allowed = fmt::format("{}", fmt::join(names, ", "));
+  const toml::value<std::string>* text = node.as_string();
+  if (text == nullptr) {
+    table.refuse(key, describe(node), allowed);
+  }
+  const auto place = std::find(names.begin(), names.end(), text->get());
+  if (place == names.end()) {
+    table.refuse(key, with_nearest(text->get(), names), allowed);
+  }
+  return static_cast<std::size_t>(place - names.begin());
+}
+
+}  // namespace
+
+double read_number(const TomlTable& table, std::string_view key, const NumberRule& rule) {
+  const toml::node& node = table.require(key, rule.text());
+  const double value = number_in(node);
+  if (!node.is_number() || !rule.contains(value)) {
+    table.refuse(key, describe(node), rule.text());
+  }
+  return value;
+}
+
+double read_number_or(const TomlTable& table, std::string_view key, const NumberRule& rule, double fallback) {
+  return table.has(key) ? read_number(table, key, rule) : fallback;
+}
+
+std::int64_t read_whole(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high) {
+  const std::string allowed = fmt::format("a whole number from {} to {}", low, high);
+  const toml::node& node = table.require(key, allowed);
+  const toml::value<std::int64_t>* value = node.as_integer();
+  if (value == nullptr || value->get() < low || value->get() > high) {
+    table.refuse(key, describe(node), allowed);
+  }
+  return value->get();
+}
+
+std::int64_t read_whole_or(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high,
+                           std::int64_t fallback) {
+  return table.has(key) ? read_whole(table, key, low, high) : fallback;
+}
+
+std::string read_text(const TomlTable& table, std::string_view key) {
+  const std::string allowed = "a text that is not empty";
+  const toml::node& node = table.require(key, allowed);
+  const toml::value<std::string>* text = node.as_string();
+  if (text == nullptr || text->get().empty()) {
+    table.refuse(key, describe(node), allowed);
+  }
+  return text->get();
+}
+
+std::string read_text_or(const TomlTable& table, std::string_view key, const std::string& fallback) {
+  return table.has(key) ? read_text(table, key) : fallback;
+}
+
+std::string read_name(const TomlTable& table, std::string_view key) {
+  const std::string allowed = fmt::format("1 to {} letters, digits, '_' and '-'", kLongestName);
+  const toml::node& node = table.require(key, allowed);
+  const toml::value<std::string>* text = node.as_string();
+  if (text == nullptr || !is_name(text->get())) {
+    table.refuse(key, describe(node), allowed);
+  }
+  return text->get();
+}
+
+std::size_t read_one_of(const TomlTable& table, std::string_view key, const std::vector<std::string>& names) {
+  const toml::node& node = table.require(key, fmt::format("{}", fmt::join(names, ", ")));
+  return position_of(table, key, node, names);
+}
+
+std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view key,
+                                      const std::vector<std::string>& names) {
+  const std::string allowed = fmt::format("a list of one or more of {}", fmt::join(names, ", "));
+  const toml::node& node = table.require(key, allowed);
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->empty()) {
+    table.refuse(key, describe(node), allowed);
+  }
+  std::vector<std::size_t> positions;
+  for (const toml::node& element : *list) {
+    const std::size_t position = position_of(table, key, element, names);
+    if (std::find(positions.begin(), positions.end(), position) != positions.end()) {
+      table.refuse(key, fmt::format("{} twice", quoted(names[position])), "every name once");
+    }
+    positions.push_back(position);
+  }
+  return positions;
+}
+
+Eigen::VectorXd read_numbers(const TomlTable& table, std::string_view key, const NumberRule& rule,
+                             std::size_t longest) {
+  const std::string allowed = fmt::format("a list of 1 to {}, each {}", longest, rule.text());
+  const toml::node& node = table.require(key, allowed);
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->empty() || list->size() > longest) {
+    table.refuse(key, describe(node), allowed);
+  }
+  Eigen::VectorXd numbers(static_cast<Eigen::Index>(list->size()));
+  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
+    const toml::node& element = (*list)[static_cast<std::size_t>(i)];
+    numbers(i) = number_in(element);
+    if (!element.is_number() || !rule.contains(numbers(i))) {
+      table.refuse(key, describe(element) + " in the list", allowed);
+    }
+  }
+  return numbers;
+}
+
+NumberPair read_pair(const TomlTable& table, std::string_view key, const std::string& allowed) {
+  const NumberPair pair = raw_pair(table, key, allowed);
+  if (!std::isfinite(pair.first) || !std::isfinite(pair.second)) {
+    table.refuse(key, describe_pair(pair.first, pair.second), allowed);
+  }
+  return pair;
+}
+
+NumberPair read_band_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
+                        const NumberPair& fallback) {
+  if (!table.has(key)) {
+    return fallback;
+  }
+  const std::string allowed = fmt::format("[low, high] with low < high, each {}", rule.text());
+  const NumberPair band = read_pair(table, key, allowed);
+  if (!(band.first < band.second) || !rule.contains(band.first) || !rule.contains(band.second)) {
+    table.refuse(key, describe_pair(band.first, band.second), allowed);
+  }
+  return band;
+}
+
+NumberPair read_limits(const TomlTable& table, std::string_view key) {
+  const std::string allowed = "[low, high] with low <= high; -inf and inf for no limit";
+  const NumberPair limits = raw_pair(table, key, allowed);
+  const auto [low, high] = limits;
+  if (!(low <= high) || low == kInfinity || high == -kInfinity) {
+    table.refuse(key, describe_pair(low, high), allowed);
+  }
+  return limits;
+}
+
+}  // namespace mpm

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenarios/number_rule.hpp"
+#include "scenarios/toml_table.hpp"
+
+// Typed reading of the values of a TOML table. All functions refuse a value they cannot take as TomlTable
+// does. Those ending in `_or` return their last argument for a missing key; the others refuse it.
+
+namespace mpm {
+
+/// Two numbers in a list; what they mean is up to the reader.
+using NumberPair = std::pair<double, double>;
+
+/// A number; a whole one will do.
+double read_number(const TomlTable& table, std::string_view key, const NumberRule& rule);
+double read_number_or(const TomlTable& table, std::string_view key, const NumberRule& rule, double fallback);
+
+/// A whole number from `low` to `high`.
+std::int64_t read_whole(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high);
+std::int64_t read_whole_or(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high,
+                           std::int64_t fallback);
+
+/// A text that is not empty.
+std::string read_text(const TomlTable& table, std::string_view key);
+std::string read_text_or(const TomlTable& table, std::string_view key, const std::string& fallback);
+
+/// A text that can be a bare TOML key and part of a file name: 1 to 64 letters, digits, '_' and '-'.
+std::string read_name(const TomlTable& table, std::string_view key);
+
+/// One of `names`; returns its position.
+std::size_t read_one_of(const TomlTable& table, std::string_view key, const std::vector<std::string>& names);
+
+/// The value that goes with the text under `key`.
+template <class Value>
+Value read_choice_or(const TomlTable& table, std::string_view key,
+                     const std::vector<std::pair<std::string, Value>>& choices, Value fallback) {
+  if (!table.has(key)) {
+    return fallback;
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) {
+    names.push_back(name);
+  }
+  return choices[read_one_of(table, key, names)].second;
+}
+
+/// A list of one or more of `names`, none twice; returns their positions.
+std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view key,
+                                      const std::vector<std::string>& names);
+
+/// A list of `rule.text()`, from one to `longest` of them.
+Eigen::VectorXd read_numbers(const TomlTable& table, std::string_view key, const NumberRule& rule,
+                             std::size_t longest);
+
+/// Two finite numbers; `allowed` says what they mean.
+NumberPair read_pair(const TomlTable& table, std::string_view key, const std::string& allowed);
+
+/// [low, high] with low < high and both within `rule`.
+NumberPair read_band_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
+                        const NumberPair& fallback);
+
+/// Limits [low, high] with low <= high. -inf as the lower and inf as the upper one stand for no limit.
+NumberPair read_limits(const TomlTable& table, std::string_view key);
+
+}  // namespace mpm

@@ -1,0 +1,241 @@
+#include "solvers/active_set_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mpm {
+namespace {
+
+// Steps on which many limits may be met at once; then the search stops at the first one, which is slower and
+// finite.
+constexpr int kProjectedSteps = 60;
+constexpr int kLineSearchSteps = 60;
+constexpr double kSlopeTolerance = 1e-12;  // of the line search, relative to the slope at its start
+
+}  // namespace
+
+ActiveSetNewton::ActiveSetNewton(const ActiveSetProblem& problem, std::size_t family_count)
+    : problem_(problem), curvature_(problem, family_count), factor_(problem.variable_count()) {
+  const Eigen::Index size = problem.variable_count();
+  const Eigen::Index rows = problem.structure->row_count();
+  for (Eigen::VectorXd* vector : {&z, &centre, &linear, &gradient, &direction_, &step_, &target_})
+    vector->setZero(size);
+  lower.setConstant(size, 0.0);
+  upper.setConstant(size, std::numeric_limits<double>::infinity());
+  for (Eigen::VectorXd* vector : {&row_value, &row_step_, &row_force_})
+    vector->setZero(rows);
+  free_.reserve(static_cast<std::size_t>(size));
+  next_free_.reserve(static_cast<std::size_t>(size));
+}
+
+void ActiveSetNewton::reset() {
+  z.setZero();
+  centre.setZero();
+  forget_curvature();
+}
+
+void ActiveSetNewton::forget_curvature() {
+  curvature_.clear();
+  factored_ = false;
+}
+
+void ActiveSetNewton::start(std::vector<LimitSprings>& families) {
+  z = z.cwiseMax(lower).cwiseMin(upper);
+  row_value.noalias() = problem_.structure->rows * z.head(problem_.structure->variable_count());
+  for (LimitSprings& springs : families)
+    springs.place(problem_, row_value, z);
+}
+
+bool ActiveSetNewton::held(Eigen::Index j) const {
+  return lower(j) == upper(j) || (z(j) <= lower(j) && gradient(j) >= 0) ||
+         (z(j) >= upper(j) && gradient(j) <= 0);
+}
+
+double ActiveSetNewton::proximal_force() const {
+  double largest = 0.0;
+  for (Eigen::Index j = 0; j < z.size(); ++j)
+    if (problem_.proximal(j) > 0.0)
+      largest = std::max(largest, problem_.proximal(j) * std::abs(z(j) - centre(j)));
+  return largest;
+}
+
+NewtonOutcome ActiveSetNewton::minimise(std::vector<LimitSprings>& families, double tolerance, int limit,
+                                        int& iterations) {
+  for (LimitSprings& springs : families)
+    if (springs.enabled)
+      springs.pull();
+  for (int round = 0;; ++round) {
+    find_gradient(families);
+    if (find_free() <= tolerance)
+      return NewtonOutcome::converged;
+    if (iterations >= limit)
+      return NewtonOutcome::iteration_limit;
+    ++iterations;
+    if (!find_direction(families))
+      return NewtonOutcome::singular;
+    if (!aim_projected() || round >= kProjectedSteps)
+      aim_truncated();
+    aim_springs(families);
+
+    const bool same = std::all_of(families.begin(), families.end(), [](const LimitSprings& springs) {
+      return !springs.enabled || springs.same_after_step();
+    });
+    const double t = same ? 1.0 : line_search(families, gradient.dot(step_));
+    if (t == 1.0)
+      z = target_;  // exactly on the limits that are met
+    else
+      z = (z + t * step_).cwiseMax(lower).cwiseMin(upper);
+    row_value += t * row_step_;
+    for (LimitSprings& springs : families)
+      springs.advance(t, same);
+  }
+}
+
+void ActiveSetNewton::find_gradient(const std::vector<LimitSprings>& families) {
+  const Eigen::Index n = problem_.structure->variable_count();
+  const Eigen::Index kept = z.size() - n;
+  gradient = linear;
+  gradient.array() += problem_.proximal.array() * (z - centre).array();
+  gradient.head(n).noalias() += problem_.quadratic.topLeftCorner(n, n) * z.head(n);
+  gradient.tail(kept).array() += problem_.quadratic.diagonal().tail(kept).array() * z.tail(kept).array();
+  for (const LimitSprings& springs : families)
+    if (springs.enabled)
+      add_row_forces(springs);
+}
+
+void ActiveSetNewton::add_row_forces(const LimitSprings& springs) {
+  const Eigen::Index n = problem_.structure->variable_count();
+  for (Eigen::Index i = 0; i < springs.size(); ++i) {
+    if (!springs.stretched(i))
+      continue;
+    gradient.head(n) += springs.force(i) * problem_.structure->rows.row(i).transpose();
+    if (const int column = problem_.slack_column(i); springs.slack_sign != 0.0 && column >= 0)
+      gradient(column) += springs.slack_sign * springs.force(i);
+  }
+}
+
+// The variables that may move; returns the largest gradient among them.
+double ActiveSetNewton::find_free() {
+  next_free_.clear();
+  double largest = 0.0;
+  for (Eigen::Index j = 0; j < z.size(); ++j) {
+    if (held(j))
+      continue;
+    next_free_.push_back(static_cast<int>(j));
+    largest = std::max(largest, std::abs(gradient(j)));
+  }
+  return largest;
+}
+
+bool ActiveSetNewton::find_direction(const std::vector<LimitSprings>& families) {
+  const bool curved = curvature_.synchronise(families);
+  if (curved || !factored_ || next_free_ != free_) {
+    free_.assign(next_free_.begin(), next_free_.end());
+    factored_ = factor_.compute(curvature_.matrix(), free_);
+    if (!factored_)
+      return false;
+  }
+  direction_.setZero();
+  for (const int j : free_)
+    direction_(j) = -gradient(j);
+  factor_.solve_in_place(direction_);
+  return true;
+}
+
+// The step to the nearest point of the box to the Newton point; false when that is not downhill.
+bool ActiveSetNewton::aim_projected() {
+  step_ = direction_;
+  for (Eigen::Index j = 0; j < z.size(); ++j) {
+    const double aim = z(j) + direction_(j);
+    target_(j) = std::min(std::max(aim, lower(j)), upper(j));
+    if (target_(j) != aim)
+      step_(j) = target_(j) - z(j);  // elsewhere the step keeps the digits that z cannot hold
+  }
+  return gradient.dot(step_) < 0.0;
+}
+
+// The step towards the Newton point up to the first limit.
+void ActiveSetNewton::aim_truncated() {
+  freeze_blocked();
+  double longest = 1.0;
+  for (const int j : free_)
+    if (const double d = direction_(j); d > 0.0)
+      longest = std::min(longest, (upper(j) - z(j)) / d);
+    else if (d < 0.0)
+      longest = std::min(longest, (lower(j) - z(j)) / d);
+  step_ = longest * direction_;
+  target_ = z + step_;
+  for (const int j : free_)
+    if (const double d = direction_(j); d != 0.0 && longest < 1.0) {
+      const double limit = d > 0.0 ? upper(j) : lower(j);
+      if ((limit - z(j)) / d <= longest)
+        target_(j) = limit;
+    }
+  target_ = target_.cwiseMax(lower).cwiseMin(upper);
+}
+
+// A variable on a limit that the Newton step would push across it is taken out of the step. The gradient
+// pulls it inwards, so the others remain downhill.
+void ActiveSetNewton::freeze_blocked() {
+  for (bool blocked = true; blocked;) {
+    const auto crosses = [this](int j) {
+      return (z(j) <= lower(j) && direction_(j) < 0.0) || (z(j) >= upper(j) && direction_(j) > 0.0);
+    };
+    const auto kept = std::remove_if(free_.begin(), free_.end(), crosses);
+    blocked = kept != free_.end();
+    if (!blocked)
+      return;
+    free_.erase(kept, free_.end());
+    factored_ = factor_.compute(curvature_.matrix(), free_);
+    direction_.setZero();
+    for (const int j : free_)
+      direction_(j) = -gradient(j);
+    if (factored_)
+      factor_.solve_in_place(direction_);
+  }
+}
+
+void ActiveSetNewton::aim_springs(std::vector<LimitSprings>& families) {
+  row_step_.noalias() = problem_.structure->rows * step_.head(problem_.structure->variable_count());
+  for (LimitSprings& springs : families)
+    springs.aim(problem_, row_step_, step_);
+}
+
+// The root of the derivative of theta along the step, a rising piecewise linear function of t: Newton's
+// method within a bracket. The whole step when theta falls all along it.
+double ActiveSetNewton::line_search(const std::vector<LimitSprings>& families, double slope) const {
+  const Eigen::Index n = problem_.structure->variable_count();
+  const Eigen::Index kept = z.size() - n;
+  double smooth_curvature = problem_.quadratic.diagonal().tail(kept).dot(step_.tail(kept).cwiseAbs2()) +
+                            problem_.proximal.dot(step_.cwiseAbs2());
+  for (Eigen::Index j = 0; j < n; ++j)
+    smooth_curvature += step_(j) * problem_.quadratic.col(j).head(n).dot(step_.head(n));
+  double at_start = 0.0;
+  for (const LimitSprings& springs : families)
+    if (springs.enabled)
+      at_start += springs.force.dot(springs.step);
+
+  double low = 0.0;
+  double high = 1.0;
+  double t = 1.0;
+  for (int k = 0; k < kLineSearchSteps; ++k) {
+    double first = slope - at_start + t * smooth_curvature;
+    double second = smooth_curvature;
+    for (const LimitSprings& springs : families)
+      if (springs.enabled)
+        springs.add_derivatives(t, first, second);
+    if (std::abs(first) <= kSlopeTolerance * std::abs(slope) || (t == 1.0 && first < 0.0))
+      return t;
+    (first > 0.0 ? high : low) = t;
+    double next = t - first / second;
+    if (!(next > low && next < high))
+      next = 0.5 * (low + high);
+    if (next == t)
+      return t;
+    t = next;
+  }
+  return t;
+}
+
+}  // namespace mpm

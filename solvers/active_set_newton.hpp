@@ -1,0 +1,71 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "solvers/active_set_curvature.hpp"
+#include "solvers/active_set_factor.hpp"
+#include "solvers/active_set_problem.hpp"
+#include "solvers/active_set_springs.hpp"
+
+namespace mpm {
+
+enum class NewtonOutcome { converged, iteration_limit, singular };
+
+/// Minimises the penalised problem over the box: the convex, piecewise quadratic
+///
+///     theta(z) = 1/2 z'Qz + c'z + 1/2 sum_j sigma_j (z_j - centre_j)^2 + penalties of the springs,
+///     lower <= z <= upper,
+///
+/// by Newton's method on the free variables with an exact line search (docs/methods.md, active-set method).
+/// All memory is taken at construction; z, the factor and the curvature are kept from call to call.
+class ActiveSetNewton {
+ public:
+  ActiveSetNewton(const ActiveSetProblem& problem, std::size_t family_count);
+
+  /// z = 0, as after construction.
+  void reset();
+
+  /// To be called after the stiffness of springs was changed.
+  void forget_curvature();
+
+  /// Moves z into the box and finds the springs' values for it.
+  void start(std::vector<LimitSprings>& families);
+
+  /// Until the projected gradient is at most `tolerance`; `iterations` is counted up, to `limit` at most. The
+  /// springs' forces are those at z.
+  NewtonOutcome minimise(std::vector<LimitSprings>& families, double tolerance, int limit, int& iterations);
+
+  /// The largest |sigma_j (z_j - centre_j)|: what the proximal term still adds to the gradient.
+  double proximal_force() const;
+
+  Eigen::VectorXd z, centre;
+  Eigen::VectorXd linear, lower, upper;  ///< c and the box, set by the caller before `start`
+  Eigen::VectorXd gradient;              ///< of theta at z, after `minimise`
+  Eigen::VectorXd row_value;             ///< A x
+
+  /// True when variable j rests on a limit, which its gradient pushes it against.
+  bool held(Eigen::Index j) const;
+
+ private:
+  void find_gradient(const std::vector<LimitSprings>& families);
+  void add_row_forces(const LimitSprings& springs);
+  double find_free();
+  bool find_direction(const std::vector<LimitSprings>& families);
+  bool aim_projected();
+  void aim_truncated();
+  void freeze_blocked();
+  void aim_springs(std::vector<LimitSprings>& families);
+  double line_search(const std::vector<LimitSprings>& families, double slope) const;
+
+  const ActiveSetProblem& problem_;
+  ActiveSetCurvature curvature_;
+  ActiveSetFactor factor_;
+  bool factored_ = false;
+  std::vector<int> free_, next_free_;
+  Eigen::VectorXd direction_, step_, target_, row_step_;
+  Eigen::VectorXd row_force_;  ///< forces of one family, for A'F
+};
+
+}  // namespace mpm

@@ -1,0 +1,215 @@
+#include "solvers/active_set_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "solvers/active_set_certificate.hpp"
+
+namespace mpm {
+namespace {
+
+// A problem whose least possible largest violation of the hard limits is proven to be above this has no
+// feasible point; below it, it is feasible within rounding.
+constexpr double kInfeasible = 1e-9;
+
+// Nearly parallel limits share their force at a rate that no stiffness makes fast: after `kPatience` rounds
+// `kAcceptable` times the tolerance will do.
+constexpr int kPatience = 30;
+constexpr double kAcceptable = 5.0;
+constexpr double kProgress =
+    0.1;  // of the residual in one round of multipliers; else the springs are stiffened
+constexpr double kStiffer = 16.0;  // a power of two: taking it back is exact
+constexpr double kStiffest = 0x1p20;
+
+// Families of springs, in this order; those of kept slacks exist only when there are such slacks.
+constexpr std::size_t kSoft = 0, kHard = 1, kSlackUpper = 2;
+
+std::vector<LimitSprings> make_families(const ActiveSetProblem& problem) {
+  std::vector<LimitSprings> families;
+  families.emplace_back(0.0, problem.softness);
+  families.emplace_back(0.0, problem.limit_stiffness);
+  if (problem.kept_slacks.empty())
+    return families;
+  const Eigen::VectorXd kept =
+      (problem.slack_column.array() >= 0).select(problem.limit_stiffness, 0.0).matrix();
+  families.emplace_back(-1.0, kept);
+  families.emplace_back(+1.0, kept);
+  return families;
+}
+
+QpStatus status_of(NewtonOutcome outcome) {
+  return outcome == NewtonOutcome::iteration_limit ? QpStatus::iteration_limit : QpStatus::numerical_error;
+}
+
+}  // namespace
+
+void ActiveSetOptions::validate() const {
+  if (!(tolerance > 0 && tolerance < 1))
+    throw InputError("active-set tolerance", fmt::to_string(tolerance), "0 to 1");
+  if (iteration_limit < 1)
+    throw InputError("active-set iteration_limit", fmt::to_string(iteration_limit), ">= 1");
+  if (round_limit < 1)
+    throw InputError("active-set round_limit", fmt::to_string(round_limit), ">= 1");
+}
+
+ActiveSetSolver::ActiveSetSolver(std::shared_ptr<const QpStructure> structure,
+                                 const ActiveSetOptions& options)
+    : QpSolver(std::move(structure)),
+      options_(options),
+      problem_(this->structure()),
+      families_(make_families(problem_)),
+      newton_(problem_, families_.size()) {
+  options_.validate();
+  certificate_.setZero(this->structure().row_count());
+  scratch_.setZero(this->structure().variable_count());
+}
+
+void ActiveSetSolver::do_reset() {
+  newton_.reset();
+  for (LimitSprings& springs : families_) {
+    springs.multiplier.setZero();
+    springs.force.setZero();
+  }
+}
+
+void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
+  certified_violation_ = 0.0;
+  bind(data);
+  result.iterations = 0;
+  result.status = iterate(data, result.iterations);
+  report(result);
+  if (result.status != QpStatus::infeasible)
+    certificate_.setZero();
+  if (result.status != QpStatus::solved)
+    do_reset();  // the next problem starts from nothing rather than from a failure
+}
+
+void ActiveSetSolver::bind(const QpData& data) {
+  const Eigen::Index n = structure().variable_count();
+  newton_.linear.head(n) = data.gradient;
+  newton_.lower.head(n) = data.lower;
+  newton_.upper.head(n) = data.upper;
+  for (std::size_t k = 0; k < problem_.kept_slacks.size(); ++k)
+    newton_.linear(n + static_cast<Eigen::Index>(k)) = structure().slack_linear(problem_.kept_slacks[k]);
+  newton_.centre.setZero();
+  if (stiffening_ != 1.0)
+    stiffen(1.0 / stiffening_);
+  // Hard limits are seldom active: they come in when the warm start has one, or when the answer breaks one.
+  LimitSprings& hard = families_[kHard];
+  hard.enabled = !hard.multiplier.isZero(0.0);
+  if (!hard.enabled)
+    hard.force.setZero();
+  set_limits(data);
+  newton_.start(families_);
+}
+
+void ActiveSetSolver::set_limits(const QpData& data) {
+  for (std::size_t f = 0; f < families_.size(); ++f)
+    if (f == kHard)
+      families_[f].set_limits(data.hard_lower, data.hard_upper);
+    else
+      families_[f].set_limits(data.soft_lower, data.soft_upper);
+}
+
+QpStatus ActiveSetSolver::iterate(const QpData& data, int& iterations) {
+  const double scale = std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>());
+  LimitSprings& hard = families_[kHard];
+  double last_residual = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < options_.round_limit; ++round) {
+    const NewtonOutcome outcome =
+        newton_.minimise(families_, options_.tolerance * scale, options_.iteration_limit, iterations);
+    if (outcome != NewtonOutcome::converged)
+      return status_of(outcome);
+    if (!hard.enabled && !hard_limits_kept(data)) {
+      hard.enabled = true;
+      continue;
+    }
+    const double residual = update_multipliers(scale);
+    if (residual > (round < kPatience ? 1.0 : kAcceptable) * options_.tolerance) {
+      if (hard.enabled && proves_infeasible(data))
+        return QpStatus::infeasible;
+      if (residual > kProgress * last_residual)
+        stiffen(kStiffer);
+      last_residual = residual;
+      set_limits(data);
+      continue;
+    }
+    if (newton_.proximal_force() <= options_.tolerance * scale)
+      return QpStatus::solved;
+    newton_.centre = newton_.z;
+  }
+  return QpStatus::iteration_limit;
+}
+
+// Stiffer springs need fewer rounds of multipliers.
+void ActiveSetSolver::stiffen(double factor) {
+  if (stiffening_ * factor > kStiffest)
+    return;
+  stiffening_ = factor * stiffening_;
+  for (std::size_t f = kHard; f < families_.size(); ++f)
+    families_[f].stiffness *= factor;
+  newton_.forget_curvature();
+}
+
+bool ActiveSetSolver::hard_limits_kept(const QpData& data) const {
+  const auto value = families_[kHard].value.array();
+  return ((value - data.hard_upper.array()).max(data.hard_lower.array() - value) <= options_.tolerance).all();
+}
+
+// The method of multipliers: the forces become the multipliers. Returns how far that is from a solution: the
+// largest violation of a limit, or force times distance to its limit relative to `scale`.
+double ActiveSetSolver::update_multipliers(double scale) {
+  double residual = 0.0;
+  certificate_ = families_[kHard].force - families_[kHard].multiplier;
+  for (std::size_t f = kHard; f < families_.size(); ++f) {
+    LimitSprings& springs = families_[f];
+    if (!springs.enabled)
+      continue;
+    for (Eigen::Index i = 0; i < springs.size(); ++i) {
+      const double force = springs.force(i);
+      const double change = force - springs.multiplier(i);
+      if (change == 0.0)
+        continue;
+      const double distance = std::abs(change / springs.stiffness(i));
+      residual = std::max({residual, distance, std::abs(force) * distance / scale});
+      springs.multiplier(i) = force;
+    }
+  }
+  return residual;
+}
+
+// Multipliers of an infeasible problem grow without end, in a direction that proves it.
+bool ActiveSetSolver::proves_infeasible(const QpData& data) {
+  certified_violation_ = proven_violation(structure(), data, certificate_, scratch_);
+  if (!(certified_violation_ > kInfeasible)) {
+    certified_violation_ = 0.0;
+    return false;
+  }
+  certificate_ /= certificate_.lpNorm<1>();
+  return true;
+}
+
+void ActiveSetSolver::report(QpResult& result) const {
+  const Eigen::Index n = structure().variable_count();
+  result.x = newton_.z.head(n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    result.bound_dual(j) = newton_.held(j) ? -newton_.gradient(j) : 0.0;
+  result.hard_dual = families_[kHard].force;
+  result.soft_dual = families_[kSoft].force;
+  for (std::size_t f = kSlackUpper; f < families_.size(); ++f)
+    result.soft_dual += families_[f].force;
+
+  result.slack.setZero();
+  for (std::size_t k = 0; k < problem_.kept_slacks.size(); ++k)
+    result.slack(problem_.kept_slacks[k]) = newton_.z(n + static_cast<Eigen::Index>(k));
+  for (Eigen::Index i = 0; i < structure().row_count(); ++i)
+    if (const double softness = problem_.softness(i); softness > 0.0)
+      result.slack(structure().slack_of_row(i)) = std::abs(families_[kSoft].force(i)) / softness;
+}
+
+}  // namespace mpm

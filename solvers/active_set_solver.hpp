@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "solvers/active_set_newton.hpp"
+#include "solvers/active_set_problem.hpp"
+#include "solvers/active_set_springs.hpp"
+#include "solvers/qp_solver.hpp"
+
+namespace mpm {
+
+struct ActiveSetOptions {
+  /// Largest violation of a limit, and largest error of stationarity and complementarity relative to
+  /// max(1, |g|), of an answer `solved`.
+  double tolerance = 1e-10;
+  /// Newton steps of one solve, all rounds together.
+  int iteration_limit = 1000;
+  /// Rounds of multipliers and proximal centres of one solve.
+  int round_limit = 200;
+
+  /// Throws InputError when a number is out of range.
+  void validate() const;
+};
+
+/// Our own back end: a warm-started active-set method for the sequences of QPs of a controller.
+///
+/// Soft limits with a slack of their own are penalties; Newton's method with an exact line search finds the
+/// minimiser of the resulting piecewise quadratic over the box in a few steps, exactly. Limits that must hold
+/// (hard limits, soft limits that share a slack) are handled by the method of multipliers around it, and
+/// where the Hessian is only semidefinite (the target optimizer, a linear program) by proximal terms
+/// (docs/methods.md, active-set method).
+///
+/// `infeasible` is returned only with a certificate, see `certificate`. `iteration_limit` and
+/// `numerical_error` say honestly that there is no answer; an unbounded problem ends so.
+///
+/// Among several minimisers (H semidefinite) the answer is the one nearest to the origin in the directions
+/// that H leaves open, provided that the proximal weight is small against the costs (Mangasarian & Meyer,
+/// SIAM J. Control Optim. 17 (1979) 745-752).
+///
+/// `solve` allocates nothing. Solvers of different threads share nothing but the structure.
+class ActiveSetSolver final : public QpSolver {
+ public:
+  /// Throws InputError when the structure or an option is not valid.
+  ActiveSetSolver(std::shared_ptr<const QpStructure> structure, const ActiveSetOptions& options);
+
+  /// After an answer `infeasible`: y (m) with sum |y_i| = 1 such that every x in the box violates some hard
+  /// limit by at least `certified_violation()` > 0, because
+  ///     min over the box of (A'y)'x  -  sum_{y_i > 0} y_i hard_upper_i  -  sum_{y_i < 0} y_i hard_lower_i
+  /// is that large (Farkas). Zero otherwise.
+  const Eigen::VectorXd& certificate() const { return certificate_; }
+  double certified_violation() const { return certified_violation_; }
+
+ private:
+  void do_solve(const QpData& data, QpResult& result) override;
+  void do_reset() override;
+
+  void bind(const QpData& data);
+  QpStatus iterate(const QpData& data, int& iterations);
+  void set_limits(const QpData& data);
+  bool hard_limits_kept(const QpData& data) const;
+  void stiffen(double factor);
+  double update_multipliers(double scale);
+  bool proves_infeasible(const QpData& data);
+  void report(QpResult& result) const;
+
+  ActiveSetOptions options_;
+  ActiveSetProblem problem_;
+  std::vector<LimitSprings> families_;
+  ActiveSetNewton newton_;
+  Eigen::VectorXd certificate_;
+  Eigen::VectorXd scratch_;
+  double certified_violation_ = 0.0;
+  double stiffening_ = 1.0;  ///< of the springs with multipliers, in this solve
+};
+
+}  // namespace mpm

@@ -1,0 +1,88 @@
+#include "solvers/active_set_springs.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace mpm {
+
+LimitSprings::LimitSprings(double sign, Eigen::VectorXd k) : slack_sign(sign), stiffness(std::move(k)) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  lower.setConstant(size(), -infinity);
+  upper.setConstant(size(), infinity);
+  multiplier.setZero(size());
+  value.setZero(size());
+  step.setZero(size());
+  force.setZero(size());
+}
+
+void LimitSprings::assign(Eigen::VectorXd& to, const ActiveSetProblem& problem, const Eigen::VectorXd& rows,
+                          const Eigen::VectorXd& z) const {
+  to = rows;
+  if (slack_sign == 0.0)
+    return;
+  for (Eigen::Index i = 0; i < size(); ++i)
+    if (const int column = problem.slack_column(i); column >= 0)
+      to(i) += slack_sign * z(column);
+}
+
+void LimitSprings::place(const ActiveSetProblem& problem, const Eigen::VectorXd& row_value,
+                         const Eigen::VectorXd& z) {
+  assign(value, problem, row_value, z);
+}
+
+void LimitSprings::aim(const ActiveSetProblem& problem, const Eigen::VectorXd& row_step,
+                       const Eigen::VectorXd& p) {
+  assign(step, problem, row_step, p);
+}
+
+void LimitSprings::set_limits(const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper) {
+  for (Eigen::Index i = 0; i < size(); ++i) {
+    if (stiffness(i) == 0.0)
+      continue;  // its limits stay infinite
+    const double shift = multiplier(i) / stiffness(i);
+    if (slack_sign <= 0.0)
+      upper(i) = row_upper(i) - shift;
+    if (slack_sign >= 0.0)
+      lower(i) = row_lower(i) - shift;
+  }
+}
+
+void LimitSprings::pull() {
+  force = stiffness.array() * (value.array() - value.array().max(lower.array()).min(upper.array()));
+}
+
+bool LimitSprings::same_after_step() const {
+  Eigen::Index changed = 0;
+  for (Eigen::Index i = 0; i < size(); ++i) {
+    const double moved = value(i) + step(i);
+    // A spring that changes its end (from the lower limit to the upper one) changes, too.
+    changed += (moved > upper(i)) != (force(i) > 0.0);
+    changed += (moved < lower(i)) != (force(i) < 0.0);
+  }
+  return changed == 0;
+}
+
+void LimitSprings::advance(double t, bool same) {
+  if (same && enabled) {
+    for (Eigen::Index i = 0; i < size(); ++i)
+      force(i) = force(i) != 0.0 ? force(i) + stiffness(i) * step(i) : 0.0;
+    value += step;
+    return;
+  }
+  value += t * step;
+  if (enabled)
+    pull();
+}
+
+void LimitSprings::add_derivatives(double t, double& first, double& second) const {
+  for (Eigen::Index i = 0; i < size(); ++i) {
+    const double moved = value(i) + t * step(i);
+    const double stretch = moved - std::min(std::max(moved, lower(i)), upper(i));
+    const double weight = stiffness(i) * step(i);
+    first += weight * stretch;
+    second += stretch != 0.0 ? weight * step(i) : 0.0;
+  }
+}
+
+}  // namespace mpm

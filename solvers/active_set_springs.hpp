@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "solvers/active_set_problem.hpp"
+
+namespace mpm {
+
+/// One family of row limits as springs: row i with value v_i = a_i x + e s_q(i) feels the force
+///
+///     F_i = k_i (v_i - clamp(v_i, lower_i, upper_i)),    stretched: F_i != 0,
+///
+/// the derivative of the convex penalty k_i/2 dist(v_i, [lower_i, upper_i])^2. A soft limit with an
+/// eliminated slack has k_i = 2w. A limit that must hold exactly is a spring with a multiplier: its lower and
+/// upper are the limits less multiplier_i / k_i, and F_i becomes its multiplier (method of multipliers).
+///
+/// | symbol | member     | meaning                                                        |
+/// |--------|------------|----------------------------------------------------------------|
+/// | e      | slack_sign | 0; -1: upper limit with a kept slack; +1: lower limit with one |
+/// | k      | stiffness  | 0: no spring                                                   |
+struct LimitSprings {
+  LimitSprings(double slack_sign, Eigen::VectorXd stiffness);
+
+  Eigen::Index size() const { return stiffness.size(); }
+  bool stretched(Eigen::Index i) const { return force(i) != 0.0; }
+
+  /// Sets the limits that the family has of these ones of the rows, shifted by the multipliers.
+  void set_limits(const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper);
+
+  /// Sets `value` for the row values A x and z.
+  void place(const ActiveSetProblem& problem, const Eigen::VectorXd& row_value, const Eigen::VectorXd& z);
+  /// Sets `step`, the change of `value` along a direction.
+  void aim(const ActiveSetProblem& problem, const Eigen::VectorXd& row_step, const Eigen::VectorXd& p);
+
+  /// Sets `force` from `value`.
+  void pull();
+  /// True when a whole step would stretch and release no spring: the penalty is one quadratic along it.
+  bool same_after_step() const;
+  /// Moves by t along `step`. `same`: no spring changes and t = 1; the force is then advanced by k times the
+  /// step, which is more accurate than the difference of position and limit.
+  void advance(double t, bool same);
+
+  /// Derivative and second derivative of the penalty along `step` at t, added to the arguments.
+  void add_derivatives(double t, double& first, double& second) const;
+
+  double slack_sign;
+  bool enabled = true;  ///< a family that is not is left out: its force is zero
+  Eigen::VectorXd stiffness, lower, upper, multiplier;
+  Eigen::VectorXd value, step, force;
+
+ private:
+  void assign(Eigen::VectorXd& to, const ActiveSetProblem& problem, const Eigen::VectorXd& rows,
+              const Eigen::VectorXd& z) const;
+};
+
+}  // namespace mpm

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+
+#include "solvers/qp_solver.hpp"
+
+namespace mpm {
+
+struct IpoptOptions {
+  /// Convergence tolerance of Ipopt (its `tol`, and the absolute ones for feasibility and complementarity).
+  double tolerance = 1e-10;
+  int iteration_limit = 300;
+  /// Solve over a working set of row limits, grown until no left-out limit is violated; the answer is that of
+  /// the full problem (see WorkingSet). Otherwise every limit is handed to Ipopt at once.
+  bool working_set = true;
+  /// A limit nearer than this to the last answer enters the working set too: it saves rounds, and changes
+  /// the answer only within the tolerance.
+  double working_set_margin = 0.01;
+
+  /// Throws InputError when a number is out of range.
+  void validate() const;
+};
+
+/// The reference back end: Ipopt, a primal-dual interior-point method (Waechter & Biegler, Math. Program. 106
+/// (2006) 25-57), with MUMPS.
+///
+/// An answer `infeasible` is certified: the smallest possible largest violation of the hard row limits
+/// within the box, itself found as a linear program, is above 1e-7. When the working set brings no answer,
+/// all limits are tried at once, and a run that Ipopt ends as a failure counts as solved if its point passes
+/// kkt_residual() with at most 1e-7.
+///
+/// Ipopt with sequential MUMPS must not run in two threads of one process.
+class IpoptSolver final : public QpSolver {
+ public:
+  /// Throws InputError when the structure or an option is not valid.
+  IpoptSolver(std::shared_ptr<const QpStructure> structure, const IpoptOptions& options);
+  ~IpoptSolver() override;
+
+ private:
+  class Implementation;
+
+  void do_solve(const QpData& data, QpResult& result) override;
+  void do_reset() override;
+  void solve_growing(const QpData& data, QpResult& result);
+  void solve_full(const QpData& data, QpResult& result);
+  void run(const QpData& data, QpResult& result);
+  bool certainly_infeasible(const QpData& data);
+
+  IpoptOptions options_;
+  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<IpoptSolver> feasibility_;  ///< made when first needed
+};
+
+}  // namespace mpm

@@ -1,0 +1,73 @@
+#include "solvers/qp_solver.hpp"
+
+#include <array>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "plants/error.hpp"
+#include "solvers/active_set_solver.hpp"
+#include "solvers/ipopt_solver.hpp"
+
+namespace mpm {
+namespace {
+
+struct BackEnd {
+  const char* name;
+  std::unique_ptr<QpSolver> (*make)(std::shared_ptr<const QpStructure>);
+};
+
+constexpr std::array<BackEnd, 3> kBackEnds{{
+    {"active-set",
+     [](std::shared_ptr<const QpStructure> structure) -> std::unique_ptr<QpSolver> {
+       return std::make_unique<ActiveSetSolver>(std::move(structure), ActiveSetOptions{});
+     }},
+    {"ipopt",
+     [](std::shared_ptr<const QpStructure> structure) -> std::unique_ptr<QpSolver> {
+       return std::make_unique<IpoptSolver>(std::move(structure), IpoptOptions{});
+     }},
+    {"ipopt-full",
+     [](std::shared_ptr<const QpStructure> structure) -> std::unique_ptr<QpSolver> {
+       return std::make_unique<IpoptSolver>(std::move(structure), IpoptOptions{.working_set = false});
+     }},
+}};
+
+}  // namespace
+
+QpSolver::QpSolver(std::shared_ptr<const QpStructure> structure) : structure_(std::move(structure)) {
+  structure_->validate();
+  result_ = QpResult::zero(*structure_);
+}
+
+const QpResult& QpSolver::solve(const QpData& data) {
+  data.validate(*structure_);
+  do_solve(data, result_);
+  result_.objective = objective(*structure_, data, result_);
+  result_.kkt_residual = result_.status == QpStatus::solved ? kkt_residual(*structure_, data, result_)
+                                                            : std::numeric_limits<double>::infinity();
+  return result_;
+}
+
+void QpSolver::reset() {
+  result_ = QpResult::zero(*structure_);
+  do_reset();
+}
+
+QpSolverFactory qp_solver_factory(const std::string& name) {
+  for (const BackEnd& back_end : kBackEnds)
+    if (name == back_end.name)
+      return back_end.make;
+  throw InputError("solver", fmt::format("\"{}\"", name),
+                   fmt::format("{}", fmt::join(qp_solver_names(), ", ")));
+}
+
+std::vector<std::string> qp_solver_names() {
+  std::vector<std::string> names;
+  for (const BackEnd& back_end : kBackEnds)
+    names.emplace_back(back_end.name);
+  return names;
+}
+
+}  // namespace mpm

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solvers/qp.hpp"
+
+namespace mpm {
+
+/// Solves a sequence of quadratic programs that share one structure, each warm-started from the one before.
+///
+/// The public `solve` checks its input and certifies the answer; back ends implement `do_solve` only. A
+/// solver belongs to one controller and is not shared between threads.
+class QpSolver {
+ public:
+  /// Throws InputError when the structure is not valid.
+  explicit QpSolver(std::shared_ptr<const QpStructure> structure);
+  virtual ~QpSolver() = default;
+  QpSolver(const QpSolver&) = delete;
+  QpSolver& operator=(const QpSolver&) = delete;
+
+  /// The minimiser for `data`; the reference stays valid until the next call. An infeasible problem is a
+  /// status; bad input (see QpData::validate) throws InputError.
+  const QpResult& solve(const QpData& data);
+
+  /// Forgets the warm start, so that the next answer depends on its problem alone.
+  void reset();
+
+  const QpStructure& structure() const { return *structure_; }
+
+ private:
+  /// Fills status, x, slack, multipliers and iterations of `result`, which holds the previous answer.
+  virtual void do_solve(const QpData& data, QpResult& result) = 0;
+  virtual void do_reset() = 0;
+
+  std::shared_ptr<const QpStructure> structure_;
+  QpResult result_;
+};
+
+/// Makes a solver for a structure: how a controller is given its back end.
+using QpSolverFactory = std::function<std::unique_ptr<QpSolver>(std::shared_ptr<const QpStructure>)>;
+
+/// The factory of the back end with this name; an unknown name throws InputError that lists the known ones.
+QpSolverFactory qp_solver_factory(const std::string& name);
+
+/// Names that `qp_solver_factory` knows.
+std::vector<std::string> qp_solver_names();
+
+}  // namespace mpm

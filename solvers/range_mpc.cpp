@@ -1,0 +1,131 @@
+#include "solvers/range_mpc.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "solvers/prediction.hpp"
+
+namespace mpm {
+namespace {
+
+const RangeMpcOptions& checked(const RangeMpcOptions& options, const TransferMatrix& model,
+                               Eigen::Index mv_count) {
+  if (mv_count < 1 || mv_count > model.cols())
+    throw InputError("mv_count", fmt::format("{}", mv_count),
+                     fmt::format("1 to {} (model columns)", model.cols()));
+  options.validate(model.rows(), mv_count);
+  return options;
+}
+
+void require_signal(const char* name, const Eigen::Ref<const Eigen::VectorXd>& signal, Eigen::Index size) {
+  if (signal.size() != size)
+    throw InputError(name, fmt::format("{} numbers", signal.size()), fmt::format("{}", size));
+  if (!signal.allFinite())
+    throw InputError(name, "a number that is not finite", "finite numbers");
+}
+
+ControlStatus control_status(QpStatus status) {
+  return status == QpStatus::solved       ? ControlStatus::ok
+         : status == QpStatus::infeasible ? ControlStatus::infeasible
+                                          : ControlStatus::failed;
+}
+
+}  // namespace
+
+std::string_view to_string(ControlStatus status) {
+  switch (status) {
+    case ControlStatus::ok:
+      return "ok";
+    case ControlStatus::infeasible:
+      return "infeasible";
+    case ControlStatus::failed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+RangeMpc::RangeMpc(const TransferMatrix& model, Eigen::Index mv_count, const RangeMpcOptions& options,
+                   const QpSolverFactory& factory)
+    : nu_(mv_count),
+      model_(model, checked(options, model, mv_count).sample_time),
+      scratch_(model_),
+      qp_(model, mv_count, options),
+      targets_(model.static_gain().leftCols(mv_count), options, factory),
+      solver_(factory(qp_.structure())) {
+  md_gain_ = model.static_gain().rightCols(model.cols() - mv_count);
+  input_.setZero(model.cols());
+  bias_.setZero(model.rows());
+  y_at_zero_.setZero(model.rows());
+  free_.setZero(model.rows(), options.prediction_horizon);
+  move_.u.setZero(nu_);
+  move_.u_target.setZero(nu_);
+}
+
+void RangeMpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<const Eigen::VectorXd>& d) {
+  require_signal("MVs", u, nu_);
+  require_signal("measured disturbances", d, md_gain_.cols());
+  input_ << u, d;
+  model_.reset(input_);
+  targets_.reset();
+  solver_->reset();
+  move_.status = ControlStatus::ok;
+  move_.u = u;
+  move_.u_target = u;
+}
+
+void RangeMpc::set_cv_soft(const Limits& limits) {
+  limits.validate("cv_soft", model_.output_count());
+  qp_.set_cv_soft(limits);
+  targets_.set_cv_soft(limits);
+}
+
+Eigen::VectorXd RangeMpc::nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) {
+  require_signal("measured disturbances", d, md_gain_.cols());
+  targets_.reset();
+  return targets_.solve(md_gain_ * d).x;
+}
+
+const ControlMove& RangeMpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
+                                  const Eigen::Ref<const Eigen::VectorXd>& d) {
+  require_signal("measured CVs", y, bias_.size());
+  require_signal("measured disturbances", d, md_gain_.cols());
+  bias_ = y - model_.output();
+  input_.tail(d.size()) = d;
+  move_.status = ControlStatus::ok;
+  move_.kkt_residual = 0.0;
+  move_.iterations = 0;
+  if (solve_targets())
+    solve_moves();
+  input_.head(nu_) = move_.u;
+  model_.advance(input_);
+  return move_;
+}
+
+bool RangeMpc::solve_targets() {
+  y_at_zero_.noalias() = md_gain_ * input_.tail(md_gain_.cols());
+  y_at_zero_ += bias_;
+  const QpResult& target = targets_.solve(y_at_zero_);
+  move_.status = control_status(target.status);
+  move_.iterations += target.iterations;
+  if (move_.status != ControlStatus::ok)
+    return false;
+  move_.kkt_residual = target.kkt_residual;
+  move_.u_target = target.x;
+  return true;
+}
+
+void RangeMpc::solve_moves() {
+  free_response(model_, input_, scratch_, free_);
+  free_.colwise() += bias_;
+  const QpResult& plan = solver_->solve(qp_.update(free_, input_.head(nu_), move_.u_target));
+  move_.status = control_status(plan.status);
+  move_.iterations += plan.iterations;
+  if (move_.status != ControlStatus::ok)
+    return;
+  move_.kkt_residual = std::max(move_.kkt_residual, plan.kkt_residual);
+  move_.u += plan.x.head(nu_);
+}
+
+}  // namespace mpm

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "plants/linear_plant.hpp"
+#include "plants/transfer_matrix.hpp"
+#include "solvers/qp_solver.hpp"
+#include "solvers/range_mpc_options.hpp"
+#include "solvers/range_qp.hpp"
+#include "solvers/target_optimizer.hpp"
+
+namespace mpm {
+
+enum class ControlStatus {
+  ok,
+  infeasible,  ///< no move keeps the hard limits of MVs and CVs over the horizon
+  failed,      ///< the solver gave no answer
+};
+
+std::string_view to_string(ControlStatus status);
+
+/// What the controller decided at one sample, and how well its problems were solved.
+struct ControlMove {
+  ControlStatus status = ControlStatus::ok;
+  Eigen::VectorXd u;          ///< MVs to apply from this sample on, nu
+  Eigen::VectorXd u_target;   ///< targets of the optimizer, nu
+  double kkt_residual = 0.0;  ///< the larger of the two problems' residuals
+  int iterations = 0;         ///< of the solver, both problems
+};
+
+/// Model predictive control by ranges with a target optimizer above it (thesis 6.3, 6.4).
+///
+/// At sample k, from the measured CVs y(k) and MDs d(k):
+/// 1. Output-bias feedback: b(k) = y(k) - y_sim(k), y_sim = G0 (u, d), is added to every prediction.
+/// 2. The targets for the steady state K_d d(k) + b(k) + K u (6.19).
+/// 3. The moves from the free response with MVs held at u(k-1) and MDs held at d(k) (6.20).
+///
+/// y(k) and d(k) are measured just before u(k) acts; d(k) acts from sample k on, as u(k) does.
+///
+/// | symbol | meaning                     | shape |
+/// |--------|-----------------------------|-------|
+/// | y, d   | measured CVs and MDs        | ny, nd|
+/// | G0     | nominal model, MVs then MDs | ny x (nu + nd) |
+class RangeMpc {
+ public:
+  /// Throws InputError when the options do not fit the model.
+  RangeMpc(const TransferMatrix& model, Eigen::Index mv_count, const RangeMpcOptions& options,
+           const QpSolverFactory& factory);
+
+  /// Starts from the steady state of MVs `u` (nu) and MDs `d` (nd), with no warm start. Throws InputError for
+  /// a wrong size or a number that is not finite.
+  void reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<const Eigen::VectorXd>& d);
+
+  /// The move of this sample; the model state is advanced with it. When the status is not `ok` the MVs stay
+  /// where they are. The reference stays valid until the next call. Throws InputError for a wrong size or a
+  /// number that is not finite.
+  const ControlMove& step(const Eigen::Ref<const Eigen::VectorXd>& y,
+                          const Eigen::Ref<const Eigen::VectorXd>& d);
+
+  /// Output of the nominal model at the sample to come (y_sim of 6.4).
+  const Eigen::VectorXd& model_output() const { return model_.output(); }
+
+  /// Replaces the soft limits of the CVs, in the MPC and in the target optimizer.
+  void set_cv_soft(const Limits& limits);
+
+  /// The targets for measured disturbances `d` and no bias. Forgets the warm start of the target optimizer,
+  /// so that the answer depends on `d` alone.
+  Eigen::VectorXd nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d);
+
+ private:
+  bool solve_targets();
+  void solve_moves();
+
+  Eigen::Index nu_;
+  Eigen::MatrixXd md_gain_;
+  LinearPlant model_, scratch_;
+  RangeQp qp_;
+  TargetOptimizer targets_;
+  std::unique_ptr<QpSolver> solver_;
+  Eigen::VectorXd input_;  ///< (u(k-1), d(k)), then (u(k), d(k))
+  Eigen::VectorXd bias_, y_at_zero_;
+  Eigen::MatrixXd free_;  ///< ny x Hp
+  ControlMove move_;
+};
+
+}  // namespace mpm

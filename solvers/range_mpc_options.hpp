@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string_view>
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+/// What a weight Q of the thesis multiplies: |Q x|^2 can be read either way (docs/methods.md).
+enum class WeightConvention {
+  direct,   ///< Q x^2: the number in the table is the weight
+  squared,  ///< (Q x)^2: (6.20) read to the letter
+};
+
+/// What one slack variable of (6.20) relaxes.
+enum class SlackForm {
+  per_sample,  ///< the soft limits of one CV at one predicted sample
+  per_cv,      ///< the soft limits of one CV over the whole horizon; its weight counts once a sample
+};
+
+std::string_view to_string(WeightConvention convention);
+std::string_view to_string(SlackForm form);
+
+/// Lower and upper limits of a group of variables; an absent limit is infinite.
+struct Limits {
+  Eigen::VectorXd lower, upper;
+
+  static Limits none(Eigen::Index size);
+  /// Throws InputError that names `what` when the size is not `size`, a limit is NaN or limits cross.
+  void validate(std::string_view what, Eigen::Index size) const;
+};
+
+/// Tuning of the range MPC (6.20) and of the target optimizer above it (6.19).
+///
+/// | symbol   | member             | shape | unit                        |
+/// |----------|--------------------|-------|-----------------------------|
+/// | Ts       | sample_time        |       | time unit of the plant      |
+/// | ph       | prediction_horizon |       | samples                     |
+/// | mh       | control_horizon    |       | samples                     |
+/// | Q_du     | move_suppression   | nu    | 1 / MV^2                    |
+/// | Q_u      | target_weight      | nu    | 1 / MV^2                    |
+/// | tau_y    | slack_weight       | ny    | 1 / CV^2                    |
+/// | phi_u    | mv_cost            | nu    | 1 / MV                      |
+struct RangeMpcOptions {
+  double sample_time = 1.0;
+  int prediction_horizon = 1;
+  int control_horizon = 1;
+  Eigen::VectorXd move_suppression;
+  Eigen::VectorXd target_weight;
+  Eigen::VectorXd slack_weight;
+  WeightConvention weight_convention = WeightConvention::direct;
+  SlackForm slack_form = SlackForm::per_sample;
+  Limits mv_hard;
+  Limits cv_hard;
+  Limits cv_soft;
+  Eigen::VectorXd mv_cost;
+  /// Cost of a unit of steady-state violation of a CV soft limit in the target optimizer, relative to the
+  /// largest |mv_cost|. Large enough that limits are left only when no target keeps them (docs/methods.md).
+  double target_violation_cost = 1000.0;
+
+  /// Throws InputError for sizes, signs or horizons that make no controller.
+  void validate(Eigen::Index cv_count, Eigen::Index mv_count) const;
+};
+
+}  // namespace mpm

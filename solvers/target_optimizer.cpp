@@ -1,0 +1,40 @@
+#include "solvers/target_optimizer.hpp"
+
+namespace mpm {
+namespace {
+
+std::shared_ptr<const QpStructure> target_structure(const Eigen::MatrixXd& static_gain,
+                                                    const RangeMpcOptions& options) {
+  const Eigen::Index ny = static_gain.rows();
+  const Eigen::Index nu = static_gain.cols();
+  const double largest_cost = options.mv_cost.lpNorm<Eigen::Infinity>();
+  auto structure = std::make_shared<QpStructure>();
+  structure->hessian.setZero(nu, nu);
+  structure->rows = static_gain;
+  structure->slack_of_row.setLinSpaced(ny, 0, static_cast<int>(ny) - 1);
+  structure->slack_quadratic.setZero(ny);
+  structure->slack_linear.setConstant(
+      ny, options.target_violation_cost * (largest_cost > 0.0 ? largest_cost : 1.0));
+  return structure;
+}
+
+}  // namespace
+
+TargetOptimizer::TargetOptimizer(const Eigen::MatrixXd& static_gain, const RangeMpcOptions& options,
+                                 const QpSolverFactory& factory)
+    : cv_soft_(options.cv_soft) {
+  const auto structure = target_structure(static_gain, options);
+  data_ = QpData::unconstrained(*structure);
+  data_.gradient = options.mv_cost;
+  data_.lower = options.mv_hard.lower;
+  data_.upper = options.mv_hard.upper;
+  solver_ = factory(structure);
+}
+
+const QpResult& TargetOptimizer::solve(const Eigen::Ref<const Eigen::VectorXd>& y_at_zero) {
+  data_.soft_lower = cv_soft_.lower - y_at_zero;
+  data_.soft_upper = cv_soft_.upper - y_at_zero;
+  return solver_->solve(data_);
+}
+
+}  // namespace mpm

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "solvers/qp_solver.hpp"
+#include "solvers/range_mpc_options.hpp"
+
+namespace mpm {
+
+/// The steady-state target optimizer above the MPC (6.19):
+///
+///     minimise    phi_u' u_tgt + rho sum_j v_j             over u_tgt, v >= 0
+///     subject to  mv_hard.lower <= u_tgt <= mv_hard.upper
+///                 cv_soft.lower - v <= y_0 + K u_tgt <= cv_soft.upper + v
+///
+/// where K is the static gain of the nominal model and y_0 what the CVs would settle at with the MVs at zero.
+/// The thesis gives no answer for limits that no target satisfies. Here the violation v has the price
+/// rho = target_violation_cost * max|phi_u|: an exact penalty, so that limits which can be kept are kept (v =
+/// 0, the answer is that of (6.19)), and otherwise the sum of the violations is made small first.
+///
+/// | symbol | meaning                    | shape   | unit    |
+/// |--------|----------------------------|---------|---------|
+/// | K      | static gains, MVs          | ny x nu | CV / MV |
+/// | y_0    | steady state at MVs zero   | ny      | CV      |
+/// | u_tgt  | MV targets                 | nu      | MV      |
+class TargetOptimizer {
+ public:
+  /// Uses mv_hard, cv_soft, mv_cost and target_violation_cost of `options`, which must be valid.
+  TargetOptimizer(const Eigen::MatrixXd& static_gain, const RangeMpcOptions& options,
+                  const QpSolverFactory& factory);
+
+  /// The targets for the steady state `y_at_zero` (ny) of the CVs at zero MVs. The reference stays valid
+  /// until the next call: result.x are the targets, result.slack the violations.
+  const QpResult& solve(const Eigen::Ref<const Eigen::VectorXd>& y_at_zero);
+
+  /// Replaces the soft limits of the CVs (ny each).
+  void set_cv_soft(const Limits& limits) { cv_soft_ = limits; }
+
+  void reset() { solver_->reset(); }
+
+ private:
+  Limits cv_soft_;
+  QpData data_;
+  std::unique_ptr<QpSolver> solver_;
+};
+
+}  // namespace mpm

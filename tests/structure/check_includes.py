@@ -1,0 +1,72 @@
+"""Checks the direction of includes between the rooms, and where third-party headers stand.
+
+Rooms are named from left to right; a file includes only its own room and rooms to its left, by the path from
+the root of the repository. Files in tests/ may include everything. The headers of Ipopt, HDF5 and SUNDIALS
+stand in one .cpp each at most, and never in a header.
+"""
+
+import re
+
+import tree
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
+
+CONFINED = {
+    "Ipopt": re.compile(r"^(coin/|Ip[A-Z]\w*\.h)"),
+    "HDF5": re.compile(r"^(hdf5(_hl)?\.h$|H5\w*\.h)"),
+    "SUNDIALS": re.compile(r"^(sundials|cvodes?|arkode|idas?|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol)/"),
+}
+
+
+def includes(path):
+    """(line number, name, whether in quotes) of each include of a file."""
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+        match = INCLUDE.match(line)
+        if match:
+            yield number, match[1] or match[2], match[1] is not None
+
+
+def room_complaint(root, room, name, quoted):
+    """What is wrong with including `name` from `room` ("tests" or a room), or None."""
+    target = name.split("/")[0]
+    if target not in tree.ROOMS and not (room == "tests" and target == "tests"):
+        return f'"{name}" does not start with a room' if quoted else None
+    if not quoted:
+        return f"<{name}> is ours and belongs in quotes"
+    if not (root / name).is_file():
+        return f'"{name}" does not exist'
+    if room != "tests" and tree.ROOMS.index(target) > tree.ROOMS.index(room):
+        return f"{room} must not include {target}: \"{name}\""
+    return None
+
+
+def check(root):
+    complaints = []
+    users = {library: {} for library in CONFINED}  # library -> {.cpp file -> where it first includes it}
+    for path in tree.project_files(root, {".hpp", ".cpp"}):
+        relative = path.relative_to(root)
+        room = relative.parts[0]
+        if room not in tree.ROOMS and room != "tests":
+            complaints.append(f"{relative}:1: C++ outside of the rooms")
+            continue
+        for number, name, quoted in includes(path):
+            where = f"{relative}:{number}"
+            complaint = room_complaint(root, room, name, quoted)
+            if complaint:
+                complaints.append(f"{where}: {complaint}")
+            for library, pattern in CONFINED.items():
+                if not pattern.match(name) or room == "tests":
+                    continue
+                if path.suffix == ".hpp":
+                    complaints.append(f"{where}: {library} in a header: <{name}>")
+                else:
+                    users[library].setdefault(relative, where)
+    for library, places in users.items():
+        if len(places) > 1:
+            complaints += [f"{where}: {library} is included in {len(places)} sources, one is allowed"
+                           for where in places.values()]
+    return complaints
+
+
+if __name__ == "__main__":
+    tree.main(check)

@@ -1,0 +1,186 @@
+"""Shows that each checker of this folder finds what it is for, and is silent about a clean tree."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import check_format
+import check_hygiene
+import check_includes
+
+HEADER = "#pragma once\n"
+
+
+class Tree:
+    """A scratch tree with the given files (path -> content)."""
+
+    def __init__(self, files):
+        self._folder = tempfile.TemporaryDirectory()
+        self.root = Path(self._folder.name)
+        for name, content in files.items():
+            path = self.root / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
+
+    def __enter__(self):
+        return self.root
+
+    def __exit__(self, *_):
+        self._folder.cleanup()
+
+
+class CheckerTest(unittest.TestCase):
+    def complaints(self, checker, files):
+        with Tree(files) as root:
+            return checker.check(root)
+
+    def assert_clean(self, checker, files):
+        self.assertEqual(self.complaints(checker, files), [])
+
+    def assert_one(self, checker, files, where, text):
+        """Exactly one complaint, at this place and with this text."""
+        complaints = self.complaints(checker, files)
+        self.assertEqual(len(complaints), 1, complaints)
+        self.assertTrue(complaints[0].startswith(where), complaints)
+        self.assertIn(text, complaints[0])
+
+
+class Includes(CheckerTest):
+    def test_own_room_and_rooms_to_the_left_are_allowed(self):
+        self.assert_clean(check_includes, {
+            "plants/a.hpp": HEADER,
+            "solvers/b.hpp": '#include <vector>\n#include "plants/a.hpp"\n',
+            "solvers/b.cpp": '#include "solvers/b.hpp"\n'})
+
+    def test_a_room_to_the_right_is_refused(self):
+        self.assert_one(check_includes, {"plants/a.cpp": '\n#  include "solvers/b.hpp"\n', "solvers/b.hpp": HEADER},
+                        "plants/a.cpp:2:", "plants must not include solvers")
+
+    def test_each_room_refuses_the_next_one(self):
+        for left, right in zip(check_includes.tree.ROOMS, check_includes.tree.ROOMS[1:]):
+            self.assert_one(check_includes, {f"{left}/a.cpp": f'#include "{right}/b.hpp"\n', f"{right}/b.hpp": HEADER},
+                            f"{left}/a.cpp:1:", f"{left} must not include {right}")
+
+    def test_tests_include_everything_but_are_included_by_no_room(self):
+        self.assert_clean(check_includes, {
+            "bench/b.hpp": HEADER, "tests/t.hpp": HEADER,
+            "tests/plants/t.cpp": '#include "bench/b.hpp"\n#include "tests/t.hpp"\n'})
+        self.assert_one(check_includes, {"bench/b.cpp": '#include "tests/t.hpp"\n', "tests/t.hpp": HEADER},
+                        "bench/b.cpp:1:", "does not start with a room")
+
+    def test_a_path_that_is_not_from_the_root_is_refused(self):
+        self.assert_one(check_includes, {"plants/a.cpp": '#include "a.hpp"\n', "plants/a.hpp": HEADER},
+                        "plants/a.cpp:1:", "does not start with a room")
+
+    def test_an_own_header_in_angle_brackets_is_refused(self):
+        self.assert_one(check_includes, {"plants/a.cpp": "#include <plants/a.hpp>\n", "plants/a.hpp": HEADER},
+                        "plants/a.cpp:1:", "belongs in quotes")
+
+    def test_a_header_that_is_not_there_is_refused(self):
+        self.assert_one(check_includes, {"plants/a.cpp": '#include "plants/gone.hpp"\n'},
+                        "plants/a.cpp:1:", "does not exist")
+
+    def test_a_confined_library_stands_in_one_source(self):
+        for header in ("coin/IpTNLP.hpp", "IpIpoptApplication.hpp", "hdf5.h", "hdf5_hl.h", "cvode/cvode.h"):
+            line = f"#include <{header}>\n"
+            self.assert_clean(check_includes, {"solvers/a.cpp": line + line})
+            self.assert_one(check_includes, {"solvers/a.hpp": line}, "solvers/a.hpp:1:", "in a header")
+            two = self.complaints(check_includes, {"solvers/a.cpp": line, "solvers/b.cpp": line})
+            self.assertEqual(len(two), 2, two)
+            self.assertIn("included in 2 sources", two[0])
+
+    def test_sources_outside_of_the_rooms_are_refused(self):
+        self.assert_one(check_includes, {"tools/a.cpp": ""}, "tools/a.cpp:1:", "outside of the rooms")
+
+    def test_the_build_tree_is_not_looked_at(self):
+        self.assert_clean(check_includes, {"build/release/x.cpp": '#include "a.hpp"\n'})
+
+
+class Format(CheckerTest):
+    STYLE = {".clang-format": "BasedOnStyle: Google\n"}
+
+    def test_clean(self):
+        self.assert_clean(check_format, {**self.STYLE, "plants/a.cpp": "int a = 1;\n"})
+
+    def test_a_badly_formatted_file(self):
+        self.assert_one(check_format, {**self.STYLE, "plants/a.cpp": "int a =  1;\n", "plants/b.cpp": "int b = 1;\n"},
+                        "plants/a.cpp:1:", "should be clang-formatted")
+
+    def test_a_broken_style_file_is_reported(self):
+        self.assertTrue(self.complaints(check_format, {".clang-format": "Nonsense: 1\n", "plants/a.cpp": "int a;\n"}))
+
+
+class Hygiene(CheckerTest):
+    def test_clean(self):
+        self.assert_clean(check_hygiene, {"plants/a.hpp": HEADER, "docs/a.md": "25 \u00b0C\n", "a.h5": b"\0\xff"})
+
+    def test_a_path_of_a_machine(self):
+        for path in ("/ho" "me/somebody/x", "/wo" "rk/main", "/tmp/bu" "ild-x", "/ro" "ot/x"):
+            self.assert_one(check_hygiene, {"docs/a.md": f"\nsee `{path}`\n"}, "docs/a.md:2:", "path of a machine")
+
+    def test_the_end_of_a_relative_path_is_no_path_of_a_machine(self):
+        self.assert_clean(check_hygiene, {"docs/a.md": "docs/ho" "me/x and ./wo" "rk/x\n"})
+
+    def test_a_left_over_marker(self):
+        for marker in ("TO" "DO", "FIX" "ME", "XX" "X", "HA" "CK"):
+            self.assert_one(check_hygiene, {"plants/a.cpp": f"// {marker}: later\n"}, "plants/a.cpp:1:", marker)
+
+    def test_a_header_without_guard(self):
+        self.assert_one(check_hygiene, {"plants/a.hpp": "int f();\n"}, "plants/a.hpp:1:", "#pragma once")
+
+    def test_not_ascii_in_a_source(self):
+        self.assert_one(check_hygiene, {"plants/a.cpp": "// \u03c4\n"}, "plants/a.cpp:1:", "not ASCII: '\\u03c4'")
+
+    def test_not_utf8(self):
+        self.assert_one(check_hygiene, {"docs/a.md": b"\xff\n"}, "docs/a.md:1:", "not UTF-8")
+
+
+class Tidy(CheckerTest):
+    """The project's own .clang-tidy, in a scratch tree."""
+
+    CONFIGURATION = (Path(__file__).parents[2] / ".clang-tidy").read_text(encoding="utf-8")
+    COPIED_FOR_NOTHING = "#include <string>\ninline int f(std::string s) { return static_cast<int>(s.size()); }\n"
+
+    def run_tidy(self, files, source):
+        with Tree({".clang-tidy": self.CONFIGURATION, **files}) as root:
+            command = [os.environ.get("CLANG_TIDY", "clang-tidy"), "--quiet", source, "--", "-std=c++20", f"-I{root}"]
+            return subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+
+    def test_clean(self):
+        result = self.run_tidy({"plants/a.cpp": "int f() { return 1; }\n"}, "plants/a.cpp")
+        self.assertEqual(result.returncode, 0, result.stdout)
+
+    def test_a_complaint_about_a_source_is_an_error(self):
+        result = self.run_tidy({"plants/a.cpp": self.COPIED_FOR_NOTHING}, "plants/a.cpp")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("performance-unnecessary-value-param", result.stdout)
+
+    def test_a_complaint_about_a_header_is_an_error(self):
+        result = self.run_tidy({"plants/a.hpp": HEADER + self.COPIED_FOR_NOTHING,
+                                "plants/a.cpp": '#include "plants/a.hpp"\n'}, "plants/a.cpp")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("plants/a.hpp", result.stdout)
+
+
+class Main(CheckerTest):
+    def exit_code(self, files):
+        with Tree(files) as root:
+            arguments, sys.argv = sys.argv, ["checker", str(root)]
+            try:
+                check_hygiene.tree.main(check_hygiene.check)
+            except SystemExit as exit_:
+                return exit_.code
+            finally:
+                sys.argv = arguments
+        return None
+
+    def test_exit_code(self):
+        self.assertEqual(self.exit_code({"plants/a.hpp": HEADER}), 0)
+        self.assertEqual(self.exit_code({"plants/a.hpp": ""}), "1 complaints")  # a text: Python exits with 1
+
+
+if __name__ == "__main__":
+    unittest.main()

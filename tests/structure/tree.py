@@ -1,0 +1,30 @@
+"""The files of the project, and how a checker reports: shared by the checkers of this folder."""
+
+import os
+import sys
+from pathlib import Path
+
+# From left to right: a file includes only its own room and rooms to its left.
+ROOMS = ["plants", "solvers", "scenarios", "analysis", "results", "bench"]
+
+# At the root: what .gitignore names and what tools leave there.
+SKIPPED_AT_ROOT = {".git", ".cache", ".idea", ".vscode", "build", "compile_commands.json", "out"}
+
+
+def project_files(root, suffixes=None):
+    """Every file below `root` (of these suffixes), without build trees and results, in a fixed order."""
+    found = []
+    for folder, subfolders, names in os.walk(root):
+        skipped = SKIPPED_AT_ROOT if Path(folder) == Path(root) else {"__pycache__"}
+        subfolders[:] = [name for name in subfolders if name not in skipped]
+        found += [Path(folder) / name for name in names if name not in skipped]
+    return sorted(f for f in found if suffixes is None or f.suffix in suffixes)
+
+
+def main(check):
+    """Runs `check(root)`, which returns complaints "file:line: text", on the tree named on the command line."""
+    if len(sys.argv) != 2:
+        sys.exit(f"usage: {sys.argv[0]} ROOT")
+    complaints = check(Path(sys.argv[1]))
+    print("\n".join(complaints))
+    sys.exit(f"{len(complaints)} complaints" if complaints else 0)
