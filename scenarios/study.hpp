@@ -118,7 +118,7 @@ struct Study {
   DiagnosisOptions diagnosis;
   AggregateOptions aggregate;
   std::vector<ReferenceValue> reference;  ///< shown beside the results, never used to make them
-  std::string source;  ///< the full text of the file
+  std::string source;                     ///< the full text of the file
 
   Eigen::Index cv_count() const { return static_cast<Eigen::Index>(plant.cvs.size()); }
   Eigen::Index mv_count() const { return static_cast<Eigen::Index>(plant.mvs.size()); }

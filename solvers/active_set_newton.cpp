@@ -10,6 +10,7 @@ namespace {
 // Steps on which many limits may be met at once; then the search stops at the first one, which is slower and
 // finite.
 constexpr int kProjectedSteps = 60;
+constexpr double kDownhill = 0.3;  // slope of such a step relative to that of the Newton step
 constexpr int kLineSearchSteps = 60;
 constexpr double kSlopeTolerance = 1e-12;  // of the line search, relative to the slope at its start
 
@@ -143,7 +144,7 @@ bool ActiveSetNewton::find_direction(const std::vector<LimitSprings>& families) 
   return true;
 }
 
-// The step to the nearest point of the box to the Newton point; false when that is not downhill.
+// The step to the nearest point of the box to the Newton point; false when that is hardly downhill.
 bool ActiveSetNewton::aim_projected() {
   step_ = direction_;
   for (Eigen::Index j = 0; j < z.size(); ++j) {
@@ -152,7 +153,7 @@ bool ActiveSetNewton::aim_projected() {
     if (target_(j) != aim)
       step_(j) = target_(j) - z(j);  // elsewhere the step keeps the digits that z cannot hold
   }
-  return gradient.dot(step_) < 0.0;
+  return gradient.dot(step_) <= kDownhill * gradient.dot(direction_);
 }
 
 // The step towards the Newton point up to the first limit.

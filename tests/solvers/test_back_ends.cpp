@@ -30,7 +30,7 @@ constexpr double kResidual = 1e-7;
 constexpr double kDistance = 1e-4;
 
 // The objective is off by the sum of the complementarities, and by multiplier times feasibility error: at
-// most some hundred limits of 1e-8 each.
+// most some hundred limits of 1e-10 each.
 constexpr double kObjective = 1e-7;
 
 void check_answer(const NamedQp& qp, const QpResult& result) {

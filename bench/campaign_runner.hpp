@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "analysis/experiment.hpp"
+#include "plants/error.hpp"
+#include "results/campaign.hpp"
+
+namespace mpm {
+
+/// How a campaign is run; none of it changes a number of the result but `experiments` and `solver`.
+struct CampaignOptions {
+  std::optional<std::int64_t> experiments;  ///< the first N experiments instead of one full study
+  std::string solver = "ipopt";             ///< a name that qp_solver_factory knows
+  int jobs = 1;                             ///< worker processes
+  StorePolicy store = StorePolicy::flagged;
+  bool allow_unhealthy_basis = false;  ///< run although the basis case fails its self-check
+  /// Called after each experiment that is done, in the order of completion; may be empty.
+  std::function<void(const ExperimentRecord&)> on_done;
+};
+
+/// The basis case of the study failed its self-check: its verdicts would mean nothing.
+class UnhealthyBasis : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Runs the basis case, checks it, and then the experiments in worker processes. The records stand in the
+/// order of their index; an experiment whose worker died is marked `failed` and the campaign goes on. The
+/// result is the same for any number of jobs.
+///
+/// Throws InputError for options that make no campaign, UnhealthyBasis as above (or, when the basis case does
+/// not even run through, in any case), std::system_error when no worker process can be made.
+Campaign run_campaign(Study study, const CampaignOptions& options);
+
+}  // namespace mpm

@@ -1,0 +1,147 @@
+#include "bench/commands.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "analysis/study_aggregate.hpp"
+#include "bench/campaign_runner.hpp"
+#include "bench/progress.hpp"
+#include "bench/record_bytes.hpp"
+#include "plants/error.hpp"
+#include "results/archive.hpp"
+#include "results/archive_error.hpp"
+#include "results/summary.hpp"
+#include "scenarios/study_library.hpp"
+
+namespace mpm {
+namespace {
+
+/// An archive that was to be read and cannot be: wrong input, where one that cannot be written is a run that
+/// cannot be finished.
+class BadArchive : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+Campaign read_input(const std::string& archive) {
+  try {
+    return read_archive(archive);
+  } catch (const ArchiveError& error) {
+    throw BadArchive(error.what());
+  }
+}
+
+/// Refuses an output that is sure to fail before hours of work are spent on it.
+void require_output_folder(const std::filesystem::path& output) {
+  const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder) || ::access(folder.c_str(), W_OK) != 0)
+    throw ArchiveError(fmt::format(
+        "{}: no archive can be written: its folder does not exist or is not writable", output.string()));
+  if (std::filesystem::is_directory(output))
+    throw ArchiveError(fmt::format("{}: no archive can be written: it is a folder", output.string()));
+}
+
+ExitCode run(const RunCommand& command, const std::string& command_line) {
+  Study study = find_study(command.study);
+  if (command.seed)
+    study.seed = *command.seed;
+  require_output_folder(command.output);
+
+  CampaignOptions options;
+  options.experiments = command.experiments;
+  options.solver = command.solver;
+  options.jobs = command.jobs;
+  options.store = command.store;
+  options.allow_unhealthy_basis = command.allow_unhealthy_basis;
+  Progress progress(command.experiments.value_or(study.experiments.total()),
+                    command.quiet ? Progress::Mode::quiet : Progress::Mode::automatic);
+  options.on_done = [&](const ExperimentRecord& record) {
+    progress.advance(record.status == ExperimentStatus::failed);
+  };
+  Campaign campaign = run_campaign(std::move(study), options);
+  progress.finish();
+  campaign.info.command = command_line;
+  write_archive(command.output, campaign);
+  if (!command.quiet)
+    fmt::print("{}", summary_text(campaign, command.output));
+  return ExitCode::done;
+}
+
+ExitCode replay(const ReplayCommand& command) {
+  const Campaign campaign = read_input(command.archive);
+  const auto count = static_cast<std::int64_t>(campaign.records.size());
+  if (command.index >= count)
+    throw InputError("INDEX", fmt::format("{}", command.index), fmt::format("0 to {}", count - 1));
+  ExperimentRecord archived = campaign.records[static_cast<std::size_t>(command.index)];
+
+  // From (study, seed, index) alone: the basis case is made again too.
+  const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
+  const BasisCase basis = run_basis_case(campaign.study, factory);
+  ExperimentRecord again = ExperimentRunner(campaign.study, basis, factory)
+                               .run(command.index, archived.loop ? StorePolicy::all : StorePolicy::none);
+  const bool identical = to_bytes(archived) == to_bytes(again);
+  fmt::print("experiment {}: {}, {}\n", command.index, to_string(again.draw.kind), to_string(again.status));
+  if (again.status == ExperimentStatus::ok)
+    fmt::print("located CV {} (true {}), I_MPM {:.4f}: {}\n",
+               campaign.study.plant.cvs[static_cast<std::size_t>(again.diagnosis.predicted_cv)].name,
+               campaign.study.plant.cvs[static_cast<std::size_t>(again.draw.true_cv())].name,
+               again.diagnosis.indicator.i_mpm, to_string(again.diagnosis.predicted_source));
+  fmt::print("{}\n", identical ? "bit-identical to the archive" : "DIFFERS from the archive");
+  return identical ? ExitCode::done : ExitCode::comparison_failed;
+}
+
+ExitCode summary(const SummaryCommand& command) {
+  const Campaign campaign = read_input(command.archive);
+  fmt::print("{}", command.json ? summary_json(campaign) : summary_text(campaign, command.archive));
+  return ExitCode::done;
+}
+
+ExitCode list() {
+  const std::vector<StudyEntry> studies = shipped_studies();
+  std::size_t width = 0;
+  for (const StudyEntry& study : studies)
+    width = std::max(width, study.name.size());
+  for (const StudyEntry& study : studies)
+    fmt::print("{:<{}}  {}\n", study.name, width, study.title);
+  return ExitCode::done;
+}
+
+struct Executor {
+  const std::string& command_line;
+
+  ExitCode operator()(const RunCommand& command) const { return run(command, command_line); }
+  ExitCode operator()(const ReplayCommand& command) const { return replay(command); }
+  ExitCode operator()(const SummaryCommand& command) const { return summary(command); }
+  ExitCode operator()(const ListCommand&) const { return list(); }
+  ExitCode operator()(const UsageText& usage) const {
+    fmt::print(usage.exit_code == 0 ? stdout : stderr, "{}", usage.text);
+    return static_cast<ExitCode>(usage.exit_code);
+  }
+};
+
+ExitCode report(const char* message, ExitCode code) {
+  fmt::print(stderr, "mpmbench: {}\n", message);
+  return code;
+}
+
+}  // namespace
+
+ExitCode execute(const Command& command, const std::string& command_line) {
+  try {
+    return std::visit(Executor{command_line}, command);
+  } catch (const InputError& error) {
+    return report(error.what(), ExitCode::bad_input);
+  } catch (const BadArchive& error) {
+    return report(error.what(), ExitCode::bad_input);
+  } catch (const std::exception& error) {
+    return report(error.what(), ExitCode::not_finished);
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,33 @@
+#include <cstdlib>
+#include <string>
+
+#include <unistd.h>
+
+#include "bench/commands.hpp"
+#include "bench/options.hpp"
+
+namespace {
+
+/// The BLAS under Ipopt must not start threads: they would compete with the workers, and the workers are
+/// forked from this process. It reads its environment when it is loaded, so the program starts itself once
+/// more.
+void use_single_threaded_blas(char** argv) {
+  if (std::getenv("OPENBLAS_NUM_THREADS") != nullptr)
+    return;
+  ::setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  ::execv("/proc/self/exe", argv);  // returns only when it fails: then go on as we are
+}
+
+std::string joined(int argc, const char* const* argv) {
+  std::string line = "mpmbench";
+  for (int i = 1; i < argc; ++i)
+    line.append(" ").append(argv[i]);
+  return line;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  use_single_threaded_blas(argv);
+  return static_cast<int>(mpm::execute(mpm::parse_command_line(argc, argv), joined(argc, argv)));
+}

@@ -1,0 +1,81 @@
+#include "bench/options.hpp"
+
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/version.hpp"
+#include "solvers/qp_solver.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int kUsageError = 2;
+
+void add_run(CLI::App& app, RunCommand& run) {
+  run.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  app.add_option("STUDY", run.study, "Study file, or name of a shipped study")->required();
+  app.add_option("-o,--output", run.output, "Archive to write (HDF5)")->required();
+  app.add_option("--experiments", run.experiments, "Run the first N experiments; any N keeps the proportions")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--seed", run.seed, "Master seed instead of the study's");
+  app.add_option("--jobs", run.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--solver", run.solver, "QP solver")
+      ->check(CLI::IsMember(qp_solver_names()))
+      ->capture_default_str();
+  const std::map<std::string, StorePolicy> policies{
+      {"none", StorePolicy::none}, {"flagged", StorePolicy::flagged}, {"all", StorePolicy::all}};
+  app.add_option("--store", run.store,
+                 "Keep the loop data of no experiment, of those with a wrong verdict, of all")
+      ->transform(CLI::CheckedTransformer(policies))
+      ->default_str("flagged");
+  app.add_flag("--allow-unhealthy-basis", run.allow_unhealthy_basis,
+               "Run although the basis case fails its self-check");
+  app.add_flag("--quiet", run.quiet, "No progress and no summary");
+}
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) {
+  CLI::App app("mpmbench: a Monte Carlo robustness testbench for the assessment of MPC models", "mpmbench");
+  app.set_version_flag("--version", "mpmbench " + mpmbench_version() + " (" + source_revision() + ")");
+  app.require_subcommand(1);
+
+  RunCommand run;
+  ReplayCommand replay;
+  SummaryCommand summary;
+  CLI::App* const run_app = app.add_subcommand("run", "Run a study and write its archive");
+  add_run(*run_app, run);
+  CLI::App* const replay_app = app.add_subcommand(
+      "replay", "Run one experiment of an archive again and say whether it is bit-identical");
+  replay_app->add_option("ARCHIVE", replay.archive, "Archive")->required();
+  replay_app->add_option("INDEX", replay.index, "Index of the experiment")
+      ->required()
+      ->check(CLI::NonNegativeNumber);
+  CLI::App* const summary_app =
+      app.add_subcommand("summary", "Print what a study found, beside what was reported");
+  summary_app->add_option("ARCHIVE", summary.archive, "Archive")->required();
+  summary_app->add_flag("--json", summary.json, "As JSON");
+  CLI::App* const list_app = app.add_subcommand("list", "List the shipped studies");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream text;
+    const bool wrong_usage = app.exit(error, text, text) != 0;
+    return UsageText{text.str(), wrong_usage ? kUsageError : 0};
+  }
+  if (run_app->parsed())
+    return run;
+  if (replay_app->parsed())
+    return replay;
+  if (summary_app->parsed())
+    return summary;
+  if (list_app->parsed())
+    return ListCommand{};
+  return UsageText{app.help(), kUsageError};
+}
+
+}  // namespace mpm

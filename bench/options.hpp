@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "analysis/experiment.hpp"
+
+namespace mpm {
+
+/// `mpmbench run STUDY -o OUT ...`
+struct RunCommand {
+  std::string study;
+  std::string output;
+  std::optional<std::int64_t> experiments;
+  std::optional<std::uint64_t> seed;
+  int jobs = 1;
+  std::string solver = "ipopt";
+  StorePolicy store = StorePolicy::flagged;
+  bool allow_unhealthy_basis = false;
+  bool quiet = false;
+};
+
+/// `mpmbench replay ARCHIVE INDEX`
+struct ReplayCommand {
+  std::string archive;
+  std::int64_t index = 0;
+};
+
+/// `mpmbench summary ARCHIVE [--json]`
+struct SummaryCommand {
+  std::string archive;
+  bool json = false;
+};
+
+/// `mpmbench list`
+struct ListCommand {};
+
+/// Nothing to run: the text is for stdout (help, version) or stderr (wrong usage) and the code is the exit
+/// code.
+struct UsageText {
+  std::string text;
+  int exit_code;
+};
+
+using Command = std::variant<RunCommand, ReplayCommand, SummaryCommand, ListCommand, UsageText>;
+
+/// Reads the command line; wrong usage gives UsageText with exit code 2.
+Command parse_command_line(int argc, const char* const* argv);
+
+}  // namespace mpm

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "results/campaign.hpp"
+#include "results/hdf5_file.hpp"
+
+namespace mpm {
+
+// The parts of an archive, each written and read by functions beside each other. A group has its own
+// dimensions, so that it opens alone (`xarray.open_dataset(path, group="basis")`) with the names of its
+// variables. `file` is for messages of ArchiveError, which all readers throw.
+
+/// Root attributes.
+void write_heading(Hdf5Group& root, const Campaign& campaign);
+/// Checks that the file is an archive of this version, and reads study and info.
+Campaign read_heading(const Hdf5Group& root, const std::string& file);
+
+/// Root: the table of experiments.
+void write_experiments(Hdf5Group& root, const Campaign& campaign);
+std::vector<ExperimentRecord> read_experiments(const Hdf5Group& root, const Study& study,
+                                               const std::string& file);
+
+/// /nominal: T0.
+void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity);
+NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file);
+
+/// /basis: the operating point and the run without mismatch and disturbance.
+void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis);
+/// `sensitivity` is what read_nominal() gave: the basis case has the same active limits.
+BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivity sensitivity,
+                     const std::string& file);
+
+/// /trajectories: the loops that were kept; no such group when none was.
+void write_trajectories(Hdf5Group& root, const Campaign& campaign);
+void read_trajectories(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
+                       const std::string& file);
+
+/// /aggregate: all numbers of a StudyAggregate. They follow from the rest and are not read back.
+void write_aggregate(Hdf5Group& root, const Campaign& campaign);
+
+}  // namespace mpm

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+namespace mpm {
+
+/// Makes `path` a file with this content, all or nothing: the bytes go to a temporary file beside it, are
+/// flushed to the disk, and the temporary file is renamed. Whoever opens `path` sees the old file or the new
+/// one, also after a crash.
+///
+/// Throws ArchiveError when that cannot be done (no such folder, no permission, disk full); the temporary
+/// file is then removed and a file that was at `path` is as it was.
+void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content);
+
+}  // namespace mpm

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/basis_case.hpp"
+#include "analysis/experiment.hpp"
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// How, when and by which program a campaign was run. Nothing in it changes a result, but for the solver.
+struct CampaignInfo {
+  std::string mpmbench_version;
+  std::string git_sha;
+  std::string created;  ///< ISO 8601, UTC
+  std::string command;
+  std::string solver;
+  double seconds = 0.0;  ///< wall-clock time
+  int jobs = 1;          ///< worker processes
+};
+
+/// Everything that a run of a study leaves behind.
+///
+/// `study.seed` is the seed that was used; it may differ from the one in `study.source`. `records` are the
+/// experiments that were run, in the order of their index.
+struct Campaign {
+  Study study;
+  CampaignInfo info;
+  BasisCase basis;
+  std::vector<ExperimentRecord> records;
+};
+
+}  // namespace mpm

@@ -1,0 +1,218 @@
+#include "results/columns.hpp"
+
+#include <array>
+
+namespace mpm {
+namespace {
+
+template <class Enum, std::size_t n>
+Flags enum_flags(const std::array<Enum, n>& values) {
+  Flags flags;
+  for (const Enum value : values) {
+    flags.values.push_back(static_cast<int>(value));
+    flags.meanings.emplace_back(to_string(value));
+  }
+  return flags;
+}
+
+Flags kind_flags() {
+  return enum_flags(
+      std::array{ExperimentKind::none, ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud});
+}
+
+Flags parameter_flags() {
+  Flags flags = enum_flags(
+      std::array{MismatchParameter::gain, MismatchParameter::time_constant, MismatchParameter::dead_time});
+  flags.values.insert(flags.values.begin(), -1);
+  flags.meanings.insert(flags.meanings.begin(), "none");
+  return flags;
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+using Experiment = ExperimentRecord;
+using ExperimentFlag = Access<Experiment, std::int8_t>;
+using ExperimentIndex = Access<Experiment, std::int32_t>;
+using ExperimentNumber = Access<Experiment, double>;
+
+std::int8_t get_kind(const Experiment& record) {
+  return static_cast<std::int8_t>(record.draw.kind);
+}
+
+/// Makes room for the faults of this kind.
+void set_kind(Experiment& record, std::int8_t value) {
+  ExperimentDraw& draw = record.draw;
+  draw.kind = static_cast<ExperimentKind>(value);
+  if (draw.kind == ExperimentKind::mpm || draw.kind == ExperimentKind::mpm_ud)
+    draw.mismatch.emplace();
+  if (draw.kind == ExperimentKind::ud || draw.kind == ExperimentKind::mpm_ud)
+    draw.disturbance.emplace();
+}
+
+/// With two faults both are on the same CV.
+void set_true_cv(Experiment& record, std::int32_t value) {
+  if (record.draw.mismatch)
+    record.draw.mismatch->cv = value;
+  if (record.draw.disturbance)
+    record.draw.disturbance->cv = value;
+}
+
+std::int32_t get_true_mv(const Experiment& record) {
+  return record.draw.mismatch ? static_cast<std::int32_t>(record.draw.mismatch->mv) : -1;
+}
+
+void set_true_mv(Experiment& record, std::int32_t value) {
+  if (record.draw.mismatch)
+    record.draw.mismatch->mv = value;
+}
+
+std::int8_t get_parameter(const Experiment& record) {
+  return record.draw.mismatch ? static_cast<std::int8_t>(record.draw.mismatch->parameter) : std::int8_t{-1};
+}
+
+void set_parameter(Experiment& record, std::int8_t value) {
+  if (record.draw.mismatch)
+    record.draw.mismatch->parameter = static_cast<MismatchParameter>(value);
+}
+
+template <double Mismatch::*member>
+ExperimentNumber of_mismatch() {
+  return {[](const Experiment& r) { return r.draw.mismatch ? *r.draw.mismatch.*member : kNaN; },
+          [](Experiment& r, double value) {
+            if (r.draw.mismatch)
+              *r.draw.mismatch.*member = value;
+          }};
+}
+
+template <double Disturbance::*member>
+ExperimentNumber of_disturbance() {
+  return {[](const Experiment& r) { return r.draw.disturbance ? *r.draw.disturbance.*member : kNaN; },
+          [](Experiment& r, double value) {
+            if (r.draw.disturbance)
+              *r.draw.disturbance.*member = value;
+          }};
+}
+
+/// A member that is in the file as it is in memory, but for its type.
+template <class T, auto member, class Owner>
+Access<Owner, T> plain() {
+  return {[](const Owner& owner) { return static_cast<T>(owner.*member); },
+          [](Owner& owner, T value) {
+            owner.*member = static_cast<std::remove_cvref_t<decltype(owner.*member)>>(std::move(value));
+          }};
+}
+
+template <class T, auto member>
+Access<Diagnosis, T> of_indicator() {
+  return {[](const Diagnosis& d) { return static_cast<T>(d.indicator.*member); },
+          [](Diagnosis& d, T value) { d.indicator.*member = value; }};
+}
+
+}  // namespace
+
+std::vector<Column<ExperimentRecord>> draw_columns(const Study& study) {
+  const std::string time = unit_text(study.plant.time_unit);
+  return {
+      {{"kind", "what is wrong in the experiment", "1",
+        "mpm: model-plant mismatch; ud: unmeasured disturbance; mpm_ud: both", kind_flags()},
+       ExperimentFlag{get_kind, set_kind}},
+      {{"status", "how the experiment ended", "1",
+        "infeasible: an MPC problem had no solution, the experiment is left out; failed: see message",
+        enum_flags(std::array{ExperimentStatus::ok, ExperimentStatus::infeasible, ExperimentStatus::failed})},
+       plain<std::int8_t, &Experiment::status, Experiment>()},
+      {{"true_cv", "position of the affected CV in cv", "1", "-1: none", index_flags(study.plant.cvs)},
+       ExperimentIndex{[](const Experiment& r) { return static_cast<std::int32_t>(r.draw.true_cv()); },
+                       set_true_cv}},
+      {{"true_mv", "position of the MV of the mismatched channel in mv", "1", "-1: no mismatch",
+        index_flags(study.plant.mvs)},
+       ExperimentIndex{get_true_mv, set_true_mv}},
+      {{"parameter", "parameter of the channel that differs from the model", "1", "-1: no mismatch",
+        parameter_flags()},
+       ExperimentFlag{get_parameter, set_parameter}},
+      {{"parameter_value", "size of the mismatch", "1",
+        "factor of gain or time constant; shift of the dead time in " + time + "; NaN: no mismatch"},
+       of_mismatch<&Mismatch::value>()},
+      {{"ud_gain", "gain of the unmeasured disturbance model", common_unit(study.plant.cvs),
+        "in the unit of the affected CV; NaN: no disturbance"},
+       of_disturbance<&Disturbance::gain>()},
+      {{"ud_time_constant", "time constant of the unmeasured disturbance model", time, "NaN: no disturbance"},
+       of_disturbance<&Disturbance::time_constant>()},
+  };
+}
+
+std::vector<CvColumn<Diagnosis>> variance_columns() {
+  const std::string comment = "NaN unless the status is ok";
+  return {
+      {{"ivar", "Ivar = var y / var y0", "1", comment}, &Diagnosis::ivar},
+      {{"ivar_diag", "Ivar_diag = var y / var y0_diag", "1", comment}, &Diagnosis::ivar_diag},
+      {{"ivar_basis", "Ivar_basis = var y / var y of the basis case", "1", comment}, &Diagnosis::ivar_basis}};
+}
+
+std::vector<Column<Diagnosis>> verdict_columns(const Study& study) {
+  return {
+      {{"impactful", "some Ivar lies outside the band of impact", "1", "", yes_no_flags()},
+       plain<std::int8_t, &Diagnosis::impactful, Diagnosis>()},
+      {{"predicted_cv", "position in cv of the CV that Ivar_diag points at", "1", "-1: none",
+        index_flags(study.plant.cvs)},
+       plain<std::int32_t, &Diagnosis::predicted_cv, Diagnosis>()},
+      {{"predicted_source", "source that I_MPM points at", "1", "none: no verdict", kind_flags()},
+       plain<std::int8_t, &Diagnosis::predicted_source, Diagnosis>()},
+      {{"co_dkts", "mean correlation of the differenced moving kurtosis"},
+       of_indicator<double, &MpmIndicator::co_dkts>()},
+      {{"co_dskn", "mean correlation of the differenced moving skewness"},
+       of_indicator<double, &MpmIndicator::co_dskn>()},
+      {{"i_mpm", "I_MPM = max(co_dkts, co_dskn)"}, of_indicator<double, &MpmIndicator::i_mpm>()},
+      {{"co_kts", "mean correlation of the moving kurtosis"}, of_indicator<double, &MpmIndicator::co_kts>()},
+      {{"co_skn", "mean correlation of the moving skewness"}, of_indicator<double, &MpmIndicator::co_skn>()},
+      {{"windows_scanned", "number of moving-window lengths"},
+       of_indicator<std::int32_t, &MpmIndicator::scanned>()},
+      {{"windows_used", "number of window lengths behind the weakest of the means"},
+       of_indicator<std::int32_t, &MpmIndicator::used>()},
+  };
+}
+
+std::vector<Column<ExperimentRecord>> dominance_columns() {
+  const std::string comment = "NaN unless the kind is mpm_ud and the status is ok";
+  return {
+      {{"ivar_diag_mpm_alone", "Ivar_diag of the affected CV with the mismatch alone", "1", comment},
+       plain<double, &Experiment::ivar_diag_mpm_alone, Experiment>()},
+      {{"ivar_diag_ud_alone", "Ivar_diag of the affected CV with the disturbance alone", "1", comment},
+       plain<double, &Experiment::ivar_diag_ud_alone, Experiment>()},
+      {{"dominance_mpm", "share of the mismatch in Ivar_diag", "1", comment},
+       plain<double, &Experiment::dominance_mpm, Experiment>()},
+      {{"message", "why the experiment failed", "1", "empty unless the status is failed"},
+       plain<std::string, &Experiment::message, Experiment>()},
+  };
+}
+
+std::vector<Column<SolverStatistics>> solver_columns() {
+  return {{{"solver_steps", "number of samples at which the controller was solved"},
+           plain<std::int64_t, &SolverStatistics::steps, SolverStatistics>()},
+          {{"solver_iterations", "number of iterations of the solver"},
+           plain<std::int64_t, &SolverStatistics::iterations, SolverStatistics>()},
+          {{"kkt_residual_max", "largest KKT residual of a solution"},
+           plain<double, &SolverStatistics::largest_kkt_residual, SolverStatistics>()}};
+}
+
+std::vector<Column<Trajectory>> loop_columns() {
+  return {{{"status", "how the closed loop ended", "1", "",
+            enum_flags(std::array{ControlStatus::ok, ControlStatus::infeasible, ControlStatus::failed})},
+           plain<std::int8_t, &Trajectory::status, Trajectory>()},
+          {{"samples_done", "number of samples with a move of the controller", "1",
+            "records are zero after these unless the status is ok"},
+           plain<std::int32_t, &Trajectory::samples_done, Trajectory>()}};
+}
+
+std::vector<SignalColumn> signal_columns(const Study& study) {
+  const PlantModel& plant = study.plant;
+  return {
+      {{"y", "measured CVs, noise included", common_unit(plant.cvs)}, "cv", &Trajectory::y},
+      {{"u", "MVs", common_unit(plant.mvs), "u(k) acts from sample k on"}, "mv", &Trajectory::u},
+      {{"u_target", "targets of the MVs", common_unit(plant.mvs)}, "mv", &Trajectory::u_target},
+      {{"d", "measured disturbances", common_unit(plant.mds), "d(k) acts from sample k on"},
+       "md",
+       &Trajectory::d},
+  };
+}
+
+}  // namespace mpm

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/experiment.hpp"
+#include "results/variable_text.hpp"
+
+namespace mpm {
+
+/// How one number of an `Owner` is taken out and put back.
+template <class Owner, class T>
+struct Access {
+  T (*get)(const Owner&);
+  void (*set)(Owner&, T);
+};
+
+/// One number of an `Owner` as a variable of the archive: the one place that says what it is called, what it
+/// means and where it is in memory.
+template <class Owner>
+struct Column {
+  VariableText text;
+  std::variant<Access<Owner, std::int8_t>, Access<Owner, std::int32_t>, Access<Owner, std::int64_t>,
+               Access<Owner, double>, Access<Owner, std::string>>
+      access;
+};
+
+/// A member of `Owner` with one number a CV.
+template <class Owner>
+struct CvColumn {
+  VariableText text;
+  Eigen::VectorXd Owner::*member;
+};
+
+/// A record of a closed loop, one row a variable: the dimension of its rows and where it is in memory.
+struct SignalColumn {
+  VariableText text;
+  std::string rows;  ///< "cv", "mv" or "md"
+  Eigen::MatrixXd Trajectory::*member;
+};
+
+/// What an experiment does to the loop, and how it ended. `kind` comes first: it says which faults there are.
+std::vector<Column<ExperimentRecord>> draw_columns(const Study& study);
+/// The variance indices of the CVs.
+std::vector<CvColumn<Diagnosis>> variance_columns();
+/// The verdict and the indicators behind it.
+std::vector<Column<Diagnosis>> verdict_columns(const Study& study);
+/// What the loops with one of two faults say.
+std::vector<Column<ExperimentRecord>> dominance_columns();
+/// How hard the optimisation problems were, and how well they were solved.
+std::vector<Column<SolverStatistics>> solver_columns();
+/// How a closed loop ended.
+std::vector<Column<Trajectory>> loop_columns();
+/// Everything that was recorded in a closed loop.
+std::vector<SignalColumn> signal_columns(const Study& study);
+
+}  // namespace mpm

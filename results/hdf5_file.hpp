@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace mpm {
+
+/// What an attribute can hold: a text, a number, or a list of one of these.
+using AttributeValue =
+    std::variant<std::string, double, std::int32_t, std::int64_t, std::uint64_t, std::vector<std::int8_t>,
+                 std::vector<std::int32_t>, std::vector<std::string>>;
+
+/// Attributes in the order in which they are written.
+using Attributes = std::vector<std::pair<std::string, AttributeValue>>;
+
+/// A group of an HDF5 file that netCDF-4 can read too.
+///
+/// Every variable has named dimensions. A dimension is a one-dimensional variable of the same group, its
+/// coordinates, made an HDF5 dimension scale and attached to each variable that has it.
+///
+/// T is one of std::int8_t, std::int32_t, std::int64_t, double and std::string (variable-length UTF-8; what
+/// is no UTF-8 is replaced, see proper_utf8()). Values of several dimensions stand row by row, the last index
+/// fastest. Large variables are compressed; doubles that are no coordinates have the fill value NaN.
+///
+/// All members throw ArchiveError, whose text names the file and the object.
+class Hdf5Group {
+ public:
+  /// A new group in this one.
+  Hdf5Group create_group(const std::string& name);
+
+  void write_attribute(const std::string& name, const AttributeValue& value);
+
+  /// A new dimension with its coordinates.
+  template <class T>
+  void write_dimension(const std::string& name, const std::vector<T>& coordinates,
+                       const Attributes& attributes);
+
+  /// A new variable over dimensions of this group; none of them: one value. The number of values must be the
+  /// product of the lengths of the dimensions.
+  template <class T>
+  void write(const std::string& name, const std::vector<std::string>& dimensions,
+             const std::vector<T>& values, const Attributes& attributes);
+
+  bool has_group(const std::string& name) const;
+  /// A group in this one.
+  Hdf5Group group(const std::string& name) const;
+
+  /// T is one of the types that an attribute can hold, and must be the type in the file.
+  template <class T>
+  T attribute(const std::string& name) const;
+
+  /// All values of a variable. T must be the type in the file, `shape` the lengths of its dimensions.
+  template <class T>
+  std::vector<T> read(const std::string& name, const std::vector<std::size_t>& shape) const;
+
+  /// All values of a variable of one dimension, whatever its length is.
+  template <class T>
+  std::vector<T> read_list(const std::string& name) const;
+
+ private:
+  friend class Hdf5File;
+  struct State;
+
+  explicit Hdf5Group(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+
+  std::shared_ptr<const State> state_;
+};
+
+/// An HDF5 file: one that is made in memory, or one on disk that is read.
+///
+/// A file is made in memory because the library leaves wreckage behind when a disk is full; the finished
+/// image is written by write_file_atomically(). It holds no time stamps: the same content is the same bytes.
+class Hdf5File {
+ public:
+  /// An empty file. `name` is for messages.
+  static Hdf5File create(const std::string& name);
+
+  /// Opens a file for reading. Throws ArchiveError when it is no HDF5 file, or not a whole one.
+  static Hdf5File open(const std::filesystem::path& path);
+
+  /// The group that holds everything.
+  Hdf5Group root() const;
+
+  /// The bytes of the file so far.
+  std::vector<std::byte> image() const;
+
+ private:
+  explicit Hdf5File(std::shared_ptr<const Hdf5Group::State> root) : root_(std::move(root)) {}
+
+  std::shared_ptr<const Hdf5Group::State> root_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,14 @@
+#include "results/reference.hpp"
+
+#include <limits>
+
+namespace mpm {
+
+double reference_value(const Study& study, const std::string& name) {
+  for (const ReferenceValue& reference : study.reference)
+    if (reference.name == name)
+      return reference.value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace mpm
