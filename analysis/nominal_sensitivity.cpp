@@ -48,8 +48,9 @@ RangeMpcOptions relaxed_options(const Study& study, const OperatingPoint& point)
   return options;
 }
 
+/// Response of the outputs per unit of a step of the limit, `step` in CV units.
 Eigen::MatrixXd limit_step_response(const Study& study, const OperatingPoint& point, const ActiveLimit& limit,
-                                    const QpSolverFactory& factory) {
+                                    double step, const QpSolverFactory& factory) {
   const RangeMpcOptions options = relaxed_options(study, point);
   RangeMpc controller(study.plant.G, study.mv_count(), options, factory);
   const Eigen::VectorXd d = Eigen::VectorXd::Zero(study.md_count());
@@ -61,7 +62,6 @@ Eigen::MatrixXd limit_step_response(const Study& study, const OperatingPoint& po
   controller.reset(u, d);
   const Eigen::VectorXd rest = plant.output();
 
-  const double step = limit.upper ? -study.sensitivity.step_size : study.sensitivity.step_size;
   Limits stepped = options.cv_soft;
   (limit.upper ? stepped.upper : stepped.lower)(limit.cv) += step;
   controller.set_cv_soft(stepped);
@@ -80,6 +80,21 @@ Eigen::MatrixXd limit_step_response(const Study& study, const OperatingPoint& po
     response.col(l) = (plant.output() - rest) / step;
   }
   return response;
+}
+
+Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& point, const ActiveLimit& limit,
+                                  const QpSolverFactory& factory) {
+  const double into_range = limit.upper ? -study.sensitivity.step_size : study.sensitivity.step_size;
+  switch (study.sensitivity.step_direction) {
+    case StepDirection::into_range:
+      return limit_step_response(study, point, limit, into_range, factory);
+    case StepDirection::out_of_range:
+      return limit_step_response(study, point, limit, -into_range, factory);
+    case StepDirection::mean:
+      break;
+  }
+  return 0.5 * (limit_step_response(study, point, limit, into_range, factory) +
+                limit_step_response(study, point, limit, -into_range, factory));
 }
 
 }  // namespace
@@ -121,7 +136,7 @@ NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint&
                                        const QpSolverFactory& factory) {
   NominalSensitivity sensitivity{study.cv_count(), point.active, {}};
   for (const ActiveLimit& limit : point.active)
-    sensitivity.step_response.push_back(limit_step_response(study, point, limit, factory));
+    sensitivity.step_response.push_back(directed_response(study, point, limit, factory));
   return sensitivity;
 }
 

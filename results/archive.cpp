@@ -1,31 +1,49 @@
 #include "results/archive.hpp"
 
+#include <new>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "results/archive_error.hpp"
 #include "results/archive_groups.hpp"
 #include "results/atomic_file.hpp"
 
 namespace mpm {
+namespace {
+
+Campaign read_groups(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const Hdf5Group root = Hdf5File::open(path).root();
+  Campaign campaign = read_heading(root, file);
+  const Study& study = campaign.study;
+  campaign.records = read_experiments(root, study, file);
+  read_trajectories(root, study, campaign.records, file);
+  campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
+  return campaign;
+}
+
+}  // namespace
 
 void write_archive(const std::filesystem::path& path, const Campaign& campaign) {
   const Hdf5File file = Hdf5File::create(path.string());
   Hdf5Group root = file.root();
   write_heading(root, campaign);
   write_experiments(root, campaign);
-  write_nominal(root, campaign.study, campaign.basis.sensitivity);
   write_basis(root, campaign.study, campaign.basis);
+  write_nominal(root, campaign.study, campaign.basis.sensitivity);
   write_trajectories(root, campaign);
   write_aggregate(root, campaign);
   write_file_atomically(path, file.image());
 }
 
 Campaign read_archive(const std::filesystem::path& path) {
-  const Hdf5File file = Hdf5File::open(path);
-  const Hdf5Group root = file.root();
-  const std::string name = path.string();
-  Campaign campaign = read_heading(root, name);
-  campaign.records = read_experiments(root, campaign.study, name);
-  campaign.basis = read_basis(root, campaign.study, read_nominal(root, campaign.study, name), name);
-  read_trajectories(root, campaign.study, campaign.records, name);
-  return campaign;
+  try {
+    return read_groups(path);
+  } catch (const std::bad_alloc&) {
+    throw ArchiveError(fmt::format("{}: a variable in it does not fit into the memory", path.string()));
+  }
 }
 
 }  // namespace mpm

@@ -1,4 +1,6 @@
-#include <utility>
+#include <cstdint>
+#include <limits>
+#include <string>
 
 #include "analysis/study_aggregate.hpp"
 #include "results/archive_groups.hpp"
@@ -9,122 +11,185 @@
 namespace mpm {
 namespace {
 
-/// Writes one number of every element of a list.
-template <class T, class List, class Get>
-void write_of(Hdf5Group& group, const std::vector<std::string>& dimensions, const VariableText& text,
-              const List& list, const Get& get) {
+constexpr const char* kGroup = "aggregate";
+
+/// Dimensions, and one value an entry of their product.
+using Names = std::vector<std::string>;
+
+void write_numbers(Hdf5Group& group, const Names& dimensions, const VariableText& text,
+                   const std::vector<double>& values) {
+  group.write(text.name, dimensions, values, attributes<double>(text));
+}
+
+void write_counts(Hdf5Group& group, const Names& dimensions, const VariableText& text,
+                  const std::vector<std::int64_t>& values) {
+  group.write(text.name, dimensions, values, attributes<std::int64_t>(text));
+}
+
+void write_texts(Hdf5Group& group, const Names& dimensions, const VariableText& text, const Names& values) {
+  group.write(text.name, dimensions, values, attributes<std::string>(text));
+}
+
+/// One number of each item.
+template <class T, class Item, class Get>
+std::vector<T> each(const std::vector<Item>& items, Get get) {
   std::vector<T> values;
-  for (const auto& element : list)
-    values.push_back(get(element));
-  group.write(text.name, dimensions, values, attributes<T>(text));
+  values.reserve(items.size());
+  for (const Item& item : items)
+    values.push_back(get(item));
+  return values;
 }
 
-void write_named_values(Hdf5Group& group, const Study& study, const StudyAggregate& total) {
-  const std::vector<AggregateValue> values = named_values(total);
-  std::vector<std::string> names;
-  for (const AggregateValue& value : values)
-    names.push_back(value.name);
-  group.write_dimension("aggregate", names, attributes<std::string>({"aggregate", "name of the number"}));
-  const std::vector<std::string> along{"aggregate"};
-  write_of<std::string>(group, along, {"description", "what the number is"}, values,
-                        [](const auto& v) { return v.description; });
-  write_of<double>(group, along, {"value", "point estimate"}, values, [](const auto& v) { return v.value; });
-  write_of<double>(group, along, {"lower", "lower end of the interval", "1", "NaN: no interval"}, values,
-                   [](const auto& v) { return v.interval.lower; });
-  write_of<double>(group, along, {"upper", "upper end of the interval", "1", "NaN: no interval"}, values,
-                   [](const auto& v) { return v.interval.upper; });
-  write_of<std::int64_t>(group, along, {"count", "experiments (pairs, for regressions) behind the number"},
-                         values, [](const auto& v) { return v.count; });
-  write_of<double>(group, along, {"reported", "number that the study's reference reports", "1", "NaN: none"},
-                   values, [&](const auto& v) { return reference_value(study, v.name); });
+void write_interval(Hdf5Group& group, const Names& dimensions, const VariableText& text,
+                    const std::vector<Interval>& intervals) {
+  write_numbers(group, dimensions, {text.name + "_lower", text.long_name + ", lower end of the interval"},
+                each<double>(intervals, [](const Interval& i) { return i.lower; }));
+  write_numbers(group, dimensions, {text.name + "_upper", text.long_name + ", upper end of the interval"},
+                each<double>(intervals, [](const Interval& i) { return i.upper; }));
 }
 
-void write_confusion(Hdf5Group& group, const StudyAggregate& total) {
-  std::vector<std::int64_t> counts;
-  for (const KindAggregate& kind : total.kinds)
-    for (Eigen::Index i = 0; i < kind.confusion.classes(); ++i)
-      for (Eigen::Index j = 0; j < kind.confusion.classes(); ++j)
-        counts.push_back(kind.confusion.counts()(i, j));
-  const VariableText text{"confusion", "impactful experiments by true CV and CV located by Ivar_diag"};
-  group.write(text.name, {"kind", "cv", "predicted_cv"}, counts, attributes<std::int64_t>(text));
+void write_rates(Hdf5Group& group, const Names& dimensions, const VariableText& text,
+                 const std::vector<Rate>& rates) {
+  write_numbers(group, dimensions, text, each<double>(rates, [](const Rate& r) { return r.value; }));
+  write_interval(group, dimensions, text, each<Interval>(rates, [](const Rate& r) { return r.interval; }));
+  write_counts(group, dimensions, {text.name + "_hits", text.long_name + ", experiments that count"},
+               each<std::int64_t>(rates, [](const Rate& r) { return r.hits; }));
+  write_counts(group, dimensions, {text.name + "_total", text.long_name + ", experiments looked at"},
+               each<std::int64_t>(rates, [](const Rate& r) { return r.total; }));
 }
 
-/// Regressions of Ivar_basis on Ivar: element 0 over all CVs, the others CV by CV.
-void write_regressions(Hdf5Group& group, const StudyAggregate& total) {
-  std::vector<const LinearFitIntervals*> fits;
-  for (const KindAggregate& kind : total.kinds) {
-    fits.push_back(&kind.regression);
-    for (const LinearFitIntervals& fit : kind.regression_of_cv)
-      fits.push_back(&fit);
-  }
-  struct Part {
-    const char* name;
-    double LinearFit::*value;
-    Interval LinearFitIntervals::*interval;
+void write_samples(Hdf5Group& group, const Names& dimensions, const VariableText& text,
+                   const std::vector<SampleSummary>& samples) {
+  const auto number = [&](const std::string& suffix, const std::string& word, double SampleSummary::*member) {
+    write_numbers(group, dimensions, {text.name + suffix, word + text.long_name},
+                  each<double>(samples, [&](const SampleSummary& s) { return s.*member; }));
   };
-  const std::vector<std::string> along{"kind", "regression_cv"};
-  for (const Part part : {Part{"slope", &LinearFit::slope, &LinearFitIntervals::slope},
-                          Part{"intercept", &LinearFit::intercept, &LinearFitIntervals::intercept},
-                          Part{"r_squared", &LinearFit::r_squared, &LinearFitIntervals::r_squared}}) {
-    const std::string name = std::string("regression_") + part.name;
-    const std::string what = std::string(part.name) + " of Ivar_basis on Ivar";
-    write_of<double>(group, along, {name, what}, fits, [&](const auto* fit) { return fit->fit.*part.value; });
-    write_of<double>(group, along, {name + "_lower", what + ", lower end"}, fits,
-                     [&](const auto* fit) { return (fit->*part.interval).lower; });
-    write_of<double>(group, along, {name + "_upper", what + ", upper end"}, fits,
-                     [&](const auto* fit) { return (fit->*part.interval).upper; });
+  number("_min", "smallest ", &SampleSummary::least);
+  number("_mean", "mean ", &SampleSummary::mean);
+  number("_max", "largest ", &SampleSummary::largest);
+  write_interval(group, dimensions, {text.name + "_mean", "mean " + text.long_name},
+                 each<Interval>(samples, [](const SampleSummary& s) { return s.mean_interval; }));
+  write_counts(group, dimensions, {text.name + "_count", text.long_name + ", experiments"},
+               each<std::int64_t>(samples, [](const SampleSummary& s) { return s.count; }));
+}
+
+/// The headline numbers, each in a row with its name.
+void write_named_values(Hdf5Group& group, const Study& study, const StudyAggregate& aggregate) {
+  const std::vector<AggregateValue> values = named_values(aggregate);
+  group.write_dimension("name", each<std::string>(values, [](const auto& v) { return v.name; }),
+                        attributes<std::string>({"name", "name of the number"}));
+  const Names along{"name"};
+  write_texts(group, along, {"description", "what the number is"},
+              each<std::string>(values, [](const auto& v) { return v.description; }));
+  write_numbers(group, along, {"value", "measured value"},
+                each<double>(values, [](const auto& v) { return v.value; }));
+  write_interval(group, along, {"value", "measured value"},
+                 each<Interval>(values, [](const auto& v) { return v.interval; }));
+  write_counts(group, along, {"count", "experiments (or pairs, for regressions) behind the value"},
+               each<std::int64_t>(values, [](const auto& v) { return v.count; }));
+  write_numbers(group, along,
+                {"reference", "value reported elsewhere", "1", "NaN where the study names none"},
+                each<double>(values, [&](const auto& v) { return reference_value(study, v.name); }));
+}
+
+void write_kinds(Hdf5Group& group, const std::vector<KindAggregate>& kinds) {
+  group.write_dimension(
+      "kind", each<std::string>(kinds, [](const auto& k) { return std::string(to_string(k.kind)); }),
+      attributes<std::string>({"kind", "what is wrong in the experiments"}));
+  const Names along{"kind"};
+  write_counts(group, along, {"experiments", "number of experiments"},
+               each<std::int64_t>(kinds, [](const auto& k) { return k.experiments; }));
+  write_counts(group, along, {"failed", "number of failed experiments"},
+               each<std::int64_t>(kinds, [](const auto& k) { return k.failed; }));
+  const auto rates = [&](const VariableText& text, Rate KindAggregate::*member) {
+    write_rates(group, along, text, each<Rate>(kinds, [&](const KindAggregate& k) { return k.*member; }));
+  };
+  rates({"infeasible", "share of infeasible experiments"}, &KindAggregate::infeasible);
+  rates({"impactful", "share of impactful experiments among the feasible"}, &KindAggregate::impactful);
+  rates({"located", "share of impactful experiments whose CV is located"}, &KindAggregate::located);
+  rates({"source_recognised", "share of experiments whose source is recognised", "1",
+         "NaN for experiments with both faults"},
+        &KindAggregate::source_recognised);
+  write_samples(group, along, {"i_mpm", "I_MPM"},
+                each<SampleSummary>(kinds, [](const auto& k) { return k.i_mpm; }));
+}
+
+void write_confusion(Hdf5Group& group, const Study& study, const std::vector<KindAggregate>& kinds) {
+  write_variable_dimension(group, "true_cv", "CV that is affected", study.plant.cvs);
+  write_variable_dimension(group, "predicted_cv", "CV that Ivar_diag points at", study.plant.cvs);
+  std::vector<std::int64_t> counts;
+  for (const KindAggregate& kind : kinds)
+    for (Eigen::Index row = 0; row < study.cv_count(); ++row)
+      for (Eigen::Index col = 0; col < study.cv_count(); ++col)
+        counts.push_back(kind.confusion.counts()(row, col));
+  write_counts(group, {"kind", "true_cv", "predicted_cv"},
+               {"confusion", "number of impactful experiments of a true CV with a predicted CV"}, counts);
+}
+
+void write_regressions(Hdf5Group& group, const Study& study, const std::vector<KindAggregate>& kinds) {
+  Names over{"all CVs"};
+  for (const PlantModel::Variable& cv : study.plant.cvs)
+    over.push_back(cv.name);
+  group.write_dimension(
+      "regression", over,
+      attributes<std::string>({"regression", "CVs whose pairs (Ivar, Ivar_basis) are fitted"}));
+  std::vector<LinearFitIntervals> fits;
+  for (const KindAggregate& kind : kinds) {
+    fits.push_back(kind.regression);
+    fits.insert(fits.end(), kind.regression_of_cv.begin(), kind.regression_of_cv.end());
   }
-  write_of<std::int64_t>(group, along, {"regression_pairs", "pairs in the regression"}, fits,
-                         [](const auto* fit) { return static_cast<std::int64_t>(fit->fit.pairs); });
+  const Names along{"kind", "regression"};
+  const auto number = [&](const VariableText& text, double LinearFit::*value,
+                          Interval LinearFitIntervals::*interval) {
+    write_numbers(group, along, text,
+                  each<double>(fits, [&](const LinearFitIntervals& f) { return f.fit.*value; }));
+    write_interval(group, along, text,
+                   each<Interval>(fits, [&](const LinearFitIntervals& f) { return f.*interval; }));
+  };
+  number({"slope", "slope of Ivar_basis on Ivar"}, &LinearFit::slope, &LinearFitIntervals::slope);
+  number({"intercept", "intercept of Ivar_basis on Ivar"}, &LinearFit::intercept,
+         &LinearFitIntervals::intercept);
+  number({"r_squared", "R^2 of Ivar_basis on Ivar"}, &LinearFit::r_squared, &LinearFitIntervals::r_squared);
+  write_counts(group, along, {"pairs", "number of pairs in the fit"},
+               each<std::int64_t>(fits, [](const auto& f) { return f.fit.pairs; }));
+  write_counts(group, along, {"pairs_left_out", "number of pairs left out because one is not finite"},
+               each<std::int64_t>(fits, [](const auto& f) { return f.fit.left_out; }));
+  write_counts(group, along, {"clusters", "number of experiments with a pair in the fit"},
+               each<std::int64_t>(fits, [](const auto& f) { return f.clusters; }));
+  write_counts(group, along, {"replications", "number of bootstrap resamples behind the intervals"},
+               each<std::int64_t>(fits, [](const auto& f) { return f.replications_used; }));
 }
 
 void write_dominance(Hdf5Group& group, const std::vector<DominanceBin>& bins) {
-  std::vector<double> centre;
-  for (const DominanceBin& bin : bins)
-    centre.push_back(0.5 * (bin.lower + bin.upper));
-  group.write_dimension("dominance", centre,
-                        attributes<double>({"dominance", "middle of the bin of dominance_mpm"}));
-  const std::vector<std::string> along{"dominance"};
-  const auto write = [&](const char* name, const char* what, auto get) {
-    write_of<double>(group, along, {name, what}, bins, get);
-  };
-  write("dominance_lower", "lower edge of the bin", [](const auto& b) { return b.lower; });
-  write("dominance_upper", "upper edge of the bin", [](const auto& b) { return b.upper; });
-  write("dominance_i_mpm_mean", "mean I_MPM in the bin", [](const auto& b) { return b.i_mpm.mean; });
-  write("dominance_i_mpm_mean_lower", "its lower end",
-        [](const auto& b) { return b.i_mpm.mean_interval.lower; });
-  write("dominance_i_mpm_mean_upper", "its upper end",
-        [](const auto& b) { return b.i_mpm.mean_interval.upper; });
-  write("dominance_above_threshold", "share with I_MPM above its threshold",
-        [](const auto& b) { return b.above_threshold.value; });
-  write_of<std::int64_t>(group, along, {"dominance_count", "experiments in the bin"}, bins,
-                         [](const auto& b) { return b.i_mpm.count; });
+  std::vector<double> lower = each<double>(bins, [](const auto& bin) { return bin.lower; });
+  group.write_dimension("dominance", lower,
+                        attributes<double>({"dominance", "lower edge of a bin of dominance_mpm"}));
+  const Names along{"dominance"};
+  write_numbers(group, along, {"dominance_upper", "upper edge of a bin of dominance_mpm"},
+                each<double>(bins, [](const auto& bin) { return bin.upper; }));
+  write_samples(group, along, {"dominance_i_mpm", "I_MPM at this dominance"},
+                each<SampleSummary>(bins, [](const auto& bin) { return bin.i_mpm; }));
+  write_rates(group, along,
+              {"dominance_above_threshold", "share of experiments with I_MPM above its threshold"},
+              each<Rate>(bins, [](const auto& bin) { return bin.above_threshold; }));
 }
 
 }  // namespace
 
 void write_aggregate(Hdf5Group& root, const Campaign& campaign) {
   const Study& study = campaign.study;
-  const StudyAggregate total = aggregate(study, campaign.records);
-  Hdf5Group group = root.create_group("aggregate");
+  const StudyAggregate all = aggregate(study, campaign.records);
+  Hdf5Group group = root.create_group(kGroup);
+  group.write_attribute("title", "What the experiments show, with intervals");
   group.write_attribute("confidence", study.aggregate.confidence);
-  group.write_attribute("experiments", total.experiments);
-  group.write_attribute("failed", total.failed);
-  write_named_values(group, study, total);
-
-  std::vector<std::string> kinds;
-  for (const KindAggregate& kind : total.kinds)
-    kinds.emplace_back(to_string(kind.kind));
-  group.write_dimension("kind", kinds, attributes<std::string>({"kind", "kind of the experiments"}));
-  write_variable_dimension(group, "cv", "true controlled variable", study.plant.cvs);
-  write_variable_dimension(group, "predicted_cv", "located controlled variable", study.plant.cvs);
-  std::vector<PlantModel::Variable> regressions{{"all", "", "all controlled variables together"}};
-  regressions.insert(regressions.end(), study.plant.cvs.begin(), study.plant.cvs.end());
-  write_variable_dimension(group, "regression_cv", "controlled variables in the regression", regressions);
-  write_confusion(group, total);
-  write_regressions(group, total);
-  if (!total.dominance.empty())
-    write_dominance(group, total.dominance);
+  group.write_attribute("experiments", std::int64_t{all.experiments});
+  group.write_attribute("failed", std::int64_t{all.failed});
+  write_named_values(group, study, all);
+  write_kinds(group, all.kinds);
+  write_confusion(group, study, all.kinds);
+  write_regressions(group, study, all.kinds);
+  if (!all.dominance.empty())
+    write_dominance(group, all.dominance);
 }
 
 }  // namespace mpm

@@ -1,4 +1,8 @@
+#include <cstdint>
+#include <utility>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "plants/error.hpp"
 #include "results/archive.hpp"
@@ -10,47 +14,55 @@ namespace mpm {
 namespace {
 
 constexpr const char* kFileType = "mpmbench archive";
+constexpr const char* kConventions = "CF-1.8";
+
+void require_archive(const Hdf5Group& root, const std::string& file) {
+  const auto file_type = root.attribute<std::string>("filetype");
+  if (file_type != kFileType)
+    throw ArchiveError(
+        fmt::format("{}: attribute '/filetype': found '{}'; allowed: '{}'", file, file_type, kFileType));
+  const auto version = root.attribute<std::vector<std::int32_t>>("format_version");
+  if (version.size() != 2 || version.front() != kArchiveMajorVersion)
+    throw ArchiveError(fmt::format("{}: attribute '/format_version': found {}; allowed: {}.x", file,
+                                   fmt::join(version, "."), kArchiveMajorVersion));
+}
+
+Study read_study(const Hdf5Group& root, const std::string& file) {
+  try {
+    Study study = parse_study(root.attribute<std::string>("scenario"), "scenario");
+    study.seed = root.attribute<std::uint64_t>("master_seed");
+    return study;
+  } catch (const InputError& error) {
+    throw ArchiveError(fmt::format("{}: the study in attribute '/scenario': {}", file, error.what()));
+  }
+}
 
 }  // namespace
 
 void write_heading(Hdf5Group& root, const Campaign& campaign) {
   const CampaignInfo& info = campaign.info;
-  root.write_attribute("Conventions", std::string("CF-1.10"));
-  root.write_attribute("title", campaign.study.title);
-  root.write_attribute("filetype", std::string(kFileType));
-  root.write_attribute("format_version",
-                       std::vector<std::int32_t>{kArchiveMajorVersion, kArchiveMinorVersion});
-  root.write_attribute("mpmbench_version", info.mpmbench_version);
-  root.write_attribute("git_sha", info.git_sha);
-  root.write_attribute("created", info.created);
-  root.write_attribute("command", info.command);
-  root.write_attribute("study", campaign.study.name);
-  root.write_attribute("scenario", campaign.study.source);
-  // A text: netCDF readers differ in what they make of unsigned 64-bit attributes.
-  root.write_attribute("master_seed", std::to_string(campaign.study.seed));
-  root.write_attribute("solver", info.solver);
-  root.write_attribute("seconds", info.seconds);
-  root.write_attribute("jobs", static_cast<std::int32_t>(info.jobs));
+  const Attributes list{
+      {"filetype", kFileType},
+      {"format_version", std::vector{std::int32_t{kArchiveMajorVersion}, std::int32_t{kArchiveMinorVersion}}},
+      {"Conventions", kConventions},
+      {"title", campaign.study.title},
+      {"mpmbench_version", info.mpmbench_version},
+      {"git_sha", info.git_sha},
+      {"created", info.created},
+      {"command", info.command},
+      {"master_seed", std::uint64_t{campaign.study.seed}},
+      {"solver", info.solver},
+      {"seconds", info.seconds},
+      {"jobs", std::int32_t{info.jobs}},
+      {"scenario", campaign.study.source}};
+  for (const auto& [name, value] : list)
+    root.write_attribute(name, value);
 }
 
 Campaign read_heading(const Hdf5Group& root, const std::string& file) {
-  if (root.attribute<std::string>("filetype") != kFileType)
-    throw ArchiveError(fmt::format("{}: attribute 'filetype': found \"{}\"; allowed: \"{}\"", file,
-                                   root.attribute<std::string>("filetype"), kFileType));
-  const auto version = root.attribute<std::vector<std::int32_t>>("format_version");
-  if (version.size() != 2 || version[0] != kArchiveMajorVersion)
-    throw ArchiveError(fmt::format("{}: attribute 'format_version': found {}; allowed: {}.x", file,
-                                   version.empty() ? -1 : version[0], kArchiveMajorVersion));
+  require_archive(root, file);
   Campaign campaign;
-  try {
-    campaign.study = parse_study(root.attribute<std::string>("scenario"), file + " (attribute 'scenario')");
-    campaign.study.seed = std::stoull(root.attribute<std::string>("master_seed"));
-  } catch (const InputError& error) {
-    throw ArchiveError(error.what());
-  } catch (const std::logic_error&) {  // of stoull
-    throw ArchiveError(fmt::format("{}: attribute 'master_seed': found \"{}\"; allowed: a whole number", file,
-                                   root.attribute<std::string>("master_seed")));
-  }
+  campaign.study = read_study(root, file);
   CampaignInfo& info = campaign.info;
   info.mpmbench_version = root.attribute<std::string>("mpmbench_version");
   info.git_sha = root.attribute<std::string>("git_sha");

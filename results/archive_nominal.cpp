@@ -1,60 +1,76 @@
+#include <algorithm>
+#include <cstdint>
+
 #include <fmt/format.h>
 
 #include "results/archive_error.hpp"
 #include "results/archive_groups.hpp"
 #include "results/dimensions.hpp"
 #include "results/matrix_io.hpp"
+#include "results/variable_text.hpp"
 
 namespace mpm {
 namespace {
 
-Flags side_flags() {
-  return {{0, 1}, {"lower", "upper"}};
+constexpr const char* kGroup = "nominal";
+constexpr const char* kResponse = "t0_step_response";
+
+VariableText side_text() {
+  return {"side", "soft limit that the CV is at", "1", "", {{0, 1}, {"lower", "upper"}}};
+}
+
+Eigen::Index position(const Study& study, const std::string& name, const std::string& file) {
+  const auto& cvs = study.plant.cvs;
+  const auto found = std::find_if(cvs.begin(), cvs.end(), [&](const auto& cv) { return cv.name == name; });
+  if (found == cvs.end())
+    throw ArchiveError(fmt::format("{}: dimension '/{}/active_cv': found '{}', which is no CV of the study",
+                                   file, kGroup, name));
+  return found - cvs.begin();
 }
 
 }  // namespace
 
 void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity) {
-  Hdf5Group group = root.create_group("nominal");
+  Hdf5Group group = root.create_group(kGroup);
+  group.write_attribute("title",
+                        "Nominal complementary sensitivity T0; S0 = I - T0, and T0 = 0 from other CVs");
   std::vector<PlantModel::Variable> active;
   std::vector<std::int8_t> side;
-  std::vector<std::int32_t> position;
   std::vector<const Eigen::MatrixXd*> responses;
   for (std::size_t a = 0; a < sensitivity.active.size(); ++a) {
-    const ActiveLimit& limit = sensitivity.active[a];
-    active.push_back(study.plant.cvs[static_cast<std::size_t>(limit.cv)]);
-    position.push_back(static_cast<std::int32_t>(limit.cv));
-    side.push_back(limit.upper ? 1 : 0);
+    active.push_back(study.plant.cvs[static_cast<std::size_t>(sensitivity.active[a].cv)]);
+    side.push_back(sensitivity.active[a].upper ? 1 : 0);
     responses.push_back(&sensitivity.step_response[a]);
   }
-  write_variable_dimension(group, "active_cv", "controlled variable with an active soft limit", active);
+  const Eigen::Index lags = responses.empty() ? study.sensitivity.samples : responses.front()->cols();
+  write_variable_dimension(group, "active_cv", "CV at a soft limit, whose limit is stepped", active);
   write_variable_dimension(group, "cv", "controlled variable", study.plant.cvs);
-  write_sample_dimension(group, "lag", "samples after the step", study, 1, study.sensitivity.samples);
-  group.write("active_cv_position", {"active_cv"}, position,
-              attributes<std::int32_t>({"active_cv_position", "position of the active CV in cv"}));
-  group.write("active_side", {"active_cv"}, side,
-              attributes<std::int8_t>({"active_side", "which soft limit is active", "1", "", side_flags()}));
+  write_sample_dimension(group, "lag", "samples after the step", "time", study, 1, lags);
+  group.write("side", {"active_cv"}, side, attributes<std::int8_t>(side_text()));
   write_matrices(group, {"active_cv", "cv", "lag"},
-                 {"t0_step_response", "T0: outputs after a unit step of the active limit; S0 = I - T0"},
-                 responses, study.cv_count(), study.sensitivity.samples);
+                 {kResponse,
+                  "response of cv to a unit step of the limit of active_cv",
+                  "1",
+                  "in the unit of cv per unit of active_cv; stays at its last value",
+                  {},
+                  "time"},
+                 responses, study.cv_count(), lags);
 }
 
 NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file) {
-  const Hdf5Group group = root.group("nominal");
-  const auto position = group.read_list<std::int32_t>("active_cv_position");
-  const auto side = group.read<std::int8_t>("active_side", {position.size()});
+  const Hdf5Group group = root.group(kGroup);
+  const std::vector<std::string> active = group.read_list<std::string>("active_cv");
+  const std::vector<std::int8_t> side = group.read<std::int8_t>("side", {active.size()});
+  const auto lags = static_cast<Eigen::Index>(group.read_list<std::int32_t>("lag").size());
   NominalSensitivity sensitivity;
   sensitivity.cv_count = study.cv_count();
-  sensitivity.step_response.resize(position.size());
+  sensitivity.step_response.resize(active.size());
   std::vector<Eigen::MatrixXd*> responses;
-  for (std::size_t a = 0; a < position.size(); ++a) {
-    if (position[a] < 0 || position[a] >= study.cv_count())
-      throw ArchiveError(fmt::format("{}: variable 'nominal/active_cv_position': found {}; allowed: 0 to {}",
-                                     file, position[a], study.cv_count() - 1));
-    sensitivity.active.push_back({position[a], side[a] != 0});
+  for (std::size_t a = 0; a < active.size(); ++a) {
+    sensitivity.active.push_back({position(study, active[a], file), side[a] != 0});
     responses.push_back(&sensitivity.step_response[a]);
   }
-  read_matrices(group, "t0_step_response", true, responses, study.cv_count(), study.sensitivity.samples);
+  read_matrices(group, kResponse, true, responses, study.cv_count(), lags);
   return sensitivity;
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -12,53 +13,76 @@ namespace mpm {
 namespace {
 
 constexpr const char* kGroup = "trajectories";
-const std::vector<std::string> kAlong{"stored"};
 
-template <class Loops>
-auto trajectories_of(Loops& loops) {
-  std::vector<decltype(&loops.front()->trajectory)> result;
-  for (auto* loop : loops)
-    result.push_back(&loop->trajectory);
-  return result;
+/// Pointers to the trajectories, the solver statistics and the model outputs of loops.
+template <class Loop>
+struct LoopParts {
+  template <class T>
+  using Like = std::conditional_t<std::is_const_v<Loop>, const T, T>;
+
+  std::vector<Like<Trajectory>*> trajectories;
+  std::vector<Like<SolverStatistics>*> solvers;
+  std::vector<Like<Eigen::MatrixXd>*> y_sim;
+
+  void add(Loop& loop) {
+    trajectories.push_back(&loop.trajectory);
+    solvers.push_back(&loop.trajectory.solver);
+    y_sim.push_back(&loop.y_sim);
+  }
+};
+
+template <class Parts>
+auto signals(const Parts& parts, const SignalColumn& column) {
+  std::vector<decltype(&(parts.trajectories.front()->*column.member))> pointers;
+  for (auto* trajectory : parts.trajectories)
+    pointers.push_back(&(trajectory->*column.member));
+  return pointers;
+}
+
+/// The record of each experiment that is stored, in the order in which it is stored.
+std::vector<ExperimentRecord*> stored_records(const Hdf5Group& group, std::vector<ExperimentRecord>& records,
+                                              const std::string& file) {
+  std::vector<ExperimentRecord*> stored;
+  auto record = records.begin();
+  for (const std::int64_t index : group.read_list<std::int64_t>("stored")) {
+    record = std::find_if(record, records.end(), [&](const auto& r) { return r.draw.index == index; });
+    if (record == records.end())
+      throw ArchiveError(
+          fmt::format("{}: dimension '/{}/stored': found {}; allowed: experiments of the root "
+                      "group in their order, each once",
+                      file, kGroup, index));
+    stored.push_back(&*record++);
+  }
+  return stored;
 }
 
 }  // namespace
 
 void write_trajectories(Hdf5Group& root, const Campaign& campaign) {
-  std::vector<std::int64_t> index;
-  std::vector<const LoopRecord*> loops;
-  for (const ExperimentRecord& record : campaign.records)
-    if (record.loop) {
-      index.push_back(record.draw.index);
-      loops.push_back(&*record.loop);
-    }
-  if (loops.empty())
-    return;
   const Study& study = campaign.study;
-  Hdf5Group group = root.create_group(kGroup);
-  group.write_dimension("stored", index,
-                        attributes<std::int64_t>({"stored", "index of the experiment whose loop was kept"}));
-  write_plant_dimensions(group, study.plant);
-  write_sample_dimension(group, "sample", "sample", study, 0, study.simulation.samples);
-  const auto trajectories = trajectories_of(loops);
-  write_columns(group, kAlong, loop_columns(), trajectories);
-  std::vector<const SolverStatistics*> solvers;
-  for (const Trajectory* trajectory : trajectories)
-    solvers.push_back(&trajectory->solver);
-  write_columns(group, kAlong, solver_columns(), solvers);
-  for (const SignalColumn& signal : signal_columns(study)) {
-    std::vector<const Eigen::MatrixXd*> matrices;
-    for (const Trajectory* trajectory : trajectories)
-      matrices.push_back(&(trajectory->*signal.member));
-    write_matrices(group, {"stored", signal.rows, "sample"}, signal.text, matrices, matrices.front()->rows(),
-                   matrices.front()->cols());
+  LoopParts<const LoopRecord> parts;
+  std::vector<std::int64_t> stored;
+  for (const ExperimentRecord& record : campaign.records) {
+    if (!record.loop)
+      continue;
+    stored.push_back(record.draw.index);
+    parts.add(*record.loop);
   }
-  std::vector<const Eigen::MatrixXd*> y_sim;
-  for (const LoopRecord* loop : loops)
-    y_sim.push_back(&loop->y_sim);
-  write_matrices(group, {"stored", "cv", "sample"},
-                 {"y_sim", "output of the nominal model, G0 (u, d)", common_unit(study.plant.cvs)}, y_sim,
-                 study.cv_count(), study.simulation.samples);
+  if (stored.empty())
+    return;
+  Hdf5Group group = root.create_group(kGroup);
+  group.write_attribute("title", "Closed-loop records of the experiments that kept theirs");
+  group.write_dimension("stored", stored,
+                        attributes<std::int64_t>({"stored", "index of the experiment in the study"}));
+  write_plant_dimensions(group, study.plant);
+  write_sample_dimension(group, "sample", "sample number", "time", study, 0, study.simulation.samples);
+  write_columns(group, {"stored"}, loop_columns(), parts.trajectories);
+  write_columns(group, {"stored"}, solver_columns(), parts.solvers);
+  for (const SignalColumn& column : signal_columns(study))
+    write_matrices(group, {"stored", column.rows, "sample"}, column.text, signals(parts, column),
+                   row_count(column, study), study.simulation.samples);
+  write_matrices(group, {"stored", "cv", "sample"}, y_sim_text(study), parts.y_sim, study.cv_count(),
+                 study.simulation.samples);
 }
 
 void read_trajectories(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
@@ -66,35 +90,16 @@ void read_trajectories(const Hdf5Group& root, const Study& study, std::vector<Ex
   if (!root.has_group(kGroup))
     return;
   const Hdf5Group group = root.group(kGroup);
-  std::vector<LoopRecord*> loops;
-  for (const std::int64_t index : group.read_list<std::int64_t>("stored")) {
-    const auto record = std::find_if(records.begin(), records.end(),
-                                     [&](const ExperimentRecord& r) { return r.draw.index == index; });
-    if (record == records.end())
-      throw ArchiveError(fmt::format(
-          "{}: variable 'trajectories/stored': found {}; allowed: an index in 'experiment'", file, index));
-    loops.push_back(&record->loop.emplace());
-  }
-  const auto trajectories = trajectories_of(loops);
-  const std::vector<std::size_t> shape{loops.size()};
-  read_columns(group, shape, loop_columns(), trajectories, file);
-  std::vector<SolverStatistics*> solvers;
-  for (Trajectory* trajectory : trajectories)
-    solvers.push_back(&trajectory->solver);
-  read_columns(group, shape, solver_columns(), solvers, file);
-  for (const SignalColumn& signal : signal_columns(study)) {
-    const Eigen::Index rows = signal.rows == "cv"   ? study.cv_count()
-                              : signal.rows == "mv" ? study.mv_count()
-                                                    : study.md_count();
-    std::vector<Eigen::MatrixXd*> matrices;
-    for (Trajectory* trajectory : trajectories)
-      matrices.push_back(&(trajectory->*signal.member));
-    read_matrices(group, signal.text.name, true, matrices, rows, study.simulation.samples);
-  }
-  std::vector<Eigen::MatrixXd*> y_sim;
-  for (LoopRecord* loop : loops)
-    y_sim.push_back(&loop->y_sim);
-  read_matrices(group, "y_sim", true, y_sim, study.cv_count(), study.simulation.samples);
+  LoopParts<LoopRecord> parts;
+  for (ExperimentRecord* record : stored_records(group, records, file))
+    parts.add(record->loop.emplace());
+  const std::size_t count = parts.trajectories.size();
+  read_columns(group, {count}, loop_columns(), parts.trajectories, file);
+  read_columns(group, {count}, solver_columns(), parts.solvers, file);
+  for (const SignalColumn& column : signal_columns(study))
+    read_matrices(group, column.text.name, true, signals(parts, column), row_count(column, study),
+                  study.simulation.samples);
+  read_matrices(group, "y_sim", true, parts.y_sim, study.cv_count(), study.simulation.samples);
 }
 
 }  // namespace mpm

@@ -205,14 +205,28 @@ std::vector<Column<Trajectory>> loop_columns() {
 
 std::vector<SignalColumn> signal_columns(const Study& study) {
   const PlantModel& plant = study.plant;
+  const std::string u_comment = "u(k) acts from sample k on";
+  const std::string d_comment = "d(k) acts from sample k on";
   return {
-      {{"y", "measured CVs, noise included", common_unit(plant.cvs)}, "cv", &Trajectory::y},
-      {{"u", "MVs", common_unit(plant.mvs), "u(k) acts from sample k on"}, "mv", &Trajectory::u},
-      {{"u_target", "targets of the MVs", common_unit(plant.mvs)}, "mv", &Trajectory::u_target},
-      {{"d", "measured disturbances", common_unit(plant.mds), "d(k) acts from sample k on"},
-       "md",
-       &Trajectory::d},
-  };
+      {{"y", "measured CVs, noise included", common_unit(plant.cvs), "", {}, "time"}, "cv", &Trajectory::y},
+      {{"u", "MVs", common_unit(plant.mvs), u_comment, {}, "time"}, "mv", &Trajectory::u},
+      {{"u_target", "targets of the MVs", common_unit(plant.mvs), "", {}, "time"},
+       "mv",
+       &Trajectory::u_target},
+      {{"d", "measured disturbances", common_unit(plant.mds), d_comment, {}, "time"}, "md", &Trajectory::d}};
+}
+
+Eigen::Index row_count(const SignalColumn& signal, const Study& study) {
+  return signal.rows == "cv" ? study.cv_count() : signal.rows == "mv" ? study.mv_count() : study.md_count();
+}
+
+VariableText y_sim_text(const Study& study) {
+  return {"y_sim",
+          "output of the nominal model under the recorded MVs and disturbances",
+          common_unit(study.plant.cvs),
+          "",
+          {},
+          "time"};
 }
 
 }  // namespace mpm

@@ -57,5 +57,9 @@ std::vector<Column<SolverStatistics>> solver_columns();
 std::vector<Column<Trajectory>> loop_columns();
 /// Everything that was recorded in a closed loop.
 std::vector<SignalColumn> signal_columns(const Study& study);
+/// How many rows the signal has in this study.
+Eigen::Index row_count(const SignalColumn& signal, const Study& study);
+/// y_sim, which is no member of a Trajectory.
+VariableText y_sim_text(const Study& study);
 
 }  // namespace mpm

@@ -30,7 +30,7 @@ void write_variable_dimension(Hdf5Group& group, const std::string& name, const s
 }
 
 void write_sample_dimension(Hdf5Group& group, const std::string& name, const std::string& long_name,
-                            const Study& study, int first, Eigen::Index count) {
+                            const std::string& time_name, const Study& study, int first, Eigen::Index count) {
   std::vector<std::int32_t> samples(static_cast<std::size_t>(count));
   std::iota(samples.begin(), samples.end(), first);
   group.write_dimension(name, samples, attributes<std::int32_t>({name, long_name}));
@@ -38,8 +38,8 @@ void write_sample_dimension(Hdf5Group& group, const std::string& name, const std
   time.reserve(samples.size());
   for (const std::int32_t sample : samples)
     time.push_back(sample * study.controller.sample_time);
-  group.write("time", {name}, time,
-              attributes<double>({"time", "time of the " + name, unit_text(study.plant.time_unit)}));
+  group.write(time_name, {name}, time,
+              attributes<double>({time_name, "time of the " + name, unit_text(study.plant.time_unit)}));
 }
 
 }  // namespace mpm

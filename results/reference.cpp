@@ -4,7 +4,7 @@
 
 namespace mpm {
 
-double reference_value(const Study& study, const std::string& name) {
+double reference_value(const Study& study, std::string_view name) {
   for (const ReferenceValue& reference : study.reference)
     if (reference.name == name)
       return reference.value;

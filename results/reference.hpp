@@ -1,12 +1,12 @@
 #pragma once
 
-#include <string>
+#include <string_view>
 
 #include "scenarios/study.hpp"
 
 namespace mpm {
 
-/// The number that the study's reference reports for this aggregate; NaN when there is none.
-double reference_value(const Study& study, const std::string& name);
+/// What the study says somebody has reported for the aggregate of this name; NaN when it says nothing.
+double reference_value(const Study& study, std::string_view name);
 
 }  // namespace mpm

@@ -23,17 +23,20 @@ struct VariableText {
   std::string name;
   std::string long_name;
   std::string units = "1";
-  std::string comment = {};  ///< how to read special values; none when empty
-  Flags flags = {};          ///< for flag variables
+  std::string comment = {};      ///< how to read special values; none when empty
+  Flags flags = {};              ///< for flag variables
+  std::string coordinates = {};  ///< a variable with further coordinates, such as `time`; none when empty
 };
 
-/// `long_name`, `units` and, where there are any, `comment`, `flag_values` (of the type T of the variable, as
-/// the CF conventions want it) and `flag_meanings`.
+/// `long_name`, `units` and, where there are any, `comment`, `coordinates`, `flag_values` (of the type T of
+/// the variable, as the CF conventions want it) and `flag_meanings`.
 template <class T>
 Attributes attributes(const VariableText& text) {
   Attributes list{{"long_name", text.long_name}, {"units", text.units}};
   if (!text.comment.empty())
     list.emplace_back("comment", text.comment);
+  if (!text.coordinates.empty())
+    list.emplace_back("coordinates", text.coordinates);
   if constexpr (std::is_same_v<T, std::int8_t> || std::is_same_v<T, std::int32_t>) {
     if (!text.flags.values.empty()) {
       list.emplace_back("flag_values", std::vector<T>(text.flags.values.begin(), text.flags.values.end()));

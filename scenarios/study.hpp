@@ -63,10 +63,16 @@ struct DisturbanceRanges {
   double v_standard_deviation = 1.0;  ///< of the white normal sequence, held over a sample
 };
 
+/// Which way the active soft limit is stepped when T0 is determined. A range MPC answers the two differently:
+/// a limit that moves into the range pushes the CV through the soft constraint, one that moves out of it lets
+/// the CV follow its target only (docs/methods.md).
+enum class StepDirection { into_range, out_of_range, mean };
+
 /// How T0 is determined (appendix A3).
 struct SensitivityOptions {
   int samples = 150;       ///< length of the step responses; the static gain holds after it
-  double step_size = 0.1;  ///< of the active soft limit, in CV units; positive: into the range
+  double step_size = 0.1;  ///< of the active soft limit, in CV units
+  StepDirection step_direction = StepDirection::into_range;
   /// CVs whose soft limit is taken as active, by index; empty: those that the basis case holds at a limit.
   std::vector<Eigen::Index> active_cvs;
 };

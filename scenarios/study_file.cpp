@@ -76,6 +76,7 @@ Study parse_study(std::string_view text, const std::string& file_name) {
   study.sensitivity = read_sensitivity(document, study.plant, study.controller);
   study.diagnosis = read_diagnosis(document);
   study.aggregate = read_aggregate(document);
+  study.reference = read_reference(document);
   refuse_unusable_windows(document, study);
   study.source = text;
   return study;

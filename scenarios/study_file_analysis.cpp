@@ -62,6 +62,11 @@ SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel&
   options.samples = static_cast<int>(read_whole_or(table, "samples", 2, kMaxResponse, options.samples));
   options.active_cvs = read_active_cvs(table, plant, controller);
   options.step_size = read_number_or(table, "step_size", NumberRule::positive(), options.step_size);
+  options.step_direction = read_choice_or<StepDirection>(table, "step_direction",
+                                                         {{"into-range", StepDirection::into_range},
+                                                          {"out-of-range", StepDirection::out_of_range},
+                                                          {"mean", StepDirection::mean}},
+                                                         options.step_direction);
   const double narrowest = narrowest_range(controller, options.active_cvs);
   if (options.step_size > narrowest) {
     table.refuse("step_size", fmt::format("{}", options.step_size),
@@ -103,6 +108,14 @@ AggregateOptions read_aggregate(const TomlTable& document) {
   options.bootstrap_replications = static_cast<int>(
       read_whole_or(table, "bootstrap_replications", 1, kMaxReplications, options.bootstrap_replications));
   return options;
+}
+
+std::vector<ReferenceValue> read_reference(const TomlTable& document) {
+  const TomlTable table = document.table_or_empty("reference", study_file_keys("reference"));
+  std::vector<ReferenceValue> values;
+  for (const std::string& name : table.present_keys())
+    values.push_back({name, read_number_or(table, name, NumberRule{}, 0.0)});
+  return values;
 }
 
 }  // namespace mpm

@@ -4,12 +4,25 @@
 #include <cassert>
 
 namespace mpm {
+namespace {
+
+/// The aggregates of analysis/study_aggregate.hpp that a study may give reported values for.
+std::vector<std::string> reference_names() {
+  std::vector<std::string> names{"infeasible"};
+  for (const char* kind : {"mpm", "ud", "mpm_ud"})
+    for (const char* quantity : {"infeasible", "r_squared", "slope", "located", "source_recognised",
+                                 "i_mpm_min", "i_mpm_mean", "i_mpm_max"})
+      names.push_back(std::string(kind) + "." + quantity);
+  return names;
+}
+
+}  // namespace
 
 const std::vector<StudyFileTable>& study_file_tables() {
   static const std::vector<StudyFileTable> tables{
       {"",
        {"study", "plant", "controller", "simulation", "experiments", "mismatch", "disturbance", "sensitivity",
-        "diagnosis", "aggregate"}},
+        "diagnosis", "aggregate", "reference"}},
       {"study", {"name", "title", "seed"}},
       {"plant", {"catalogue", "name", "title", "time_unit", "cv", "mv", "md", "channel"}},
       {"plant.cv[]", {"name", "unit", "description"}},
@@ -28,11 +41,12 @@ const std::vector<StudyFileTable>& study_file_tables() {
       {"mismatch", {"parameter_weights", "gain_factor", "time_constant_factor", "dead_time_shift"}},
       {"mismatch.parameter_weights", {"gain", "time_constant", "dead_time"}},
       {"disturbance", {"gain", "time_constant", "v_standard_deviation"}},
-      {"sensitivity", {"samples", "step_size", "active_cvs"}},
+      {"sensitivity", {"samples", "step_size", "step_direction", "active_cvs"}},
       {"diagnosis",
        {"impact_band", "location_distance", "mpm_threshold", "windows", "window_stride", "source_population",
         "self_check_band"}},
       {"aggregate", {"confidence", "bootstrap_replications"}},
+      {"reference", reference_names()},
       {"DISTRIBUTION", {"constant", "uniform", "log_uniform", "normal"}},
   };
   return tables;

@@ -40,6 +40,8 @@ DiagnosisOptions read_diagnosis(const TomlTable& document);
 
 /// [aggregate]
 AggregateOptions read_aggregate(const TomlTable& document);
+/// [reference]
+std::vector<ReferenceValue> read_reference(const TomlTable& document);
 
 /// A distribution written as an inline table with one key, such as {uniform = [0.3, 1.5]}, whose every draw
 /// satisfies `rule` (study_file_distribution.cpp).

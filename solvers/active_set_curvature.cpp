@@ -13,6 +13,8 @@ ActiveSetCurvature::ActiveSetCurvature(const ActiveSetProblem& problem, std::siz
     : problem_(problem), matrix_(problem.variable_count(), problem.variable_count()) {
   const auto rows = static_cast<std::size_t>(problem.structure->row_count());
   included_.assign(family_count, std::vector<unsigned char>(rows, 0));
+  touched_.assign(family_count, false);
+  changes_.reserve(family_count * rows);
   pending_.reserve(kTogether);
   clear();
 }
@@ -22,37 +24,41 @@ void ActiveSetCurvature::clear() {
   matrix_.diagonal() += problem_.proximal;
   for (std::vector<unsigned char>& flags : included_)
     std::fill(flags.begin(), flags.end(), static_cast<unsigned char>(0));
-}
-
-void ActiveSetCurvature::count(const std::vector<LimitSprings>& families, Eigen::Index& changed,
-                               Eigen::Index& stretched) const {
-  for (std::size_t f = 0; f < families.size(); ++f)
-    for (Eigen::Index i = 0; i < families[f].size(); ++i) {
-      const bool now = families[f].stretched(i);
-      stretched += now;
-      changed += now != (included_[f][static_cast<std::size_t>(i)] != 0);
-    }
+  std::fill(touched_.begin(), touched_.end(), false);
 }
 
 bool ActiveSetCurvature::synchronise(const std::vector<LimitSprings>& families) {
-  Eigen::Index changed = 0;
-  Eigen::Index stretched = 0;
-  count(families, changed, stretched);
-  if (changed == 0)
+  find_changes(families);
+  if (changes_.empty())
     return false;
-  if (stretched < changed)
+  if (stretched_ < changes_.size()) {
     clear();
-  for (std::size_t f = 0; f < families.size(); ++f)
-    for (Eigen::Index i = 0; i < families[f].size(); ++i) {
-      unsigned char& flag = included_[f][static_cast<std::size_t>(i)];
-      const bool now = families[f].stretched(i);
-      if (now == (flag != 0))
-        continue;
-      add(families[f], i, now ? families[f].stiffness(i) : -families[f].stiffness(i));
-      flag = now;
-    }
+    find_changes(families);
+  }
+  for (const Change& change : changes_) {
+    const LimitSprings& springs = families[change.family];
+    const bool now = springs.stretched(change.row);
+    add(springs, change.row, now ? springs.stiffness(change.row) : -springs.stiffness(change.row));
+    included_[change.family][static_cast<std::size_t>(change.row)] = now;
+  }
   flush();
   return true;
+}
+
+void ActiveSetCurvature::find_changes(const std::vector<LimitSprings>& families) {
+  changes_.clear();
+  stretched_ = 0;
+  for (std::size_t f = 0; f < families.size(); ++f) {
+    if (!families[f].enabled && !touched_[f])
+      continue;
+    touched_[f] = true;
+    for (Eigen::Index i = 0; i < families[f].size(); ++i) {
+      const bool now = families[f].stretched(i);
+      stretched_ += now;
+      if (now != (included_[f][static_cast<std::size_t>(i)] != 0))
+        changes_.push_back({f, i});
+    }
+  }
 }
 
 void ActiveSetCurvature::add(const LimitSprings& springs, Eigen::Index i, double weight) {

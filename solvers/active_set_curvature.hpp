@@ -33,14 +33,22 @@ class ActiveSetCurvature {
     double weight;
   };
 
-  void count(const std::vector<LimitSprings>& families, Eigen::Index& changed, Eigen::Index& stretched) const;
+  struct Change {
+    std::size_t family;
+    Eigen::Index row;
+  };
+
+  void find_changes(const std::vector<LimitSprings>& families);
   void add(const LimitSprings& springs, Eigen::Index i, double weight);
   void flush();
 
   const ActiveSetProblem& problem_;
   Eigen::MatrixXd matrix_;
   std::vector<std::vector<unsigned char>> included_;  ///< one flag a family and row
-  std::vector<Term> pending_;                         ///< terms that wait to be added together
+  std::vector<bool> touched_;                         ///< families with springs in M, at any time
+  std::vector<Change> changes_;                       ///< springs that M does not have as they are
+  std::size_t stretched_ = 0;
+  std::vector<Term> pending_;  ///< terms that wait to be added together
 };
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #include "solvers/active_set_newton.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,7 +13,7 @@ namespace {
 constexpr int kProjectedSteps = 60;
 constexpr double kDownhill = 0.3;  // slope of such a step relative to that of the Newton step
 constexpr int kLineSearchSteps = 60;
-constexpr double kSlopeTolerance = 1e-12;  // of the line search, relative to the slope at its start
+constexpr double kSlopeLeft = 0.1;  // at the end of the line search, relative to its start
 
 }  // namespace
 
@@ -42,10 +43,51 @@ void ActiveSetNewton::forget_curvature() {
 }
 
 void ActiveSetNewton::start(std::vector<LimitSprings>& families) {
+  if (factored_)
+    predict(families);
   z = z.cwiseMax(lower).cwiseMin(upper);
   row_value.noalias() = problem_.structure->rows * z.head(problem_.structure->variable_count());
   for (LimitSprings& springs : families)
+    if (springs.enabled)
+      springs.place(problem_, row_value, z);
+}
+
+// The minimiser for the present limits if the stretched springs and the held variables were those of the last
+// call: one solve with the factor that is there. Noise moves all rows of a controlled variable together, and
+// the last sets are a far better guess than the sets that the last z has with the present limits.
+void ActiveSetNewton::predict(std::vector<LimitSprings>& families) {
+  follow_limits();
+  for (LimitSprings& springs : families) {
+    if (!springs.enabled)
+      continue;
     springs.place(problem_, row_value, z);
+    springs.pull_stretched();
+  }
+  find_gradient(families);
+  direction_.setZero();
+  for (const int j : free_)
+    direction_(j) = -gradient(j);
+  factor_.solve_in_place(direction_);
+  z += direction_;
+}
+
+// A variable that was held at a limit follows it.
+void ActiveSetNewton::follow_limits() {
+  std::size_t next = 0;
+  bool moved = false;
+  for (Eigen::Index j = 0; j < z.size(); ++j) {
+    if (next < free_.size() && free_[next] == j) {
+      ++next;
+      continue;
+    }
+    const double limit = gradient(j) > 0.0 ? lower(j) : upper(j);
+    if (std::isfinite(limit) && limit != z(j)) {
+      z(j) = limit;
+      moved = true;
+    }
+  }
+  if (moved)
+    row_value.noalias() = problem_.structure->rows * z.head(problem_.structure->variable_count());
 }
 
 bool ActiveSetNewton::held(Eigen::Index j) const {
@@ -79,9 +121,10 @@ NewtonOutcome ActiveSetNewton::minimise(std::vector<LimitSprings>& families, dou
       aim_truncated();
     aim_springs(families);
 
-    const bool same = std::all_of(families.begin(), families.end(), [](const LimitSprings& springs) {
-      return !springs.enabled || springs.same_after_step();
-    });
+    bool same = true;
+    for (LimitSprings& springs : families)
+      if (springs.enabled && springs.find_changing())
+        same = false;
     const double t = same ? 1.0 : line_search(families, gradient.dot(step_));
     if (t == 1.0)
       z = target_;  // exactly on the limits that are met
@@ -89,7 +132,8 @@ NewtonOutcome ActiveSetNewton::minimise(std::vector<LimitSprings>& families, dou
       z = (z + t * step_).cwiseMax(lower).cwiseMin(upper);
     row_value += t * row_step_;
     for (LimitSprings& springs : families)
-      springs.advance(t, same);
+      if (springs.enabled)
+        springs.advance(t, same);
   }
 }
 
@@ -105,15 +149,36 @@ void ActiveSetNewton::find_gradient(const std::vector<LimitSprings>& families) {
       add_row_forces(springs);
 }
 
+// Four rows at a time: the gradient is read and written a quarter as often.
 void ActiveSetNewton::add_row_forces(const LimitSprings& springs) {
   const Eigen::Index n = problem_.structure->variable_count();
+  const RowMajorMatrix& rows = problem_.structure->rows;
+  std::array<const double*, 4> row{};
+  std::array<double, 4> force{};
+  std::size_t waiting = 0;
+  const auto flush = [&] {
+    double* sum = gradient.data();
+    for (Eigen::Index j = 0; j < n; ++j)
+      sum[j] += force[0] * row[0][j] + force[1] * row[1][j] + force[2] * row[2][j] + force[3] * row[3][j];
+    waiting = 0;
+  };
   for (Eigen::Index i = 0; i < springs.size(); ++i) {
     if (!springs.stretched(i))
       continue;
-    gradient.head(n) += springs.force(i) * problem_.structure->rows.row(i).transpose();
+    row[waiting] = rows.row(i).data();
+    force[waiting] = springs.force(i);
     if (const int column = problem_.slack_column(i); springs.slack_sign != 0.0 && column >= 0)
       gradient(column) += springs.slack_sign * springs.force(i);
+    if (++waiting == row.size())
+      flush();
   }
+  if (waiting == 0)
+    return;
+  for (std::size_t k = waiting; k < row.size(); ++k) {
+    row[k] = row[0];
+    force[k] = 0.0;
+  }
+  flush();
 }
 
 // The variables that may move; returns the largest gradient among them.
@@ -200,7 +265,8 @@ void ActiveSetNewton::freeze_blocked() {
 void ActiveSetNewton::aim_springs(std::vector<LimitSprings>& families) {
   row_step_.noalias() = problem_.structure->rows * step_.head(problem_.structure->variable_count());
   for (LimitSprings& springs : families)
-    springs.aim(problem_, row_step_, step_);
+    if (springs.enabled)
+      springs.aim(problem_, row_step_, step_);
 }
 
 // The root of the derivative of theta along the step, a rising piecewise linear function of t: Newton's
@@ -208,25 +274,24 @@ void ActiveSetNewton::aim_springs(std::vector<LimitSprings>& families) {
 double ActiveSetNewton::line_search(const std::vector<LimitSprings>& families, double slope) const {
   const Eigen::Index n = problem_.structure->variable_count();
   const Eigen::Index kept = z.size() - n;
-  double smooth_curvature = problem_.quadratic.diagonal().tail(kept).dot(step_.tail(kept).cwiseAbs2()) +
-                            problem_.proximal.dot(step_.cwiseAbs2());
+  double steady = problem_.quadratic.diagonal().tail(kept).dot(step_.tail(kept).cwiseAbs2()) +
+                  problem_.proximal.dot(step_.cwiseAbs2());
   for (Eigen::Index j = 0; j < n; ++j)
-    smooth_curvature += step_(j) * problem_.quadratic.col(j).head(n).dot(step_.head(n));
-  double at_start = 0.0;
+    steady += step_(j) * problem_.quadratic.col(j).head(n).dot(step_.head(n));
   for (const LimitSprings& springs : families)
     if (springs.enabled)
-      at_start += springs.force.dot(springs.step);
+      steady += springs.steady_curvature();
 
   double low = 0.0;
   double high = 1.0;
   double t = 1.0;
   for (int k = 0; k < kLineSearchSteps; ++k) {
-    double first = slope - at_start + t * smooth_curvature;
-    double second = smooth_curvature;
+    double first = slope + t * steady;
+    double second = steady;
     for (const LimitSprings& springs : families)
       if (springs.enabled)
-        springs.add_derivatives(t, first, second);
-    if (std::abs(first) <= kSlopeTolerance * std::abs(slope) || (t == 1.0 && first < 0.0))
+        springs.add_changing(t, first, second);
+    if (first <= 0.0 && (t == 1.0 || first >= kSlopeLeft * slope))
       return t;
     (first > 0.0 ? high : low) = t;
     double next = t - first / second;

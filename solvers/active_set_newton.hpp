@@ -30,7 +30,7 @@ class ActiveSetNewton {
   /// To be called after the stiffness of springs was changed.
   void forget_curvature();
 
-  /// Moves z into the box and finds the springs' values for it.
+  /// Finds a starting point in the box, from the sets of the last call, and the springs' values there.
   void start(std::vector<LimitSprings>& families);
 
   /// Until the projected gradient is at most `tolerance`; `iterations` is counted up, to `limit` at most. The
@@ -49,6 +49,8 @@ class ActiveSetNewton {
   bool held(Eigen::Index j) const;
 
  private:
+  void predict(std::vector<LimitSprings>& families);
+  void follow_limits();
   void find_gradient(const std::vector<LimitSprings>& families);
   void add_row_forces(const LimitSprings& springs);
   double find_free();

@@ -19,8 +19,8 @@ constexpr double kInfeasible = 1e-9;
 
 // Nearly parallel limits share their force at a rate that no stiffness makes fast: after `kPatience` rounds
 // `kAcceptable` times the tolerance will do.
-constexpr int kPatience = 30;
-constexpr double kAcceptable = 5.0;
+constexpr int kPatience = 12;
+constexpr double kAcceptable = 9.0;
 constexpr double kProgress =
     0.1;  // of the residual in one round of multipliers; else the springs are stiffened
 constexpr double kStiffer = 16.0;  // a power of two: taking it back is exact
@@ -127,6 +127,7 @@ QpStatus ActiveSetSolver::iterate(const QpData& data, int& iterations) {
       return status_of(outcome);
     if (!hard.enabled && !hard_limits_kept(data)) {
       hard.enabled = true;
+      hard.place(problem_, newton_.row_value, newton_.z);
       continue;
     }
     const double residual = update_multipliers(scale);
@@ -157,7 +158,7 @@ void ActiveSetSolver::stiffen(double factor) {
 }
 
 bool ActiveSetSolver::hard_limits_kept(const QpData& data) const {
-  const auto value = families_[kHard].value.array();
+  const auto value = newton_.row_value.array();
   return ((value - data.hard_upper.array()).max(data.hard_lower.array() - value) <= options_.tolerance).all();
 }
 

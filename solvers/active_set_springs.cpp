@@ -14,6 +14,7 @@ LimitSprings::LimitSprings(double sign, Eigen::VectorXd k) : slack_sign(sign), s
   value.setZero(size());
   step.setZero(size());
   force.setZero(size());
+  changing_.reserve(static_cast<std::size_t>(size()));
 }
 
 void LimitSprings::assign(Eigen::VectorXd& to, const ActiveSetProblem& problem, const Eigen::VectorXd& rows,
@@ -52,36 +53,49 @@ void LimitSprings::pull() {
   force = stiffness.array() * (value.array() - value.array().max(lower.array()).min(upper.array()));
 }
 
-bool LimitSprings::same_after_step() const {
-  Eigen::Index changed = 0;
+void LimitSprings::pull_stretched() {
+  for (Eigen::Index i = 0; i < size(); ++i)
+    if (force(i) != 0.0)
+      force(i) = stiffness(i) * (value(i) - (force(i) > 0.0 ? upper(i) : lower(i)));
+}
+
+bool LimitSprings::find_changing() {
+  changing_.clear();
   for (Eigen::Index i = 0; i < size(); ++i) {
     const double moved = value(i) + step(i);
-    // A spring that changes its end (from the lower limit to the upper one) changes, too.
-    changed += (moved > upper(i)) != (force(i) > 0.0);
-    changed += (moved < lower(i)) != (force(i) < 0.0);
+    // A spring that goes from one end to the other changes, too.
+    if ((moved > upper(i)) != (force(i) > 0.0) || (moved < lower(i)) != (force(i) < 0.0))
+      changing_.push_back(i);
   }
-  return changed == 0;
+  return !changing_.empty();
 }
 
 void LimitSprings::advance(double t, bool same) {
-  if (same && enabled) {
+  if (same) {
     for (Eigen::Index i = 0; i < size(); ++i)
       force(i) = force(i) != 0.0 ? force(i) + stiffness(i) * step(i) : 0.0;
     value += step;
     return;
   }
   value += t * step;
-  if (enabled)
-    pull();
+  pull();
 }
 
-void LimitSprings::add_derivatives(double t, double& first, double& second) const {
-  for (Eigen::Index i = 0; i < size(); ++i) {
+double LimitSprings::steady_curvature() const {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < size(); ++i)
+    sum += force(i) != 0.0 ? stiffness(i) * step(i) * step(i) : 0.0;
+  for (const Eigen::Index i : changing_)
+    sum -= force(i) != 0.0 ? stiffness(i) * step(i) * step(i) : 0.0;
+  return std::max(0.0, sum);
+}
+
+void LimitSprings::add_changing(double t, double& first, double& second) const {
+  for (const Eigen::Index i : changing_) {
     const double moved = value(i) + t * step(i);
     const double stretch = moved - std::min(std::max(moved, lower(i)), upper(i));
-    const double weight = stiffness(i) * step(i);
-    first += weight * stretch;
-    second += stretch != 0.0 ? weight * step(i) : 0.0;
+    first += step(i) * (stiffness(i) * stretch - force(i));
+    second += stretch != 0.0 ? stiffness(i) * step(i) * step(i) : 0.0;
   }
 }
 

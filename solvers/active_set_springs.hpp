@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "solvers/active_set_problem.hpp"
@@ -34,14 +36,21 @@ struct LimitSprings {
 
   /// Sets `force` from `value`.
   void pull();
-  /// True when a whole step would stretch and release no spring: the penalty is one quadratic along it.
-  bool same_after_step() const;
+  /// The force of the springs that are stretched, at the same ends, as if they could push, too.
+  void pull_stretched();
+  /// Finds the springs that a whole step would stretch, release or take to their other end; false when there
+  /// is none: then the penalty is one quadratic all along the step.
+  bool find_changing();
+  /// Second derivative along `step` of the penalty of the springs that do not change, the same all along it:
+  /// a spring that is stretched (or not) at both ends of the step is so in between.
+  double steady_curvature() const;
+  /// Adds, for the changing springs, the derivative of the penalty along `step` at t less that at 0, and the
+  /// second derivative at t.
+  void add_changing(double t, double& first, double& second) const;
+
   /// Moves by t along `step`. `same`: no spring changes and t = 1; the force is then advanced by k times the
   /// step, which is more accurate than the difference of position and limit.
   void advance(double t, bool same);
-
-  /// Derivative and second derivative of the penalty along `step` at t, added to the arguments.
-  void add_derivatives(double t, double& first, double& second) const;
 
   double slack_sign;
   bool enabled = true;  ///< a family that is not is left out: its force is zero
@@ -51,6 +60,8 @@ struct LimitSprings {
  private:
   void assign(Eigen::VectorXd& to, const ActiveSetProblem& problem, const Eigen::VectorXd& rows,
               const Eigen::VectorXd& z) const;
+
+  std::vector<Eigen::Index> changing_;
 };
 
 }  // namespace mpm

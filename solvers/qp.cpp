@@ -128,14 +128,28 @@ double objective(const QpStructure& structure, const QpData& data, const QpResul
   return value;
 }
 
+KktWorkspace::KktWorkspace(const QpStructure& structure)
+    : row_dual(structure.row_count()),
+      row_value(structure.row_count()),
+      stationarity(structure.variable_count()),
+      slack_force(structure.slack_count()) {}
+
 double kkt_residual(const QpStructure& structure, const QpData& data, const QpResult& result) {
+  KktWorkspace workspace(structure);
+  return kkt_residual(structure, data, result, workspace);
+}
+
+double kkt_residual(const QpStructure& structure, const QpData& data, const QpResult& result,
+                    KktWorkspace& workspace) {
   if (!all_finite(result))  // comparisons below would let NaN pass
     return kInfinity;
   const Eigen::VectorXd& x = result.x;
-  const Eigen::VectorXd row_dual = result.hard_dual + result.soft_dual;
-  const Eigen::VectorXd row_value = structure.rows * x;
+  auto& [row_dual, row_value, stationarity, slack_force] = workspace;
+  row_dual = result.hard_dual + result.soft_dual;
+  row_value.noalias() = structure.rows * x;
 
-  Eigen::VectorXd stationarity = structure.hessian * x + data.gradient + result.bound_dual;
+  stationarity = data.gradient + result.bound_dual;
+  stationarity.noalias() += structure.hessian * x;
   stationarity.noalias() += structure.rows.transpose() * row_dual;
   const double scale = std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>());
 
@@ -146,7 +160,7 @@ double kkt_residual(const QpStructure& structure, const QpData& data, const QpRe
     scaled = std::max(scaled, complementarity(result.bound_dual(i), x(i), data.lower(i), data.upper(i)));
   }
 
-  Eigen::VectorXd slack_force = structure.slack_linear;
+  slack_force = structure.slack_linear;
   slack_force.array() += 2.0 * structure.slack_quadratic.array() * result.slack.array();
   for (Eigen::Index i = 0; i < row_value.size(); ++i) {
     const int q = structure.slack_of_row(i);

@@ -90,4 +90,17 @@ double objective(const QpStructure& structure, const QpData& data, const QpResul
 /// finite.
 double kkt_residual(const QpStructure& structure, const QpData& data, const QpResult& result);
 
+/// Memory of a residual that is computed again and again.
+struct KktWorkspace {
+  explicit KktWorkspace(const QpStructure& structure);
+
+  Eigen::VectorXd row_dual, row_value;  ///< m
+  Eigen::VectorXd stationarity;         ///< n
+  Eigen::VectorXd slack_force;          ///< q
+};
+
+/// The same, with memory that the caller keeps: allocates nothing.
+double kkt_residual(const QpStructure& structure, const QpData& data, const QpResult& result,
+                    KktWorkspace& workspace);
+
 }  // namespace mpm

@@ -39,14 +39,16 @@ constexpr std::array<BackEnd, 3> kBackEnds{{
 QpSolver::QpSolver(std::shared_ptr<const QpStructure> structure) : structure_(std::move(structure)) {
   structure_->validate();
   result_ = QpResult::zero(*structure_);
+  workspace_ = std::make_unique<KktWorkspace>(*structure_);
 }
 
 const QpResult& QpSolver::solve(const QpData& data) {
   data.validate(*structure_);
   do_solve(data, result_);
   result_.objective = objective(*structure_, data, result_);
-  result_.kkt_residual = result_.status == QpStatus::solved ? kkt_residual(*structure_, data, result_)
-                                                            : std::numeric_limits<double>::infinity();
+  result_.kkt_residual = result_.status == QpStatus::solved
+                             ? kkt_residual(*structure_, data, result_, *workspace_)
+                             : std::numeric_limits<double>::infinity();
   return result_;
 }
 

@@ -22,7 +22,7 @@ class QpSolver {
   QpSolver& operator=(const QpSolver&) = delete;
 
   /// The minimiser for `data`; the reference stays valid until the next call. An infeasible problem is a
-  /// status; bad input (see QpData::validate) throws InputError.
+  /// status; bad input (see QpData::validate) throws InputError. Allocates nothing of its own.
   const QpResult& solve(const QpData& data);
 
   /// Forgets the warm start, so that the next answer depends on its problem alone.
@@ -37,6 +37,7 @@ class QpSolver {
 
   std::shared_ptr<const QpStructure> structure_;
   QpResult result_;
+  std::unique_ptr<KktWorkspace> workspace_;
 };
 
 /// Makes a solver for a structure: how a controller is given its back end.

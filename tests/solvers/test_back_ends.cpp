@@ -138,7 +138,7 @@ TEST_CASE("an unbounded problem has no answer", "[solvers]") {
   const NamedQp qp = QpBuilder("unbounded", Eigen::MatrixXd::Zero(2, 2), vec(1, -1))
                          .box(vec(0, -kInfinity), vec(1, kInfinity))
                          .hard(vec(1, 1), 0, kInfinity);
-  const QpResult& result = qp_solver_factory(back_end)(qp.structure)->solve(qp.data);
+  const QpResult result = qp_solver_factory(back_end)(qp.structure)->solve(qp.data);
   CHECK(result.status != QpStatus::solved);
   CHECK(result.status != QpStatus::infeasible);
 }
