@@ -395,12 +395,14 @@ std::vector<T> Hdf5Group::read_list(const std::string& name) const {
 
 namespace {
 
-/// In memory, in the format of HDF5 1.8: what netCDF-4 takes, with checksums on all that describes the data.
+/// In memory, in the format of HDF5 1.8 at most, which netCDF-4 takes. Tracked objects get checksums by it.
+/// The superblock must be the earliest one: of a later one H5Fget_file_image (1.10.8) spoils the checksum,
+/// because it resets a flag below it.
 Handle memory_access(const Place& place) {
   constexpr std::size_t kGrowth = std::size_t{1} << 22;
   Handle access = place.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
   place.check(H5Pset_fapl_core(access.get(), kGrowth, false), "make properties");
-  place.check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V18), "make properties");
+  place.check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "make properties");
   return access;
 }
 

@@ -6,15 +6,13 @@
 
 namespace mpm {
 
-/// What a campaign found, for people: what was run, the self-check, every number that the study has a
-/// reported value for beside it, the other numbers, and the experiments with wrong verdicts with the command
-/// that replays them. `archive` is the name to show in these commands.
-std::string summary_text(const Campaign& campaign, const std::string& archive);
+/// What a campaign found, for people, at most 100 columns wide: what was run, whether the basis case is
+/// healthy, the measured numbers with their intervals beside the reported ones, and which experiments failed
+/// or got a wrong verdict. `file` is the archive, for the commands that replay these.
+std::string summary_text(const Campaign& campaign, const std::string& file);
 
-/// The same for programs: an object with `study`, `seed`, `solver`, `seconds`, `experiments`, `failed`,
-/// `basis`
-/// {`healthy`, `explanation`} and `aggregates`, a list of {`name`, `description`, `value`, `lower`, `upper`,
-/// `count`, `reported`}. Numbers that do not exist are null.
+/// The same as JSON for programs, with all experiments instead of the first ones; docs/summary.md lists the
+/// keys. A number that does not exist is null.
 std::string summary_json(const Campaign& campaign);
 
 }  // namespace mpm

@@ -66,7 +66,10 @@ ActiveSetSolver::ActiveSetSolver(std::shared_ptr<const QpStructure> structure,
       newton_(problem_, families_.size()) {
   options_.validate();
   certificate_.setZero(this->structure().row_count());
+  change_.setZero(this->structure().row_count());
   scratch_.setZero(this->structure().variable_count());
+  if (!problem_.needs_proximal())
+    dual_.emplace(problem_);
 }
 
 void ActiveSetSolver::do_reset() {
@@ -75,18 +78,46 @@ void ActiveSetSolver::do_reset() {
     springs.multiplier.setZero();
     springs.force.setZero();
   }
+  if (dual_)
+    dual_->reset();
 }
 
 void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
+  certificate_.setZero();
   certified_violation_ = 0.0;
-  bind(data);
   result.iterations = 0;
-  result.status = iterate(data, result.iterations);
-  report(result);
-  if (result.status != QpStatus::infeasible)
-    certificate_.setZero();
+  bind(data);
+  // Few limits are active where slacks are shared, and those nearly parallel: the dual method's case.
+  const bool dual_first = dual_ && !problem_.kept_slacks.empty();
+  if (dual_first && solve_by_dual(data, result))
+    return;
+  solve_by_newton(data, result);
+  const bool answered = result.status == QpStatus::solved || result.status == QpStatus::infeasible;
+  if (!answered && dual_ && !dual_first && solve_by_dual(data, result))
+    return;
   if (result.status != QpStatus::solved)
     do_reset();  // the next problem starts from nothing rather than from a failure
+}
+
+bool ActiveSetSolver::solve_by_dual(const QpData& data, QpResult& result) {
+  const DualOutcome outcome = dual_->solve(data, newton_.linear, options_.tolerance, result.iterations);
+  if (outcome == DualOutcome::solved) {
+    result.status = QpStatus::solved;
+    dual_->report(result);
+    return true;
+  }
+  if (outcome == DualOutcome::infeasible && proves_infeasible(data, dual_->ray())) {
+    result.status = QpStatus::infeasible;
+    dual_->reset();
+    return true;
+  }
+  return false;
+}
+
+void ActiveSetSolver::solve_by_newton(const QpData& data, QpResult& result) {
+  newton_.start(families_);
+  result.status = iterate(data, result.iterations);
+  report(result);
 }
 
 void ActiveSetSolver::bind(const QpData& data) {
@@ -105,7 +136,6 @@ void ActiveSetSolver::bind(const QpData& data) {
   if (!hard.enabled)
     hard.force.setZero();
   set_limits(data);
-  newton_.start(families_);
 }
 
 void ActiveSetSolver::set_limits(const QpData& data) {
@@ -132,7 +162,7 @@ QpStatus ActiveSetSolver::iterate(const QpData& data, int& iterations) {
     }
     const double residual = update_multipliers(scale);
     if (residual > (round < kPatience ? 1.0 : kAcceptable) * options_.tolerance) {
-      if (hard.enabled && proves_infeasible(data))
+      if (hard.enabled && proves_infeasible(data, change_))
         return QpStatus::infeasible;
       if (residual > kProgress * last_residual)
         stiffen(kStiffer);
@@ -166,7 +196,7 @@ bool ActiveSetSolver::hard_limits_kept(const QpData& data) const {
 // largest violation of a limit, or force times distance to its limit relative to `scale`.
 double ActiveSetSolver::update_multipliers(double scale) {
   double residual = 0.0;
-  certificate_ = families_[kHard].force - families_[kHard].multiplier;
+  change_ = families_[kHard].force - families_[kHard].multiplier;
   for (std::size_t f = kHard; f < families_.size(); ++f) {
     LimitSprings& springs = families_[f];
     if (!springs.enabled)
@@ -185,13 +215,13 @@ double ActiveSetSolver::update_multipliers(double scale) {
 }
 
 // Multipliers of an infeasible problem grow without end, in a direction that proves it.
-bool ActiveSetSolver::proves_infeasible(const QpData& data) {
-  certified_violation_ = proven_violation(structure(), data, certificate_, scratch_);
+bool ActiveSetSolver::proves_infeasible(const QpData& data, const Eigen::VectorXd& y) {
+  certified_violation_ = proven_violation(structure(), data, y, scratch_);
   if (!(certified_violation_ > kInfeasible)) {
     certified_violation_ = 0.0;
     return false;
   }
-  certificate_ /= certificate_.lpNorm<1>();
+  certificate_ = y / y.lpNorm<1>();
   return true;
 }
 

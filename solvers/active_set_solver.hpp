@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "solvers/active_set_dual.hpp"
 #include "solvers/active_set_newton.hpp"
 #include "solvers/active_set_problem.hpp"
 #include "solvers/active_set_springs.hpp"
@@ -57,20 +59,24 @@ class ActiveSetSolver final : public QpSolver {
   void do_solve(const QpData& data, QpResult& result) override;
   void do_reset() override;
 
+  bool solve_by_dual(const QpData& data, QpResult& result);
+  void solve_by_newton(const QpData& data, QpResult& result);
   void bind(const QpData& data);
   QpStatus iterate(const QpData& data, int& iterations);
   void set_limits(const QpData& data);
   bool hard_limits_kept(const QpData& data) const;
   void stiffen(double factor);
   double update_multipliers(double scale);
-  bool proves_infeasible(const QpData& data);
+  bool proves_infeasible(const QpData& data, const Eigen::VectorXd& y);
   void report(QpResult& result) const;
 
   ActiveSetOptions options_;
   ActiveSetProblem problem_;
   std::vector<LimitSprings> families_;
   ActiveSetNewton newton_;
+  std::optional<DualActiveSet> dual_;  ///< where the Hessian allows it
   Eigen::VectorXd certificate_;
+  Eigen::VectorXd change_;  ///< of the multipliers of the hard rows in the last round
   Eigen::VectorXd scratch_;
   double certified_violation_ = 0.0;
   double stiffening_ = 1.0;  ///< of the springs with multipliers, in this solve

@@ -1,0 +1,118 @@
+#include <nlohmann/json.hpp>
+
+#include "results/summary.hpp"
+#include "results/summary_parts.hpp"
+#include "results/utf8.hpp"
+
+namespace mpm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json names(const std::vector<PlantModel::Variable>& variables) {
+  Json list = Json::array();
+  for (const PlantModel::Variable& variable : variables)
+    list.push_back(variable.name);
+  return list;
+}
+
+Json settings_json(const Study& study) {
+  return {{"title", study.title},
+          {"plant", study.plant.name},
+          {"cvs", names(study.plant.cvs)},
+          {"mvs", names(study.plant.mvs)},
+          {"mds", names(study.plant.mds)},
+          {"time_unit", study.plant.time_unit},
+          {"sample_time", study.controller.sample_time},
+          {"prediction_horizon", study.controller.prediction_horizon},
+          {"control_horizon", study.controller.control_horizon},
+          {"samples", study.simulation.samples}};
+}
+
+Json run_json(const CampaignInfo& info) {
+  return {{"mpmbench_version", info.mpmbench_version},
+          {"git_sha", info.git_sha},
+          {"created", info.created},
+          {"command", proper_utf8(info.command)},
+          {"jobs", info.jobs}};
+}
+
+Json basis_json(const Study& study, const BasisCase& basis) {
+  Json ivar = Json::object();
+  for (Eigen::Index cv = 0; cv < basis.diagnosis.ivar.size(); ++cv)
+    ivar[study.plant.cvs[static_cast<std::size_t>(cv)].name] = basis.diagnosis.ivar(cv);
+  return {{"healthy", basis.healthy}, {"explanation", basis.explanation}, {"ivar", ivar}};
+}
+
+Json kinds_json(const StudyAggregate& aggregate) {
+  Json kinds = Json::object();
+  for (const KindAggregate& kind : aggregate.kinds)
+    kinds[std::string(to_string(kind.kind))] = kind.experiments;
+  return kinds;
+}
+
+Json aggregates_json(const std::vector<SummaryValue>& values) {
+  Json list = Json::array();
+  for (const SummaryValue& value : values)
+    list.push_back({{"name", value.measured.name},
+                    {"description", value.measured.description},
+                    {"value", value.measured.value},
+                    {"lower", value.measured.interval.lower},
+                    {"upper", value.measured.interval.upper},
+                    {"count", value.measured.count},
+                    {"reported", value.reported}});
+  return list;
+}
+
+Json dominance_json(const std::vector<DominanceBin>& bins) {
+  Json list = Json::array();
+  for (const DominanceBin& bin : bins)
+    list.push_back({{"lower", bin.lower},
+                    {"upper", bin.upper},
+                    {"count", bin.i_mpm.count},
+                    {"i_mpm_mean", bin.i_mpm.mean},
+                    {"i_mpm_mean_lower", bin.i_mpm.mean_interval.lower},
+                    {"i_mpm_mean_upper", bin.i_mpm.mean_interval.upper},
+                    {"above_threshold", bin.above_threshold.value}});
+  return list;
+}
+
+Json failures_json(const std::vector<const ExperimentRecord*>& failed) {
+  Json list = Json::array();
+  for (const ExperimentRecord* record : failed)
+    list.push_back({{"index", record->draw.index}, {"message", proper_utf8(record->message)}});
+  return list;
+}
+
+Json wrong_json(const std::vector<const ExperimentRecord*>& wrong) {
+  Json list = Json::array();
+  for (const ExperimentRecord* record : wrong)
+    list.push_back(record->draw.index);
+  return list;
+}
+
+}  // namespace
+
+std::string summary_json(const Campaign& campaign) {
+  const SummaryParts parts = summary_parts(campaign);
+  const StudyAggregate& total = parts.aggregate;
+  const Json summary{{"study", campaign.study.name},
+                     {"seed", campaign.study.seed},
+                     {"solver", campaign.info.solver},
+                     {"seconds", campaign.info.seconds},
+                     {"experiments", total.experiments},
+                     {"infeasible", total.infeasible.hits},
+                     {"failed", total.failed},
+                     {"kinds", kinds_json(total)},
+                     {"basis", basis_json(campaign.study, campaign.basis)},
+                     {"settings", settings_json(campaign.study)},
+                     {"run", run_json(campaign.info)},
+                     {"confidence", campaign.study.aggregate.confidence},
+                     {"aggregates", aggregates_json(parts.values)},
+                     {"dominance", dominance_json(total.dominance)},
+                     {"failures", failures_json(parts.failed)},
+                     {"wrong_verdicts", wrong_json(parts.wrong)}};
+  return summary.dump(2) + "\n";
+}
+
+}  // namespace mpm

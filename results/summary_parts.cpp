@@ -1,0 +1,43 @@
+#include "results/summary_parts.hpp"
+
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "results/reference.hpp"
+
+namespace mpm {
+
+bool SummaryValue::has_reported() const {
+  return !std::isnan(reported);
+}
+
+bool SummaryValue::is_share() const {
+  constexpr std::array<std::string_view, 4> kShares{"infeasible", "impactful", "located",
+                                                    "source_recognised"};
+  const std::string_view name = measured.name;
+  const std::string_view last = name.substr(name.rfind('.') + 1);  // the whole name without a '.'
+  for (const std::string_view share : kShares)
+    if (last == share)
+      return true;
+  return false;
+}
+
+SummaryParts summary_parts(const Campaign& campaign) {
+  SummaryParts parts;
+  parts.aggregate = aggregate(campaign.study, campaign.records);
+  for (AggregateValue& value : named_values(parts.aggregate)) {
+    const double reported = reference_value(campaign.study, value.name);
+    parts.values.push_back({std::move(value), reported});
+  }
+  for (const ExperimentRecord& record : campaign.records) {
+    if (record.status == ExperimentStatus::failed)
+      parts.failed.push_back(&record);
+    if (record.wrong())
+      parts.wrong.push_back(&record);
+  }
+  return parts;
+}
+
+}  // namespace mpm

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/study_aggregate.hpp"
+#include "results/campaign.hpp"
+
+namespace mpm {
+
+/// A number of the aggregate beside the one that the study names as reported; NaN when it names none.
+struct SummaryValue {
+  AggregateValue measured;
+  double reported;
+
+  bool has_reported() const;
+  /// A share of experiments, which people read as a percentage.
+  bool is_share() const;
+};
+
+/// What both forms of the summary are made of. Points into the campaign.
+struct SummaryParts {
+  StudyAggregate aggregate;
+  std::vector<SummaryValue> values;
+  std::vector<const ExperimentRecord*> failed;
+  std::vector<const ExperimentRecord*> wrong;  ///< verdicts, ExperimentRecord::wrong()
+};
+
+SummaryParts summary_parts(const Campaign& campaign);
+
+}  // namespace mpm

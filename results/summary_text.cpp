@@ -1,0 +1,192 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "results/summary.hpp"
+#include "results/summary_parts.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::size_t kMostListed = 10;
+constexpr std::size_t kNameWidth = 36;
+
+/// A number of a table: a percentage for a share, "-" when there is none.
+std::string number(double value, bool share) {
+  if (std::isnan(value))
+    return "-";
+  return share ? fmt::format("{:.1f} %", 100.0 * value) : fmt::format("{:.3f}", value);
+}
+
+std::string interval(const Interval& interval, bool share) {
+  if (std::isnan(interval.lower) || std::isnan(interval.upper))
+    return "-";
+  return share ? fmt::format("{:.1f} to {:.1f} %", 100.0 * interval.lower, 100.0 * interval.upper)
+               : fmt::format("{:.3f} to {:.3f}", interval.lower, interval.upper);
+}
+
+/// `count` things: "1 job", "2 jobs".
+std::string plural(std::size_t count, const std::string& thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+class Text {
+ public:
+  template <class... Args>
+  void line(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+    text_.erase(text_.find_last_not_of(' ') + 1);  // tables pad their last column
+    text_ += '\n';
+  }
+  /// An entry of the heading; a long value goes on in lines of its own.
+  void entry(const std::string& name, const std::string& value) {
+    constexpr std::size_t kValueWidth = 86;
+    std::string left = value;
+    std::string label = name;
+    while (left.size() > kValueWidth) {
+      const std::size_t blank = left.rfind(' ', kValueWidth);
+      if (blank == std::string::npos || blank == 0)
+        break;
+      line("{:<12}  {}", label, left.substr(0, blank));
+      left.erase(0, blank + 1);
+      label.clear();
+    }
+    line("{:<12}  {}", label, left);
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+void add_heading(Text& text, const Campaign& campaign, const StudyAggregate& aggregate) {
+  const Study& study = campaign.study;
+  const PlantModel& plant = study.plant;
+  const CampaignInfo& info = campaign.info;
+  text.entry("study", fmt::format("{}: {}", study.name, study.title));
+  text.entry("plant", fmt::format("{}: {}, {}, {}", plant.name, plural(plant.cvs.size(), "CV"),
+                                  plural(plant.mvs.size(), "MV"), plural(plant.mds.size(), "MD")));
+  text.entry("controller",
+             fmt::format("sample time {:g} {}, prediction horizon {}, control horizon {}",
+                         study.controller.sample_time, plant.time_unit, study.controller.prediction_horizon,
+                         study.controller.control_horizon));
+  std::string kinds;
+  for (const KindAggregate& kind : aggregate.kinds)
+    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind.experiments, to_string(kind.kind));
+  text.entry("experiments",
+             fmt::format("{} ({}) of {} samples; {} infeasible, {} failed", aggregate.experiments, kinds,
+                         study.simulation.samples, aggregate.infeasible.hits, aggregate.failed));
+  text.entry("seed", fmt::format("{}", study.seed));
+  text.entry("program", fmt::format("mpmbench {} ({}), solver {}", info.mpmbench_version,
+                                    info.git_sha.empty() ? "unknown revision" : info.git_sha, info.solver));
+  text.entry("run", fmt::format("{}, {:.1f} s with {}", info.created, info.seconds,
+                                plural(static_cast<std::size_t>(std::max(info.jobs, 0)), "job")));
+  text.entry("self-check",
+             fmt::format("{}: {}", campaign.basis.healthy ? "passed" : "FAILED", campaign.basis.explanation));
+}
+
+std::string confidence_title(const Study& study) {
+  return fmt::format("{:g} % interval", 100.0 * study.aggregate.confidence);
+}
+
+void add_compared(Text& text, const Study& study, const std::vector<SummaryValue>& values) {
+  if (std::none_of(values.begin(), values.end(), [](const auto& v) { return v.has_reported(); }))
+    return;
+  text.line("");
+  text.line("{:<{}}  {:>10}  {:>18}  {:>8}  {:>10}  {}", "measured against reported", kNameWidth, "measured",
+            confidence_title(study), "count", "reported", "agree");
+  for (const SummaryValue& value : values) {
+    if (!value.has_reported())
+      continue;
+    const bool share = value.is_share();
+    const Interval& range = value.measured.interval;
+    const char* agree = std::isnan(range.lower) ? "-" : range.contains(value.reported) ? "yes" : "no";
+    text.line("{:<{}}  {:>10}  {:>18}  {:>8}  {:>10}  {}", value.measured.name, kNameWidth,
+              number(value.measured.value, share), interval(range, share), value.measured.count,
+              number(value.reported, share), agree);
+  }
+  text.line("(agree: the interval contains the reported number)");
+}
+
+/// The bins of dominance have a table of their own.
+bool is_dominance(const SummaryValue& value) {
+  return value.measured.name.find("_at_dominance_") != std::string::npos;
+}
+
+void add_others(Text& text, const Study& study, const std::vector<SummaryValue>& values) {
+  text.line("");
+  text.line("{:<{}}  {:>10}  {:>18}  {:>8}", "other numbers", kNameWidth, "measured", confidence_title(study),
+            "count");
+  for (const SummaryValue& value : values) {
+    if (value.has_reported() || is_dominance(value))
+      continue;
+    const bool share = value.is_share();
+    text.line("{:<{}}  {:>10}  {:>18}  {:>8}", value.measured.name, kNameWidth,
+              number(value.measured.value, share), interval(value.measured.interval, share),
+              value.measured.count);
+  }
+}
+
+void add_dominance(Text& text, const Study& study, const std::vector<DominanceBin>& bins) {
+  if (bins.empty())
+    return;
+  text.line("");
+  text.line("{:<{}}  {:>10}  {:>18}  {:>8}  {:>10}", "I_MPM by dominance of the mismatch", kNameWidth, "mean",
+            confidence_title(study), "count", fmt::format("> {:g}", study.diagnosis.mpm_threshold));
+  for (const DominanceBin& bin : bins)
+    text.line("{:<{}}  {:>10}  {:>18}  {:>8}  {:>10}", fmt::format("{:g} to {:g}", bin.lower, bin.upper),
+              kNameWidth, number(bin.i_mpm.mean, false), interval(bin.i_mpm.mean_interval, false),
+              bin.i_mpm.count, number(bin.above_threshold.value, true));
+}
+
+std::string cv_name(const Study& study, Eigen::Index cv) {
+  return cv < 0 ? "no CV" : study.plant.cvs[static_cast<std::size_t>(cv)].name;
+}
+
+void add_more(Text& text, std::size_t count) {
+  if (count > kMostListed)
+    text.line("  and {} more", count - kMostListed);
+}
+
+void add_failed(Text& text, const std::vector<const ExperimentRecord*>& failed) {
+  if (failed.empty())
+    return;
+  text.line("");
+  text.line("{} failed:", plural(failed.size(), "experiment"));
+  for (std::size_t i = 0; i < std::min(failed.size(), kMostListed); ++i)
+    text.line("  {:>5}  {}", failed[i]->draw.index, failed[i]->message);
+  add_more(text, failed.size());
+}
+
+void add_wrong(Text& text, const Study& study, const std::vector<const ExperimentRecord*>& wrong,
+               const std::string& file) {
+  text.line("");
+  text.line("{} with impact got a wrong verdict{}", plural(wrong.size(), "experiment"),
+            wrong.empty() ? "" : ":");
+  for (std::size_t i = 0; i < std::min(wrong.size(), kMostListed); ++i) {
+    const ExperimentDraw& draw = wrong[i]->draw;
+    const Diagnosis& verdict = wrong[i]->diagnosis;
+    text.line("  {:<{}}  # {} on {}, found {} on {}", fmt::format("mpmbench replay {} {}", file, draw.index),
+              file.size() + 22, to_string(draw.kind), cv_name(study, draw.true_cv()),
+              to_string(verdict.predicted_source), cv_name(study, verdict.predicted_cv));
+  }
+  add_more(text, wrong.size());
+}
+
+}  // namespace
+
+std::string summary_text(const Campaign& campaign, const std::string& file) {
+  const SummaryParts parts = summary_parts(campaign);
+  Text text;
+  add_heading(text, campaign, parts.aggregate);
+  add_compared(text, campaign.study, parts.values);
+  add_others(text, campaign.study, parts.values);
+  add_dominance(text, campaign.study, parts.aggregate.dominance);
+  add_failed(text, parts.failed);
+  add_wrong(text, campaign.study, parts.wrong, file);
+  return text.take();
+}
+
+}  // namespace mpm

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "solvers/active_set_limits.hpp"
+#include "solvers/active_set_problem.hpp"
+#include "solvers/active_set_schur.hpp"
+#include "solvers/qp.hpp"
+
+namespace mpm {
+
+enum class DualOutcome { solved, infeasible, failed };
+
+/// The dual active-set method of Goldfarb & Idnani (Math. Program. 27 (1983) 1-33) in the form with the Schur
+/// complement, warm-started with the last working set.
+///
+/// It meets one limit after another, and leaves one when its multiplier reaches zero. Nearly parallel limits,
+/// which the method of multipliers separates slowly, cost it nothing; its work grows with the square of the
+/// number of active limits. For problems with Q positive definite. `solve` allocates nothing.
+class DualActiveSet {
+ public:
+  explicit DualActiveSet(const ActiveSetProblem& problem);
+
+  void reset() { working_.clear(); }
+
+  /// `linear` is c of the problem in z. `infeasible` only says that the method found a ray, see `ray`.
+  DualOutcome solve(const QpData& data, const Eigen::VectorXd& linear, double tolerance, int& iterations);
+
+  /// Writes x, the slacks and the multipliers.
+  void report(QpResult& result) const;
+
+  /// After `infeasible`: multipliers (m) of the hard rows that should prove it.
+  const Eigen::VectorXd& ray() const { return ray_; }
+
+ private:
+  void warm_start(const QpData& data);
+  bool enter(const LimitSide& side, double multiplier);
+  void leave(std::size_t k);
+  void equilibrate(const QpData& data);
+  void find_point();
+  bool find_violated(const QpData& data, double tolerance, LimitSide& worst) const;
+  void find_products(const LimitSide& side);
+  DualOutcome meet(const QpData& data, const LimitSide& side, int& iterations, int limit);
+  void make_ray(const LimitSide& side);
+  bool& in_use(const LimitSide& side);
+
+  const ActiveSetProblem& problem_;
+  LimitGeometry geometry_;
+  SchurFactor factor_;
+  std::vector<LimitSide> working_, candidates_;
+  Eigen::VectorXd multiplier_;  ///< >= 0 in the direction of `side`, in the order of `working_`
+  Eigen::VectorXd products_, direction_;
+  Eigen::VectorXd linear_, z_, row_value_, ray_;
+  Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> used_;  ///< limits in the working set: index x kind
+};
+
+}  // namespace mpm

@@ -1,0 +1,109 @@
+#include "solvers/active_set_limits.hpp"
+
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+namespace mpm {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+LimitGeometry::LimitGeometry(const ActiveSetProblem& problem) : problem_(problem) {
+  const QpStructure& structure = *problem.structure;
+  const Eigen::Index n = structure.variable_count();
+  const Eigen::Index m = structure.row_count();
+  factor_ = structure.hessian.llt().matrixL();
+  Eigen::MatrixXd columns(n, m + n);
+  columns << structure.rows.transpose(), Eigen::MatrixXd::Identity(n, n);
+  factor_.triangularView<Eigen::Lower>().solveInPlace(columns);
+  scaled_ = columns.transpose();
+  slack_ = problem.quadratic.diagonal().tail(problem.variable_count() - n);
+}
+
+bool LimitGeometry::has_row(const LimitSide& side) const {
+  return side.kind != LimitKind::bound || side.index < problem_.structure->variable_count();
+}
+
+Eigen::Index LimitGeometry::slack_variable(const LimitSide& side) const {
+  const Eigen::Index n = problem_.structure->variable_count();
+  switch (side.kind) {
+    case LimitKind::bound:
+      return side.index >= n ? side.index - n : -1;
+    case LimitKind::slack_upper:
+    case LimitKind::slack_lower:
+      return problem_.slack_column(side.index) - n;
+    default:
+      return -1;
+  }
+}
+
+double LimitGeometry::slack_sign(const LimitSide& side) const {
+  return side.kind == LimitKind::slack_upper ? -1.0 : 1.0;
+}
+
+double LimitGeometry::softness(const LimitSide& side) const {
+  return side.kind == LimitKind::soft ? 1.0 / problem_.softness(side.index) : 0.0;
+}
+
+double LimitGeometry::product(const LimitSide& first, const LimitSide& second) const {
+  const Eigen::Index m = problem_.structure->row_count();
+  const auto line = [m](const LimitSide& side) {
+    return side.kind == LimitKind::bound ? m + side.index : side.index;
+  };
+  double sum = 0.0;
+  if (has_row(first) && has_row(second))
+    sum = scaled_.row(line(first)).dot(scaled_.row(line(second)));
+  if (const Eigen::Index q = slack_variable(first); q >= 0 && q == slack_variable(second))
+    sum += slack_sign(first) * slack_sign(second) / slack_(q);
+  if (first.kind == second.kind && first.index == second.index)
+    sum += softness(first);
+  return sum;
+}
+
+double LimitGeometry::limit(const QpData& data, const LimitSide& side) const {
+  const Eigen::Index i = side.index;
+  const bool upper = side.side > 0.0;
+  switch (side.kind) {
+    case LimitKind::bound:
+      if (i >= problem_.structure->variable_count())
+        return upper ? kInfinity : 0.0;
+      return upper ? data.upper(i) : data.lower(i);
+    case LimitKind::hard:
+      return upper ? data.hard_upper(i) : data.hard_lower(i);
+    default:
+      return upper ? data.soft_upper(i) : data.soft_lower(i);
+  }
+}
+
+double LimitGeometry::value(const LimitSide& side, const Eigen::VectorXd& z) const {
+  if (side.kind == LimitKind::bound)
+    return z(side.index);
+  const Eigen::Index n = problem_.structure->variable_count();
+  const double row = problem_.structure->rows.row(side.index).dot(z.head(n));
+  const Eigen::Index q = slack_variable(side);
+  return q < 0 ? row : row + slack_sign(side) * z(n + q);
+}
+
+void LimitGeometry::add_normal(const LimitSide& side, double factor, Eigen::VectorXd& vector) const {
+  const Eigen::Index n = problem_.structure->variable_count();
+  if (side.kind == LimitKind::bound) {
+    vector(side.index) += factor;
+    return;
+  }
+  vector.head(n) += factor * problem_.structure->rows.row(side.index).transpose();
+  if (const Eigen::Index q = slack_variable(side); q >= 0)
+    vector(n + q) += factor * slack_sign(side);
+}
+
+void LimitGeometry::apply_inverse(Eigen::VectorXd& vector) const {
+  const Eigen::Index n = problem_.structure->variable_count();
+  auto head = vector.head(n);
+  factor_.triangularView<Eigen::Lower>().solveInPlace(head);
+  factor_.triangularView<Eigen::Lower>().transpose().solveInPlace(head);
+  vector.tail(slack_.size()).array() /= slack_.array();
+}
+
+}  // namespace mpm

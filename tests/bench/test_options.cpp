@@ -1,0 +1,42 @@
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "bench/options.hpp"
+
+namespace {
+
+using namespace mpm;
+
+Command parse(std::vector<const char*> words) {
+  words.insert(words.begin(), "mpmbench");
+  return parse_command_line(static_cast<int>(words.size()), words.data());
+}
+
+TEST_CASE("options: run with everything") {
+  const Command command = parse({"run", "chapter6", "-o", "x.h5", "--experiments", "40", "--seed", "7",
+                                 "--jobs", "3", "--solver", "ipopt", "--store", "all", "--quiet"});
+  const RunCommand& run = std::get<RunCommand>(command);
+  CHECK(run.study == "chapter6");
+  CHECK(run.experiments == 40);
+  CHECK(run.seed == 7);
+  CHECK(run.jobs == 3);
+  CHECK(run.store == StorePolicy::all);
+  CHECK(run.quiet);
+}
+
+TEST_CASE("options: wrong usage has exit code 2, help has 0") {
+  const std::vector<std::vector<const char*>> wrong{{},
+                                                    {"dance"},
+                                                    {"run", "chapter6"},
+                                                    {"run", "chapter6", "-o", "x", "--jobs", "0"},
+                                                    {"run", "chapter6", "-o", "x", "--experiments", "-4"},
+                                                    {"run", "chapter6", "-o", "x", "--solver", "none"},
+                                                    {"replay", "x.h5", "-1"}};
+  for (const auto& words : wrong)
+    CHECK(std::get<UsageText>(parse(words)).exit_code == 2);
+  CHECK(std::get<UsageText>(parse({"--help"})).exit_code == 0);
+  CHECK(std::get<UsageText>(parse({"--version"})).exit_code == 0);
+}
+
+}  // namespace

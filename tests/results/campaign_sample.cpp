@@ -1,0 +1,27 @@
+#include "campaign_sample.hpp"
+
+#include <cmath>
+
+#include "scenarios/study_library.hpp"
+
+using namespace mpm;
+
+Campaign campaign_sample() {
+  Campaign campaign;
+  campaign.study = find_study("chapter6");
+  campaign.study.seed = 12345678901234567890ULL;  // not the one in the file, and above the signed range
+  const QpSolverFactory factory = qp_solver_factory("active-set");
+  campaign.basis = run_basis_case(campaign.study, factory);
+  ExperimentRunner runner(campaign.study, campaign.basis, factory);
+  for (std::int64_t i = 0; i < 8; ++i)
+    campaign.records.push_back(runner.run(i, i < 2 ? StorePolicy::all : StorePolicy::none));
+  campaign.records[2].diagnosis.ivar(0) = std::nan("");
+  campaign.records[2].diagnosis.ivar_diag(0) = INFINITY;
+  campaign.records[3].status = ExperimentStatus::infeasible;
+  campaign.records[3].diagnosis = {};
+  campaign.records[4].status = ExperimentStatus::failed;
+  campaign.records[4].diagnosis = {};
+  campaign.records[4].message = "ended by signal 9: \xc3\xbc";
+  campaign.info = {"0.1.0", "abcdef", "2026-01-01T00:00:00Z", "mpmbench run chapter6", "active-set", 1.5, 2};
+  return campaign;
+}

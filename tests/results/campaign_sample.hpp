@@ -1,0 +1,7 @@
+#pragma once
+
+#include "results/campaign.hpp"
+
+/// A short campaign of the chapter 6 study with made-up records beside it: an infeasible and a failed
+/// experiment, NaN, infinity and a message that is not ASCII.
+mpm::Campaign campaign_sample();
