@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include "analysis/basis_case.hpp"
