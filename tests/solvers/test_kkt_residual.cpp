@@ -134,6 +134,13 @@ TEST_CASE("the residual sees each kind of complementarity", "[kkt]") {
         }) == Approx(0.5 / kScale));
 }
 
+TEST_CASE("a negative slack is a violation, whatever its rows do", "[kkt]") {
+  const NamedQp qp = QpBuilder("unused slack", Eigen::MatrixXd::Identity(1, 1), vec(0)).slack(0, 0.125);
+  QpResult result = QpResult::zero(*qp.structure);
+  result.slack(0) = -0.25;
+  CHECK(kkt_residual(*qp.structure, qp.data, result) == 0.25);
+}
+
 TEST_CASE("nothing may push at an absent limit", "[kkt]") {
   const NamedQp qp = QpBuilder("free", Eigen::MatrixXd::Identity(1, 1), vec(0))
                          .slack(0, 1)

@@ -71,7 +71,9 @@ TEST_CASE("a shared slack relaxes the rows that are left out too", "[working_set
   WorkingSet set(*qp.structure);
   CHECK(added(set, qp, 2.5, 2.5) == 1);  // only the hard row: row 1 and row 2 are within their slack
   CHECK(set.rows().size() == 1);
-  CHECK(added(set, qp, 2.5, 1.0) == 1);  // row 2: 5 > 3 + 1
+  CHECK(added(set, qp, 2.5, 1.0) == 1);   // row 2: 5 > 3 + 1
+  CHECK(added(set, qp, -2.5, 1.0) == 0);  // row 1 is below -2 by less than its slack
+  CHECK(added(set, qp, -2.5, 0.25) == 1);
 }
 
 TEST_CASE("the margin lets near limits in without counting them", "[working_set]") {
