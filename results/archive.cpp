@@ -1,11 +1,11 @@
 #include "results/archive.hpp"
 
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
 #include "results/archive_error.hpp"
 #include "results/archive_groups.hpp"
 #include "results/atomic_file.hpp"
@@ -22,6 +22,10 @@ Campaign read_groups(const std::filesystem::path& path) {
   read_trajectories(root, study, campaign.records, file);
   campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
   return campaign;
+}
+
+[[noreturn]] void refuse_size(const std::filesystem::path& path) {
+  throw ArchiveError(fmt::format("{}: a variable in it does not fit into the memory", path.string()));
 }
 
 }  // namespace
@@ -42,7 +46,9 @@ Campaign read_archive(const std::filesystem::path& path) {
   try {
     return read_groups(path);
   } catch (const std::bad_alloc&) {
-    throw ArchiveError(fmt::format("{}: a variable in it does not fit into the memory", path.string()));
+    refuse_size(path);
+  } catch (const std::length_error&) {
+    refuse_size(path);
   }
 }
 

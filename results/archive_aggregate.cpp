@@ -83,8 +83,10 @@ void write_named_values(Hdf5Group& group, const Study& study, const StudyAggrega
               each<std::string>(values, [](const auto& v) { return v.description; }));
   write_numbers(group, along, {"value", "measured value"},
                 each<double>(values, [](const auto& v) { return v.value; }));
-  write_interval(group, along, {"value", "measured value"},
-                 each<Interval>(values, [](const auto& v) { return v.interval; }));
+  write_numbers(group, along, {"lower", "lower end of the interval of the value", "1", "NaN: no interval"},
+                each<double>(values, [](const auto& v) { return v.interval.lower; }));
+  write_numbers(group, along, {"upper", "upper end of the interval of the value", "1", "NaN: no interval"},
+                each<double>(values, [](const auto& v) { return v.interval.upper; }));
   write_counts(group, along, {"count", "experiments (or pairs, for regressions) behind the value"},
                each<std::int64_t>(values, [](const auto& v) { return v.count; }));
   write_numbers(group, along,

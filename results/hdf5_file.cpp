@@ -179,9 +179,10 @@ void write_attribute_values(const Place& place, hid_t object, const Shape& shape
   const Handle attribute =
       place.own(H5Acreate2(object, place.name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
                 H5Aclose, "create it");
-  with_buffer(values, [&](const void* buffer) {
-    place.check(H5Awrite(attribute.get(), type.get(), buffer), "write it");
-  });
+  if (!values.empty())
+    with_buffer(values, [&](const void* buffer) {
+      place.check(H5Awrite(attribute.get(), type.get(), buffer), "write it");
+    });
 }
 
 void write_attribute_to(const Place& place, hid_t object, const AttributeValue& value) {
@@ -203,8 +204,10 @@ std::vector<T> read_attribute_values(const Place& place, hid_t object) {
   const Handle type = place.own(H5Aget_type(attribute.get()), H5Tclose, "read its type");
   require_type<T>(place, type.get());
   const Handle space = place.own(H5Aget_space(attribute.get()), H5Sclose, "read its shape");
-  return from_buffer<T>(product(shape_of(place, space.get())), type.get(), space.get(), [&](void* buffer) {
-    place.check(H5Aread(attribute.get(), type.get(), buffer), "read it");
+  const std::size_t count = product(shape_of(place, space.get()));
+  return from_buffer<T>(count, type.get(), space.get(), [&](void* buffer) {
+    if (count > 0)
+      place.check(H5Aread(attribute.get(), type.get(), buffer), "read it");
   });
 }
 
@@ -267,6 +270,13 @@ Handle write_dataset(const Place& place, hid_t group, const Shape& shape, const 
   return dataset;
 }
 
+/// Of a group, or of a file for its root group. Without times, so that the same content is the same bytes.
+void set_group_properties(const Place& place, hid_t properties) {
+  place.check(H5Pset_obj_track_times(properties, false), "make properties");
+  place.check(H5Pset_link_creation_order(properties, kTrackOrder), "make properties");
+  place.check(H5Pset_attr_creation_order(properties, kTrackOrder), "make properties");
+}
+
 Handle open_dataset(const Place& place, hid_t group) {
   if (H5Lexists(group, place.name.c_str(), H5P_DEFAULT) <= 0)
     place.fail("missing");
@@ -306,8 +316,7 @@ struct Hdf5Group::State {
 Hdf5Group Hdf5Group::create_group(const std::string& name) {
   const Place place = state_->place("group", name);
   const Handle properties = place.own(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "make properties");
-  place.check(H5Pset_link_creation_order(properties.get(), kTrackOrder), "make properties");
-  place.check(H5Pset_attr_creation_order(properties.get(), kTrackOrder), "make properties");
+  set_group_properties(place, properties.get());
   return Hdf5Group(std::make_shared<const State>(State{
       place.own(H5Gcreate2(state_->group.get(), name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
                 H5Gclose, "create it"),
@@ -416,8 +425,7 @@ Hdf5File Hdf5File::create(const std::string& name) {
   silence_library();
   const Place place{name, "group", "/", ""};
   const Handle creation = place.own(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make properties");
-  place.check(H5Pset_link_creation_order(creation.get(), kTrackOrder), "make properties");
-  place.check(H5Pset_attr_creation_order(creation.get(), kTrackOrder), "make properties");
+  set_group_properties(place, creation.get());
   const Handle access = memory_access(place);
   const Handle file = place.own(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()),
                                 H5Fclose, "create a file in memory");

@@ -1,4 +1,4 @@
-#include "campaign_sample.hpp"
+#include "tests/results/campaign_sample.hpp"
 
 #include <cmath>
 

@@ -1,0 +1,97 @@
+"""Damages an archive in every way that h5py offers, and has the program read each: it must name what is wrong.
+
+usage: check_damage.py WRITER READER
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy
+
+# What follows from the rest of the file or is there for people: a reader does not need it.
+FOR_PEOPLE = {"/cv", "/mv", "/md", "/basis/cv", "/basis/mv", "/basis/md", "/basis/sample", "/basis/time",
+              "/basis/active_limit", "/basis/lag", "/basis/lag_time", "/basis/acf_y", "/basis/acf_y0",
+              "/basis/acf_y0_diag", "/nominal/cv", "/nominal/time", "/trajectories/cv", "/trajectories/mv",
+              "/trajectories/md", "/trajectories/sample", "/trajectories/time"}
+FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/basis/title"}
+
+
+def objects(path):
+    """Paths of all variables, groups, and attributes of groups of the file."""
+    variables, groups, attributes = [], [], []
+
+    def visit(name, item):
+        (variables if isinstance(item, h5py.Dataset) else groups).append("/" + name)
+
+    with h5py.File(path) as file:
+        file.visititems(visit)
+        for group in ["/"] + groups:
+            attributes += [(group, name) for name in file[group].attrs]
+    return variables, groups, attributes
+
+
+class Damage:
+    def __init__(self, reader, whole, copy):
+        self.reader, self.whole, self.copy = reader, whole, copy
+
+    def read(self):
+        result = subprocess.run([self.reader, self.copy], capture_output=True, text=True, timeout=120)
+        assert result.returncode in (0, 2), (result.returncode, result.stderr)  # a negative one: it crashed
+        return result
+
+    def after(self, change):
+        """The reader's message after change(file), or None when it reads the file."""
+        shutil.copy(self.whole, self.copy)
+        with h5py.File(self.copy, "r+") as file:
+            change(file)
+        result = self.read()
+        return result.stderr if result.returncode else None
+
+    def missing_objects(self):
+        variables, groups, attributes = objects(self.whole)
+        for path in variables + groups:
+            message = self.after(lambda file: file.pop(path))
+            if path in FOR_PEOPLE or path.startswith("/aggregate") or path == "/trajectories":
+                assert message is None, (path, message)
+            else:
+                assert message and f"'{path}': missing" in message, (path, message)
+        for group, name in attributes:
+            path = group.rstrip("/") + "/" + name
+            message = self.after(lambda file: file[group].attrs.pop(name))
+            if path in FOR_PEOPLE_ATTRIBUTES or group in ("/nominal", "/trajectories", "/aggregate"):
+                assert message is None, (path, message)
+            else:
+                assert message and f"'{path}': missing" in message, (path, message)
+
+    def wrong_objects(self):
+        def replace(path, data):
+            def change(file):
+                file.pop(path)
+                file[path] = data
+            return self.after(change)
+
+        assert "'/ivar': another type" in replace("/ivar", numpy.zeros((8, 7), dtype="f4"))
+        assert "'/ivar': shape (8, 6) where (8, 7)" in replace("/ivar", numpy.zeros((8, 6)))
+        assert "'/kind': another type" in replace("/kind", numpy.zeros(8))
+        assert "'status': found 9" in self.after(lambda file: file["status"].__setitem__(0, 9))
+        assert "'true_cv': found 7" in self.after(lambda file: file["true_cv"].__setitem__(0, 7))
+        assert "'y9', which is no CV" in self.after(lambda file: file["nominal/active_cv"].__setitem__(0, "y9"))
+        assert "found 77" in self.after(lambda file: file["trajectories/stored"].__setitem__(0, 77))
+
+
+def main(writer, reader):
+    with tempfile.TemporaryDirectory() as folder:
+        whole = str(pathlib.Path(folder) / "whole.h5")
+        subprocess.run([writer, whole], check=True)
+        damage = Damage(reader, whole, str(pathlib.Path(folder) / "damaged.h5"))
+        assert damage.after(lambda file: None) is None
+        damage.missing_objects()
+        damage.wrong_objects()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,183 @@
+#include "tests/results/made_up_campaign.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+#include "scenarios/random_stream.hpp"
+#include "scenarios/study_file.hpp"
+
+namespace mpm::testing {
+namespace {
+
+std::string small_study() {
+  return file_content(MPMBENCH_SOURCE_DIR "/tests/scenarios/data/small.toml");
+}
+
+/// Numbers, one in eight of them an awkward one.
+class Numbers {
+ public:
+  double next() {
+    switch (stream_.below(40)) {
+      case 0:
+        return std::bit_cast<double>(std::uint64_t{0x7FF8000000ABCDEF});  // a NaN with a payload
+      case 1:
+        return std::numeric_limits<double>::infinity();
+      case 2:
+        return -std::numeric_limits<double>::infinity();
+      case 3:
+        return -0.0;
+      case 4:
+        return std::numeric_limits<double>::denorm_min();
+      default:
+        return stream_.uniform() * 3.0;
+    }
+  }
+  Eigen::VectorXd vector(Eigen::Index size) {
+    return Eigen::VectorXd::NullaryExpr(size, [this](Eigen::Index) { return next(); });
+  }
+  Eigen::MatrixXd matrix(Eigen::Index rows, Eigen::Index cols) {
+    return Eigen::MatrixXd::NullaryExpr(rows, cols, [this](Eigen::Index, Eigen::Index) { return next(); });
+  }
+  std::int64_t whole() { return static_cast<std::int64_t>(stream_.below(std::uint64_t{1} << 40)); }
+  int index(Eigen::Index size) { return static_cast<int>(stream_.below(static_cast<std::uint64_t>(size))); }
+
+ private:
+  RandomStream stream_{2, 3, StreamId::measurement_noise};
+};
+
+SolverStatistics solver(Numbers& numbers) {
+  return {numbers.whole(), numbers.whole(), numbers.next()};
+}
+
+Diagnosis diagnosis(Numbers& numbers, Eigen::Index ny) {
+  Diagnosis made;
+  made.ivar = numbers.vector(ny);
+  made.ivar_diag = numbers.vector(ny);
+  made.ivar_basis = numbers.vector(ny);
+  made.impactful = numbers.index(2) == 1;
+  made.predicted_cv = numbers.index(ny);
+  made.predicted_source = numbers.index(2) == 1 ? ExperimentKind::mpm : ExperimentKind::ud;
+  made.indicator = {numbers.next(), numbers.next(),     numbers.next(),    numbers.next(),
+                    numbers.next(), numbers.index(100), numbers.index(100)};
+  return made;
+}
+
+Trajectory trajectory(Numbers& numbers, const Study& study, ControlStatus status) {
+  const Eigen::Index samples = study.simulation.samples;
+  return {status,
+          numbers.index(samples),
+          numbers.matrix(study.cv_count(), samples),
+          numbers.matrix(study.mv_count(), samples),
+          numbers.matrix(study.mv_count(), samples),
+          numbers.matrix(study.md_count(), samples),
+          solver(numbers)};
+}
+
+ExperimentRecord record(Numbers& numbers, const Study& study, std::int64_t index) {
+  ExperimentRecord made;
+  made.draw.index = index;
+  made.draw.kind = static_cast<ExperimentKind>(1 + index % 3);
+  const Eigen::Index cv = numbers.index(study.cv_count());
+  if (made.draw.kind != ExperimentKind::ud)
+    made.draw.mismatch = {cv, numbers.index(study.mv_count()),
+                          static_cast<MismatchParameter>(numbers.index(3)), numbers.next()};
+  if (made.draw.kind != ExperimentKind::mpm)
+    made.draw.disturbance = {cv, numbers.next(), numbers.next()};
+  made.status = static_cast<ExperimentStatus>(index % 5 == 3 ? 1 : index % 7 == 4 ? 2 : 0);
+  if (made.status == ExperimentStatus::ok)
+    made.diagnosis = diagnosis(numbers, study.cv_count());
+  if (made.status == ExperimentStatus::failed)
+    made.message = "died: \xC3\xBC \xE6\xB8\xAC";
+  made.ivar_diag_mpm_alone = numbers.next();
+  made.ivar_diag_ud_alone = numbers.next();
+  made.dominance_mpm = numbers.next();
+  made.solver = solver(numbers);
+  if (index % 2 == 1)
+    made.loop = {
+        trajectory(numbers, study,
+                   made.status == ExperimentStatus::ok ? ControlStatus::ok : ControlStatus::infeasible),
+        numbers.matrix(study.cv_count(), study.simulation.samples)};
+  return made;
+}
+
+BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<ActiveLimit>& active) {
+  const Eigen::Index ny = study.cv_count();
+  const Eigen::Index samples = study.simulation.samples;
+  BasisCase made;
+  made.point = {numbers.vector(study.mv_count()), numbers.vector(ny), active, {}};
+  made.sensitivity = {ny, active, {}};
+  for (std::size_t a = 0; a < active.size(); ++a)
+    made.sensitivity.step_response.push_back(numbers.matrix(ny, 17));
+  if (!active.empty())
+    made.point.fixed_mvs.push_back(1);
+  made.trajectory = trajectory(numbers, study, ControlStatus::ok);
+  made.nominal = {numbers.matrix(ny, samples), numbers.matrix(ny, samples), numbers.matrix(ny, samples)};
+  made.diagnosis = diagnosis(numbers, ny);
+  made.healthy = true;
+  made.explanation = "fine";
+  return made;
+}
+
+}  // namespace
+
+Campaign made_up_campaign() {
+  Numbers numbers;
+  Campaign campaign;
+  campaign.study = parse_study(small_study() + "\n[aggregate]\nbootstrap_replications = 200\n", "small");
+  campaign.study.seed = 18446744073709551615U;  // not the one in the text, and above the signed range
+  campaign.info = {"1.2.3", "abc+", "2015-04-01T12:00:00Z", "mpmbench run \xC3\xBC.toml", "ipopt", 0.1, 3};
+  campaign.basis = basis_case(numbers, campaign.study, {{1, true}, {0, false}});
+  for (std::int64_t index = 0; index < 40; ++index)
+    campaign.records.push_back(record(numbers, campaign.study, index));
+  return campaign;
+}
+
+Campaign empty_campaign() {
+  Numbers numbers;
+  std::string text = small_study();
+  const auto remove = [&text](const std::string& from, const std::string& to) {
+    const std::size_t begin = text.find(from);
+    const std::size_t end = text.find(to, begin);
+    if (begin == std::string::npos || end == std::string::npos)
+      throw std::logic_error("the small study has no " + from + " before a " + to);
+    text.erase(begin, end - begin);
+  };
+  remove("[[plant.md]]", "[[plant.channel]]");
+  remove("[[plant.channel]]\ncv = \"level\"\ninput = \"drain\"", "[controller]");
+  remove("[[simulation.step]]", "[experiments]");
+  Campaign campaign;
+  campaign.study = parse_study(text, "small");
+  campaign.basis = basis_case(numbers, campaign.study, {});
+  return campaign;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "mpmbench-test-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw std::runtime_error("no temporary folder");
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string file_content(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw std::runtime_error("cannot read " + path.string());
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void make_file(const std::filesystem::path& path, const std::string& content) {
+  std::ofstream file(path, std::ios::binary);
+  file << content;
+}
+
+}  // namespace mpm::testing

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "results/campaign.hpp"
+
+namespace mpm::testing {
+
+/// A campaign of the small study of tests/scenarios without a simulation: every number is another one, drawn
+/// from a written seed, among them NaN with a payload, infinities, -0 and denormals. It has a record of each
+/// kind and status, kept loops of complete and broken experiments, and texts that are empty or not ASCII.
+Campaign made_up_campaign();
+
+/// The same without experiments, kept loops, active limits and measured disturbances: every dimension that
+/// can be empty is.
+Campaign empty_campaign();
+
+/// An empty folder that goes away with the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder();
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The bytes of a file, and the reverse.
+std::string file_content(const std::filesystem::path& path);
+void make_file(const std::filesystem::path& path, const std::string& content);
+
+}  // namespace mpm::testing

@@ -1,0 +1,136 @@
+#include <cstring>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/study_aggregate.hpp"
+#include "bench/record_bytes.hpp"
+#include "results/archive.hpp"
+#include "tests/results/made_up_campaign.hpp"
+
+namespace {
+
+using namespace mpm;
+using namespace mpm::testing;
+
+bool same_bits(double a, double b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+template <class Matrix>
+bool same_bits(const Matrix& a, const Matrix& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         (a.size() == 0 ||
+          std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0);
+}
+
+/// The basis case in the shape of a record, which to_bytes() takes apart bit by bit.
+std::string basis_bytes(const BasisCase& basis) {
+  ExperimentRecord record;
+  record.diagnosis = basis.diagnosis;
+  record.loop = {basis.trajectory, basis.nominal.y_sim};
+  return to_bytes(record);
+}
+
+void check_same_limits(const std::vector<ActiveLimit>& a, const std::vector<ActiveLimit>& b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i].cv == b[i].cv);
+    CHECK(a[i].upper == b[i].upper);
+  }
+}
+
+void check_same(const BasisCase& a, const BasisCase& b) {
+  CHECK(same_bits(a.point.u, b.point.u));
+  CHECK(same_bits(a.point.y, b.point.y));
+  CHECK(a.point.fixed_mvs == b.point.fixed_mvs);
+  check_same_limits(a.point.active, b.point.active);
+  check_same_limits(a.sensitivity.active, b.sensitivity.active);
+  CHECK(a.sensitivity.cv_count == b.sensitivity.cv_count);
+  REQUIRE(a.sensitivity.step_response.size() == b.sensitivity.step_response.size());
+  for (std::size_t i = 0; i < a.sensitivity.step_response.size(); ++i)
+    CHECK(same_bits(a.sensitivity.step_response[i], b.sensitivity.step_response[i]));
+  CHECK(basis_bytes(a) == basis_bytes(b));
+  CHECK(same_bits(a.nominal.y0, b.nominal.y0));
+  CHECK(same_bits(a.nominal.y0_diag, b.nominal.y0_diag));
+  CHECK(a.healthy == b.healthy);
+  CHECK(a.explanation == b.explanation);
+}
+
+void check_same(const CampaignInfo& a, const CampaignInfo& b) {
+  CHECK(a.mpmbench_version == b.mpmbench_version);
+  CHECK(a.git_sha == b.git_sha);
+  CHECK(a.created == b.created);
+  CHECK(a.command == b.command);
+  CHECK(a.solver == b.solver);
+  CHECK(same_bits(a.seconds, b.seconds));
+  CHECK(a.jobs == b.jobs);
+}
+
+void check_same(const Campaign& a, const Campaign& b) {
+  CHECK(a.study.source == b.study.source);
+  CHECK(a.study.seed == b.study.seed);
+  check_same(a.info, b.info);
+  check_same(a.basis, b.basis);
+  REQUIRE(a.records.size() == b.records.size());
+  for (std::size_t i = 0; i < a.records.size(); ++i) {
+    INFO("experiment " << i);
+    CHECK(to_bytes(a.records[i]) == to_bytes(b.records[i]));
+  }
+}
+
+Campaign there_and_back(const Campaign& campaign) {
+  const TemporaryFolder folder;
+  write_archive(folder / "a.h5", campaign);
+  return read_archive(folder / "a.h5");
+}
+
+TEST_CASE("archive: whatever numbers and texts a campaign has, they come back bit for bit") {
+  const Campaign campaign = made_up_campaign();
+  check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: a campaign without experiments, active limits and disturbances comes back") {
+  const Campaign campaign = empty_campaign();
+  REQUIRE(campaign.study.md_count() == 0);
+  check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: a basis case whose loop broke comes back without a diagnosis") {
+  Campaign campaign = made_up_campaign();
+  campaign.basis.trajectory.status = ControlStatus::infeasible;
+  campaign.basis.nominal = {};
+  campaign.basis.diagnosis = {};
+  campaign.basis.healthy = false;
+  check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: the aggregate of what is read equals the aggregate of what was written") {
+  const Campaign campaign = made_up_campaign();
+  const Campaign read = there_and_back(campaign);
+  const std::vector<AggregateValue> expected = named_values(aggregate(campaign.study, campaign.records));
+  const std::vector<AggregateValue> found = named_values(aggregate(read.study, read.records));
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    INFO(expected[i].name);
+    CHECK(found[i].name == expected[i].name);
+    CHECK(found[i].count == expected[i].count);
+    CHECK(same_bits(found[i].value, expected[i].value));
+    CHECK(same_bits(found[i].interval.lower, expected[i].interval.lower));
+    CHECK(same_bits(found[i].interval.upper, expected[i].interval.upper));
+  }
+}
+
+TEST_CASE("archive: records with gaps in their indices keep their indices and loops") {
+  Campaign campaign = made_up_campaign();
+  campaign.records.erase(campaign.records.begin() + 2, campaign.records.begin() + 9);
+  check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: bytes that are no UTF-8, and NUL, become U+FFFD; the file can be read") {
+  Campaign campaign = made_up_campaign();
+  campaign.records[0].message = std::string("a\xFF") + '\0' + "b";
+  const std::string replacement = "\xEF\xBF\xBD";
+  CHECK(there_and_back(campaign).records[0].message == "a" + replacement + replacement + "b");
+}
+
+}  // namespace
