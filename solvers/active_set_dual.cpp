@@ -10,7 +10,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A limit whose normal leaves less than this of its squared length beside the working set depends on it.
 constexpr double kDependent = 1e-12;
-constexpr int kRefinements = 2;
+constexpr int kRefinements = 6;
+constexpr double kRefined = 0.1;  // of the tolerance
 
 Eigen::Index capacity(const ActiveSetProblem& problem) {
   return problem.variable_count() + (problem.softness.array() > 0.0).count();
@@ -27,6 +28,7 @@ DualActiveSet::DualActiveSet(const ActiveSetProblem& problem)
     vector->setZero(size + 1);
   linear_.setZero(problem.variable_count());
   z_.setZero(problem.variable_count());
+  step_.setZero(problem.variable_count());
   row_value_.setZero(problem.structure->row_count());
   ray_.setZero(problem.structure->row_count());
   used_.setConstant(std::max(problem.variable_count(), problem.structure->row_count()), 5, false);
@@ -41,9 +43,8 @@ DualOutcome DualActiveSet::solve(const QpData& data, const Eigen::VectorXd& line
   linear_ = linear;
   warm_start(data);
   const int limit = iterations + 20 * static_cast<int>(problem_.variable_count() + row_value_.size());
-  bool refined = false;
-  for (;;) {
-    find_point();
+  find_point();
+  for (bool refined = false;;) {
     row_value_.noalias() = problem_.structure->rows * z_.head(problem_.structure->variable_count());
     LimitSide worst;
     if (find_violated(data, tolerance, worst)) {
@@ -51,12 +52,12 @@ DualOutcome DualActiveSet::solve(const QpData& data, const Eigen::VectorXd& line
         return DualOutcome::failed;
       if (const DualOutcome outcome = meet(data, worst, iterations, limit); outcome != DualOutcome::solved)
         return outcome;
+      find_point();
       refined = false;
     } else if (refined) {
       return DualOutcome::solved;
     } else {
-      for (int k = 0; k < kRefinements; ++k)
-        equilibrate(data);
+      refine(data, tolerance);
       refined = true;
     }
   }
@@ -68,11 +69,13 @@ void DualActiveSet::warm_start(const QpData& data) {
   candidates_.assign(working_.begin(), working_.end());
   working_.clear();
   factor_.clear();
+  rigid_ = 0;
   used_.setConstant(false);
   for (const LimitSide& side : candidates_)
     if (std::isfinite(geometry_.limit(data, side)))
       enter(side, 0.0);
   for (;;) {
+    find_point();
     equilibrate(data);
     const auto count = static_cast<Eigen::Index>(working_.size());
     Eigen::Index worst = 0;
@@ -89,6 +92,7 @@ bool DualActiveSet::enter(const LimitSide& side, double multiplier) {
     return false;
   multiplier_(count) = multiplier;
   working_.push_back(side);
+  rigid_ += geometry_.softness(side) == 0.0;
   in_use(side) = true;
   return true;
 }
@@ -96,6 +100,7 @@ bool DualActiveSet::enter(const LimitSide& side, double multiplier) {
 void DualActiveSet::leave(std::size_t k) {
   const auto index = static_cast<Eigen::Index>(k);
   in_use(working_[k]) = false;
+  rigid_ -= geometry_.softness(working_[k]) == 0.0;
   factor_.remove(index);
   working_.erase(working_.begin() + static_cast<std::ptrdiff_t>(k));
   for (Eigen::Index i = index; i < static_cast<Eigen::Index>(working_.size()); ++i)
@@ -103,16 +108,34 @@ void DualActiveSet::leave(std::size_t k) {
 }
 
 // One step of iterative refinement of the multipliers with which every limit of the working set is met.
-void DualActiveSet::equilibrate(const QpData& data) {
-  find_point();
+// Returns the largest distance to a limit, times its multiplier when above 1, before the step. The change of
+// z is added to it: z as computed from the multipliers has the rounding error of their size.
+double DualActiveSet::equilibrate(const QpData& data) {
+  double error = 0.0;
   const auto count = static_cast<Eigen::Index>(working_.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     const LimitSide& side = working_[static_cast<std::size_t>(i)];
     direction_(i) = side.side * (geometry_.value(side, z_) - geometry_.limit(data, side)) -
                     geometry_.softness(side) * multiplier_(i);
+    error = std::max(error, std::abs(direction_(i)) * std::max(1.0, std::abs(multiplier_(i))));
   }
   factor_.solve_in_place(direction_);
   multiplier_.head(count) += direction_.head(count);
+  step_.setZero();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const LimitSide& side = working_[static_cast<std::size_t>(i)];
+    geometry_.add_normal(side, -side.side * direction_(i), step_);
+  }
+  geometry_.apply_inverse(step_);
+  z_ += step_;
+  return error;
+}
+
+void DualActiveSet::refine(const QpData& data, double tolerance) {
+  const double scale = std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>());
+  for (int k = 0; k < kRefinements; ++k)
+    if (equilibrate(data) <= kRefined * tolerance * scale)
+      return;
 }
 
 // z = -inv(Q) (c + B' multipliers): stationary by construction.
@@ -162,6 +185,7 @@ DualOutcome DualActiveSet::meet(const QpData& data, const LimitSide& side, int& 
   double violation = side.side * (geometry_.value(side, z_) - geometry_.limit(data, side));
   double multiplier = 0.0;
   const double length = geometry_.product(side, side);
+  const bool soft = geometry_.softness(side) > 0.0;
   while (iterations < limit) {
     ++iterations;
     find_products(side);
@@ -170,7 +194,8 @@ DualOutcome DualActiveSet::meet(const QpData& data, const LimitSide& side, int& 
     factor_.solve_in_place(direction_);
     const double curvature = length - products_.head(count).dot(direction_.head(count));
 
-    const double whole = curvature > kDependent * length ? violation / curvature : kInfinity;
+    const bool dependent = curvature <= kDependent * length || rigid_ == problem_.variable_count();
+    const double whole = dependent && !soft ? kInfinity : violation / curvature;
     double t = whole;
     std::size_t blocking = working_.size();
     for (Eigen::Index i = 0; i < count; ++i)
@@ -193,13 +218,30 @@ DualOutcome DualActiveSet::meet(const QpData& data, const LimitSide& side, int& 
   return DualOutcome::failed;
 }
 
+// The normal of `side` is the combination `direction_` of those of the working set. The combination is
+// refined: as a proof it has to be exact where x has no limits.
 void DualActiveSet::make_ray(const LimitSide& side) {
+  const auto count = static_cast<Eigen::Index>(working_.size());
+  for (int k = 0; k < kRefinements; ++k) {
+    step_.setZero();
+    geometry_.add_normal(side, side.side, step_);
+    for (Eigen::Index i = 0; i < count; ++i)
+      geometry_.add_normal(working_[static_cast<std::size_t>(i)],
+                           -working_[static_cast<std::size_t>(i)].side * direction_(i), step_);
+    geometry_.apply_inverse(step_);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const LimitSide& member = working_[static_cast<std::size_t>(i)];
+      products_(i) = member.side * geometry_.value(member, step_);
+    }
+    factor_.solve_in_place(products_);
+    direction_.head(count) += products_.head(count);
+  }
   ray_.setZero();
   if (side.kind == LimitKind::hard)
     ray_(side.index) += side.side;
-  for (std::size_t i = 0; i < working_.size(); ++i)
-    if (working_[i].kind == LimitKind::hard)
-      ray_(working_[i].index) -= working_[i].side * direction_(static_cast<Eigen::Index>(i));
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (const LimitSide& member = working_[static_cast<std::size_t>(i)]; member.kind == LimitKind::hard)
+      ray_(member.index) -= member.side * direction_(i);
 }
 
 void DualActiveSet::report(QpResult& result) const {

@@ -38,7 +38,8 @@ class DualActiveSet {
   void warm_start(const QpData& data);
   bool enter(const LimitSide& side, double multiplier);
   void leave(std::size_t k);
-  void equilibrate(const QpData& data);
+  double equilibrate(const QpData& data);
+  void refine(const QpData& data, double tolerance);
   void find_point();
   bool find_violated(const QpData& data, double tolerance, LimitSide& worst) const;
   void find_products(const LimitSide& side);
@@ -50,9 +51,10 @@ class DualActiveSet {
   LimitGeometry geometry_;
   SchurFactor factor_;
   std::vector<LimitSide> working_, candidates_;
+  Eigen::Index rigid_ = 0;      ///< limits of the working set without softness: no more than variables
   Eigen::VectorXd multiplier_;  ///< >= 0 in the direction of `side`, in the order of `working_`
   Eigen::VectorXd products_, direction_;
-  Eigen::VectorXd linear_, z_, row_value_, ray_;
+  Eigen::VectorXd linear_, z_, step_, row_value_, ray_;
   Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> used_;  ///< limits in the working set: index x kind
 };
 

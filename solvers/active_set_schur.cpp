@@ -5,6 +5,8 @@
 namespace mpm {
 
 bool SchurFactor::append(const Eigen::Ref<const Eigen::VectorXd>& column, double diagonal, double smallest) {
+  if (size_ == lower_.rows())
+    return false;
   // Row of the factor by forward substitution, kept in the row of the matrix that it becomes.
   double left = diagonal;
   for (Eigen::Index j = 0; j < size_; ++j) {

@@ -16,8 +16,8 @@ class SchurFactor {
   void clear() { size_ = 0; }
 
   /// Appends the row (column, diagonal); `column` are its `size()` products with the rows there are. Returns
-  /// false, and appends nothing, when the new row depends on them: what is left of its diagonal is below
-  /// `smallest` times the diagonal.
+  /// false, and appends nothing, when the new row depends on them (what is left of its diagonal is below
+  /// `smallest` times the diagonal) or when there is no room.
   bool append(const Eigen::Ref<const Eigen::VectorXd>& column, double diagonal, double smallest);
 
   /// Takes out row and column `k`; the later ones move up.

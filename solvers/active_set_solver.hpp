@@ -31,9 +31,9 @@ struct ActiveSetOptions {
 ///
 /// Soft limits with a slack of their own are penalties; Newton's method with an exact line search finds the
 /// minimiser of the resulting piecewise quadratic over the box in a few steps, exactly. Limits that must hold
-/// (hard limits, soft limits that share a slack) are handled by the method of multipliers around it, and
-/// where the Hessian is only semidefinite (the target optimizer, a linear program) by proximal terms
-/// (docs/methods.md, active-set method).
+/// (hard limits, soft limits that share a slack) are handled by the method of multipliers around it, shared
+/// slacks by a dual active-set method first. Where the Hessian is only semidefinite (the target optimizer, a
+/// linear program) proximal terms are added and taken back (docs/methods.md, active-set method).
 ///
 /// `infeasible` is returned only with a certificate, see `certificate`. `iteration_limit` and
 /// `numerical_error` say honestly that there is no answer; an unbounded problem ends so.
@@ -59,8 +59,10 @@ class ActiveSetSolver final : public QpSolver {
   void do_solve(const QpData& data, QpResult& result) override;
   void do_reset() override;
 
+  void reset_newton();
   bool solve_by_dual(const QpData& data, QpResult& result);
   void solve_by_newton(const QpData& data, QpResult& result);
+  bool is_certified(const QpData& data, const QpResult& result);
   void bind(const QpData& data);
   QpStatus iterate(const QpData& data, int& iterations);
   void set_limits(const QpData& data);
@@ -78,6 +80,7 @@ class ActiveSetSolver final : public QpSolver {
   Eigen::VectorXd certificate_;
   Eigen::VectorXd change_;  ///< of the multipliers of the hard rows in the last round
   Eigen::VectorXd scratch_;
+  KktWorkspace workspace_;
   double certified_violation_ = 0.0;
   double stiffening_ = 1.0;  ///< of the springs with multipliers, in this solve
 };

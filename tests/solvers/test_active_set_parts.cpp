@@ -1,0 +1,159 @@
+#include <numeric>
+#include <random>
+
+#include <Eigen/Cholesky>
+#include <catch2/catch.hpp>
+
+#include "solvers/active_set_certificate.hpp"
+#include "solvers/active_set_curvature.hpp"
+#include "solvers/active_set_factor.hpp"
+#include "solvers/active_set_problem.hpp"
+#include "solvers/active_set_schur.hpp"
+#include "tests/solvers/qp_builder.hpp"
+
+// The linear algebra below the active-set back end, against Eigen's or against a plain sum.
+
+namespace mpm {
+namespace {
+
+using samples::QpBuilder;
+using samples::vec;
+
+// Well-conditioned matrices of a dozen rows: a few hundred roundings.
+constexpr double kRounding = 1e-12;
+
+Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, unsigned seed) {
+  std::mt19937 generator(seed);
+  return Eigen::MatrixXd::NullaryExpr(rows, columns,
+                                      [&] { return static_cast<double>(generator()) / 2147483648.0 - 1.0; });
+}
+
+Eigen::MatrixXd random_definite(Eigen::Index size, unsigned seed) {
+  const Eigen::MatrixXd root = random_matrix(size, size, seed);
+  return root * root.transpose() + Eigen::MatrixXd::Identity(size, size);
+}
+
+}  // namespace
+
+TEST_CASE("the factor of a principal submatrix solves with it", "[active-set]") {
+  const Eigen::MatrixXd matrix = random_definite(13, 1);
+  const std::vector<int> free =
+      GENERATE(std::vector<int>{}, std::vector<int>{4}, std::vector<int>{0, 2, 3, 5, 7, 11, 12},
+               std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7});
+  ActiveSetFactor factor(13);
+  REQUIRE(factor.compute(matrix, free));
+  const Eigen::VectorXd right = random_matrix(13, 1, 2);
+  Eigen::VectorXd x = right;
+  factor.solve_in_place(x);
+
+  const Eigen::VectorXd expected = matrix(free, free).llt().solve(right(free));
+  CHECK((x(free) - expected).norm() <= kRounding);
+  for (int j = 0; j < 13; ++j)
+    if (std::find(free.begin(), free.end(), j) == free.end())
+      CHECK(x(j) == right(j));
+}
+
+TEST_CASE("a matrix that is not positive definite has no factor", "[active-set]") {
+  Eigen::MatrixXd matrix = random_definite(6, 3);
+  matrix.row(4) = matrix.row(1);
+  matrix.col(4) = matrix.col(1);
+  ActiveSetFactor factor(6);
+  CHECK_FALSE(factor.compute(matrix, {0, 1, 2, 3, 4, 5}));
+  CHECK(factor.compute(matrix, {0, 1, 2, 3, 5}));
+}
+
+TEST_CASE("a Schur factor grows and shrinks", "[active-set]") {
+  const Eigen::MatrixXd matrix = random_definite(9, 4);
+  std::vector<int> present;
+  SchurFactor factor(9);
+  const auto append = [&](int j) {
+    const Eigen::VectorXd column = matrix.col(j)(present);
+    REQUIRE(factor.append(column, matrix(j, j), 1e-12));
+    present.push_back(j);
+  };
+  const auto remove = [&](std::size_t k) {
+    factor.remove(static_cast<Eigen::Index>(k));
+    present.erase(present.begin() + static_cast<std::ptrdiff_t>(k));
+  };
+  for (const int j : {3, 7, 0, 5, 8, 1})
+    append(j);
+  for (const std::size_t k : {0U, 2U, 3U})
+    remove(k);
+  append(6);
+  append(3);
+
+  const Eigen::VectorXd right = random_matrix(static_cast<Eigen::Index>(present.size()), 1, 5);
+  Eigen::VectorXd x = right;
+  factor.solve_in_place(x);
+  CHECK((matrix(present, present) * x - right).norm() <= kRounding);
+}
+
+TEST_CASE("a Schur factor refuses a dependent row and a row too many", "[active-set]") {
+  SchurFactor factor(2);
+  REQUIRE(factor.append(Eigen::VectorXd(0), 4.0, 1e-12));
+  CHECK_FALSE(factor.append(vec(6), 9.0, 1e-12));  // the normal of row 1 times 3/2
+  REQUIRE(factor.append(vec(0), 1.0, 1e-12));
+  CHECK_FALSE(factor.append(vec(0, 0), 1.0, 1e-12));
+  CHECK(factor.size() == 2);
+}
+
+TEST_CASE("the curvature follows the springs", "[active-set]") {
+  QpBuilder builder("curvature", random_definite(5, 6), Eigen::VectorXd::Zero(5));
+  const Eigen::MatrixXd rows = random_matrix(8, 5, 7);
+  builder.slack(2.5, 0.5);  // shared by rows 4 to 7: kept as a variable
+  for (int i = 0; i < 4; ++i)
+    builder.slack(1.0 + i, 0.0).soft(rows.row(i), i + 1, -1, 1);
+  for (int i = 4; i < 8; ++i)
+    builder.soft(rows.row(i), 0, -1, 1);
+  const samples::NamedQp qp = builder.build();
+  const ActiveSetProblem problem(*qp.structure);
+  REQUIRE(problem.variable_count() == 6);
+
+  std::vector<LimitSprings> families;
+  families.emplace_back(0.0, problem.softness);
+  families.emplace_back(-1.0, (problem.slack_column.array() >= 0).select(problem.limit_stiffness, 0.0));
+  ActiveSetCurvature curvature(problem, families.size());
+
+  std::mt19937 generator(8);
+  for (int round = 0; round < 20; ++round) {
+    Eigen::MatrixXd expected = problem.quadratic;
+    for (LimitSprings& springs : families)
+      for (Eigen::Index i = 0; i < springs.size(); ++i) {
+        springs.force(i) = springs.stiffness(i) > 0 && generator() % 2 == 0 ? 1.0 : 0.0;
+        Eigen::VectorXd normal = Eigen::VectorXd::Zero(6);
+        normal.head(5) = qp.structure->rows.row(i).transpose();
+        if (problem.slack_column(i) >= 0)
+          normal(problem.slack_column(i)) = springs.slack_sign;
+        if (springs.stretched(i))
+          expected += springs.stiffness(i) * normal * normal.transpose();
+      }
+    curvature.synchronise(families);
+    CHECK_FALSE(curvature.synchronise(families));
+    const Eigen::MatrixXd difference = (curvature.matrix() - expected).triangularView<Eigen::Lower>();
+    CHECK(difference.norm() <= kRounding * expected.norm());
+  }
+}
+
+TEST_CASE("the proven violation of two opposed rows", "[active-set]") {
+  // x >= 3 as a row within x <= 1: every x violates it by at least 2.
+  const samples::NamedQp qp = QpBuilder("opposed", Eigen::MatrixXd::Identity(2, 2), vec(0, 0))
+                                  .box(vec(-1, -1), vec(1, 1))
+                                  .hard(vec(1, 0), 3, 9)
+                                  .build();
+  Eigen::VectorXd scratch(2);
+  CHECK(proven_violation(*qp.structure, qp.data, vec(-5), scratch) == Approx(2.0));
+  CHECK(proven_violation(*qp.structure, qp.data, vec(5), scratch) < 0);  // says nothing: -1 >= 9 is far
+  CHECK(proven_violation(*qp.structure, qp.data, vec(0), scratch) < 0);
+}
+
+TEST_CASE("where x has no limit only exact combinations prove anything", "[active-set]") {
+  const samples::NamedQp qp = QpBuilder("opposed", Eigen::MatrixXd::Identity(2, 2), vec(0, 0))
+                                  .hard(vec(1, 1), 3, 9)
+                                  .hard(vec(1, 1), -9, 2)
+                                  .build();
+  Eigen::VectorXd scratch(2);
+  CHECK(proven_violation(*qp.structure, qp.data, vec(-1, 1), scratch) == Approx(0.5));
+  CHECK(std::isinf(proven_violation(*qp.structure, qp.data, vec(-1, 1.001), scratch)));
+}
+
+}  // namespace mpm
