@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "solvers/reduced_program.hpp"
 #include "solvers/working_set.hpp"
 
 namespace mpm {
@@ -26,187 +27,117 @@ double finite_limit(double limit) {
   return std::clamp(limit, -kIpoptInfinity, kIpoptInfinity);
 }
 
-/// The reduced problem over a working set as Ipopt sees it: variables (x, slacks in use), one constraint a
-/// working row. All derivatives are constant.
-class ReducedProgram final : public Ipopt::TNLP {
+/// A reduced program as Ipopt sees it. All derivatives of second order are constant.
+class ProgramForIpopt final : public Ipopt::TNLP {
  public:
   using Index = Ipopt::Index;
   using Number = Ipopt::Number;
 
-  ReducedProgram(const QpStructure& structure, const WorkingSet& set) : structure_(structure), set_(set) {}
+  ProgramForIpopt(const QpStructure& structure, const WorkingSet& set)
+      : structure_(structure), set_(set), program_(structure) {}
 
   /// The problem of the next solve; `start` is the answer it starts from and receives the new one.
   void bind(const QpData& data, QpResult& start) {
     data_ = &data;
     result_ = &start;
+    program_.assemble(set_, data, start);
   }
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian_size, Index& hessian_size,
                     IndexStyleEnum& style) override {
-    n = variables() + slacks();
-    m = rows();
-    jacobian_size = 0;
-    for (const WorkingRow& row : set_.rows())
-      jacobian_size += variables() + (row.side == RowSide::hard ? 0 : 1);
-    hessian_size = variables() * (variables() + 1) / 2 + slacks();
+    n = variables();
+    m = constraints();
+    jacobian_size = static_cast<Index>(program_.constraints().size());
+    hessian_size = static_cast<Index>(program_.hessian().size());
     style = C_STYLE;
     return true;
   }
 
   bool get_bounds_info(Index, Number* x_lower, Number* x_upper, Index, Number* g_lower,
                        Number* g_upper) override {
-    for (Index i = 0; i < variables(); ++i) {
-      x_lower[i] = finite_limit(data_->lower(i));
-      x_upper[i] = finite_limit(data_->upper(i));
-    }
-    for (Index k = 0; k < slacks(); ++k) {
-      x_lower[variables() + k] = 0.0;
-      x_upper[variables() + k] = kIpoptInfinity;
-    }
-    for (Index r = 0; r < rows(); ++r) {
-      const auto [row, side] = working_row(r);
-      g_lower[r] = side == RowSide::hard         ? finite_limit(data_->hard_lower(row))
-                   : side == RowSide::soft_lower ? data_->soft_lower(row)
-                                                 : -kIpoptInfinity;
-      g_upper[r] = side == RowSide::hard         ? finite_limit(data_->hard_upper(row))
-                   : side == RowSide::soft_upper ? data_->soft_upper(row)
-                                                 : kIpoptInfinity;
-    }
+    write_limits(program_.lower(), x_lower);
+    write_limits(program_.upper(), x_upper);
+    write_limits(program_.constraint_lower(), g_lower);
+    write_limits(program_.constraint_upper(), g_upper);
     return true;
   }
 
-  bool get_starting_point(Index, bool, Number* x, bool init_z, Number* z_lower, Number* z_upper, Index,
-                          bool init_lambda, Number* lambda) override {
-    for (Index i = 0; i < variables(); ++i)
-      x[i] = result_->x(i);
-    for (Index k = 0; k < slacks(); ++k)
-      x[variables() + k] = result_->slack(slack(k));
-    if (init_z) {
-      for (Index i = 0; i < variables(); ++i) {
-        z_lower[i] = std::max(0.0, -result_->bound_dual(i));
-        z_upper[i] = std::max(0.0, result_->bound_dual(i));
-      }
-      for (Index k = variables(); k < variables() + slacks(); ++k)
-        z_lower[k] = z_upper[k] = 0.0;
-    }
-    if (init_lambda)
-      for (Index r = 0; r < rows(); ++r) {
-        const auto [row, side] = working_row(r);
-        lambda[r] = side == RowSide::hard ? result_->hard_dual(row) : result_->soft_dual(row);
-      }
+  bool get_starting_point(Index, bool, Number* x, bool, Number*, Number*, Index, bool, Number*) override {
+    Eigen::Map<Eigen::VectorXd>(x, variables()) = program_.start();
     return true;
   }
 
   bool eval_f(Index, const Number* x, bool, Number& value) override {
-    const Eigen::Map<const Eigen::VectorXd> moves(x, variables());
-    value = 0.0;
-    for (Index i = 0; i < variables(); ++i)
-      value += moves(i) * (0.5 * structure_.hessian.col(i).dot(moves) + data_->gradient(i));
-    for (Index k = 0; k < slacks(); ++k) {
-      const double s = x[variables() + k];
-      value += s * (structure_.slack_quadratic(slack(k)) * s + structure_.slack_linear(slack(k)));
-    }
+    value = program_.gradient().dot(Eigen::Map<const Eigen::VectorXd>(x, variables()));
+    for (const auto [i, j, q] : program_.hessian())
+      value += (i == j ? 0.5 : 1.0) * q * x[i] * x[j];
     return true;
   }
 
   bool eval_grad_f(Index, const Number* x, bool, Number* gradient) override {
-    Eigen::Map<Eigen::VectorXd> of_moves(gradient, variables());
-    of_moves = data_->gradient;
-    of_moves.noalias() += structure_.hessian * Eigen::Map<const Eigen::VectorXd>(x, variables());
-    for (Index k = 0; k < slacks(); ++k)
-      gradient[variables() + k] =
-          2.0 * structure_.slack_quadratic(slack(k)) * x[variables() + k] + structure_.slack_linear(slack(k));
+    Eigen::Map<Eigen::VectorXd>(gradient, variables()) = program_.gradient();
+    for (const auto [i, j, q] : program_.hessian()) {
+      gradient[i] += q * x[j];
+      if (i != j)
+        gradient[j] += q * x[i];
+    }
     return true;
   }
 
   bool eval_g(Index, const Number* x, bool, Index, Number* g) override {
-    const Eigen::Map<const Eigen::VectorXd> moves(x, variables());
-    for (Index r = 0; r < rows(); ++r) {
-      g[r] = structure_.rows.row(working_row(r).row).dot(moves);
-      if (const Index k = slack_column(r); k >= 0)
-        g[r] += slack_sign(r) * x[k];
-    }
+    std::fill_n(g, constraints(), 0.0);
+    for (const auto [i, j, c] : program_.constraints())
+      g[i] += c * x[j];
     return true;
   }
 
-  bool eval_jac_g(Index, const Number*, bool, Index, Index, Index* row_index, Index* column,
+  bool eval_jac_g(Index, const Number*, bool, Index, Index, Index* row, Index* column,
                   Number* values) override {
-    Index entry = 0;
-    const auto put = [&](Index r, Index c, Number value) {
-      if (values == nullptr) {
-        row_index[entry] = r;
-        column[entry] = c;
-      } else {
-        values[entry] = value;
-      }
-      ++entry;
-    };
-    for (Index r = 0; r < rows(); ++r) {
-      for (Index i = 0; i < variables(); ++i)
-        put(r, i, structure_.rows(working_row(r).row, i));
-      if (const Index k = slack_column(r); k >= 0)
-        put(r, k, slack_sign(r));
-    }
+    write_entries(program_.constraints(), 1.0, row, column, values);
     return true;
   }
 
   bool eval_h(Index, const Number*, bool, Number objective_factor, Index, const Number*, bool, Index,
-              Index* row_index, Index* column, Number* values) override {
-    Index entry = 0;
-    const auto put = [&](Index r, Index c, Number value) {
-      if (values == nullptr) {
-        row_index[entry] = r;
-        column[entry] = c;
-      } else {
-        values[entry] = objective_factor * value;
-      }
-      ++entry;
-    };
-    for (Index i = 0; i < variables(); ++i)
-      for (Index j = 0; j <= i; ++j)
-        put(i, j, structure_.hessian(i, j));
-    for (Index k = 0; k < slacks(); ++k)
-      put(variables() + k, variables() + k, 2.0 * structure_.slack_quadratic(slack(k)));
+              Index* row, Index* column, Number* values) override {
+    write_entries(program_.hessian(), objective_factor, row, column, values);
     return true;
   }
 
-  void finalize_solution(Ipopt::SolverReturn, Index, const Number* x, const Number* z_lower,
-                         const Number* z_upper, Index, const Number*, const Number* lambda, Number,
+  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number* z_lower,
+                         const Number* z_upper, Index m, const Number*, const Number* lambda, Number,
                          const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
-    result_->slack.setZero();
-    result_->hard_dual.setZero();
-    result_->soft_dual.setZero();
-    for (Index i = 0; i < variables(); ++i) {
-      result_->x(i) = x[i];
-      result_->bound_dual(i) = z_upper[i] - z_lower[i];
-    }
-    for (Index k = 0; k < slacks(); ++k)
-      result_->slack(slack(k)) = x[variables() + k];
-    for (Index r = 0; r < rows(); ++r) {
-      const auto [row, side] = working_row(r);
-      (side == RowSide::hard ? result_->hard_dual : result_->soft_dual)(row) += lambda[r];
-    }
+    using Map = Eigen::Map<const Eigen::VectorXd>;
+    program_.report(set_, *data_, Map(x, n), Map(z_upper, n) - Map(z_lower, n), Map(lambda, m), *result_);
     // Ipopt removes fixed variables and returns no multiplier for them: it is what stationarity leaves.
-    for (Index i = 0; i < variables(); ++i)
+    for (Eigen::Index i = 0; i < structure_.variable_count(); ++i)
       if (data_->lower(i) == data_->upper(i))
         result_->bound_dual(i) = -(structure_.hessian.row(i).dot(result_->x) + data_->gradient(i) +
                                    structure_.rows.col(i).dot(result_->hard_dual + result_->soft_dual));
   }
 
  private:
-  Index variables() const { return static_cast<Index>(structure_.variable_count()); }
-  Index slacks() const { return static_cast<Index>(set_.slacks().size()); }
-  Index rows() const { return static_cast<Index>(set_.rows().size()); }
-  int slack(Index k) const { return set_.slacks()[static_cast<std::size_t>(k)]; }
-  WorkingRow working_row(Index r) const { return set_.rows()[static_cast<std::size_t>(r)]; }
-  double slack_sign(Index r) const { return working_row(r).side == RowSide::soft_lower ? 1.0 : -1.0; }
-  Index slack_column(Index r) const {
-    const auto [row, side] = working_row(r);
-    return side == RowSide::hard ? -1 : variables() + set_.slack_position(structure_.slack_of_row(row));
+  Index variables() const { return static_cast<Index>(program_.variable_count()); }
+  Index constraints() const { return static_cast<Index>(program_.constraint_count()); }
+
+  /// The pattern of a matrix where there is no room for values, its values otherwise.
+  static void write_entries(const std::vector<MatrixEntry>& entries, double factor, Index* row, Index* column,
+                            Number* values) {
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      if (values == nullptr) {
+        row[k] = entries[k].row;
+        column[k] = entries[k].column;
+      } else {
+        values[k] = factor * entries[k].value;
+      }
+  }
+
+  static void write_limits(const Eigen::VectorXd& limits, Number* out) {
+    std::transform(limits.begin(), limits.end(), out, finite_limit);
   }
 
   const QpStructure& structure_;
   const WorkingSet& set_;
+  ReducedProgram program_;
   const QpData* data_ = nullptr;
   QpResult* result_ = nullptr;
 };
@@ -252,6 +183,8 @@ void IpoptOptions::validate() const {
     throw InputError("Ipopt tolerance", fmt::to_string(tolerance), "0 to 1");
   if (iteration_limit < 1)
     throw InputError("Ipopt iteration_limit", fmt::to_string(iteration_limit), ">= 1");
+  if (rows_at_once < 0)
+    throw InputError("Ipopt rows_at_once", fmt::to_string(rows_at_once), ">= 0");
   if (!(std::isfinite(working_set_margin) && working_set_margin >= 0))
     throw InputError("Ipopt working_set_margin", fmt::to_string(working_set_margin), "a number >= 0");
 }
@@ -261,7 +194,7 @@ class IpoptSolver::Implementation {
  public:
   Implementation(const QpStructure& structure, const IpoptOptions& options)
       : set(structure),
-        program_(new ReducedProgram(structure, set)),
+        program_(new ProgramForIpopt(structure, set)),
         application_(IpoptApplicationFactory()) {
     const auto settings = application_->Options();
     settings->SetStringValue("sb", "yes");
@@ -277,6 +210,11 @@ class IpoptSolver::Implementation {
     settings->SetStringValue("hessian_constant", "yes");
     settings->SetStringValue("jac_d_constant", "yes");
     settings->SetStringValue("linear_solver", "mumps");
+    // The last answer is near: less has to be taken back than from Ipopt's own 0.1 (docs/performance.md).
+    settings->SetNumericValue("mu_init", 1e-3);
+    // Ipopt's own steps are scaled well enough; what MUMPS does about scaling takes longer than it saves.
+    settings->SetIntegerValue("mumps_scaling", 0);
+    settings->SetIntegerValue("mumps_permuting_scaling", 0);
     // An empty name: an ipopt.opt that lies in the current folder must not change the answers.
     if (application_->Initialize("") != Ipopt::Solve_Succeeded)
       throw InputError("Ipopt", "an installation that does not start", "Ipopt 3.11 or later with MUMPS");
@@ -294,7 +232,7 @@ class IpoptSolver::Implementation {
   WorkingSet set;
 
  private:
-  Ipopt::SmartPtr<ReducedProgram> program_;
+  Ipopt::SmartPtr<ProgramForIpopt> program_;
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application_;
 };
 
@@ -318,7 +256,8 @@ void IpoptSolver::do_solve(const QpData& data, QpResult& result) {
     result.status = QpStatus::infeasible;
     return;
   }
-  if (options_.working_set)
+  const bool in_rounds = options_.working_set && structure().row_count() > options_.rows_at_once;
+  if (in_rounds)
     solve_growing(data, result);
   else
     solve_full(data, result);
@@ -328,7 +267,7 @@ void IpoptSolver::do_solve(const QpData& data, QpResult& result) {
     result.status = QpStatus::infeasible;
     return;
   }
-  if (options_.working_set) {  // a limit that was left out may be what bounds the problem
+  if (in_rounds) {  // a limit that was left out may be what bounds the problem
     forget_answer(result);
     solve_full(data, result);
   }

@@ -16,6 +16,9 @@ struct IpoptOptions {
   /// A limit nearer than this to the last answer enters the working set too: it saves rounds, and changes
   /// the answer only within the tolerance.
   double working_set_margin = 0.01;
+  /// A problem with at most this many rows is handed over at once all the same: one run of Ipopt over few
+  /// rows is faster than two.
+  int rows_at_once = 32;
 
   /// Throws InputError when a number is out of range.
   void validate() const;
@@ -23,6 +26,8 @@ struct IpoptOptions {
 
 /// The reference back end: Ipopt, a primal-dual interior-point method (Waechter & Biegler, Math. Program. 106
 /// (2006) 25-57), with MUMPS.
+///
+/// Ipopt sees the problem as ReducedProgram writes it.
 ///
 /// An answer `infeasible` is certified: the smallest possible largest violation of the hard row limits
 /// within the box, itself found as a linear program, is above 1e-7. When the working set brings no answer,

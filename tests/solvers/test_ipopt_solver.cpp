@@ -51,6 +51,7 @@ TEST_CASE("Ipopt options are checked", "[ipopt]") {
   CHECK_THROWS_AS(IpoptOptions{.iteration_limit = 0}.validate(), InputError);
   for (const double margin : {-1e-3, kInfinity, nan})
     CHECK_THROWS_AS(IpoptOptions{.working_set_margin = margin}.validate(), InputError);
+  CHECK_THROWS_AS(IpoptOptions{.rows_at_once = -1}.validate(), InputError);
   CHECK_THROWS_AS(IpoptSolver(half_plane().structure, {.tolerance = 0}), InputError);
 }
 
@@ -74,12 +75,23 @@ TEST_CASE("the margin of the working set does not matter for the answer", "[ipop
   for (const NamedQp& qp : samples::closed_form_qps()) {
     INFO(qp.name);
     for (const double margin : {0.0, 10.0}) {
-      IpoptSolver solver(qp.structure, {.working_set_margin = margin});
+      IpoptSolver solver(qp.structure, {.working_set_margin = margin, .rows_at_once = 0});
       const QpResult& result = solver.solve(qp.data);
       REQUIRE(result.status == QpStatus::solved);
       // 1e-10 of complementarity at a limit that touches moves x by 1e-5.
       CHECK((result.x - *qp.x).lpNorm<Eigen::Infinity>() < 1e-4);
     }
+  }
+}
+
+TEST_CASE("growing the working set from nothing answers the whole collection", "[ipopt]") {
+  for (const NamedQp& qp : samples::qp_collection()) {
+    INFO(qp.name);
+    IpoptSolver solver(qp.structure, {.rows_at_once = 0});
+    const QpResult& result = solver.solve(qp.data);
+    CHECK(to_string(result.status) == to_string(qp.expected));
+    if (qp.expected == QpStatus::solved)
+      CHECK(result.kkt_residual < 1e-7);  // what IpoptSolver promises
   }
 }
 
