@@ -13,6 +13,7 @@
 #include "bench/campaign_runner.hpp"
 #include "bench/progress.hpp"
 #include "bench/record_bytes.hpp"
+#include "bench/sweep_command.hpp"
 #include "plants/error.hpp"
 #include "results/archive.hpp"
 #include "results/archive_error.hpp"
@@ -118,6 +119,10 @@ struct Executor {
   ExitCode operator()(const RunCommand& command) const { return run(command, command_line); }
   ExitCode operator()(const ReplayCommand& command) const { return replay(command); }
   ExitCode operator()(const SummaryCommand& command) const { return summary(command); }
+  ExitCode operator()(const SweepCommand& command) const {
+    run_sweep(command, command_line);
+    return ExitCode::done;
+  }
   ExitCode operator()(const ListCommand&) const { return list(); }
   ExitCode operator()(const UsageText& usage) const {
     fmt::print(usage.exit_code == 0 ? stdout : stderr, "{}", usage.text);

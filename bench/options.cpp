@@ -36,6 +36,21 @@ void add_run(CLI::App& app, RunCommand& run) {
   app.add_flag("--quiet", run.quiet, "No progress and no summary");
 }
 
+void add_sweep(CLI::App& app, SweepCommand& sweep) {
+  sweep.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  app.add_option("SWEEP", sweep.sweep, "Sweep file, or name of a shipped sweep")->required();
+  app.add_option("-o,--output", sweep.output, "Folder for the archives and the table")->required();
+  app.add_option("--experiments", sweep.experiments, "Run the first N experiments of each study")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--jobs", sweep.jobs, "How many experiments run at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_option("--solver", sweep.solver, "QP solver")
+      ->check(CLI::IsMember(qp_solver_names()))
+      ->capture_default_str();
+  app.add_flag("--quiet", sweep.quiet, "No progress");
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
@@ -58,6 +73,10 @@ Command parse_command_line(int argc, const char* const* argv) {
       app.add_subcommand("summary", "Print what a study found, beside what was reported");
   summary_app->add_option("ARCHIVE", summary.archive, "Archive")->required();
   summary_app->add_flag("--json", summary.json, "As JSON");
+  SweepCommand sweep;
+  CLI::App* const sweep_app =
+      app.add_subcommand("sweep", "Run a study once for each value of its open choices, and tabulate");
+  add_sweep(*sweep_app, sweep);
   CLI::App* const list_app = app.add_subcommand("list", "List the shipped studies");
 
   try {
@@ -73,6 +92,8 @@ Command parse_command_line(int argc, const char* const* argv) {
     return replay;
   if (summary_app->parsed())
     return summary;
+  if (sweep_app->parsed())
+    return sweep;
   if (list_app->parsed())
     return ListCommand{};
   return UsageText{app.help(), kUsageError};

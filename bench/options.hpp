@@ -34,6 +34,16 @@ struct SummaryCommand {
   bool json = false;
 };
 
+/// `mpmbench sweep SWEEP -o FOLDER`
+struct SweepCommand {
+  std::string sweep;
+  std::string output;
+  std::optional<std::int64_t> experiments;
+  int jobs = 1;
+  std::string solver = "active-set";
+  bool quiet = false;
+};
+
 /// `mpmbench list`
 struct ListCommand {};
 
@@ -44,7 +54,7 @@ struct UsageText {
   int exit_code;
 };
 
-using Command = std::variant<RunCommand, ReplayCommand, SummaryCommand, ListCommand, UsageText>;
+using Command = std::variant<RunCommand, ReplayCommand, SummaryCommand, SweepCommand, ListCommand, UsageText>;
 
 /// Reads the command line; wrong usage gives UsageText with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

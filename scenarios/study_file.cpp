@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 
 #include <fmt/format.h>
@@ -19,8 +18,8 @@ namespace {
 
 /// Kurtosis and skewness (6.10-6.12) of fewer values are constants or functions of one another.
 constexpr double kShortestWindow = 4;
-/// Their derivatives need one value more than windows, and a correlation two of them.
-constexpr double kSamplesBeyondWindow = 2;
+/// Window positions that a correlation over a record needs at least (kFewestCorrelatedPairs of the analysis).
+constexpr double kSamplesBeyondWindow = 20;
 
 void read_heading(const TomlTable& document, Study& study) {
   const TomlTable table = document.table("study", study_file_keys("study"));
@@ -41,23 +40,12 @@ void refuse_unusable_windows(const TomlTable& document, const Study& study) {
                       fmt::format("{} (the shortest moving window has {} samples)", horizon, shortest),
                       fmt::format("windows of at least {} samples", kShortestWindow));
   }
-  if (!(longest < study.simulation.samples - kSamplesBeyondWindow)) {
+  if (study.simulation.samples < longest + kSamplesBeyondWindow) {
     const TomlTable simulation = document.table("simulation", study_file_keys("simulation"));
     simulation.refuse("samples", fmt::format("{}", study.simulation.samples),
-                      fmt::format("more than {}: the longest moving window has {} samples",
+                      fmt::format("at least {}: the longest moving window has {} samples",
                                   longest + kSamplesBeyondWindow, longest));
   }
-}
-
-std::string read_bounded(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text(kMaxTomlBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!file.is_open() || file.bad() || (file.gcount() == 0 && !file.eof())) {
-    throw InputError(path.string(), "nothing that can be read", "a study file");
-  }
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return text;
 }
 
 }  // namespace
@@ -83,7 +71,7 @@ Study parse_study(std::string_view text, const std::string& file_name) {
 }
 
 Study load_study(const std::filesystem::path& path) {
-  return parse_study(read_bounded(path), path.string());
+  return parse_study(read_toml_text(path), path.string());
 }
 
 }  // namespace mpm

@@ -13,6 +13,7 @@ namespace mpm {
 namespace {
 
 constexpr std::int64_t kMaxResponse = 100'000;
+constexpr std::int64_t kFewestReplications = 100;  // below, a 95 % interval is made of two or three values
 constexpr std::int64_t kMaxReplications = 1'000'000;
 constexpr double kMaxWindow = 1000;  // in prediction horizons
 
@@ -105,8 +106,9 @@ AggregateOptions read_aggregate(const TomlTable& document) {
   const TomlTable table = document.table_or_empty("aggregate", study_file_keys("aggregate"));
   AggregateOptions options;
   options.confidence = read_number_or(table, "confidence", NumberRule::inside(0, 1), options.confidence);
-  options.bootstrap_replications = static_cast<int>(
-      read_whole_or(table, "bootstrap_replications", 1, kMaxReplications, options.bootstrap_replications));
+  options.bootstrap_replications =
+      static_cast<int>(read_whole_or(table, "bootstrap_replications", kFewestReplications, kMaxReplications,
+                                     options.bootstrap_replications));
   return options;
 }
 

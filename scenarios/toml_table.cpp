@@ -123,7 +123,7 @@ void TomlTable::refuse(std::string_view key, const std::string& found, const std
 
 std::string with_nearest(std::string_view name, const std::vector<std::string>& names) {
   const std::string nearest = nearest_name(name, names);
-  return nearest.empty() ? quoted(name) : fmt::format("{} (nearest: '{}')", quoted(name), nearest);
+  return nearest.empty() ? in_quotes(name) : fmt::format("{} (nearest: '{}')", in_quotes(name), nearest);
 }
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #include "scenarios/toml_text.hpp"
 
 #include <algorithm>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -62,7 +63,17 @@ toml::table parse_toml(std::string_view text, const std::string& file_name) {
   }
 }
 
-std::string quoted(std::string_view text) {
+std::string read_toml_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kMaxTomlBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!file.is_open() || file.bad() || (file.gcount() == 0 && !file.eof()))
+    throw InputError(path.string(), "nothing that can be read", "a TOML file");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text;
+}
+
+std::string in_quotes(std::string_view text) {
   std::string result(text.substr(0, kQuotedLength));
   std::transform(result.begin(), result.end(), result.begin(), printable);
   return fmt::format("'{}{}'", result, text.size() > kQuotedLength ? "..." : "");
@@ -70,7 +81,7 @@ std::string quoted(std::string_view text) {
 
 std::string describe(const toml::node& node) {
   if (const auto* text = node.as_string()) {
-    return quoted(text->get());
+    return in_quotes(text->get());
   }
   if (const auto* whole = node.as_integer()) {
     return fmt::format("{}", whole->get());

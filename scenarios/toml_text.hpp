@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -18,8 +19,12 @@ inline constexpr std::size_t kMaxTomlBytes = std::size_t{1} << 20;
 /// deeply.
 toml::table parse_toml(std::string_view text, const std::string& file_name);
 
+/// The text of a file, at most one byte more than parse_toml() takes.
+/// Errors: InputError for a file that cannot be read.
+std::string read_toml_text(const std::filesystem::path& path);
+
 /// `text` in quotes, fit for one line of a message: shortened, and with '?' for what is no printable ASCII.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// What a value is, for messages: "4", "4.0", "'abc'", "a list of 3", "a table".
 std::string describe(const toml::node& node);

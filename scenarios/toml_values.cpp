@@ -133,7 +133,7 @@ std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view k
   for (const toml::node& element : *list) {
     const std::size_t position = position_of(table, key, element, names);
     if (std::find(positions.begin(), positions.end(), position) != positions.end()) {
-      table.refuse(key, fmt::format("{} twice", quoted(names[position])), "every name once");
+      table.refuse(key, fmt::format("{} twice", in_quotes(names[position])), "every name once");
     }
     positions.push_back(position);
   }

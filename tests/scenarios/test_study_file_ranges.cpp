@@ -17,8 +17,8 @@ TEST_CASE("the simulation is checked", "[study_file]") {
   check_refusals({
       {"samples = 60", "samples = 0", "samples = 0",
        "simulation.samples: found 0; allowed: a whole number from 1 to 1000000"},
-      {"samples = 60", "samples = 42", "samples = 42",
-       "simulation.samples: found 42; allowed: more than 42: the longest moving window has 40 samples"},
+      {"samples = 60", "samples = 59", "samples = 59",
+       "simulation.samples: found 59; allowed: at least 60: the longest moving window has 40 samples"},
       {"deviation = 0.01", "deviation = -0.01", "noise_",
        "simulation.noise_standard_deviation: found -0.01; allowed: a number >= 0"},
       {"deviation = 0.01", "deviation = [0.01]", "noise_",
@@ -185,7 +185,7 @@ TEST_CASE("the options of the diagnosis and of the aggregates are checked", "[st
        "diagnosis.windows: found [0.5, 1001]; allowed: [low, high] with low < high, each a number in (0, "
        "1000]"},
       {"", "[diagnosis]\nwindows = [0.5, 3]\n", "samples = 60",
-       "simulation.samples: found 60; allowed: more than 62: the longest moving window has 60 samples"},
+       "simulation.samples: found 60; allowed: at least 80: the longest moving window has 60 samples"},
       {"", "[diagnosis]\nwindows = [0.1, 2]\n", "prediction_horizon",
        "controller.prediction_horizon: found 20 (the shortest moving window has 2 samples); allowed: windows "
        "of "
@@ -198,8 +198,8 @@ TEST_CASE("the options of the diagnosis and of the aggregates are checked", "[st
        "aggregate.confidence: found 1; allowed: a number in (0, 1)"},
       {"", "[aggregate]\nconfidence = 0.0\n", "confidence",
        "aggregate.confidence: found 0.0; allowed: a number in (0, 1)"},
-      {"", "[aggregate]\nbootstrap_replications = 0\n", "bootstrap_replications",
-       "aggregate.bootstrap_replications: found 0; allowed: a whole number from 1 to 1000000"},
+      {"", "[aggregate]\nbootstrap_replications = 99\n", "bootstrap_replications",
+       "aggregate.bootstrap_replications: found 99; allowed: a whole number from 100 to 1000000"},
   });
 }
 
