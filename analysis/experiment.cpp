@@ -62,9 +62,10 @@ bool ExperimentRecord::wrong() const {
 ExperimentRunner::ExperimentRunner(const Study& study, const BasisCase& basis, QpSolverFactory factory)
     : study_(study), basis_(basis), factory_(std::move(factory)), chain_(study) {}
 
-ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw& draw) {
+ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw& draw,
+                                                           const StepObserver& observer) {
   DiagnosedLoop result;
-  result.loop.trajectory = simulate_experiment(study_, draw, factory_);
+  result.loop.trajectory = simulate_experiment(study_, draw, factory_, observer);
   const Trajectory& loop = result.loop.trajectory;
   result.status = experiment_status(loop.status);
   result.loop.y_sim =
@@ -75,16 +76,16 @@ ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw&
   return result;
 }
 
-ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store) {
+ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, const StepObserver& observer) {
   ExperimentRecord record;
   record.draw = draw_experiment(study_, index);
 
-  DiagnosedLoop main = run_loop(record.draw);
+  DiagnosedLoop main = run_loop(record.draw, observer);
   record.status = main.status;
   record.solver = main.loop.trajectory.solver;
   if (record.draw.kind == ExperimentKind::mpm_ud && record.status == ExperimentStatus::ok) {
-    const DiagnosedLoop mpm_alone = run_loop(record.draw.mismatch_alone());
-    const DiagnosedLoop ud_alone = run_loop(record.draw.disturbance_alone());
+    const DiagnosedLoop mpm_alone = run_loop(record.draw.mismatch_alone(), observer);
+    const DiagnosedLoop ud_alone = run_loop(record.draw.disturbance_alone(), observer);
     for (const DiagnosedLoop* part : {&mpm_alone, &ud_alone}) {
       record.solver.add(part->loop.trajectory.solver);
       record.status = std::max(record.status, part->status);

@@ -62,8 +62,9 @@ class ExperimentRunner {
   /// `study` and `basis` must outlive the runner; the basis case must have status ok.
   ExperimentRunner(const Study& study, const BasisCase& basis, QpSolverFactory factory);
 
-  /// Experiment `index`, with its loop record when the policy asks for it.
-  ExperimentRecord run(std::int64_t index, StorePolicy store);
+  /// Experiment `index`, with its loop record when the policy asks for it. `observer` sees each step of each
+  /// of its loops.
+  ExperimentRecord run(std::int64_t index, StorePolicy store, const StepObserver& observer = {});
 
  private:
   struct DiagnosedLoop {
@@ -72,7 +73,7 @@ class ExperimentRunner {
     LoopRecord loop;
   };
 
-  DiagnosedLoop run_loop(const ExperimentDraw& draw);
+  DiagnosedLoop run_loop(const ExperimentDraw& draw, const StepObserver& observer);
 
   const Study& study_;
   const BasisCase& basis_;

@@ -1,15 +1,16 @@
 #include "bench/campaign_runner.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <tuple>
 #include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "bench/record_bytes.hpp"
+#include "bench/experiment_execution.hpp"
 #include "bench/version.hpp"
-#include "bench/worker_pool.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
@@ -21,41 +22,58 @@ void require_health(const BasisCase& basis, const CampaignOptions& options) {
   throw UnhealthyBasis("the basis case of the study fails its self-check: " + basis.explanation);
 }
 
-ExperimentRecord lost_record(const Study& study, std::int64_t index, std::string why) {
-  ExperimentRecord record;
-  record.draw = draw_experiment(study, index);
-  record.status = ExperimentStatus::failed;
-  record.message = std::move(why);
-  return record;
+bool is_thread_safe(const std::string& solver) {
+  return solver == "auto" || solver == "active-set";
+}
+
+bool runs_in_threads(const CampaignOptions& options) {
+  const bool safe = is_thread_safe(options.solver);
+  if (options.parallel == Parallel::threads && !safe)
+    throw InputError("parallel", fmt::format("threads for the solver {}", options.solver),
+                     "processes, or one of the solvers auto and active-set");
+  return safe && options.parallel != Parallel::processes;
+}
+
+void require_options(const CampaignOptions& options, std::int64_t count) {
+  if (count < 1)
+    throw InputError("experiments", fmt::format("{}", count), "a whole number >= 1");
+  if (options.jobs < 1)
+    throw InputError("jobs", fmt::format("{}", options.jobs), "a whole number >= 1");
+  if (!(options.audit_share >= 0.0 && options.audit_share <= 1.0))
+    throw InputError("audit share", fmt::format("{}", options.audit_share), "a number from 0 to 1");
+}
+
+bool earlier(const AuditedStep& one, const AuditedStep& other) {
+  return std::tie(one.experiment, one.step) < std::tie(other.experiment, other.step);
 }
 
 }  // namespace
 
 Campaign run_campaign(Study study, const CampaignOptions& options) {
   const std::int64_t count = options.experiments.value_or(study.experiments.total());
-  if (count < 1)
-    throw InputError("experiments", fmt::format("{}", count), "a whole number >= 1");
-  if (options.jobs < 1)
-    throw InputError("jobs", fmt::format("{}", options.jobs), "a whole number >= 1");
+  require_options(options, count);
 
   const auto start = std::chrono::steady_clock::now();
   const QpSolverFactory factory = qp_solver_factory(options.solver);
+  const bool threads = runs_in_threads(options);
   Campaign campaign;
   campaign.study = std::move(study);
   campaign.basis = run_basis_case(campaign.study, factory);
   require_health(campaign.basis, options);
 
-  ExperimentRunner runner(campaign.study, campaign.basis, factory);
+  campaign.info.audit_share = options.solver == "auto" ? options.audit_share : 0.0;
+  const ExecutionPlan plan{campaign.study, campaign.basis, {options.solver, campaign.info.audit_share},
+                           options.store,  count,          options.jobs};
   campaign.records.resize(static_cast<std::size_t>(count));
-  run_in_workers(
-      count, options.jobs, [&](std::int64_t index) { return to_bytes(runner.run(index, options.store)); },
-      [&](TaskResult result) {
-        ExperimentRecord& record = campaign.records[static_cast<std::size_t>(result.index)];
-        record = result.crashed ? lost_record(campaign.study, result.index, std::move(result.bytes))
-                                : record_from_bytes(result.bytes);
-        if (options.on_done)
-          options.on_done(record);
-      });
+  (threads ? execute_in_threads : execute_in_processes)(plan, [&](ExperimentOutcome outcome) {
+    ExperimentRecord& record = campaign.records[static_cast<std::size_t>(outcome.record.draw.index)];
+    record = std::move(outcome.record);
+    campaign.audit.insert(campaign.audit.end(), outcome.audited.begin(), outcome.audited.end());
+    campaign.info.audit_seconds += outcome.audit_seconds;
+    if (options.on_done)
+      options.on_done(record);
+  });
+  std::sort(campaign.audit.begin(), campaign.audit.end(), earlier);
 
   campaign.info.mpmbench_version = mpmbench_version();
   campaign.info.git_sha = source_revision();

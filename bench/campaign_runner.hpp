@@ -11,11 +11,18 @@
 
 namespace mpm {
 
+/// What runs experiments at the same time. `by_solver`: threads for `auto` and `active-set`, whose
+/// experiments take milliseconds; processes for the others, because Ipopt with sequential MUMPS is not
+/// thread-safe.
+enum class Parallel { by_solver, threads, processes };
+
 /// How a campaign is run; none of it changes a number of the result but `experiments` and `solver`.
 struct CampaignOptions {
   std::optional<std::int64_t> experiments;  ///< the first N experiments instead of one full study
-  std::string solver = "ipopt";             ///< a name that qp_solver_factory knows
-  int jobs = 1;                             ///< worker processes
+  std::string solver = "auto";              ///< a name that qp_solver_factory knows
+  double audit_share = 0.001;               ///< share of the steps that Ipopt audits; with `auto` only
+  int jobs = 1;                             ///< how many experiments run at once
+  Parallel parallel = Parallel::by_solver;
   StorePolicy store = StorePolicy::flagged;
   bool allow_unhealthy_basis = false;  ///< run although the basis case fails its self-check
   /// Called after each experiment that is done, in the order of completion; may be empty.
@@ -28,12 +35,13 @@ class UnhealthyBasis : public InputError {
   using InputError::InputError;
 };
 
-/// Runs the basis case, checks it, and then the experiments in worker processes. The records stand in the
-/// order of their index; an experiment whose worker died is marked `failed` and the campaign goes on. The
-/// result is the same for any number of jobs.
+/// Runs the basis case, checks it, and then the experiments. The records stand in the order of their index;
+/// an experiment whose worker process died is marked `failed` and the campaign goes on. Records and audit are
+/// the same for any number of jobs, in threads and in processes.
 ///
-/// Throws InputError for options that make no campaign, UnhealthyBasis as above (or, when the basis case does
-/// not even run through, in any case), std::system_error when no worker process can be made.
+/// Throws InputError for options that make no campaign (threads for a solver that is not thread-safe),
+/// UnhealthyBasis as above (or, when the basis case does not even run through, in any case),
+/// std::system_error when no worker process can be made.
 Campaign run_campaign(Study study, const CampaignOptions& options);
 
 }  // namespace mpm

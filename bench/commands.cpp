@@ -58,6 +58,8 @@ ExitCode run(const RunCommand& command, const std::string& command_line) {
   options.experiments = command.experiments;
   options.solver = command.solver;
   options.jobs = command.jobs;
+  options.parallel = command.parallel;
+  options.audit_share = command.audit_share;
   options.store = command.store;
   options.allow_unhealthy_basis = command.allow_unhealthy_basis;
   Progress progress(command.experiments.value_or(study.experiments.total()),

@@ -21,9 +21,21 @@ void add_run(CLI::App& app, RunCommand& run) {
   app.add_option("--experiments", run.experiments, "Run the first N experiments; any N keeps the proportions")
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", run.seed, "Master seed instead of the study's");
-  app.add_option("--jobs", run.jobs, "Worker processes")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--jobs", run.jobs, "How many experiments run at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("--solver", run.solver, "QP solver")
       ->check(CLI::IsMember(qp_solver_names()))
+      ->capture_default_str();
+  const std::map<std::string, Parallel> ways{
+      {"by-solver", Parallel::by_solver}, {"threads", Parallel::threads}, {"processes", Parallel::processes}};
+  app.add_option("--parallel", run.parallel,
+                 "Run experiments in threads (auto, active-set only) or in worker processes (all solvers)")
+      ->transform(CLI::CheckedTransformer(ways))
+      ->default_str("by-solver");
+  app.add_option("--audit", run.audit_share,
+                 "Share of the steps whose problems Ipopt solves once more, with the solver auto")
+      ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   const std::map<std::string, StorePolicy> policies{
       {"none", StorePolicy::none}, {"flagged", StorePolicy::flagged}, {"all", StorePolicy::all}};

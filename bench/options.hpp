@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "analysis/experiment.hpp"
+#include "bench/campaign_runner.hpp"
 
 namespace mpm {
 
@@ -16,7 +17,9 @@ struct RunCommand {
   std::optional<std::int64_t> experiments;
   std::optional<std::uint64_t> seed;
   int jobs = 1;
-  std::string solver = "ipopt";
+  std::string solver = "auto";
+  Parallel parallel = Parallel::by_solver;
+  double audit_share = 0.001;
   StorePolicy store = StorePolicy::flagged;
   bool allow_unhealthy_basis = false;
   bool quiet = false;
@@ -40,7 +43,7 @@ struct SweepCommand {
   std::string output;
   std::optional<std::int64_t> experiments;
   int jobs = 1;
-  std::string solver = "active-set";
+  std::string solver = "auto";
   bool quiet = false;
 };
 

@@ -1,6 +1,7 @@
 #include "bench/worker_pool.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -20,8 +21,8 @@
 namespace mpm {
 namespace {
 
-/// Header of an answer: whether it is one, and its length.
-struct AnswerHeader {
+/// Header of a message: its length and, for an answer, whether it is one.
+struct Header {
   std::int64_t failed;
   std::int64_t size;
 };
@@ -54,29 +55,44 @@ bool receive_all(int socket, void* data, std::size_t size) {
   return true;
 }
 
-[[noreturn]] void work_until_closed(int socket, const std::function<std::string(std::int64_t)>& work) {
-  std::int64_t index = 0;
-  while (receive_all(socket, &index, sizeof index)) {
-    AnswerHeader header{0, 0};
-    std::string bytes;
+bool send_message(int socket, const std::string& bytes, bool failed) {
+  const Header header{failed ? 1 : 0, static_cast<std::int64_t>(bytes.size())};
+  return send_all(socket, &header, sizeof header) && send_all(socket, bytes.data(), bytes.size());
+}
+
+bool receive_message(int socket, std::string& bytes, bool& failed) {
+  Header header{};
+  if (!receive_all(socket, &header, sizeof header))
+    return false;
+  failed = header.failed != 0;
+  bytes.resize(static_cast<std::size_t>(header.size));
+  return receive_all(socket, bytes.data(), bytes.size());
+}
+
+[[noreturn]] void work_until_closed(int socket, const WorkerPool::Work& work) {
+  std::string request, answer;
+  bool failed = false;
+  while (receive_message(socket, request, failed)) {
     try {
-      bytes = work(index);
+      answer = work(request);
+      failed = false;
     } catch (const std::exception& error) {
-      header.failed = 1;
-      bytes = error.what();
+      answer = error.what();
+      failed = true;
     }
-    header.size = static_cast<std::int64_t>(bytes.size());
-    if (!send_all(socket, &header, sizeof header) || !send_all(socket, bytes.data(), bytes.size()))
+    if (!send_message(socket, answer, failed))
       break;
   }
   // Not exit(): destructors and buffers belong to the parent.
   ::_exit(0);
 }
 
+}  // namespace
+
 /// One worker process and the parent's end of its socket.
-class Worker {
+class WorkerPool::Worker {
  public:
-  Worker(const std::function<std::string(std::int64_t)>& work, const std::vector<Worker>& siblings) {
+  Worker(const Work& work, const std::vector<std::unique_ptr<Worker>>& siblings) {
     int ends[2];
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
       throw std::system_error(errno, std::generic_category(), "no socket for a worker process");
@@ -93,21 +109,18 @@ class Worker {
       if (::getppid() != parent)
         ::_exit(0);  // the parent died before the line above
       ::close(ends[0]);
-      for (const Worker& sibling : siblings)
-        ::close(sibling.socket_);
+      for (const auto& sibling : siblings)
+        ::close(sibling->socket_);
       work_until_closed(ends[1], work);
     }
     ::close(ends[1]);
     socket_ = ends[0];
   }
-
-  Worker(Worker&& other) noexcept
-      : pid_(std::exchange(other.pid_, -1)), socket_(std::exchange(other.socket_, -1)), task_(other.task_) {}
-  Worker& operator=(Worker&&) = delete;
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
 
   ~Worker() {
-    if (socket_ >= 0)
-      ::close(socket_);
+    ::close(socket_);
     if (pid_ <= 0)
       return;
     ::kill(pid_, SIGKILL);  // idle, or given up: there is nothing it could still finish
@@ -115,30 +128,29 @@ class Worker {
     }
   }
 
-  bool start(std::int64_t index) {
-    task_ = index;
-    return send_all(socket_, &index, sizeof index);
+  /// A worker that is gone shows when its answer is read.
+  void start(std::int64_t task, const std::string& request) {
+    task_ = task;
+    send_message(socket_, request, false);
   }
 
   /// The answer to the task under way; blocks until it is whole.
   TaskResult finish() {
-    TaskResult result{task_, true, {}};
-    AnswerHeader header{};
-    if (receive_all(socket_, &header, sizeof header)) {
-      result.bytes.resize(static_cast<std::size_t>(header.size));
-      if (receive_all(socket_, result.bytes.data(), result.bytes.size())) {
-        result.crashed = header.failed != 0;
-        return result;
-      }
+    TaskResult result{std::exchange(task_, kNoTask), true, {}};
+    if (!receive_message(socket_, result.bytes, result.crashed)) {
+      result.crashed = true;
+      result.bytes = how_it_ended();
     }
-    result.bytes = how_it_ended();
     return result;
   }
 
+  bool idle() const { return task_ == kNoTask; }
   int socket() const { return socket_; }
   bool alive() const { return pid_ > 0; }
 
  private:
+  static constexpr std::int64_t kNoTask = -1;
+
   std::string how_it_ended() {
     int status = 0;
     while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
@@ -151,61 +163,54 @@ class Worker {
 
   pid_t pid_ = -1;
   int socket_ = -1;
-  std::int64_t task_ = -1;
+  std::int64_t task_ = kNoTask;
 };
 
-}  // namespace
+WorkerPool::WorkerPool(int jobs, Work work) : work_(std::move(work)) {
+  const auto wanted = static_cast<std::size_t>(std::max(jobs, 1));
+  workers_.reserve(wanted);
+  while (workers_.size() < wanted)
+    workers_.push_back(std::make_unique<Worker>(work_, workers_));
+}
 
-void run_in_workers(std::int64_t count, int jobs, const std::function<std::string(std::int64_t)>& work,
-                    const std::function<void(TaskResult)>& deliver) {
-  std::vector<Worker> workers;
-  std::int64_t next = 0;
-  std::int64_t delivered = 0;
-  const auto hand_out = [&](Worker& worker) {
-    if (next < count)
-      worker.start(next++);  // a worker that is gone shows when its answer is read
-  };
-  const auto wanted = static_cast<std::size_t>(std::min<std::int64_t>(std::max(jobs, 1), count));
-  workers.reserve(wanted);
-  while (workers.size() < wanted) {
-    workers.emplace_back(work, workers);
-    hand_out(workers.back());
-  }
+WorkerPool::~WorkerPool() = default;
 
-  std::vector<pollfd> watched;
-  while (delivered < count) {
-    watched.clear();
-    for (const Worker& worker : workers)
-      watched.push_back({worker.socket(), POLLIN, 0});
-    if (::poll(watched.data(), watched.size(), -1) < 0) {
-      if (errno == EINTR)
-        continue;
+bool WorkerPool::has_idle() const {
+  return std::any_of(workers_.begin(), workers_.end(), [](const auto& worker) { return worker->idle(); });
+}
+
+bool WorkerPool::has_busy() const {
+  return std::any_of(workers_.begin(), workers_.end(), [](const auto& worker) { return !worker->idle(); });
+}
+
+void WorkerPool::start(std::int64_t id, const std::string& request) {
+  const auto idle =
+      std::find_if(workers_.begin(), workers_.end(), [](const auto& worker) { return worker->idle(); });
+  assert(idle != workers_.end());
+  (*idle)->start(id, request);
+}
+
+TaskResult WorkerPool::wait() {
+  assert(has_busy());
+  std::vector<pollfd> watched(workers_.size());
+  for (std::size_t w = 0; w < workers_.size(); ++w)  // poll() passes over negative descriptors
+    watched[w] = {workers_[w]->idle() ? -1 : workers_[w]->socket(), POLLIN, 0};
+  while (::poll(watched.data(), watched.size(), -1) < 0)
+    if (errno != EINTR)
       throw std::system_error(errno, std::generic_category(), "waiting for worker processes");
-    }
-    for (std::size_t w = 0; w < watched.size(); ++w) {
-      if (watched[w].revents == 0)
-        continue;
-      TaskResult result = workers[w].finish();
-      if (!workers[w].alive()) {
-        std::vector<Worker> kept;
-        kept.reserve(wanted);
-        for (std::size_t i = 0; i < workers.size(); ++i)
-          if (i != w)
-            kept.push_back(std::move(workers[i]));
-        workers = std::move(kept);
-        if (next < count)
-          workers.emplace_back(work, workers);
-        if (next < count)
-          hand_out(workers.back());
-        ++delivered;
-        deliver(std::move(result));
-        break;  // positions have changed: watch anew
-      }
-      hand_out(workers[w]);
-      ++delivered;
-      deliver(std::move(result));
-    }
+  std::size_t ready = 0;
+  while (watched[ready].revents == 0)
+    ++ready;
+  return finish(ready);
+}
+
+TaskResult WorkerPool::finish(std::size_t position) {
+  TaskResult result = workers_[position]->finish();
+  if (!workers_[position]->alive()) {
+    workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(position));
+    workers_.push_back(std::make_unique<Worker>(work_, workers_));
   }
+  return result;
 }
 
 }  // namespace mpm

@@ -2,30 +2,52 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace mpm {
 
 /// What became of one task.
 struct TaskResult {
-  std::int64_t index;
+  std::int64_t id;
   bool crashed;       ///< the worker process ended before it answered
   std::string bytes;  ///< the answer, or what is known of the end of the worker
 };
 
-/// Runs tasks 0 <= index < count in `jobs` worker processes and hands every result to `deliver`, in the order
-/// in which the results arrive.
+/// Worker processes that answer requests, each one at a time.
 ///
 /// Processes and not threads, because Ipopt with sequential MUMPS must not run in two threads of one process.
-/// The workers are forked from the calling process, which must have no other thread at that time; they
-/// inherit its memory, so `work` may refer to anything that the caller has prepared. A worker that crashes
-/// costs the task it was working on and is replaced. Workers die with the calling process.
-///
-/// `work` runs in a worker; an exception in it is delivered as a crash with its text. `deliver` runs in the
-/// caller; when it throws, the workers are ended and the exception goes on.
-///
-/// Throws std::system_error when no process or socket can be made.
-void run_in_workers(std::int64_t count, int jobs, const std::function<std::string(std::int64_t)>& work,
-                    const std::function<void(TaskResult)>& deliver);
+/// The workers are forked by the constructor from the calling process, which must have no other thread at
+/// that time; they inherit its memory, so `work` may refer to anything that the caller has prepared. A worker
+/// that crashes costs the task it was working on and is replaced. Workers die with the calling process.
+class WorkerPool {
+ public:
+  using Work = std::function<std::string(const std::string& request)>;
+
+  /// `work` runs in a worker; an exception in it is delivered as a crash with its text.
+  /// Throws std::system_error when no process or socket can be made.
+  WorkerPool(int jobs, Work work);
+  ~WorkerPool();  ///< ends the workers, whatever they are doing
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  bool has_idle() const;  ///< some worker has nothing to do
+  bool has_busy() const;  ///< some task is under way
+
+  /// Gives a request to an idle worker; there must be one. `id` comes back with the result.
+  void start(std::int64_t id, const std::string& request);
+
+  /// The next result, in the order in which they arrive; blocks. Some task must be under way.
+  TaskResult wait();
+
+ private:
+  class Worker;
+
+  TaskResult finish(std::size_t position);
+
+  Work work_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+};
 
 }  // namespace mpm

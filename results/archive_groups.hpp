@@ -37,6 +37,10 @@ void write_trajectories(Hdf5Group& root, const Campaign& campaign);
 void read_trajectories(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
                        const std::string& file);
 
+/// /audit: what the audit found; no such group without audited steps.
+void write_audit(Hdf5Group& root, const std::vector<AuditedStep>& audit);
+std::vector<AuditedStep> read_audit(const Hdf5Group& root, const std::string& file);
+
 /// /aggregate: all numbers of a StudyAggregate. They follow from the rest and are not read back.
 void write_aggregate(Hdf5Group& root, const Campaign& campaign);
 

@@ -54,6 +54,8 @@ void write_heading(Hdf5Group& root, const Campaign& campaign) {
       {"solver", info.solver},
       {"seconds", info.seconds},
       {"jobs", std::int32_t{info.jobs}},
+      {"audit_share", info.audit_share},
+      {"audit_seconds", info.audit_seconds},
       {"scenario", campaign.study.source}};
   for (const auto& [name, value] : list)
     root.write_attribute(name, value);
@@ -71,6 +73,8 @@ Campaign read_heading(const Hdf5Group& root, const std::string& file) {
   info.solver = root.attribute<std::string>("solver");
   info.seconds = root.attribute<double>("seconds");
   info.jobs = root.attribute<std::int32_t>("jobs");
+  info.audit_share = root.attribute<double>("audit_share");
+  info.audit_seconds = root.attribute<double>("audit_seconds");
   return campaign;
 }
 

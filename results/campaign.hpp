@@ -5,6 +5,7 @@
 
 #include "analysis/basis_case.hpp"
 #include "analysis/experiment.hpp"
+#include "scenarios/audit.hpp"
 #include "scenarios/study.hpp"
 
 namespace mpm {
@@ -16,8 +17,10 @@ struct CampaignInfo {
   std::string created;  ///< ISO 8601, UTC
   std::string command;
   std::string solver;
-  double seconds = 0.0;  ///< wall-clock time
-  int jobs = 1;          ///< worker processes
+  double seconds = 0.0;        ///< wall-clock time
+  int jobs = 1;                ///< experiments run at once
+  double audit_share = 0.0;    ///< share of the steps that were audited
+  double audit_seconds = 0.0;  ///< processor time of the audit
 };
 
 /// Everything that a run of a study leaves behind.
@@ -29,6 +32,7 @@ struct Campaign {
   CampaignInfo info;
   BasisCase basis;
   std::vector<ExperimentRecord> records;
+  std::vector<AuditedStep> audit;  ///< in the order of experiment and step
 };
 
 }  // namespace mpm

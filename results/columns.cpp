@@ -108,6 +108,15 @@ Access<Diagnosis, T> of_indicator() {
           [](Diagnosis& d, T value) { d.indicator.*member = value; }};
 }
 
+template <class T, auto problem, auto member>
+Access<AuditedStep, T> of_difference() {
+  return {[](const AuditedStep& step) { return static_cast<T>((step.*problem).*member); },
+          [](AuditedStep& step, T value) {
+            (step.*problem).*member =
+                static_cast<std::remove_cvref_t<decltype((step.*problem).*member)>>(value);
+          }};
+}
+
 }  // namespace
 
 std::vector<Column<ExperimentRecord>> draw_columns(const Study& study) {
@@ -190,8 +199,37 @@ std::vector<Column<SolverStatistics>> solver_columns() {
            plain<std::int64_t, &SolverStatistics::steps, SolverStatistics>()},
           {{"solver_iterations", "number of iterations of the solver"},
            plain<std::int64_t, &SolverStatistics::iterations, SolverStatistics>()},
+          {{"solver_fallbacks",
+            "number of optimisation problems that Ipopt had to answer in place of the "
+            "active-set method",
+            "1", "0 unless the solver is auto"},
+           plain<std::int64_t, &SolverStatistics::fallbacks, SolverStatistics>()},
           {{"kkt_residual_max", "largest KKT residual of a solution"},
            plain<double, &SolverStatistics::largest_kkt_residual, SolverStatistics>()}};
+}
+
+std::vector<Column<AuditedStep>> audit_columns() {
+  const std::string no_answer = "NaN: one of the two has no answer";
+  return {{{"experiment", "index of the experiment in the study"},
+           plain<std::int64_t, &AuditedStep::experiment, AuditedStep>()},
+          {{"step", "step of the controller, counted over all loops of the experiment"},
+           plain<std::int64_t, &AuditedStep::step, AuditedStep>()},
+          {{"target_same_status", "both solvers say the same of the target problem", "1", "", yes_no_flags()},
+           of_difference<std::int8_t, &AuditedStep::targets, &AuditDifference::same_status>()},
+          {{"target_difference", "largest difference of a target", "1", "in MV units; " + no_answer},
+           of_difference<double, &AuditedStep::targets, &AuditDifference::x>()},
+          {{"target_objective_difference", "relative difference of the objectives of the target problem", "1",
+            no_answer},
+           of_difference<double, &AuditedStep::targets, &AuditDifference::objective>()},
+          {{"move_same_status", "both solvers say the same of the MPC problem", "1", "", yes_no_flags()},
+           of_difference<std::int8_t, &AuditedStep::moves, &AuditDifference::same_status>()},
+          {{"move_difference", "largest difference of a planned move", "1", "in MV units; " + no_answer},
+           of_difference<double, &AuditedStep::moves, &AuditDifference::x>()},
+          {{"move_objective_difference", "relative difference of the objectives of the MPC problem", "1",
+            no_answer},
+           of_difference<double, &AuditedStep::moves, &AuditDifference::objective>()},
+          {{"reference_kkt_residual", "larger KKT residual of the two answers of Ipopt"},
+           plain<double, &AuditedStep::reference_kkt_residual, AuditedStep>()}};
 }
 
 std::vector<Column<Trajectory>> loop_columns() {

@@ -9,6 +9,7 @@
 
 #include "analysis/experiment.hpp"
 #include "results/variable_text.hpp"
+#include "scenarios/audit.hpp"
 
 namespace mpm {
 
@@ -53,6 +54,8 @@ std::vector<Column<Diagnosis>> verdict_columns(const Study& study);
 std::vector<Column<ExperimentRecord>> dominance_columns();
 /// How hard the optimisation problems were, and how well they were solved.
 std::vector<Column<SolverStatistics>> solver_columns();
+/// What the audit of a step found.
+std::vector<Column<AuditedStep>> audit_columns();
 /// How a closed loop ended.
 std::vector<Column<Trajectory>> loop_columns();
 /// Everything that was recorded in a closed loop.

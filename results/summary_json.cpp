@@ -77,6 +77,17 @@ Json dominance_json(const std::vector<DominanceBin>& bins) {
   return list;
 }
 
+Json audit_json(const SummaryParts& parts, const CampaignInfo& info) {
+  return {{"share", info.audit_share},
+          {"steps", parts.audit.steps},
+          {"disagreements", parts.audit.disagreements},
+          {"largest_target", parts.audit.largest_target},
+          {"largest_move", parts.audit.largest_move},
+          {"largest_objective", parts.audit.largest_objective},
+          {"seconds", info.audit_seconds},
+          {"fallbacks", parts.fallbacks}};
+}
+
 Json failures_json(const std::vector<const ExperimentRecord*>& failed) {
   Json list = Json::array();
   for (const ExperimentRecord* record : failed)
@@ -110,6 +121,7 @@ std::string summary_json(const Campaign& campaign) {
                      {"confidence", campaign.study.aggregate.confidence},
                      {"aggregates", aggregates_json(parts.values)},
                      {"dominance", dominance_json(total.dominance)},
+                     {"audit", audit_json(parts, campaign.info)},
                      {"failures", failures_json(parts.failed)},
                      {"wrong_verdicts", wrong_json(parts.wrong)}};
   return summary.dump(2) + "\n";

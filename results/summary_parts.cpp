@@ -31,7 +31,9 @@ SummaryParts summary_parts(const Campaign& campaign) {
     const double reported = reference_value(campaign.study, value.name);
     parts.values.push_back({std::move(value), reported});
   }
+  parts.audit = summarise(campaign.audit);
   for (const ExperimentRecord& record : campaign.records) {
+    parts.fallbacks += record.solver.fallbacks;
     if (record.status == ExperimentStatus::failed)
       parts.failed.push_back(&record);
     if (record.wrong())

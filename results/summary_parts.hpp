@@ -21,6 +21,8 @@ struct SummaryValue {
 struct SummaryParts {
   StudyAggregate aggregate;
   std::vector<SummaryValue> values;
+  AuditSummary audit;
+  std::int64_t fallbacks = 0;  ///< problems that Ipopt answered in place of the active-set method
   std::vector<const ExperimentRecord*> failed;
   std::vector<const ExperimentRecord*> wrong;  ///< verdicts, ExperimentRecord::wrong()
 };

@@ -61,7 +61,23 @@ class Text {
   std::string text_;
 };
 
-void add_heading(Text& text, const Campaign& campaign, const StudyAggregate& aggregate) {
+std::string audit_sentence(const SummaryParts& parts, const CampaignInfo& info) {
+  const AuditSummary& audit = parts.audit;
+  const std::string fallbacks =
+      parts.fallbacks == 0 ? "no problem fell back to Ipopt"
+                           : fmt::format("{} fell back to Ipopt",
+                                         plural(static_cast<std::size_t>(parts.fallbacks), "problem"));
+  if (audit.steps == 0)
+    return fallbacks + "; no step audited";
+  return fmt::format(
+      "{}; {} also solved by Ipopt: {} with another status, moves differ by at most {:.1e}, targets by "
+      "{:.1e}, objectives by {:.1e}; {:.1f} s of processor time",
+      fallbacks, plural(static_cast<std::size_t>(audit.steps), "step"), audit.disagreements,
+      audit.largest_move, audit.largest_target, audit.largest_objective, info.audit_seconds);
+}
+
+void add_heading(Text& text, const Campaign& campaign, const SummaryParts& parts) {
+  const StudyAggregate& aggregate = parts.aggregate;
   const Study& study = campaign.study;
   const PlantModel& plant = study.plant;
   const CampaignInfo& info = campaign.info;
@@ -83,6 +99,8 @@ void add_heading(Text& text, const Campaign& campaign, const StudyAggregate& agg
                                     info.git_sha.empty() ? "unknown revision" : info.git_sha, info.solver));
   text.entry("run", fmt::format("{}, {:.1f} s with {}", info.created, info.seconds,
                                 plural(static_cast<std::size_t>(std::max(info.jobs, 0)), "job")));
+  if (info.solver == "auto")
+    text.entry("audit", audit_sentence(parts, info));
   text.entry("self-check",
              fmt::format("{}: {}", campaign.basis.healthy ? "passed" : "FAILED", campaign.basis.explanation));
 }
@@ -180,7 +198,7 @@ void add_wrong(Text& text, const Study& study, const std::vector<const Experimen
 std::string summary_text(const Campaign& campaign, const std::string& file) {
   const SummaryParts parts = summary_parts(campaign);
   Text text;
-  add_heading(text, campaign, parts.aggregate);
+  add_heading(text, campaign, parts);
   add_compared(text, campaign.study, parts.values);
   add_others(text, campaign.study, parts.values);
   add_dominance(text, campaign.study, parts.aggregate.dominance);

@@ -22,9 +22,9 @@ constexpr std::array<Column, 9> kColumns{{
     {"located MPM+UD, %", "mpm_ud.located", true},
     {"MPM recognised, %", "mpm.source_recognised", true},
     {"UD recognised, %", "ud.source_recognised", true},
-    {"R² MPM", "mpm.r_squared", false},
-    {"R² UD", "ud.r_squared", false},
-    {"R² MPM+UD", "mpm_ud.r_squared", false},
+    {"R^2 MPM", "mpm.r_squared", false},
+    {"R^2 UD", "ud.r_squared", false},
+    {"R^2 MPM+UD", "mpm_ud.r_squared", false},
 }};
 
 std::string cell(const Column& column, const std::vector<AggregateValue>& values) {

@@ -32,11 +32,12 @@ Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
 void SolverStatistics::add(const SolverStatistics& other) {
   steps += other.steps;
   iterations += other.iterations;
+  fallbacks += other.fallbacks;
   largest_kkt_residual = std::max(largest_kkt_residual, other.largest_kkt_residual);
 }
 
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model, const LoopSignals& signals,
-                           const QpSolverFactory& factory) {
+                           const QpSolverFactory& factory, const StepObserver& observer) {
   const Eigen::Index samples = study.simulation.samples;
   require_shape("measured disturbances", signals.d, study.md_count(), samples);
   require_shape("measurement noise", signals.noise, study.cv_count(), samples);
@@ -56,6 +57,9 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
     const ControlMove& move = controller.step(trajectory.y.col(k), signals.d.col(k));
     trajectory.solver.steps += 1;
     trajectory.solver.iterations += move.iterations;
+    trajectory.solver.fallbacks += move.fallbacks;
+    if (observer)
+      observer(controller);
     trajectory.status = move.status;
     if (move.status != ControlStatus::ok)
       break;
@@ -70,13 +74,13 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
   return trajectory;
 }
 
-Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw,
-                               const QpSolverFactory& factory) {
+Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
+                               const StepObserver& observer) {
   const TransferMatrix plant = draw.mismatch ? with_mismatch(study.plant.G, *draw.mismatch) : study.plant.G;
   return run_closed_loop(study, plant,
                          {measured_disturbances(study), measurement_noise(study, draw.index),
                           unmeasured_disturbances(study, draw)},
-                         factory);
+                         factory, observer);
 }
 
 }  // namespace mpm

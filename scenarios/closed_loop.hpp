@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include <Eigen/Core>
 
@@ -15,6 +16,7 @@ namespace mpm {
 struct SolverStatistics {
   std::int64_t steps = 0;
   std::int64_t iterations = 0;
+  std::int64_t fallbacks = 0;  ///< problems whose answer is the reference's (CertifiedSolver)
   double largest_kkt_residual = 0.0;
 
   void add(const SolverStatistics& other);
@@ -42,14 +44,17 @@ struct LoopSignals {
   Eigen::MatrixXd y_d;    ///< unmeasured disturbances, added to the outputs, ny x N
 };
 
+/// Called after each step with the controller, whose two problems and answers it may look at.
+using StepObserver = std::function<void(const RangeMpc& controller)>;
+
 /// Runs the controller of the study on `plant` from the economic steady state of the nominal model at zero
 /// disturbances. Stops at the first sample whose problem is infeasible or cannot be solved.
 /// Throws InputError when a signal has not the shape that the study asks for.
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
-                           const QpSolverFactory& factory);
+                           const QpSolverFactory& factory, const StepObserver& observer = {});
 
 /// The closed loop of one experiment: its plant and its signals, from (study, draw) alone.
-Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw,
-                               const QpSolverFactory& factory);
+Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
+                               const StepObserver& observer = {});
 
 }  // namespace mpm

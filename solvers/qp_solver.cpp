@@ -9,6 +9,7 @@
 
 #include "plants/error.hpp"
 #include "solvers/active_set_solver.hpp"
+#include "solvers/certified_solver.hpp"
 #include "solvers/ipopt_solver.hpp"
 
 namespace mpm {
@@ -19,7 +20,11 @@ struct BackEnd {
   std::unique_ptr<QpSolver> (*make)(std::shared_ptr<const QpStructure>);
 };
 
-constexpr std::array<BackEnd, 3> kBackEnds{{
+constexpr std::array<BackEnd, 4> kBackEnds{{
+    {"auto",
+     [](std::shared_ptr<const QpStructure> structure) -> std::unique_ptr<QpSolver> {
+       return std::make_unique<CertifiedSolver>(std::move(structure));
+     }},
     {"active-set",
      [](std::shared_ptr<const QpStructure> structure) -> std::unique_ptr<QpSolver> {
        return std::make_unique<ActiveSetSolver>(std::move(structure), ActiveSetOptions{});
@@ -50,6 +55,16 @@ const QpResult& QpSolver::solve(const QpData& data) {
                              ? kkt_residual(*structure_, data, result_, *workspace_)
                              : std::numeric_limits<double>::infinity();
   return result_;
+}
+
+const QpResult& QpSolver::solve_from(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& x) {
+  if (x.size() != structure_->variable_count())
+    throw InputError("guess", fmt::format("{} numbers", x.size()),
+                     fmt::format("{}", structure_->variable_count()));
+  reset();
+  result_.x = x;
+  result_.status = QpStatus::solved;
+  return solve(data);
 }
 
 void QpSolver::reset() {

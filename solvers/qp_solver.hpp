@@ -25,10 +25,17 @@ class QpSolver {
   /// status; bad input (see QpData::validate) throws InputError. Allocates nothing of its own.
   const QpResult& solve(const QpData& data);
 
+  /// The same, from the guess `x` (n) and not from the last answer. A back end that starts from a set of
+  /// active limits rather than a point passes over it.
+  const QpResult& solve_from(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& x);
+
   /// Forgets the warm start, so that the next answer depends on its problem alone.
   void reset();
 
   const QpStructure& structure() const { return *structure_; }
+
+  /// The answer of the last solve.
+  const QpResult& result() const { return result_; }
 
  private:
   /// Fills status, x, slack, multipliers and iterations of `result`, which holds the previous answer.
@@ -38,6 +45,14 @@ class QpSolver {
   std::shared_ptr<const QpStructure> structure_;
   QpResult result_;
   std::unique_ptr<KktWorkspace> workspace_;
+};
+
+/// A problem as a controller met it, and the answer it got. The parts belong to the controller and stay valid
+/// until its next step.
+struct SolvedQp {
+  const QpStructure& structure;
+  const QpData& data;
+  const QpResult& result;
 };
 
 /// Makes a solver for a structure: how a controller is given its back end.

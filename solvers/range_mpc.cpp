@@ -96,6 +96,7 @@ const ControlMove& RangeMpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   move_.status = ControlStatus::ok;
   move_.kkt_residual = 0.0;
   move_.iterations = 0;
+  move_.fallbacks = 0;
   if (solve_targets())
     solve_moves();
   input_.head(nu_) = move_.u;
@@ -109,6 +110,7 @@ bool RangeMpc::solve_targets() {
   const QpResult& target = targets_.solve(y_at_zero_);
   move_.status = control_status(target.status);
   move_.iterations += target.iterations;
+  move_.fallbacks += target.from_reference ? 1 : 0;
   if (move_.status != ControlStatus::ok)
     return false;
   move_.kkt_residual = target.kkt_residual;
@@ -122,6 +124,7 @@ void RangeMpc::solve_moves() {
   const QpResult& plan = solver_->solve(qp_.update(free_, input_.head(nu_), move_.u_target));
   move_.status = control_status(plan.status);
   move_.iterations += plan.iterations;
+  move_.fallbacks += plan.from_reference ? 1 : 0;
   if (move_.status != ControlStatus::ok)
     return;
   move_.kkt_residual = std::max(move_.kkt_residual, plan.kkt_residual);

@@ -29,6 +29,7 @@ struct ControlMove {
   Eigen::VectorXd u_target;   ///< targets of the optimizer, nu
   double kkt_residual = 0.0;  ///< the larger of the two problems' residuals
   int iterations = 0;         ///< of the solver, both problems
+  int fallbacks = 0;          ///< problems whose answer is the reference's, see CertifiedSolver
 };
 
 /// Model predictive control by ranges with a target optimizer above it (thesis 6.3, 6.4).
@@ -62,6 +63,11 @@ class RangeMpc {
 
   /// Output of the nominal model at the sample to come (y_sim of 6.4).
   const Eigen::VectorXd& model_output() const { return model_.output(); }
+
+  /// The two problems of the last step. When the targets have no answer, the moves are those of an earlier
+  /// step.
+  SolvedQp target_problem() const { return targets_.problem(); }
+  SolvedQp move_problem() const { return {solver_->structure(), qp_.data(), solver_->result()}; }
 
   /// Replaces the soft limits of the CVs, in the MPC and in the target optimizer.
   void set_cv_soft(const Limits& limits);

@@ -34,6 +34,9 @@ class RangeQp {
                        const Eigen::Ref<const Eigen::VectorXd>& previous,
                        const Eigen::Ref<const Eigen::VectorXd>& target);
 
+  /// The problem of the last update.
+  const QpData& data() const { return data_; }
+
   /// Replaces the soft limits of the CVs (ny each).
   void set_cv_soft(const Limits& limits) { cv_soft_ = limits; }
 

@@ -40,6 +40,9 @@ class TargetOptimizer {
 
   void reset() { solver_->reset(); }
 
+  /// The problem of the last solve.
+  SolvedQp problem() const { return {solver_->structure(), data_, solver_->result()}; }
+
  private:
   Limits cv_soft_;
   QpData data_;

@@ -21,13 +21,22 @@ def main(program, chapter6):
         assert "chapter6" in run("list").stdout
 
         archive = folder / "a.h5"
-        text = run("run", "chapter6", "-o", archive, "--experiments", 6, "--solver", "active-set").stdout
+        text = run("run", "chapter6", "-o", archive, "--experiments", 6).stdout
+        assert "no problem fell back to Ipopt" in text, text
         assert "measured" in text and "reported" in text, text
         assert run("summary", archive).stdout.splitlines()[-3:] == text.splitlines()[-3:]
         summary = json.loads(run("summary", archive, "--json").stdout)
         assert summary["experiments"] == 6 and summary["basis"]["healthy"], summary
         assert "bit-identical" in run("replay", archive, 3).stdout
         assert "allowed: 0 to 5" in run("replay", archive, 6, code=2).stderr
+
+        sweep = folder / "sweep.toml"
+        sweep.write_text('[sweep]\nname = "noise"\ntitle = "Noise"\nstudy = "chapter6"\n'
+                         '[[variant]]\nchoice = "noise"\nvalue = "less"\nset.simulation.noise_standard_deviation = 0.005\n')
+        table = run("sweep", sweep, "-o", folder / "swept", "--experiments", 2, "--quiet").stdout
+        assert "| noise | less |" in table and "as shipped" in table, table
+        assert sorted(p.name for p in (folder / "swept").iterdir()) == ["00.h5", "01.h5", "sweep.md"]
+        assert "bit-identical" in run("replay", folder / "swept" / "01.h5", 1).stdout
 
         # Bad input names file, line and key, and writes nothing.
         broken = folder / "broken.toml"
@@ -42,7 +51,7 @@ def main(program, chapter6):
         run("summary", broken, code=2)
         run("summary", folder / "none.h5", code=2)
         run("run", "chapter6", "-o", folder / "none" / "b.h5", code=3)
-        assert sorted(p.name for p in folder.iterdir()) == ["a.h5", "broken.toml", "weak.toml"]
+        assert sorted(p.name for p in folder.iterdir()) == ["a.h5", "broken.toml", "swept", "sweep.toml", "weak.toml"]
 
 
 if __name__ == "__main__":

@@ -15,7 +15,8 @@ Command parse(std::vector<const char*> words) {
 
 TEST_CASE("options: run with everything") {
   const Command command = parse({"run", "chapter6", "-o", "x.h5", "--experiments", "40", "--seed", "7",
-                                 "--jobs", "3", "--solver", "ipopt", "--store", "all", "--quiet"});
+                                 "--jobs", "3", "--solver", "ipopt", "--store", "all", "--quiet",
+                                 "--parallel", "processes", "--audit", "0.25"});
   const RunCommand& run = std::get<RunCommand>(command);
   CHECK(run.study == "chapter6");
   CHECK(run.experiments == 40);
@@ -23,6 +24,9 @@ TEST_CASE("options: run with everything") {
   CHECK(run.jobs == 3);
   CHECK(run.store == StorePolicy::all);
   CHECK(run.quiet);
+  CHECK(run.solver == "ipopt");
+  CHECK(run.parallel == Parallel::processes);
+  CHECK(run.audit_share == 0.25);
 }
 
 TEST_CASE("options: wrong usage has exit code 2, help has 0") {
@@ -32,6 +36,9 @@ TEST_CASE("options: wrong usage has exit code 2, help has 0") {
                                                     {"run", "chapter6", "-o", "x", "--jobs", "0"},
                                                     {"run", "chapter6", "-o", "x", "--experiments", "-4"},
                                                     {"run", "chapter6", "-o", "x", "--solver", "none"},
+                                                    {"run", "chapter6", "-o", "x", "--audit", "2"},
+                                                    {"run", "chapter6", "-o", "x", "--parallel", "both"},
+                                                    {"sweep", "chapter6"},
                                                     {"replay", "x.h5", "-1"}};
   for (const auto& words : wrong)
     CHECK(std::get<UsageText>(parse(words)).exit_code == 2);

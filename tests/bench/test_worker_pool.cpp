@@ -1,5 +1,8 @@
+#include <chrono>
+#include <functional>
 #include <map>
 #include <stdexcept>
+#include <string>
 
 #include <catch2/catch.hpp>
 #include <signal.h>
@@ -14,8 +17,17 @@ using namespace mpm;
 std::map<std::int64_t, TaskResult> run_all(std::int64_t count, int jobs,
                                            const std::function<std::string(std::int64_t)>& work) {
   std::map<std::int64_t, TaskResult> results;
-  run_in_workers(count, jobs, work,
-                 [&](TaskResult result) { results.emplace(result.index, std::move(result)); });
+  WorkerPool pool(jobs, [&work](const std::string& request) { return work(std::stoll(request)); });
+  std::int64_t next = 0;
+  while (next < count || pool.has_busy()) {
+    if (next < count && pool.has_idle()) {
+      pool.start(next, std::to_string(next));
+      ++next;
+      continue;
+    }
+    TaskResult result = pool.wait();
+    results.emplace(result.id, std::move(result));
+  }
   return results;
 }
 
@@ -51,11 +63,27 @@ TEST_CASE("worker pool: a killed worker costs its task alone") {
   CHECK(results.at(11).bytes == std::string(100000, 'l'));
 }
 
-TEST_CASE("worker pool: an exception in the caller ends the workers and goes on") {
-  CHECK_THROWS_AS(run_in_workers(
-                      5, 2, [](std::int64_t) { return std::string(); },
-                      [](TaskResult) { throw std::logic_error("stop"); }),
-                  std::logic_error);
+TEST_CASE("worker pool: long requests arrive whole") {
+  const std::string request(3000000, 'x');  // longer than a socket buffer
+  WorkerPool pool(1, [](const std::string& bytes) { return std::to_string(bytes.size()); });
+  pool.start(7, request);
+  const TaskResult result = pool.wait();
+  CHECK(result.id == 7);
+  CHECK(result.bytes == "3000000");
+}
+
+TEST_CASE("worker pool: its end ends a worker that is at work") {
+  const auto start = std::chrono::steady_clock::now();
+  {
+    WorkerPool pool(1, [](const std::string&) {
+      ::sleep(60);
+      return std::string();
+    });
+    pool.start(0, "");
+    CHECK(pool.has_busy());
+    CHECK_FALSE(pool.has_idle());
+  }
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(30));
 }
 
 }  // namespace

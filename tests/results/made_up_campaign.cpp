@@ -51,7 +51,7 @@ class Numbers {
 };
 
 SolverStatistics solver(Numbers& numbers) {
-  return {numbers.whole(), numbers.whole(), numbers.next()};
+  return {numbers.whole(), numbers.whole(), numbers.whole(), numbers.next()};
 }
 
 Diagnosis diagnosis(Numbers& numbers, Eigen::Index ny) {
@@ -105,6 +105,10 @@ ExperimentRecord record(Numbers& numbers, const Study& study, std::int64_t index
   return made;
 }
 
+AuditDifference difference(Numbers& numbers) {
+  return {numbers.index(2) == 1, numbers.next(), numbers.next()};
+}
+
 BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<ActiveLimit>& active) {
   const Eigen::Index ny = study.cv_count();
   const Eigen::Index samples = study.simulation.samples;
@@ -130,10 +134,14 @@ Campaign made_up_campaign() {
   Campaign campaign;
   campaign.study = parse_study(small_study() + "\n[aggregate]\nbootstrap_replications = 200\n", "small");
   campaign.study.seed = 18446744073709551615U;  // not the one in the text, and above the signed range
-  campaign.info = {"1.2.3", "abc+", "2015-04-01T12:00:00Z", "mpmbench run \xC3\xBC.toml", "ipopt", 0.1, 3};
+  campaign.info = {"1.2.3", "abc+", "2015-04-01T12:00:00Z", "mpmbench run \xC3\xBC.toml", "ipopt", 0.1, 3,
+                   0.25,    0.7};
   campaign.basis = basis_case(numbers, campaign.study, {{1, true}, {0, false}});
   for (std::int64_t index = 0; index < 40; ++index)
     campaign.records.push_back(record(numbers, campaign.study, index));
+  for (std::int64_t step = 0; step < 5; ++step)
+    campaign.audit.push_back(
+        {numbers.whole(), step, difference(numbers), difference(numbers), numbers.next()});
   return campaign;
 }
 

@@ -64,6 +64,25 @@ void check_same(const CampaignInfo& a, const CampaignInfo& b) {
   CHECK(a.solver == b.solver);
   CHECK(same_bits(a.seconds, b.seconds));
   CHECK(a.jobs == b.jobs);
+  CHECK(same_bits(a.audit_share, b.audit_share));
+  CHECK(same_bits(a.audit_seconds, b.audit_seconds));
+}
+
+void check_same(const AuditDifference& a, const AuditDifference& b) {
+  CHECK(a.same_status == b.same_status);
+  CHECK(same_bits(a.x, b.x));
+  CHECK(same_bits(a.objective, b.objective));
+}
+
+void check_same(const std::vector<AuditedStep>& a, const std::vector<AuditedStep>& b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i].experiment == b[i].experiment);
+    CHECK(a[i].step == b[i].step);
+    check_same(a[i].targets, b[i].targets);
+    check_same(a[i].moves, b[i].moves);
+    CHECK(same_bits(a[i].reference_kkt_residual, b[i].reference_kkt_residual));
+  }
 }
 
 void check_same(const Campaign& a, const Campaign& b) {
@@ -71,6 +90,7 @@ void check_same(const Campaign& a, const Campaign& b) {
   CHECK(a.study.seed == b.study.seed);
   check_same(a.info, b.info);
   check_same(a.basis, b.basis);
+  check_same(a.audit, b.audit);
   REQUIRE(a.records.size() == b.records.size());
   for (std::size_t i = 0; i < a.records.size(); ++i) {
     INFO("experiment " << i);

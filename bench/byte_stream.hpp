@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include <Eigen/Core>
+
+// Values as bytes, for the way between a process and its workers: both are the same program on the same
+// machine, so every number keeps its bits. One list of members serves both directions: transfer(stream,
+// value) writes a const value to a ByteWriter or reads one from a ByteReader.
+
+namespace mpm {
+
+class ByteWriter {
+ public:
+  void block(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+/// Throws std::runtime_error when the bytes do not suffice.
+class ByteReader {
+ public:
+  explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
+  void block(void* data, std::size_t size) {
+    if (size > bytes_.size())
+      throw std::runtime_error("message between processes: too few bytes");
+    if (size > 0)
+      std::memcpy(data, bytes_.data(), size);
+    bytes_.remove_prefix(size);
+  }
+  std::size_t left() const { return bytes_.size(); }
+  /// Throws std::runtime_error when bytes are left over.
+  void require_end() const {
+    if (!bytes_.empty())
+      throw std::runtime_error("message between processes: too many bytes");
+  }
+
+ private:
+  std::string_view bytes_;
+};
+
+template <class Stream, class Value>
+requires std::is_arithmetic_v<std::remove_const_t<Value>> || std::is_enum_v<std::remove_const_t<Value>>
+void transfer(Stream& stream, Value& value) {
+  stream.block(&value, sizeof value);
+}
+
+template <class Stream, class Text>
+requires std::is_same_v<std::remove_const_t<Text>, std::string>
+void transfer(Stream& stream, Text& text) {
+  std::size_t size = text.size();
+  stream.block(&size, sizeof size);
+  if constexpr (!std::is_const_v<Text>) {
+    if (size > stream.left())
+      throw std::runtime_error("message between processes: too few bytes");
+    text.resize(size);
+  }
+  stream.block(text.data(), size);
+}
+
+template <class Stream, class Matrix>
+requires std::is_base_of_v<Eigen::EigenBase<std::remove_const_t<Matrix>>, std::remove_const_t<Matrix>>
+void transfer(Stream& stream, Matrix& matrix) {
+  Eigen::Index shape[2] = {matrix.rows(), matrix.cols()};
+  stream.block(shape, sizeof shape);
+  if constexpr (!std::is_const_v<Matrix>) {
+    const std::size_t most = stream.left() / sizeof(double);
+    if (shape[0] < 0 || shape[1] < 0 ||
+        (shape[0] > 0 && static_cast<std::size_t>(shape[1]) > most / static_cast<std::size_t>(shape[0])))
+      throw std::runtime_error("message between processes: a matrix that does not fit");
+    matrix.resize(shape[0], shape[1]);
+  }
+  stream.block(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double));
+}
+
+/// All `values`, one after the other.
+template <class Stream, class... Values>
+void transfer_all(Stream& stream, Values&... values) {
+  (transfer(stream, values), ...);
+}
+
+}  // namespace mpm

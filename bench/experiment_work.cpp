@@ -1,0 +1,58 @@
+#include "bench/experiment_work.hpp"
+
+#include <ctime>
+#include <exception>
+#include <utility>
+
+namespace mpm {
+namespace {
+
+double processor_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+}  // namespace
+
+ExperimentWork::ExperimentWork(const Study& study, const BasisCase& basis, const SolverPlan& plan,
+                               StorePolicy store)
+    : study_(study), plan_(plan), store_(store), runner_(study, basis, qp_solver_factory(plan.solver)) {}
+
+ExperimentOutcome ExperimentWork::run(std::int64_t index) {
+  ExperimentOutcome outcome;
+  try {
+    if (plan_.audit_share > 0.0) {
+      AuditSampler sampler(study_.seed, index, plan_.audit_share);
+      outcome.record =
+          runner_.run(index, store_, [&](const RangeMpc& controller) { sampler.observe(controller); });
+      outcome.samples = sampler.take();
+    } else {
+      outcome.record = runner_.run(index, store_);
+    }
+  } catch (const std::exception& error) {
+    outcome = {};
+    outcome.record = lost_record(study_, index, error.what());
+  }
+  return outcome;
+}
+
+void ExperimentWork::audit(ExperimentOutcome& outcome) {
+  if (outcome.samples.empty())
+    return;
+  const double start = processor_seconds();
+  if (!auditor_)
+    auditor_.emplace(study_, qp_solver_factory("ipopt"));
+  for (const AuditSample& sample : outcome.samples)
+    outcome.audited.push_back(auditor_->check(sample));
+  outcome.samples.clear();
+  outcome.audit_seconds += processor_seconds() - start;
+}
+
+ExperimentRecord lost_record(const Study& study, std::int64_t index, std::string why) {
+  ExperimentRecord record;
+  record.draw = draw_experiment(study, index);
+  record.status = ExperimentStatus::failed;
+  record.message = std::move(why);
+  return record;
+}
+
+}  // namespace mpm

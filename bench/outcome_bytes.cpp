@@ -1,0 +1,64 @@
+#include "bench/outcome_bytes.hpp"
+
+#include "bench/byte_stream.hpp"
+#include "bench/record_bytes.hpp"
+
+namespace mpm {
+namespace {
+
+template <class Stream, class List, class Members>
+void transfer_list(Stream& stream, List& list, const Members& members) {
+  std::size_t size = list.size();
+  transfer(stream, size);
+  if constexpr (!std::is_const_v<List>) {
+    if (size > stream.left())  // each element has more than one byte
+      throw std::runtime_error("message between processes: a list that does not fit");
+    list.resize(size);
+  }
+  for (auto& element : list)
+    members(element);
+}
+
+template <class Stream, class Outcome>
+void transfer_audit(Stream& stream, Outcome& outcome) {
+  const auto all = [&stream](auto&... values) { transfer_all(stream, values...); };
+  const auto problem = [&](auto& p) {
+    all(p.data.gradient, p.data.lower, p.data.upper, p.data.hard_lower, p.data.hard_upper, p.data.soft_lower,
+        p.data.soft_upper, p.status, p.x, p.objective);
+  };
+  transfer_list(stream, outcome.samples, [&](auto& sample) {
+    all(sample.experiment, sample.step);
+    problem(sample.targets);
+    problem(sample.moves);
+  });
+  const auto difference = [&](auto& d) { all(d.same_status, d.x, d.objective); };
+  transfer_list(stream, outcome.audited, [&](auto& step) {
+    all(step.experiment, step.step, step.reference_kkt_residual);
+    difference(step.targets);
+    difference(step.moves);
+  });
+  all(outcome.audit_seconds);
+}
+
+}  // namespace
+
+std::string to_bytes(const ExperimentOutcome& outcome) {
+  ByteWriter writer;
+  const std::string record = to_bytes(outcome.record);
+  transfer(writer, record);
+  transfer_audit(writer, outcome);
+  return writer.take();
+}
+
+ExperimentOutcome outcome_from_bytes(std::string_view bytes) {
+  ByteReader reader(bytes);
+  ExperimentOutcome outcome;
+  std::string record;
+  transfer(reader, record);
+  outcome.record = record_from_bytes(record);
+  transfer_audit(reader, outcome);
+  reader.require_end();
+  return outcome;
+}
+
+}  // namespace mpm

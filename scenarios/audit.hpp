@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenarios/random_stream.hpp"
+#include "scenarios/study.hpp"
+#include "solvers/qp_solver.hpp"
+#include "solvers/range_mpc.hpp"
+
+namespace mpm {
+
+/// A problem and the answer to it that is to be checked.
+struct AuditedProblem {
+  QpData data;
+  QpStatus status = QpStatus::numerical_error;
+  Eigen::VectorXd x;
+  double objective = 0.0;
+};
+
+/// The two problems of one step of a controller.
+struct AuditSample {
+  std::int64_t experiment = 0;
+  std::int64_t step = 0;  ///< counted over all loops of the experiment
+  AuditedProblem targets, moves;
+};
+
+/// How one problem's answer compares with that of the reference.
+struct AuditDifference {
+  bool same_status = false;
+  double x = 0.0;          ///< largest difference of a variable, in MV units; NaN unless both are solved
+  double objective = 0.0;  ///< difference of the objectives, relative to max(1, |objective|); NaN likewise
+};
+
+/// What the audit of one step found.
+struct AuditedStep {
+  std::int64_t experiment = 0;
+  std::int64_t step = 0;
+  AuditDifference targets, moves;
+  double reference_kkt_residual = 0.0;  ///< the larger one of the reference's answers
+};
+
+/// What a whole audit found. The largest differences are 0 without audited steps.
+struct AuditSummary {
+  std::int64_t steps = 0;
+  std::int64_t disagreements = 0;  ///< steps with another status than the reference's, in either problem
+  double largest_target = 0.0;     ///< difference of a target, in MV units
+  double largest_move = 0.0;       ///< difference of a planned move, in MV units
+  double largest_objective = 0.0;  ///< relative, of either problem
+};
+
+AuditSummary summarise(std::span<const AuditedStep> steps);
+
+/// Picks the steps of one experiment that are audited: each with probability `share`, by the random stream
+/// `audit` of the experiment, so that the choice depends on nothing else.
+class AuditSampler {
+ public:
+  AuditSampler(std::uint64_t seed, std::int64_t experiment, double share);
+
+  /// To be called after each step (a StepObserver).
+  void observe(const RangeMpc& controller);
+
+  std::vector<AuditSample> take() { return std::move(samples_); }
+
+ private:
+  RandomStream stream_;
+  double share_;
+  std::int64_t experiment_;
+  std::int64_t step_ = 0;
+  std::vector<AuditSample> samples_;
+};
+
+/// Solves audited problems once more by a reference solver. It starts from the answer that it is to check, to
+/// save time, and knows nothing else of it; its own answer is certified by its own KKT residual.
+class Auditor {
+ public:
+  Auditor(const Study& study, const QpSolverFactory& reference);
+
+  AuditedStep check(const AuditSample& sample);
+
+ private:
+  std::unique_ptr<QpSolver> targets_, moves_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,34 @@
+#include "solvers/certified_solver.hpp"
+
+#include "solvers/ipopt_solver.hpp"
+
+namespace mpm {
+
+bool is_certified(const QpResult& result) {
+  return result.status == QpStatus::infeasible ||
+         (result.status == QpStatus::solved && result.kkt_residual <= kCertifiedKktResidual);
+}
+
+CertifiedSolver::CertifiedSolver(std::shared_ptr<const QpStructure> structure)
+    : QpSolver(structure), shared_structure_(structure), active_set_(std::move(structure), {}) {}
+
+CertifiedSolver::~CertifiedSolver() = default;
+
+void CertifiedSolver::do_reset() {
+  active_set_.reset();
+}
+
+void CertifiedSolver::do_solve(const QpData& data, QpResult& result) {
+  result = active_set_.solve(data);
+  if (is_certified(result))
+    return;
+  if (!reference_)
+    reference_ = std::make_unique<IpoptSolver>(shared_structure_, IpoptOptions{});
+  reference_->reset();  // the answer must not depend on which problem needed the reference before
+  const int iterations = result.iterations;
+  result = reference_->solve(data);
+  result.iterations += iterations;
+  result.from_reference = true;
+}
+
+}  // namespace mpm
