@@ -10,6 +10,7 @@
 #include "plants/error.hpp"
 #include "scenarios/study_file_keys.hpp"
 #include "scenarios/study_file_parts.hpp"
+#include "scenarios/toml_file.hpp"
 #include "scenarios/toml_text.hpp"
 #include "scenarios/toml_values.hpp"
 
@@ -71,7 +72,7 @@ Study parse_study(std::string_view text, const std::string& file_name) {
 }
 
 Study load_study(const std::filesystem::path& path) {
-  return parse_study(read_toml_text(path), path.string());
+  return parse_study(read_toml_file(path, "a study file"), path.string());
 }
 
 }  // namespace mpm

@@ -7,6 +7,7 @@
 #include "plants/error.hpp"
 #include "scenarios/study_file.hpp"
 #include "scenarios/study_library.hpp"
+#include "scenarios/toml_file.hpp"
 #include "scenarios/toml_table.hpp"
 #include "scenarios/toml_text.hpp"
 #include "scenarios/toml_values.hpp"
@@ -84,7 +85,7 @@ Study base_study(const TomlTable& heading, const fs::path& sweep_file) {
 
 Sweep load_sweep(const fs::path& path) {
   const std::string file_name = path.string();
-  const toml::table toml = parse_toml(read_toml_text(path), file_name);
+  const toml::table toml = parse_toml(read_toml_file(path, "a sweep file"), file_name);
   const TomlTable document(toml, file_name, {"sweep", "variant"});
   const TomlTable heading = document.table("sweep", {"name", "title", "study"});
   Sweep sweep;

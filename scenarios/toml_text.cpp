@@ -1,7 +1,6 @@
 #include "scenarios/toml_text.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 #include <fmt/format.h>
 
@@ -61,16 +60,6 @@ toml::table parse_toml(std::string_view text, const std::string& file_name) {
   } catch (const toml::parse_error& error) {
     refuse(file_name, error.source().begin.line, std::string(error.description()), "TOML 1.0");
   }
-}
-
-std::string read_toml_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text(kMaxTomlBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!file.is_open() || file.bad() || (file.gcount() == 0 && !file.eof()))
-    throw InputError(path.string(), "nothing that can be read", "a TOML file");
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return text;
 }
 
 std::string in_quotes(std::string_view text) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -18,10 +17,6 @@ inline constexpr std::size_t kMaxTomlBytes = std::size_t{1} << 20;
 /// parser's message), is longer than kMaxTomlBytes, or has so many dots on one line that keys could nest too
 /// deeply.
 toml::table parse_toml(std::string_view text, const std::string& file_name);
-
-/// The text of a file, at most one byte more than parse_toml() takes.
-/// Errors: InputError for a file that cannot be read.
-std::string read_toml_text(const std::filesystem::path& path);
 
 /// `text` in quotes, fit for one line of a message: shortened, and with '?' for what is no printable ASCII.
 std::string in_quotes(std::string_view text);

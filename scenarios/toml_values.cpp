@@ -92,6 +92,18 @@ std::int64_t read_whole_or(const TomlTable& table, std::string_view key, std::in
   return table.has(key) ? read_whole(table, key, low, high) : fallback;
 }
 
+bool read_flag_or(const TomlTable& table, std::string_view key, bool fallback) {
+  const toml::node* node = table.find(key);
+  if (node == nullptr) {
+    return fallback;
+  }
+  const toml::value<bool>* flag = node->as_boolean();
+  if (flag == nullptr) {
+    table.refuse(key, describe(*node), "true or false");
+  }
+  return flag->get();
+}
+
 std::string read_text(const TomlTable& table, std::string_view key) {
   const std::string allowed = "a text that is not empty";
   const toml::node& node = table.require(key, allowed);

@@ -29,6 +29,9 @@ std::int64_t read_whole(const TomlTable& table, std::string_view key, std::int64
 std::int64_t read_whole_or(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high,
                            std::int64_t fallback);
 
+/// true or false.
+bool read_flag_or(const TomlTable& table, std::string_view key, bool fallback);
+
 /// A text that is not empty.
 std::string read_text(const TomlTable& table, std::string_view key);
 std::string read_text_or(const TomlTable& table, std::string_view key, const std::string& fallback);

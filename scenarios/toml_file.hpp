@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace mpm {
+
+/// The text of a file, for parse_toml(): of one longer than kMaxTomlBytes only as much as shows that.
+/// `allowed` says what the file should be. Errors: InputError for a file that cannot be read.
+std::string read_toml_file(const std::filesystem::path& path, const std::string& allowed);
+
+}  // namespace mpm
