@@ -7,6 +7,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
+#include "analysis/verdict.hpp"
 #include "scenarios/random_stream.hpp"
 
 namespace mpm {
@@ -14,11 +15,6 @@ namespace {
 
 constexpr std::array<double, 5> kDominanceEdges{0.0, 0.3, 0.5, 0.7, 1.0};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-bool in_source_population(const Study& study, const ExperimentRecord& record) {
-  return record.status == ExperimentStatus::ok &&
-         (record.diagnosis.impactful || study.diagnosis.source_population == SourcePopulation::feasible);
-}
 
 /// Pairs (Ivar, Ivar_basis) of the CVs [first, last) of the feasible experiments, experiment by experiment.
 struct IvarPairs {
@@ -207,6 +203,10 @@ std::vector<AggregateValue> named_values(const StudyAggregate& aggregate) {
                       fmt::format("mean I_MPM at dominance {:g} to {:g}", bin.lower, bin.upper),
                       bin.i_mpm.mean, bin.i_mpm.mean_interval, bin.i_mpm.count});
   return values;
+}
+
+bool has_interval(std::string_view name) {
+  return !name.ends_with(".i_mpm_min") && !name.ends_with(".i_mpm_max");
 }
 
 }  // namespace mpm

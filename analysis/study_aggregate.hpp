@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/confusion_matrix.hpp"
@@ -75,5 +76,8 @@ StudyAggregate aggregate(const Study& study, std::span<const ExperimentRecord> r
 /// The headline numbers by name, e.g. `infeasible`, `mpm.r_squared`, `ud.source_recognised`,
 /// `mpm_ud.located`.
 std::vector<AggregateValue> named_values(const StudyAggregate& aggregate);
+
+/// Can the number of this name have an interval? The least and the largest I_MPM never have one.
+bool has_interval(std::string_view name);
 
 }  // namespace mpm

@@ -4,43 +4,23 @@
 
 #include "analysis/study_aggregate.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/analysis/made_up_record.hpp"
 
 namespace {
 
 using namespace mpm;
-
-/// An experiment with both indices 1 but for `cv`, which has Ivar 2 and is located.
-ExperimentRecord made_up(std::int64_t index, ExperimentKind kind, Eigen::Index cv, double i_mpm) {
-  ExperimentRecord record;
-  record.draw.index = index;
-  record.draw.kind = kind;
-  if (kind != ExperimentKind::ud)
-    record.draw.mismatch = Mismatch{cv, 0, MismatchParameter::gain, 0.5};
-  if (kind != ExperimentKind::mpm)
-    record.draw.disturbance = Disturbance{cv, 1.0, 50.0};
-  record.status = ExperimentStatus::ok;
-  Diagnosis& d = record.diagnosis;
-  d.ivar = d.ivar_diag = Eigen::VectorXd::Ones(7);
-  d.ivar(cv) = d.ivar_diag(cv) = 2.0 + 0.1 * static_cast<double>(index);
-  d.ivar_basis = (2.0 * d.ivar.array() + 1.0).matrix();  // an exact line of slope 2
-  d.impactful = true;
-  d.predicted_cv = cv;
-  d.indicator.i_mpm = i_mpm;
-  d.predicted_source = i_mpm > 0.1 ? ExperimentKind::mpm : ExperimentKind::ud;
-  record.dominance_mpm = kind == ExperimentKind::mpm_ud ? 0.8 : std::nan("");
-  return record;
-}
+using testing::made_up_record;
 
 TEST_CASE("aggregate counts what was put in") {
   Study study = find_study("chapter6");
   study.aggregate.bootstrap_replications = 200;
   std::vector<ExperimentRecord> records;
   for (int i = 0; i < 8; ++i)
-    records.push_back(made_up(i, ExperimentKind::mpm, i % 7, i < 6 ? 0.2 : 0.05));
-  records.push_back(made_up(8, ExperimentKind::ud, 3, 0.05));
+    records.push_back(made_up_record(i, ExperimentKind::mpm, i % 7, i < 6 ? 0.2 : 0.05));
+  records.push_back(made_up_record(8, ExperimentKind::ud, 3, 0.05));
   records.back().diagnosis.predicted_cv = 4;
-  records.push_back(made_up(9, ExperimentKind::mpm_ud, 2, 0.3));
-  ExperimentRecord infeasible = made_up(10, ExperimentKind::ud, 1, 0.5);
+  records.push_back(made_up_record(9, ExperimentKind::mpm_ud, 2, 0.3));
+  ExperimentRecord infeasible = made_up_record(10, ExperimentKind::ud, 1, 0.5);
   infeasible.status = ExperimentStatus::infeasible;
   infeasible.diagnosis = {};
   records.push_back(infeasible);
@@ -76,7 +56,7 @@ TEST_CASE("non-impactful experiments count for nothing but the regression, unles
   study.aggregate.bootstrap_replications = 200;
   std::vector<ExperimentRecord> records;
   for (int i = 0; i < 5; ++i) {
-    records.push_back(made_up(i, ExperimentKind::mpm, i, 0.2));
+    records.push_back(made_up_record(i, ExperimentKind::mpm, i, 0.2));
     records.back().diagnosis.impactful = i < 2;
   }
   CHECK(aggregate(study, records).kinds[0].located.total == 2);

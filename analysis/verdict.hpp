@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "analysis/experiment.hpp"
+
+namespace mpm {
+
+/// What one question about an experiment came to.
+enum class Verdict : std::int8_t {
+  none,  ///< not asked: the experiment is infeasible, failed, or outside of the population
+  wrong,
+  right,
+};
+
+std::string_view to_string(Verdict verdict);
+
+/// Is the affected CV the one that Ivar_diag points at (figures 6.20, 6.23)? Asked of impactful experiments.
+Verdict location_verdict(const ExperimentRecord& record);
+
+/// The experiments over which the study counts the rates of I_MPM.
+bool in_source_population(const Study& study, const ExperimentRecord& record);
+
+/// Does I_MPM lie on the side of its threshold that the fault belongs to (figure 6.21)? Asked of experiments
+/// with a single fault in that population.
+Verdict source_verdict(const Study& study, const ExperimentRecord& record);
+
+}  // namespace mpm
