@@ -63,7 +63,7 @@ KindAggregate aggregate_kind(const Study& study, std::span<const ExperimentRecor
   KindAggregate result;
   result.kind = kind;
   result.confusion = ConfusionMatrix(study.cv_count());
-  std::int64_t feasible = 0, infeasible = 0, recognised = 0;
+  std::int64_t feasible = 0, infeasible = 0, judged = 0, recognised = 0;
   std::vector<double> i_mpm;
   for (const ExperimentRecord& record : records) {
     if (record.draw.kind != kind)
@@ -78,19 +78,17 @@ KindAggregate aggregate_kind(const Study& study, std::span<const ExperimentRecor
     ++feasible;
     if (record.diagnosis.impactful)
       result.confusion.add(record.draw.true_cv(), record.diagnosis.predicted_cv);
-    if (!in_source_population(study, record))
-      continue;
-    i_mpm.push_back(record.diagnosis.indicator.i_mpm);
-    if (record.diagnosis.predicted_source == kind)
-      ++recognised;
+    if (in_source_population(study, record))
+      i_mpm.push_back(record.diagnosis.indicator.i_mpm);
+    const Verdict source = source_verdict(study, record);
+    judged += source == Verdict::none ? 0 : 1;
+    recognised += source == Verdict::right ? 1 : 0;
   }
   result.infeasible = rate(infeasible, feasible + infeasible, confidence);
   result.impactful = rate(result.confusion.total(), feasible, confidence);
   result.located = result.confusion.accuracy(confidence);
   result.i_mpm = summarise(i_mpm, confidence);
-  const bool single_fault = kind != ExperimentKind::mpm_ud;
-  result.source_recognised =
-      rate(recognised, single_fault ? static_cast<std::int64_t>(i_mpm.size()) : 0, confidence);
+  result.source_recognised = rate(recognised, judged, confidence);
   fit_regressions(study, records, result);
   return result;
 }

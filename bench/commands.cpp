@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <system_error>
 
@@ -17,6 +19,10 @@
 #include "plants/error.hpp"
 #include "results/archive.hpp"
 #include "results/archive_error.hpp"
+#include "results/atomic_file.hpp"
+#include "results/gate_check.hpp"
+#include "results/gate_file.hpp"
+#include "results/gate_report.hpp"
 #include "results/summary.hpp"
 #include "scenarios/study_library.hpp"
 
@@ -105,6 +111,21 @@ ExitCode summary(const SummaryCommand& command) {
   return ExitCode::done;
 }
 
+ExitCode check(const CheckCommand& command) {
+  const Campaign campaign = read_input(command.archive);
+  const GateFile gates = load_gates(command.gates, gate_names(campaign.study));
+  std::optional<Campaign> baseline;
+  if (gates.baseline)
+    baseline = read_input(gates.baseline->archive.string());
+  const GateCheck result = check_gates(campaign, gates, baseline ? &*baseline : nullptr);
+  if (!command.junit.empty()) {
+    const std::string junit = gates_junit(result, campaign, command.archive);
+    write_file_atomically(command.junit, std::as_bytes(std::span(junit)));
+  }
+  fmt::print("{}", gates_text(result));
+  return result.passed() ? ExitCode::done : ExitCode::comparison_failed;
+}
+
 ExitCode list() {
   const std::vector<StudyEntry> studies = shipped_studies();
   std::size_t width = 0;
@@ -125,6 +146,7 @@ struct Executor {
     run_sweep(command, command_line);
     return ExitCode::done;
   }
+  ExitCode operator()(const CheckCommand& command) const { return check(command); }
   ExitCode operator()(const ListCommand&) const { return list(); }
   ExitCode operator()(const UsageText& usage) const {
     fmt::print(usage.exit_code == 0 ? stdout : stderr, "{}", usage.text);

@@ -73,6 +73,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   RunCommand run;
   ReplayCommand replay;
   SummaryCommand summary;
+  CheckCommand check;
   CLI::App* const run_app = app.add_subcommand("run", "Run a study and write its archive");
   add_run(*run_app, run);
   CLI::App* const replay_app = app.add_subcommand(
@@ -89,6 +90,11 @@ Command parse_command_line(int argc, const char* const* argv) {
   CLI::App* const sweep_app =
       app.add_subcommand("sweep", "Run a study once for each value of its open choices, and tabulate");
   add_sweep(*sweep_app, sweep);
+  CLI::App* const check_app =
+      app.add_subcommand("check", "Hold an archive against the limits of a gate file");
+  check_app->add_option("ARCHIVE", check.archive, "Archive")->required();
+  check_app->add_option("--gates", check.gates, "Gate file (TOML)")->required();
+  check_app->add_option("--junit", check.junit, "JUnit XML to write");
   CLI::App* const list_app = app.add_subcommand("list", "List the shipped studies");
 
   try {
@@ -106,6 +112,8 @@ Command parse_command_line(int argc, const char* const* argv) {
     return summary;
   if (sweep_app->parsed())
     return sweep;
+  if (check_app->parsed())
+    return check;
   if (list_app->parsed())
     return ListCommand{};
   return UsageText{app.help(), kUsageError};

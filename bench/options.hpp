@@ -47,6 +47,13 @@ struct SweepCommand {
   bool quiet = false;
 };
 
+/// `mpmbench check ARCHIVE --gates FILE [--junit FILE]`
+struct CheckCommand {
+  std::string archive;
+  std::string gates;
+  std::string junit;  ///< file to write; none when empty
+};
+
 /// `mpmbench list`
 struct ListCommand {};
 
@@ -57,7 +64,8 @@ struct UsageText {
   int exit_code;
 };
 
-using Command = std::variant<RunCommand, ReplayCommand, SummaryCommand, SweepCommand, ListCommand, UsageText>;
+using Command = std::variant<RunCommand, ReplayCommand, SummaryCommand, CheckCommand, SweepCommand,
+                             ListCommand, UsageText>;
 
 /// Reads the command line; wrong usage gives UsageText with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

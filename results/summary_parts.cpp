@@ -9,19 +9,18 @@
 
 namespace mpm {
 
-bool SummaryValue::has_reported() const {
-  return !std::isnan(reported);
-}
-
-bool SummaryValue::is_share() const {
+bool is_share(std::string_view name) {
   constexpr std::array<std::string_view, 4> kShares{"infeasible", "impactful", "located",
                                                     "source_recognised"};
-  const std::string_view name = measured.name;
   const std::string_view last = name.substr(name.rfind('.') + 1);  // the whole name without a '.'
   for (const std::string_view share : kShares)
     if (last == share)
       return true;
   return false;
+}
+
+bool SummaryValue::has_reported() const {
+  return !std::isnan(reported);
 }
 
 SummaryParts summary_parts(const Campaign& campaign) {

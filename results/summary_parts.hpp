@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "analysis/study_aggregate.hpp"
@@ -7,14 +8,16 @@
 
 namespace mpm {
 
+/// Is the number of this name a share of experiments, which people read as a percentage?
+bool is_share(std::string_view name);
+
 /// A number of the aggregate beside the one that the study names as reported; NaN when it names none.
 struct SummaryValue {
   AggregateValue measured;
   double reported;
 
   bool has_reported() const;
-  /// A share of experiments, which people read as a percentage.
-  bool is_share() const;
+  bool is_share() const { return mpm::is_share(measured.name); }
 };
 
 /// What both forms of the summary are made of. Points into the campaign.

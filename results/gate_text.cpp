@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "results/gate_report.hpp"
+#include "results/gate_words.hpp"
+
+namespace mpm {
+namespace {
+
+/// Words in columns, each as wide as its longest entry.
+class Table {
+ public:
+  using Row = std::vector<std::string>;
+
+  void add(Row row) {
+    widths_.resize(std::max(widths_.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths_[i] = std::max(widths_[i], row[i].size());
+    rows_.push_back(std::move(row));
+  }
+
+  /// The first column is words and stands left, the others are numbers; the last one is words again.
+  std::string text() const {
+    std::string text;
+    for (const Row& row : rows_) {
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        if (i == 0)
+          text += fmt::format("{:<{}}", row[i], widths_[i]);
+        else if (i + 1 < row.size())
+          text += fmt::format("  {:>{}}", row[i], widths_[i]);
+        else
+          text += "  " + row[i];
+      }
+      text += '\n';
+    }
+    return text;
+  }
+
+ private:
+  std::vector<Row> rows_;
+  std::vector<std::size_t> widths_;
+};
+
+std::string gate_table(const GateCheck& check) {
+  Table table;
+  table.add({"gate", "limit", "judged by", "measured",
+             fmt::format("{:g} % interval", 100.0 * check.confidence), "count", "margin", "outcome"});
+  for (const GateResult& result : check.results)
+    table.add({result.gate.name, limit_text(result.gate), result.gate.with_confidence ? "interval" : "value",
+               measured_text(result), interval_text(result), fmt::format("{}", result.measured.count),
+               margin_text(result), std::string(to_string(result.outcome))});
+  return table.text();
+}
+
+std::string changes_heading(const char* question, const VerdictChanges& changes) {
+  return fmt::format("{}: {} lost, {} gained among {} experiments, p = {:.3g} (two-sided {:.3g})\n", question,
+                     changes.lost.size(), changes.gained.size(), changes.pairs, changes.test.p_worse,
+                     changes.test.p_two_sided);
+}
+
+std::string baseline_text(const BaselineComparison& baseline) {
+  return fmt::format("\nagainst the baseline {} (mpmbench {} ({}), solver {}):\n", baseline.archive,
+                     baseline.info.mpmbench_version,
+                     baseline.info.git_sha.empty() ? "unknown revision" : baseline.info.git_sha,
+                     baseline.info.solver) +
+         changes_heading("located", baseline.located) + changes_text(baseline.located) +
+         changes_heading("source recognised", baseline.source_recognised) +
+         changes_text(baseline.source_recognised);
+}
+
+std::string verdict_line(const GateCheck& check) {
+  const auto count = [&](GateOutcome outcome) {
+    return std::count_if(check.results.begin(), check.results.end(),
+                         [outcome](const GateResult& result) { return result.outcome == outcome; });
+  };
+  const auto inconclusive = count(GateOutcome::inconclusive);
+  const char* counts_as =
+      check.inconclusive == InconclusivePolicy::fail ? "fails the check" : "is let through";
+  return fmt::format("\n{}: {} of {} gates pass, {} fail, {} inconclusive{}\n",
+                     check.passed() ? "PASSED" : "FAILED", count(GateOutcome::pass), check.results.size(),
+                     count(GateOutcome::fail), inconclusive,
+                     inconclusive > 0 ? fmt::format(", which {}", counts_as) : "");
+}
+
+}  // namespace
+
+std::string gates_text(const GateCheck& check) {
+  std::string text = gate_table(check);
+  std::string reasons;
+  for (const GateResult& result : check.results)
+    if (result.outcome != GateOutcome::pass)
+      reasons += explanation(result, check.confidence) + "\n";
+  if (!reasons.empty())
+    text += "\n" + reasons;
+  if (check.baseline)
+    text += baseline_text(*check.baseline);
+  return text + verdict_line(check);
+}
+
+}  // namespace mpm
