@@ -26,7 +26,7 @@ Campaign read_groups(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void refuse_size(const std::filesystem::path& path) {
-  throw ArchiveError(fmt::format("{}: a variable in it does not fit into the memory", path.string()));
+  throw ArchiveError(fmt::format("{}: it, or a variable in it, does not fit into the memory", path.string()));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace mpm {
 /// Version of the archive format. A reader refuses another major version; a minor version adds to the format
 /// without changing what was there.
 inline constexpr int kArchiveMajorVersion = 1;
-inline constexpr int kArchiveMinorVersion = 0;
+inline constexpr int kArchiveMinorVersion = 1;
 
 /// Writes a campaign as an archive (docs/file_format.md), all or nothing (write_file_atomically()): HDF5 that
 /// also opens as netCDF-4. The data sets depend on the study and the records only; what differs between two
@@ -22,7 +22,7 @@ void write_archive(const std::filesystem::path& path, const Campaign& campaign);
 /// and gets the seed in `master_seed`.
 ///
 /// Errors: ArchiveError, which names the file and what is wrong or missing in it, for a file that is no
-/// archive, is not whole or has another major version.
+/// archive, is not whole, is damaged, or has another major version.
 Campaign read_archive(const std::filesystem::path& path);
 
 }  // namespace mpm

@@ -13,6 +13,7 @@
 #include <hdf5_hl.h>
 
 #include "results/archive_error.hpp"
+#include "results/file_seal.hpp"
 #include "results/utf8.hpp"
 
 namespace mpm {
@@ -436,13 +437,9 @@ Hdf5File Hdf5File::create(const std::string& name) {
 Hdf5File Hdf5File::open(const std::filesystem::path& path) {
   silence_library();
   const Place place{path.string(), "group", "/", ""};
-  std::error_code error;
-  if (!std::filesystem::exists(path, error))
-    throw ArchiveError(fmt::format("{}: no such file", path.string()));
-  const Handle access = place.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
-  // Archives never change under a reader, and some network file systems know no locks.
-  place.check(H5Pset_file_locking(access.get(), false, true), "make properties");
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  std::vector<std::byte> content = read_sealed_file(path);
+  constexpr unsigned kReadOnlyCopy = 0;
+  const Handle file(H5LTopen_file_image(content.data(), content.size(), kReadOnlyCopy), H5Fclose);
   if (file.get() < 0)
     throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one ({})", path.string(), last_error()));
   return Hdf5File(std::make_shared<const Hdf5Group::State>(
@@ -461,7 +458,7 @@ std::vector<std::byte> Hdf5File::image() const {
   place.check(size < 0 ? -1 : 0, "measure the file");
   std::vector<std::byte> bytes(static_cast<std::size_t>(size));
   place.check(H5Fget_file_image(file.get(), bytes.data(), bytes.size()) < 0 ? -1 : 0, "copy the file");
-  return bytes;
+  return sealed(std::move(bytes));
 }
 
 // --- The types of values that there are -------------------------------------------------------------------

@@ -77,18 +77,20 @@ class Hdf5Group {
 ///
 /// A file is made in memory because the library leaves wreckage behind when a disk is full; the finished
 /// image is written by write_file_atomically(). It holds no time stamps: the same content is the same bytes.
+/// It is read in memory as well, after its seal (results/file_seal.hpp) has shown that it is what was
+/// written.
 class Hdf5File {
  public:
   /// An empty file. `name` is for messages.
   static Hdf5File create(const std::string& name);
 
-  /// Opens a file for reading. Throws ArchiveError when it is no HDF5 file, or not a whole one.
+  /// Opens a file for reading. Throws ArchiveError when it is no HDF5 file, not a whole one, or damaged.
   static Hdf5File open(const std::filesystem::path& path);
 
   /// The group that holds everything.
   Hdf5Group root() const;
 
-  /// The bytes of the file so far.
+  /// The bytes of the file so far, with their seal.
   std::vector<std::byte> image() const;
 
  private:

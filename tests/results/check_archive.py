@@ -13,6 +13,8 @@ import h5py
 import numpy
 import xarray
 
+import seal
+
 TYPES = {"int8": "int8", "int32": "int32", "int64": "int64", "uint64": "uint64", "float64": "double", "object": "string"}
 BELONGS_TO_HDF5 = {"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}
 
@@ -86,7 +88,7 @@ def check_h5py(path, variables, attributes):
             for item in data.values():
                 check_variable(item)
         assert file.attrs["filetype"] == "mpmbench archive"
-        assert list(file.attrs["format_version"]) == [1, 0]
+        assert list(file.attrs["format_version"]) == [1, 1]
         assert file.attrs["master_seed"] == 12345678901234567890
         assert file["message"].asstr()[4] == "ended by signal 9: \u00fc"
         assert file["message"].asstr()[0] == ""
@@ -141,6 +143,7 @@ def main(writer, file_format):
     with tempfile.TemporaryDirectory() as folder:
         path = str(pathlib.Path(folder) / "sample.h5")
         subprocess.run([writer, path], check=True)
+        assert seal.is_sealed(path)
         check_h5py(path, variables, attributes)
         check_xarray(path, variables)
         check_ncdump(path, variables)

@@ -12,6 +12,8 @@ import tempfile
 import h5py
 import numpy
 
+import seal
+
 # What follows from the rest of the file or is there for people: a reader does not need it.
 FOR_PEOPLE = {"/cv", "/mv", "/md", "/basis/cv", "/basis/mv", "/basis/md", "/basis/sample", "/basis/time",
               "/basis/active_limit", "/basis/lag", "/basis/lag_time", "/basis/acf_y", "/basis/acf_y0",
@@ -44,12 +46,25 @@ class Damage:
         return result
 
     def after(self, change):
-        """The reader's message after change(file), or None when it reads the file."""
+        """The reader's message after change(file), or None when it reads the file. The file is sealed again: a
+        reader that only trusts the seal would crash on what another program has written and sealed."""
         shutil.copy(self.whole, self.copy)
         with h5py.File(self.copy, "r+") as file:
             change(file)
+        seal.seal(self.copy)
         result = self.read()
         return result.stderr if result.returncode else None
+
+    def broken_seal(self):
+        """Damage that HDF5 itself does not notice, and a change by another program."""
+        content = bytearray(pathlib.Path(self.whole).read_bytes())
+        content[len(content) // 2] ^= 1
+        pathlib.Path(self.copy).write_bytes(content)
+        assert f"{self.copy}: the file is damaged" in self.read().stderr
+        shutil.copy(self.whole, self.copy)
+        with h5py.File(self.copy, "r+") as file:
+            file["ivar"][0, 0] = 7.0
+        assert f"{self.copy}: no checksum at its end" in self.read().stderr
 
     def missing_objects(self):
         variables, groups, attributes = objects(self.whole)
@@ -89,6 +104,7 @@ def main(writer, reader):
         subprocess.run([writer, whole], check=True)
         damage = Damage(reader, whole, str(pathlib.Path(folder) / "damaged.h5"))
         assert damage.after(lambda file: None) is None
+        damage.broken_seal()
         damage.missing_objects()
         damage.wrong_objects()
 

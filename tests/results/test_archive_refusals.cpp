@@ -3,6 +3,7 @@
 #include "results/archive.hpp"
 #include "results/archive_error.hpp"
 #include "results/atomic_file.hpp"
+#include "results/file_seal.hpp"
 #include "results/hdf5_file.hpp"
 #include "scenarios/random_stream.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -24,6 +25,16 @@ std::string refusal_of(const TemporaryFolder& folder, const std::string& content
   }
 }
 
+std::string text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The content with the seal of an archive, so that the reader goes on behind it.
+std::string with_seal(const std::string& content) {
+  const auto bytes = std::as_bytes(std::span(content));
+  return text_of(sealed({bytes.begin(), bytes.end()}));
+}
+
 std::string whole_archive(const TemporaryFolder& folder) {
   write_archive(folder / "whole.h5", made_up_campaign());
   return file_content(folder / "whole.h5");
@@ -35,8 +46,7 @@ std::string heading_only(const Attributes& attributes) {
   Hdf5Group root = file.root();
   for (const auto& [name, value] : attributes)
     root.write_attribute(name, value);
-  const std::vector<std::byte> image = file.image();
-  return {reinterpret_cast<const char*>(image.data()), image.size()};
+  return text_of(file.image());
 }
 
 TEST_CASE("archive: what is no HDF5 file is refused by name") {
@@ -45,16 +55,21 @@ TEST_CASE("archive: what is no HDF5 file is refused by name") {
   CHECK_THROWS_WITH(read_archive(folder / "a.h5"), name + ": no such file");
   CHECK_THROWS_WITH(read_archive(folder.path()), Contains("no HDF5 file"));
   for (const std::string& content : {std::string(), std::string("[study]\nname = \"text\"\n"),
-                                     std::string(100000, '\0'), std::string("\x89HDF\r\n\x1A\n")})
+                                     std::string(100000, '\0'), std::string("\x89HDF\r\n")}) {
     CHECK_THAT(refusal_of(folder, content), Contains(name + ": no HDF5 file, or not a whole one"));
+    CHECK_THAT(refusal_of(folder, with_seal(content)), Contains(name + ": no HDF5 file, or not a whole one"));
+  }
 }
 
 TEST_CASE("archive: a file that is cut anywhere is refused") {
   const TemporaryFolder folder;
   const std::string whole = whole_archive(folder);
   REQUIRE(refusal_of(folder, whole) == "accepted");
-  for (std::size_t part = 0; part < 100; ++part)
-    CHECK_THAT(refusal_of(folder, whole.substr(0, whole.size() * part / 100)), Contains("not a whole one"));
+  for (std::size_t part = 0; part < 100; ++part) {
+    const std::string content = whole.substr(0, whole.size() * part / 100);
+    CHECK_THAT(refusal_of(folder, content), Contains("not a whole one"));
+    CHECK_THAT(refusal_of(folder, with_seal(content)), Contains("not a whole one"));
+  }
   CHECK_THAT(refusal_of(folder, whole.substr(0, whole.size() - 1)), Contains("not a whole one"));
 }
 
@@ -66,6 +81,7 @@ TEST_CASE("archive: random bytes are refused, with and without the signature of 
     while (content.size() < 3000)
       content += static_cast<char>(stream.below(256));
     CHECK(refusal_of(folder, content) != "accepted");
+    CHECK(refusal_of(folder, with_seal(content)) != "accepted");
   }
 }
 
