@@ -1,0 +1,159 @@
+"""Runs `mpmbench check` as a build server does: a campaign that passes, one with a broken indicator, wrong files.
+
+usage: check_gates.py MPMBENCH SOURCES
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree
+
+import h5py
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "results"))
+import seal  # noqa: E402, beside the other tests of archives
+
+EXPERIMENTS = 40
+
+# What 40 experiments can show.
+GATES = """
+[[gate]]
+aggregate = "ud.located"
+minimum = 0.5
+with_confidence = true
+[[gate]]
+aggregate = "mpm.source_recognised"
+minimum = 0.5
+reason = "<reason> with '&' and \\u0001 more"
+"""
+
+
+class Check:
+    def __init__(self, program, folder):
+        self.program, self.folder = program, folder
+        self.junit = folder / "gates.xml"
+
+    def run(self, *words, code):
+        result = subprocess.run([self.program, *map(str, words)], capture_output=True, text=True, timeout=600)
+        assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
+        return result
+
+    def campaign(self, study, name, *more):
+        path = self.folder / name
+        self.run("run", study, "-o", path, "--experiments", EXPERIMENTS, "--solver", "active-set", "--quiet", *more, code=0)
+        return path
+
+    def check(self, archive, gates, code):
+        """Output and JUnit of a check; a refused one must leave no JUnit behind."""
+        file = self.folder / "gates.toml"
+        file.write_text(gates, encoding="utf-8")
+        self.junit.unlink(missing_ok=True)
+        result = self.run("check", archive, "--gates", file, "--junit", self.junit, code=code)
+        if code == 2:
+            assert not self.junit.exists() and result.stdout == "", result
+            return result.stderr, None
+        suite = xml.etree.ElementTree.parse(self.junit).getroot().find("testsuite")
+        cases = suite.findall("testcase")
+        assert int(suite.get("tests")) == len(cases)
+        assert int(suite.get("failures")) == len(suite.findall("testcase/failure"))
+        assert int(suite.get("skipped")) == len(suite.findall("testcase/skipped"))
+        assert (int(suite.get("failures")) > 0) == (code == 1)
+        return result.stdout, suite
+
+
+def check_outcomes(check, archive):
+    text, suite = check.check(archive, GATES, code=0)
+    assert "PASSED: 5 of 5 gates pass" in text, text
+    reasons = [case.findtext("system-out") for case in suite.findall("testcase")]
+    assert "<reason> with '&' and \ufffd more" in reasons[-1], reasons  # XML has no control characters
+
+    sure = GATES + "with_confidence = true\n"  # 80 % of 5 experiments show nothing
+    text, suite = check.check(archive, sure, code=1)
+    assert suite.find("testcase/failure").get("type") == "inconclusive" and "1 inconclusive" in text, text
+    text, suite = check.check(archive, 'inconclusive = "pass"\n' + sure, code=0)
+    assert "in part only" in suite.find("testcase/skipped").get("message"), text
+
+    text, suite = check.check(archive, GATES.replace("minimum = 0.5\nreason", "minimum = 0.99\nreason"), code=1)
+    failure = suite.find("testcase/failure")
+    assert failure.get("type") == "fail" and "misses >= 99.0 % by 19.0 pp" in failure.text, failure.text
+    assert failure.get("message") in text, text
+
+
+def check_shipped(check, archive, sources):
+    """Part of the study decides few of its gates, but contradicts none."""
+    shipped = (sources / "scenarios/gates/chapter6.toml").read_text(encoding="utf-8")
+    text, _ = check.check(archive, shipped, code=1)
+    assert " 0 fail, " in text, text
+    check.check(archive, shipped.replace('inconclusive = "fail"', 'inconclusive = "pass"'), code=0)
+
+
+def check_broken_indicator(check, sources):
+    study = (sources / "scenarios/studies/chapter6.toml").read_text(encoding="utf-8")
+    broken = check.folder / "broken.toml"
+    assert study.count("mpm_threshold = 0.1 ") == 1
+    broken.write_text(study.replace("mpm_threshold = 0.1 ", "mpm_threshold = 0.9 "), encoding="utf-8")
+    archive = check.campaign(broken, "broken.h5")
+    text, _ = check.check(archive, GATES, code=1)
+    assert "mpm.source_recognised: fail" in text and "ud.located: " not in text, text
+    return archive
+
+
+def check_refusals(check, archive):
+    error, _ = check.check(archive, GATES.replace("ud.located", "ud.locatde"), code=2)
+    assert "gates.toml:3: gate[0].aggregate: found 'ud.locatde' (nearest: 'ud.located'); allowed: " in error, error
+    error, _ = check.check(archive, "gates = 1\n", code=2)
+    assert "gates.toml:1: top level: found unknown key 'gates' (nearest: 'gate')" in error, error
+    error, _ = check.check(archive, "[[gate\n", code=2)
+    assert "gates.toml:1: TOML: found" in error, error
+    assert "no such file" in check.run("check", check.folder / "no.h5", "--gates", check.folder / "gates.toml", code=2).stderr
+    assert "no.toml: found nothing" in check.run("check", archive, "--gates", check.folder / "no.toml", code=2).stderr
+    assert "--gates" in check.run("check", archive, code=2).stderr
+    (check.folder / "gates.toml").write_text(GATES, encoding="utf-8")
+    check.run("check", archive, "--gates", check.folder / "gates.toml", "--junit", check.folder / "no" / "a.xml", code=3)
+
+
+def check_baseline(check, archive, other_study):
+    baseline = '[baseline]\narchive = "{}"\nmaximum_lost = 4\n'.format
+    text, _ = check.check(archive, baseline(archive.name), code=0)  # relative to the gate file
+    assert "located: 0 lost, 0 gained" in text, text
+    error, _ = check.check(archive, baseline("none.h5"), code=2)
+    assert "none.h5: no such file" in error, error
+    error, _ = check.check(archive, baseline(other_study.name), code=2)
+    assert "found another study file" in error, error
+    error, _ = check.check(archive, baseline(check.campaign("chapter6", "seed.h5", "--seed", 7).name), code=2)
+    assert "found seed 7; allowed: the seed of the archive that is checked, 20150401" in error, error
+
+    # The five first experiments that were located are not any more.
+    worse = check.folder / "worse.h5"
+    shutil.copy(archive, worse)
+    with h5py.File(worse, "r+") as file:
+        right = (file["status"][:] == 0) & (file["impactful"][:] == 1) & (file["predicted_cv"][:] == file["true_cv"][:])
+        lost = numpy.flatnonzero(right)[:5]
+        for index in lost:
+            file["predicted_cv"][index] = (file["true_cv"][index] + 1) % 7
+    seal.seal(worse)
+    text, suite = check.check(worse, baseline(archive.name), code=1)
+    assert "located: 5 lost, 0 gained" in text and "p = 0.0312" in text, text
+    assert len(suite.findall("testcase/failure")) == 2, text  # the p-value, and more than 4 lost
+    for index in lost:
+        line = f"{index:>7}  lost    right -> wrong"
+        assert line in text and line in suite.find("testcase/failure").text, text
+    check.check(archive, baseline("worse.h5"), code=0)
+
+
+def main(program, sources):
+    with tempfile.TemporaryDirectory() as name:
+        check, sources = Check(program, pathlib.Path(name)), pathlib.Path(sources)
+        archive = check.campaign("chapter6", "a.h5")
+        check_outcomes(check, archive)
+        check_shipped(check, archive, sources)
+        broken = check_broken_indicator(check, sources)
+        check_refusals(check, archive)
+        check_baseline(check, archive, broken)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
