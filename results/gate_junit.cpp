@@ -14,21 +14,6 @@ namespace {
 
 using Tree = boost::property_tree::ptree;
 
-/// `text` as XML 1.0 takes it: UTF-8 without control characters and non-characters, which no escape can
-/// stand for either. The library escapes the rest.
-std::string xml_text(const std::string& text) {
-  const std::string replacement = "\xEF\xBF\xBD";  // U+FFFD
-  std::string result;
-  for (const char c : proper_utf8(text)) {
-    const bool control = static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r';
-    result += control ? replacement : std::string(1, c);
-  }
-  for (const char* none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE, U+FFFF
-    for (std::size_t at = result.find(none); at != std::string::npos; at = result.find(none))
-      result.replace(at, replacement.size(), replacement);
-  return result;
-}
-
 /// A path of one step: names here have dots, which the library would read as steps of a path.
 Tree& child(Tree& tree, const std::string& name) {
   return tree.push_back({name, Tree()})->second;
@@ -38,7 +23,7 @@ void set_attribute(Tree& element, const std::string& name, const std::string& va
   const auto attributes = element.find("<xmlattr>");
   Tree& list = attributes == element.not_found() ? child(element, "<xmlattr>")
                                                  : element.to_iterator(attributes)->second;
-  child(list, name).data() = xml_text(value);
+  child(list, name).data() = plain_text(value);
 }
 
 void add_case(Tree& suite, const GateCheck& check, const GateResult& result, const std::string& study) {
@@ -52,11 +37,11 @@ void add_case(Tree& suite, const GateCheck& check, const GateResult& result, con
     Tree& failure = child(test_case, "failure");
     set_attribute(failure, "message", sentence);
     set_attribute(failure, "type", std::string(to_string(result.outcome)));
-    failure.data() = xml_text(sentence + "\n" + details_text(check, result));
+    failure.data() = plain_text(sentence + "\n" + details_text(check, result));
   } else if (result.outcome == GateOutcome::inconclusive) {
     set_attribute(child(test_case, "skipped"), "message", sentence);
   } else {
-    child(test_case, "system-out").data() = xml_text(sentence);
+    child(test_case, "system-out").data() = plain_text(sentence);
   }
 }
 

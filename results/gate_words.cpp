@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "results/summary_parts.hpp"
+#include "results/utf8.hpp"
 
 namespace mpm {
 namespace {
@@ -86,7 +87,8 @@ std::string margin_text(const GateResult& result) {
 }
 
 std::string explanation(const GateResult& result, double confidence) {
-  const std::string reason = result.gate.reason.empty() ? "" : fmt::format(" ({})", result.gate.reason);
+  const std::string reason =
+      result.gate.reason.empty() ? "" : fmt::format(" ({})", plain_text(result.gate.reason));
   return fmt::format("{}: {}: {}{}", result.gate.name, to_string(result.outcome),
                      outcome_sentence(result, confidence), reason);
 }

@@ -25,4 +25,17 @@ std::string proper_utf8(std::string_view text) {
   return proper;
 }
 
+std::string plain_text(std::string_view text) {
+  std::string result;
+  for (const char c : proper_utf8(text)) {
+    const auto code = static_cast<unsigned char>(c);
+    const bool control = (code < 0x20 && c != '\t' && c != '\n') || code == 0x7F;
+    result += control ? std::string(kReplacement) : std::string(1, c);
+  }
+  for (const std::string_view none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE, U+FFFF
+    for (std::size_t at = result.find(none); at != std::string::npos; at = result.find(none, at))
+      result.replace(at, none.size(), kReplacement);
+  return result;
+}
+
 }  // namespace mpm

@@ -41,4 +41,12 @@ TEST_CASE("utf8: a proper text comes back, any other one becomes proper") {
   CHECK(proper_utf8(std::string_view("a\0b", 3)) == "a" + replacement + "b");
 }
 
+TEST_CASE("plain_text replaces what XML cannot hold and what moves the cursor of a terminal") {
+  const std::string replacement = "\xEF\xBF\xBD";
+  CHECK(plain_text("a<&>\"'\t\n\xC3\xBC") == "a<&>\"'\t\n\xC3\xBC");
+  CHECK(plain_text(std::string_view("\0\x1B[2J\r\x7F", 7)) ==
+        replacement + replacement + "[2J" + replacement + replacement);
+  CHECK(plain_text("\xEF\xBF\xBE\xEF\xBF\xBF\xFF") == replacement + replacement + replacement);
+}
+
 }  // namespace
