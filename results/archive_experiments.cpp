@@ -1,3 +1,9 @@
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "results/archive_error.hpp"
 #include "results/archive_groups.hpp"
 #include "results/column_io.hpp"
 #include "results/dimensions.hpp"
@@ -31,6 +37,38 @@ auto solvers_of(Records& records) {
   return parts(records, [](auto& record) { return &record.solver; });
 }
 
+/// What the columns cannot see one by one: an experiment has a fault that lies somewhere, a fault with a
+/// mismatch has a channel and a parameter, and a verdict names a CV. Everything that counts takes this as
+/// given.
+void require_consistent(const ExperimentRecord& record, const std::string& file) {
+  const auto require = [&](bool condition, const char* variable, const char* allowed) {
+    if (!condition)
+      throw ArchiveError(fmt::format("{}: variable '{}': found none in experiment {}; allowed: {}", file,
+                                     variable, record.draw.index, allowed));
+  };
+  const ExperimentDraw& draw = record.draw;
+  require(draw.kind != ExperimentKind::none, "kind", "mpm, ud, mpm_ud");
+  require(draw.true_cv() >= 0, "true_cv", "the CV of the fault");
+  if (draw.mismatch) {
+    require(draw.mismatch->mv >= 0, "true_mv", "the MV of the mismatch");
+    require(draw.mismatch->parameter >= MismatchParameter::gain, "parameter",
+            "the parameter of the mismatch");
+  }
+  if (record.status == ExperimentStatus::ok && record.diagnosis.impactful)
+    require(record.diagnosis.predicted_cv >= 0, "predicted_cv", "a CV for an experiment with impact");
+}
+
+/// In the order of their index, none twice.
+void require_order(const std::vector<std::int64_t>& indices, const std::string& file) {
+  const auto place = std::adjacent_find(indices.begin(), indices.end(), std::greater_equal<>());
+  if (place != indices.end())
+    throw ArchiveError(fmt::format("{}: variable 'experiment': found {} after {}; allowed: indices that grow",
+                                   file, *(place + 1), *place));
+  if (!indices.empty() && indices.front() < 0)
+    throw ArchiveError(
+        fmt::format("{}: variable 'experiment': found {}; allowed: 0 or more", file, indices.front()));
+}
+
 }  // namespace
 
 void write_experiments(Hdf5Group& root, const Campaign& campaign) {
@@ -56,6 +94,7 @@ void write_experiments(Hdf5Group& root, const Campaign& campaign) {
 std::vector<ExperimentRecord> read_experiments(const Hdf5Group& root, const Study& study,
                                                const std::string& file) {
   const std::vector<std::int64_t> indices = root.read_list<std::int64_t>("experiment");
+  require_order(indices, file);
   const std::size_t count = indices.size();
   std::vector<ExperimentRecord> records(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -72,6 +111,8 @@ std::vector<ExperimentRecord> read_experiments(const Hdf5Group& root, const Stud
       if (records[i].status == ExperimentStatus::ok)  // the others have no diagnosis
         records[i].diagnosis.*column.member = vectors[i];
   }
+  for (const ExperimentRecord& record : records)
+    require_consistent(record, file);
   return records;
 }
 

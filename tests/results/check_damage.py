@@ -40,6 +40,10 @@ class Damage:
     def __init__(self, reader, whole, copy):
         self.reader, self.whole, self.copy = reader, whole, copy
 
+    def fresh_copy(self):
+        pathlib.Path(self.copy).unlink(missing_ok=True)  # ext4 would flush what takes the place of old content
+        shutil.copy(self.whole, self.copy)
+
     def read(self):
         result = subprocess.run([self.reader, self.copy], capture_output=True, text=True, timeout=120)
         assert result.returncode in (0, 2), (result.returncode, result.stderr)  # a negative one: it crashed
@@ -48,12 +52,16 @@ class Damage:
     def after(self, change):
         """The reader's message after change(file), or None when it reads the file. The file is sealed again: a
         reader that only trusts the seal would crash on what another program has written and sealed."""
-        shutil.copy(self.whole, self.copy)
+        self.fresh_copy()
         with h5py.File(self.copy, "r+") as file:
             change(file)
         seal.seal(self.copy)
         result = self.read()
         return result.stderr if result.returncode else None
+
+    def values(self, name):
+        with h5py.File(self.whole) as file:
+            return file[name][:]
 
     def broken_seal(self):
         """Damage that HDF5 itself does not notice, and a change by another program."""
@@ -61,7 +69,7 @@ class Damage:
         content[len(content) // 2] ^= 1
         pathlib.Path(self.copy).write_bytes(content)
         assert f"{self.copy}: the file is damaged" in self.read().stderr
-        shutil.copy(self.whole, self.copy)
+        self.fresh_copy()
         with h5py.File(self.copy, "r+") as file:
             file["ivar"][0, 0] = 7.0
         assert f"{self.copy}: no checksum at its end" in self.read().stderr
@@ -94,8 +102,40 @@ class Damage:
         assert "'/kind': another type" in replace("/kind", numpy.zeros(8))
         assert "'status': found 9" in self.after(lambda file: file["status"].__setitem__(0, 9))
         assert "'true_cv': found 7" in self.after(lambda file: file["true_cv"].__setitem__(0, 7))
+        impact = int(numpy.flatnonzero(self.values("impactful"))[0])
+        for name in "kind", "true_cv", "predicted_cv":
+            nothing = 0 if name == "kind" else -1
+            message = self.after(lambda file: file[name].__setitem__(impact, nothing))
+            assert f"'{name}': found none in experiment {impact}; allowed: " in message, message
+        mismatch = int(numpy.flatnonzero(self.values("true_mv") >= 0)[0])
+        for name in "true_mv", "parameter":
+            message = self.after(lambda file: file[name].__setitem__(mismatch, -1))
+            assert f"'{name}': found none in experiment {mismatch}; allowed: " in message, message
+        assert "'experiment': found 1 after 1" in self.after(lambda file: file["experiment"].__setitem__(2, 1))
+        assert "'experiment': found -1; allowed" in self.after(lambda file: file["experiment"].__setitem__(0, -1))
         assert "'y9', which is no CV" in self.after(lambda file: file["nominal/active_cv"].__setitem__(0, "y9"))
         assert "found 77" in self.after(lambda file: file["trajectories/stored"].__setitem__(0, 77))
+
+    def random_values(self, count):
+        """Numbers that no campaign has: they are refused, or the summary can cope with them."""
+        random = numpy.random.default_rng(1)
+        variables, _, _ = objects(self.whole)
+        with h5py.File(self.whole) as file:
+            numeric = [path for path in variables if file[path].size > 0 and file[path].dtype.kind in "if"]
+
+        def change(file):
+            for path in random.choice(numeric, size=random.integers(1, 4)):
+                data = file[path]
+                place = tuple(int(random.integers(length)) for length in data.shape)
+                if data.dtype.kind == "f":
+                    data[place] = random.choice([numpy.nan, numpy.inf, -numpy.inf, 1e308, -1e308, 0.0, 5e-324])
+                else:
+                    limits = numpy.iinfo(data.dtype)
+                    data[place] = random.choice([limits.min, -2, -1, 0, 1, 2, 3, 7, 100, limits.max])
+
+        messages = [self.after(change) for _ in range(count)]
+        refused = [message for message in messages if message is not None]
+        assert count // 20 < len(refused) < count, len(refused)
 
 
 def main(writer, reader):
@@ -107,6 +147,7 @@ def main(writer, reader):
         damage.broken_seal()
         damage.missing_objects()
         damage.wrong_objects()
+        damage.random_values(150)
 
 
 if __name__ == "__main__":

@@ -1,15 +1,18 @@
-// usage: read_archive FILE: reads an archive, or says why not (exit code 2).
+// usage: read_archive FILE: reads an archive and summarises it, or says why not (exit code 2).
 
 #include <cstdio>
 
 #include "results/archive.hpp"
 #include "results/archive_error.hpp"
+#include "results/summary.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 2)
     return 1;
   try {
-    std::printf("%zu experiments\n", mpm::read_archive(argv[1]).records.size());
+    const mpm::Campaign campaign = mpm::read_archive(argv[1]);
+    std::printf("%s", mpm::summary_text(campaign, argv[1]).c_str());
+    std::printf("%s", mpm::summary_json(campaign).c_str());
     return 0;
   } catch (const mpm::ArchiveError& error) {
     std::fprintf(stderr, "%s\n", error.what());
