@@ -70,6 +70,12 @@ def check_outcomes(check, archive):
     reasons = [case.findtext("system-out") for case in suite.findall("testcase")]
     assert "<reason> with '&' and \ufffd more" in reasons[-1], reasons  # XML has no control characters
 
+    odd = check.folder / "<&\"'\x01.h5"  # a name that XML cannot hold as it is
+    shutil.copy(archive, odd)
+    _, suite = check.check(odd, GATES, code=0)
+    properties = {item.get("name"): item.get("value") for item in suite.findall("properties/property")}
+    assert properties["archive"].endswith("<&\"'\ufffd.h5") and properties["seed"] == "20150401", properties
+
     sure = GATES + "with_confidence = true\n"  # 80 % of 5 experiments show nothing
     text, suite = check.check(archive, sure, code=1)
     assert suite.find("testcase/failure").get("type") == "inconclusive" and "1 inconclusive" in text, text

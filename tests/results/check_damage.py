@@ -147,7 +147,7 @@ def main(writer, reader):
         damage.broken_seal()
         damage.missing_objects()
         damage.wrong_objects()
-        damage.random_values(150)
+        damage.random_values(100)
 
 
 if __name__ == "__main__":
