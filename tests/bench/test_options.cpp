@@ -29,6 +29,15 @@ TEST_CASE("options: run with everything") {
   CHECK(run.audit_share == 0.25);
 }
 
+TEST_CASE("options: check takes a gate file, and a JUnit file when there is to be one") {
+  const Command with_junit = parse({"check", "x.h5", "--gates", "g.toml", "--junit", "j.xml"});
+  CHECK(std::get<CheckCommand>(with_junit).archive == "x.h5");
+  CHECK(std::get<CheckCommand>(with_junit).gates == "g.toml");
+  CHECK(std::get<CheckCommand>(with_junit).junit == "j.xml");
+  const Command without = parse({"check", "x.h5", "--gates", "g.toml"});
+  CHECK(std::get<CheckCommand>(without).junit.empty());
+}
+
 TEST_CASE("options: wrong usage has exit code 2, help has 0") {
   const std::vector<std::vector<const char*>> wrong{{},
                                                     {"dance"},
@@ -39,7 +48,8 @@ TEST_CASE("options: wrong usage has exit code 2, help has 0") {
                                                     {"run", "chapter6", "-o", "x", "--audit", "2"},
                                                     {"run", "chapter6", "-o", "x", "--parallel", "both"},
                                                     {"sweep", "chapter6"},
-                                                    {"replay", "x.h5", "-1"}};
+                                                                                                        {"replay", "x.h5", "-1"},
+                                                    {"check", "x.h5"}};
   for (const auto& words : wrong)
     CHECK(std::get<UsageText>(parse(words)).exit_code == 2);
   CHECK(std::get<UsageText>(parse({"--help"})).exit_code == 0);
