@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -9,10 +10,12 @@
 #include <system_error>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "analysis/study_aggregate.hpp"
 #include "bench/campaign_runner.hpp"
+#include "bench/command_plot.hpp"
+#include "bench/command_report.hpp"
+#include "bench/files.hpp"
 #include "bench/progress.hpp"
 #include "bench/record_bytes.hpp"
 #include "bench/sweep_command.hpp"
@@ -29,36 +32,11 @@
 namespace mpm {
 namespace {
 
-/// An archive that was to be read and cannot be: wrong input, where one that cannot be written is a run that
-/// cannot be finished.
-class BadArchive : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-Campaign read_input(const std::string& archive) {
-  try {
-    return read_archive(archive);
-  } catch (const ArchiveError& error) {
-    throw BadArchive(error.what());
-  }
-}
-
-/// Refuses an output that is sure to fail before hours of work are spent on it.
-void require_output_folder(const std::filesystem::path& output) {
-  const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder) || ::access(folder.c_str(), W_OK) != 0)
-    throw ArchiveError(fmt::format(
-        "{}: no archive can be written: its folder does not exist or is not writable", output.string()));
-  if (std::filesystem::is_directory(output))
-    throw ArchiveError(fmt::format("{}: no archive can be written: it is a folder", output.string()));
-}
-
 ExitCode run(const RunCommand& command, const std::string& command_line) {
   Study study = find_study(command.study);
   if (command.seed)
     study.seed = *command.seed;
-  require_output_folder(command.output);
+  require_output_folder(command.output, "archive");
 
   CampaignOptions options;
   options.experiments = command.experiments;
@@ -84,10 +62,7 @@ ExitCode run(const RunCommand& command, const std::string& command_line) {
 
 ExitCode replay(const ReplayCommand& command) {
   const Campaign campaign = read_input(command.archive);
-  const auto count = static_cast<std::int64_t>(campaign.records.size());
-  if (command.index >= count)
-    throw InputError("INDEX", fmt::format("{}", command.index), fmt::format("0 to {}", count - 1));
-  ExperimentRecord archived = campaign.records[static_cast<std::size_t>(command.index)];
+  const ExperimentRecord& archived = experiment_of(campaign, command.index);
 
   // From (study, seed, index) alone: the basis case is made again too.
   const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
@@ -147,6 +122,8 @@ struct Executor {
     return ExitCode::done;
   }
   ExitCode operator()(const CheckCommand& command) const { return check(command); }
+  ExitCode operator()(const ReportCommand& command) const { return report(command); }
+  ExitCode operator()(const PlotCommand& command) const { return plot(command); }
   ExitCode operator()(const ListCommand&) const { return list(); }
   ExitCode operator()(const UsageText& usage) const {
     fmt::print(usage.exit_code == 0 ? stdout : stderr, "{}", usage.text);
@@ -154,7 +131,7 @@ struct Executor {
   }
 };
 
-ExitCode report(const char* message, ExitCode code) {
+ExitCode complain(const char* message, ExitCode code) {
   fmt::print(stderr, "mpmbench: {}\n", message);
   return code;
 }
@@ -165,11 +142,11 @@ ExitCode execute(const Command& command, const std::string& command_line) {
   try {
     return std::visit(Executor{command_line}, command);
   } catch (const InputError& error) {
-    return report(error.what(), ExitCode::bad_input);
+    return complain(error.what(), ExitCode::bad_input);
   } catch (const BadArchive& error) {
-    return report(error.what(), ExitCode::bad_input);
+    return complain(error.what(), ExitCode::bad_input);
   } catch (const std::exception& error) {
-    return report(error.what(), ExitCode::not_finished);
+    return complain(error.what(), ExitCode::not_finished);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/version.hpp"
+#include "results/figure_format.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {
@@ -63,6 +64,25 @@ void add_sweep(CLI::App& app, SweepCommand& sweep) {
   app.add_flag("--quiet", sweep.quiet, "No progress");
 }
 
+void add_report(CLI::App& app, ReportCommand& report) {
+  app.add_option("ARCHIVE", report.archive, "Archive")->required();
+  CLI::Option_group* const outputs = app.add_option_group("outputs", "What to write, one or both");
+  outputs->add_option("-o,--output", report.output, "Page to write (HTML)");
+  CLI::Option* const figures =
+      outputs->add_option("--figures", report.figures, "Folder to write the figures into, one file each");
+  outputs->require_option(1, 2);
+  app.add_option("--format", report.format, "Format of these files")
+      ->check(CLI::IsMember(figure_format_names()))
+      ->needs(figures)
+      ->capture_default_str();
+}
+
+void add_plot(CLI::App& app, PlotCommand& plot) {
+  app.add_option("ARCHIVE", plot.archive, "Archive")->required();
+  app.add_option("INDEX", plot.index, "Index of the experiment")->required()->check(CLI::NonNegativeNumber);
+  app.add_option("-o,--output", plot.output, "Figure to write: NAME.svg, NAME.pdf or NAME.png")->required();
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
@@ -95,6 +115,13 @@ Command parse_command_line(int argc, const char* const* argv) {
   check_app->add_option("ARCHIVE", check.archive, "Archive")->required();
   check_app->add_option("--gates", check.gates, "Gate file (TOML)")->required();
   check_app->add_option("--junit", check.junit, "JUnit XML to write");
+  ReportCommand report;
+  CLI::App* const report_app =
+      app.add_subcommand("report", "Write what a study found as one HTML page, and its figures as files");
+  add_report(*report_app, report);
+  PlotCommand plot;
+  CLI::App* const plot_app = app.add_subcommand("plot", "Draw the closed loop of one experiment");
+  add_plot(*plot_app, plot);
   CLI::App* const list_app = app.add_subcommand("list", "List the shipped studies");
 
   try {
@@ -114,6 +141,10 @@ Command parse_command_line(int argc, const char* const* argv) {
     return sweep;
   if (check_app->parsed())
     return check;
+  if (report_app->parsed())
+    return report;
+  if (plot_app->parsed())
+    return plot;
   if (list_app->parsed())
     return ListCommand{};
   return UsageText{app.help(), kUsageError};

@@ -54,6 +54,21 @@ struct CheckCommand {
   std::string junit;  ///< file to write; none when empty
 };
 
+/// `mpmbench report ARCHIVE [-o OUT.html] [--figures DIR [--format svg|pdf|png]]`
+struct ReportCommand {
+  std::string archive;
+  std::string output;   ///< no page when empty
+  std::string figures;  ///< folder; no figures as files when empty
+  std::string format = "svg";
+};
+
+/// `mpmbench plot ARCHIVE INDEX -o FILE`
+struct PlotCommand {
+  std::string archive;
+  std::int64_t index = 0;
+  std::string output;  ///< its extension names the format
+};
+
 /// `mpmbench list`
 struct ListCommand {};
 
@@ -65,7 +80,7 @@ struct UsageText {
 };
 
 using Command = std::variant<RunCommand, ReplayCommand, SummaryCommand, CheckCommand, SweepCommand,
-                             ListCommand, UsageText>;
+                             ReportCommand, PlotCommand, ListCommand, UsageText>;
 
 /// Reads the command line; wrong usage gives UsageText with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

@@ -1,0 +1,50 @@
+#include "bench/command_plot.hpp"
+
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bench/files.hpp"
+#include "plants/error.hpp"
+#include "results/atomic_file.hpp"
+#include "results/experiment_text.hpp"
+#include "results/figure_drawing.hpp"
+#include "results/plot_text.hpp"
+#include "results/trajectory_figure.hpp"
+
+namespace mpm {
+namespace {
+
+/// The loop that was diagnosed: the one in the archive, or the same once more.
+LoopRecord loop_of(const Campaign& campaign, const ExperimentRecord& record) {
+  if (record.loop)
+    return *record.loop;
+  ExperimentRunner runner(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver));
+  return std::move(*runner.run(record.draw.index, StorePolicy::all).loop);
+}
+
+}  // namespace
+
+ExitCode plot(const PlotCommand& command) {
+  const FigureFormat format = figure_format_of(command.output);
+  require_output_folder(command.output, "figure");
+  const Campaign campaign = read_input(command.archive);
+  const ExperimentRecord& record = experiment_of(campaign, command.index);
+  const LoopRecord loop = loop_of(campaign, record);
+  if (loop.trajectory.samples_done == 0)
+    throw InputError(
+        "INDEX",
+        fmt::format("{}, whose closed loop has no samples ({})", command.index, to_string(record.status)),
+        "an experiment that ran");
+  Figure figure = trajectory_figure(
+      campaign.study, loop.trajectory,
+      nominal_outputs(campaign.basis.sensitivity, loop.trajectory.y, loop.y_sim), "experiment");
+  figure.heading = {as_label(experiment_title(campaign.study, record.draw)),
+                    as_label(verdict_text(campaign.study, record))};
+  const std::string drawing = draw_figure(figure, format);
+  write_file_atomically(command.output, std::as_bytes(std::span(drawing)));
+  return ExitCode::done;
+}
+
+}  // namespace mpm

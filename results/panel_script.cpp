@@ -1,0 +1,256 @@
+#include "results/panel_script.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "results/plot_text.hpp"
+
+namespace mpm {
+namespace {
+
+/// Enough digits for any screen or printer, and the same text on every machine.
+std::string number(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+bool visible(const Axis& axis, double value) {
+  return std::isfinite(value) && (!axis.logarithmic || value > 0.0);
+}
+
+/// The limits of an axis: what is set, and what is drawn with a margin where nothing is.
+std::pair<double, double> limits(const Axis& axis, double lower, double upper) {
+  constexpr double kMargin = 0.05;
+  if (lower > upper)  // nothing is drawn
+    lower = upper = 1.0;
+  if (axis.logarithmic) {
+    const double factor = std::max(1.1, std::pow(upper / lower, kMargin));
+    lower /= factor;
+    upper *= factor;
+  } else {
+    const double margin = upper > lower ? kMargin * (upper - lower) : std::max(0.5 * std::abs(upper), 0.1);
+    lower -= margin;
+    upper += margin;
+  }
+  return {std::isnan(axis.lower) ? lower : axis.lower, std::isnan(axis.upper) ? upper : axis.upper};
+}
+
+/// Ticks of a logarithmic axis: 1, 2, 5 in each decade, or the decades alone when these are many.
+std::vector<double> logarithmic_ticks(double lower, double upper) {
+  const bool decades = std::log10(upper / lower) > 2.5;
+  std::vector<double> ticks;
+  for (double decade = std::pow(10.0, std::floor(std::log10(lower))); decade <= upper; decade *= 10.0)
+    for (const double digit : {1.0, 2.0, 5.0})
+      if (const double tick = digit * decade; tick >= lower && tick <= upper && (digit == 1.0 || !decades))
+        ticks.push_back(tick);
+  return ticks;
+}
+
+/// The smallest step of 1, 2 or 5 times a power of ten that leaves a tick this much room, in pixels.
+double tick_step(double lower, double upper, double length, double room) {
+  const double least = (upper - lower) * room / length;
+  const double decade = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double digit : {1.0, 2.0, 5.0})
+    if (digit * decade >= least)
+      return digit * decade;
+  return 10.0 * decade;
+}
+
+std::string tick_commands(char which, const Axis& axis, double lower, double upper, double length) {
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < axis.words.size(); ++i)
+    places.push_back(fmt::format("{} {}", gnuplot_label(axis.words[i]), i));
+  for (const double tick :
+       axis.logarithmic&& axis.ticks.empty() ? logarithmic_ticks(lower, upper) : axis.ticks)
+    places.push_back(number(tick));
+  const double room = which == 'x' ? 42 : 28;  // numbers are wider than high
+  if (places.empty())
+    return fmt::format("set {}tics {}\n", which, number(tick_step(lower, upper, length, room)));
+  return fmt::format("set {}tics ({}){}\n", which, fmt::join(places, ", "),
+                     axis.words.empty() ? "" : " scale 0");
+}
+
+std::string axis_commands(char which, const Axis& axis, double least, double largest, double length) {
+  const auto [lower, upper] = limits(axis, least, largest);
+  std::string commands = fmt::format("set {}range [{}:{}]\n", which, number(lower), number(upper));
+  if (!axis.label.empty())
+    commands += fmt::format("set {}label {}\n", which, gnuplot_label(axis.label));
+  if (axis.logarithmic)
+    commands += fmt::format("set logscale {}\n", which);
+  return commands + tick_commands(which, axis, lower, upper, length);
+}
+
+}  // namespace
+
+std::string line_words(const Pen& pen) {
+  const char* dash = pen.dash == Dash::dashed ? "(8,5)" : pen.dash == Dash::dotted ? "(2,3)" : "solid";
+  return fmt::format("lc rgb '{}' lw {} dt {}", pen.colour, pen.width, dash);
+}
+
+std::string mark_words(const Pen& pen) {
+  constexpr int kTypes[] = {0, 7, 6, 9, 5, 13, 12};  // in the order of Mark
+  return fmt::format("pt {} ps {} lc rgb '{}'", kTypes[static_cast<int>(pen.mark)], pen.size, pen.colour);
+}
+
+PanelScript::PanelScript(std::string name, std::string title, Axis x, Axis y)
+    : name_(std::move(name)), title_(std::move(title)), x_(std::move(x)), y_(std::move(y)) {}
+
+void PanelScript::see(const Axis& axis, Extent& extent, double value) const {
+  if (!visible(axis, value))
+    return;
+  extent.least = std::min(extent.least, value);
+  extent.largest = std::max(extent.largest, value);
+}
+
+bool PanelScript::shows(double x, double y) const {
+  return visible(x_, x) && visible(y_, y);
+}
+
+std::string PanelScript::block(const std::string& rows) {
+  const std::string name = fmt::format("${}_{}", name_, blocks_++);
+  panel_.data += fmt::format("{} << EOD\n{}EOD\n", name, rows);
+  return name;
+}
+
+void PanelScript::plot(const std::string& item) {
+  items_.push_back(item);
+}
+
+void PanelScript::curve(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen,
+                        const char* style) {
+  std::string rows;
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+    if (!shows(x[i], y[i])) {
+      rows += "\n";
+      continue;
+    }
+    see(x_, x_extent_, x[i]);
+    see(y_, y_extent_, y[i]);
+    rows += number(x[i]) + " " + number(y[i]) + "\n";
+  }
+  if (rows.find_first_not_of('\n') != std::string::npos)
+    plot(fmt::format("{} using 1:2 with {} {} notitle", block(rows), style, line_words(pen)));
+}
+
+void PanelScript::line(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen) {
+  curve(x, y, pen, "lines");
+}
+
+void PanelScript::steps(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen) {
+  curve(x, y, pen, "steps");
+}
+
+std::string PanelScript::name_point(const std::string& name) {
+  std::string key = fmt::format("#{}:{}", name_, panel_.names.size());
+  panel_.names.emplace(key, name);
+  return '"' + key + '"';
+}
+
+void PanelScript::draw_marks(const std::string& rows, const Pen& pen) {
+  if (!rows.empty())
+    plot(fmt::format("{} using 1:2:3 with labels hypertext point {} notitle", block(rows), mark_words(pen)));
+}
+
+void PanelScript::points(const std::vector<NamedPoint>& points, const Pen& pen) {
+  std::string rows;
+  for (const NamedPoint& point : points) {
+    if (!shows(point.x, point.y))
+      continue;
+    see(x_, x_extent_, point.x);
+    see(y_, y_extent_, point.y);
+    rows += fmt::format("{} {} {}\n", number(point.x), number(point.y), name_point(point.name));
+  }
+  draw_marks(rows, pen);
+}
+
+void PanelScript::upright_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen) {
+  std::string bars, marks;
+  for (const Whisker& w : whiskers) {
+    if (!shows(w.at, w.value))
+      continue;
+    for (const double y : {w.value, w.lower, w.upper})
+      see(y_, y_extent_, y);
+    see(x_, x_extent_, w.at);
+    if (shows(w.at, w.lower) && shows(w.at, w.upper))
+      bars += fmt::format("{0} {1}\n{0} {2}\n\n", number(w.at), number(w.lower), number(w.upper));
+    marks += fmt::format("{} {} {}\n", number(w.at), number(w.value), name_point(w.name));
+  }
+  if (!bars.empty())
+    plot(fmt::format("{} using 1:2 with lines {} notitle", block(bars), line_words(pen)));
+  draw_marks(marks, pen);
+}
+
+void PanelScript::level_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen) {
+  std::string bars, marks;
+  for (const Whisker& w : whiskers) {
+    if (!shows(w.value, w.at))
+      continue;
+    for (const double x : {w.value, w.lower, w.upper})
+      see(x_, x_extent_, x);
+    see(y_, y_extent_, w.at);
+    if (shows(w.lower, w.at) && shows(w.upper, w.at))
+      bars += fmt::format("{1} {0}\n{2} {0}\n\n", number(w.at), number(w.lower), number(w.upper));
+    marks += fmt::format("{} {} {}\n", number(w.value), number(w.at), name_point(w.name));
+  }
+  if (!bars.empty())
+    plot(fmt::format("{} using 1:2 with lines {} notitle", block(bars), line_words(pen)));
+  draw_marks(marks, pen);
+}
+
+void PanelScript::across(double y, const Pen& pen) {
+  if (!visible(y_, y))
+    return;
+  see(y_, y_extent_, y);
+  settings_ += fmt::format("set arrow from graph 0, first {0} to graph 1, first {0} nohead back {1}\n",
+                           number(y), line_words(pen));
+}
+
+void PanelScript::upright(double x, const Pen& pen) {
+  if (!visible(x_, x))
+    return;
+  see(x_, x_extent_, x);
+  settings_ += fmt::format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back {1}\n",
+                           number(x), line_words(pen));
+}
+
+void PanelScript::band(double lower, double upper) {
+  if (!visible(y_, lower) || !visible(y_, upper))
+    return;
+  settings_ += fmt::format(
+      "set object rectangle from graph 0, first {} to graph 1, first {} behind fc rgb '#EEF1F4' "
+      "fs solid noborder\n",
+      number(lower), number(upper));
+}
+
+void PanelScript::upright_band(double lower, double upper) {
+  if (!visible(x_, lower) || !visible(x_, upper))
+    return;
+  settings_ += fmt::format(
+      "set object rectangle from first {}, graph 0 to first {}, graph 1 behind fc rgb '#EEF1F4' "
+      "fs solid noborder\n",
+      number(lower), number(upper));
+}
+
+Panel PanelScript::finish(std::string description, double height) {
+  constexpr double kAround = 80;  // pixels that labels and title take, about
+  panel_.title = title_;
+  panel_.description = std::move(description);
+  panel_.height = height;
+  panel_.commands = fmt::format("set lmargin {}\n", left_margin_);
+  if (title_.empty())
+    panel_.commands += "set tmargin 0.7\n";
+  else
+    panel_.commands +=
+        fmt::format("set label 1 {} at graph 0, graph 1 offset 0, 0.9 left front\n", gnuplot_label(title_));
+  panel_.commands += axis_commands('x', x_, x_extent_.least, x_extent_.largest, kPanelWidth - kAround) +
+                     axis_commands('y', y_, y_extent_.least, y_extent_.largest, height - kAround) + settings_;
+  // Without anything to draw the axes alone stand there.
+  panel_.commands +=
+      items_.empty() ? "plot NaN notitle\n" : fmt::format("plot {}\n", fmt::join(items_, ", \\\n  "));
+  return std::move(panel_);
+}
+
+}  // namespace mpm

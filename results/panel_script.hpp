@@ -1,0 +1,88 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "results/figure.hpp"
+
+namespace mpm {
+
+/// An axis of a panel. A limit that is NaN follows from what is drawn, with a margin.
+struct Axis {
+  std::string label;  ///< label, with the unit
+  bool logarithmic = false;
+  double lower = std::numeric_limits<double>::quiet_NaN();
+  double upper = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> ticks = {};       ///< where numbers stand; chosen by themselves when empty
+  std::vector<std::string> words = {};  ///< words at 0, 1, 2, ... in place of numbers
+};
+
+/// A point that says what it is when a mouse rests on it.
+struct NamedPoint {
+  double x, y;
+  std::string name;
+};
+
+/// A value with an interval, at the place `at` of the other axis.
+struct Whisker {
+  double at, value, lower, upper;
+  std::string name;
+};
+
+/// Writes the script of one panel. What is drawn later lies on top. Points that an axis cannot show (not
+/// finite, or not positive on a logarithmic axis) are left out of points and interrupt lines.
+class PanelScript {
+ public:
+  /// `name` is unique within a figure: letters, digits and underscores, a letter first.
+  PanelScript(std::string name, std::string title, Axis x, Axis y);
+
+  void line(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
+  /// A line that keeps the value y[k] from x[k] to x[k + 1].
+  void steps(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
+  void points(const std::vector<NamedPoint>& points, const Pen& pen);
+  /// Values at x = at with upright intervals.
+  void upright_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen);
+  /// Values at y = at with intervals along x.
+  void level_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen);
+  /// A line across the panel at this y, or at this x.
+  void across(double y, const Pen& pen);
+  void upright(double x, const Pen& pen);
+  /// A light band behind everything between two values of y, or of x.
+  void band(double lower, double upper);
+  void upright_band(double lower, double upper);
+  /// Columns that the labels of the y axis take, in widths of a character.
+  void left_margin(int characters) { left_margin_ = characters; }
+
+  Panel finish(std::string description, double height = 300);
+
+ private:
+  struct Extent {
+    double least = std::numeric_limits<double>::infinity();
+    double largest = -std::numeric_limits<double>::infinity();
+  };
+
+  void see(const Axis& axis, Extent& extent, double value) const;
+  bool shows(double x, double y) const;
+  std::string block(const std::string& rows);
+  void curve(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen, const char* style);
+  std::string name_point(const std::string& name);
+  void draw_marks(const std::string& rows, const Pen& pen);
+  void plot(const std::string& item);
+
+  std::string name_;
+  std::string title_;
+  Axis x_, y_;
+  Extent x_extent_, y_extent_;
+  int blocks_ = 0;
+  int left_margin_ = 8;
+  std::string settings_;
+  std::vector<std::string> items_;
+  Panel panel_;
+};
+
+/// A pen in gnuplot's words, for lines and for marks.
+std::string line_words(const Pen& pen);
+std::string mark_words(const Pen& pen);
+
+}  // namespace mpm

@@ -1,0 +1,85 @@
+#include <array>
+
+#include <fmt/format.h>
+
+#include "results/experiment_text.hpp"
+#include "results/panel_script.hpp"
+#include "results/plot_text.hpp"
+#include "results/report_sections.hpp"
+#include "results/trajectory_figure.hpp"
+#include "results/variable_text.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::array<std::string_view, 7> kCvColours{colour::kBlue, colour::kOrange,     colour::kGreen,
+                                                     colour::kSky,  colour::kVermillion, colour::kPurple,
+                                                     colour::kBlack};
+
+/// CVs differ in colour, and in dash once the colours are used up; the stepped one is thick.
+Pen cv_pen(Eigen::Index cv, bool stepped) {
+  const auto i = static_cast<std::size_t>(cv);
+  constexpr std::array<Dash, 3> kDashes{Dash::solid, Dash::dashed, Dash::dotted};
+  return {kCvColours[i % kCvColours.size()], kDashes[(i / kCvColours.size()) % kDashes.size()], Mark::none,
+          stepped ? 3.0 : 1.5};
+}
+
+Panel step_panel(const Study& study, const NominalSensitivity& sensitivity, std::size_t a) {
+  const ActiveLimit& limit = sensitivity.active[a];
+  const Eigen::MatrixXd& response = sensitivity.step_response[a];
+  std::vector<double> time{0.0};
+  for (Eigen::Index l = 0; l < response.cols(); ++l)
+    time.push_back(study.controller.sample_time * static_cast<double>(l + 1));
+  const std::string cv = cv_name(study, limit.cv);
+  PanelScript panel(fmt::format("t0_{}", a),
+                    fmt::format("step of the {} limit of {}", limit.upper ? "upper" : "lower", as_label(cv)),
+                    {.label = "time (" + as_label(unit_text(study.plant.time_unit)) + ")",
+                     .lower = 0.0,
+                     .upper = time.back()},
+                    {.label = "response per unit step"});
+  for (Eigen::Index i = 0; i < response.rows(); ++i) {
+    std::vector<double> y{0.0};
+    y.insert(y.end(), response.row(i).begin(), response.row(i).end());
+    panel.line(time, y, cv_pen(i, i == limit.cv));
+  }
+  return panel.finish(fmt::format("Responses of all CVs to a unit step of the limit of {}.", cv));
+}
+
+}  // namespace
+
+ReportSection sensitivity_section(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  const NominalSensitivity& sensitivity = input.campaign.basis.sensitivity;
+  ReportSection section{"sensitivity", "Nominal sensitivity T_{0}", {}};
+  Figure figure;
+  figure.name = "t0";
+  figure.caption =
+      "Step responses of T_{0} = I - S_{0} from each CV at a soft limit, the diagonal one thick; "
+      "thesis figure 6.10. T_{0} from the other CVs is zero.";
+  for (Eigen::Index i = 0; i < study.cv_count(); ++i)
+    figure.legend.push_back({as_label(cv_name(study, i)), cv_pen(i, false)});
+  for (std::size_t a = 0; a < sensitivity.active.size() && a < sensitivity.step_response.size(); ++a)
+    if (sensitivity.step_response[a].size() > 0)
+      figure.panels.push_back(step_panel(study, sensitivity, a));
+  if (figure.panels.empty())
+    section.leave_out("no CV is at a soft limit, so T_0 is zero.");
+  else
+    section.add(std::move(figure));
+  return section;
+}
+
+ReportSection basis_section(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  const BasisCase& basis = input.campaign.basis;
+  ReportSection section{"basis", "Basis case", {}};
+  if (basis.trajectory.samples_done == 0) {
+    section.leave_out("the closed loop of the basis case has no samples.");
+    return section;
+  }
+  Figure figure = trajectory_figure(study, basis.trajectory, basis.nominal, "basis-case");
+  figure.caption = "The closed loop without mismatch and unmeasured disturbance; thesis figures 6.7 to 6.9.";
+  section.add(std::move(figure));
+  return section;
+}
+
+}  // namespace mpm

@@ -1,0 +1,142 @@
+#include <span>
+#include <system_error>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "results/archive_error.hpp"
+#include "results/atomic_file.hpp"
+#include "results/experiment_text.hpp"
+#include "results/figure_drawing.hpp"
+#include "results/plot_text.hpp"
+#include "results/report.hpp"
+#include "results/report_sections.hpp"
+#include "results/report_style.hpp"
+
+namespace mpm {
+namespace {
+
+/// The mark of a pen in the middle of a drawing of 30 x 14 pixels.
+std::string mark_svg(const Pen& pen) {
+  const auto shape = [&](const char* points) {
+    return fmt::format("<polygon points=\"{}\" fill=\"{}\"/>", points, pen.colour);
+  };
+  switch (pen.mark) {
+    case Mark::none:
+      return {};
+    case Mark::dot:
+      return fmt::format("<circle cx=\"15\" cy=\"7\" r=\"4\" fill=\"{}\"/>", pen.colour);
+    case Mark::circle:
+      return fmt::format(
+          "<circle cx=\"15\" cy=\"7\" r=\"3.5\" fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.5\"/>",
+          pen.colour);
+    case Mark::triangle:
+      return shape("15,2 20,11 10,11");
+    case Mark::square:
+      return shape("11,3 19,3 19,11 11,11");
+    case Mark::hollow_diamond:
+      return fmt::format(
+          "<polygon points=\"15,1.5 20.5,7 15,12.5 9.5,7\" fill=\"#fff\" stroke=\"{}\" "
+          "stroke-width=\"1.5\"/>",
+          pen.colour);
+    case Mark::diamond:
+      return shape("15,1.5 20.5,7 15,12.5 9.5,7");
+  }
+  return {};
+}
+
+std::string legend_html(const std::vector<LegendEntry>& legend) {
+  std::string items;
+  for (const LegendEntry& entry : legend) {
+    const Pen& pen = entry.pen;
+    const char* dash = pen.dash == Dash::dashed ? "7 4" : pen.dash == Dash::dotted ? "2 3" : "none";
+    const std::string line =
+        pen.dash == Dash::none
+            ? ""
+            : fmt::format("<path d=\"M1,7H29\" stroke=\"{}\" stroke-width=\"{}\" stroke-dasharray=\"{}\"/>",
+                          pen.colour, pen.width, dash);
+    items +=
+        fmt::format("<li><svg viewBox=\"0 0 30 14\" aria-hidden=\"true\">{}{}</svg><span>{}</span></li>\n",
+                    line, mark_svg(pen), html_label(entry.label));
+  }
+  return items.empty() ? items : "<ul class=\"legend\">\n" + items + "</ul>\n";
+}
+
+std::string figure_html(const Figure& figure) {
+  std::string html = fmt::format("<figure id=\"figure-{}\">\n{}<div class=\"panels{}\">\n", figure.name,
+                                 legend_html(figure.legend), figure.panels.size() == 1 ? " one" : "");
+  for (std::size_t i = 0; i < figure.panels.size(); ++i)
+    html += draw_panel(figure.panels[i], fmt::format("{}-{}", figure.name, i));
+  html += "</div>\n";
+  if (!figure.caption.empty())
+    html += "<figcaption>" + html_label(figure.caption) + "</figcaption>\n";
+  return html + "</figure>\n";
+}
+
+std::string section_html(const ReportSection& section, std::size_t number) {
+  std::string html = fmt::format(
+      "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\"><span "
+      "class=\"index\">{1}</span>{2}</h2>\n",
+      section.id, number, html_label(section.title));
+  for (const auto& piece : section.content)
+    html += std::holds_alternative<Html>(piece) ? std::get<Html>(piece).text
+                                                : figure_html(std::get<Figure>(piece));
+  return html + "</section>\n";
+}
+
+std::string contents_html(const std::vector<ReportSection>& sections) {
+  std::string items;
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    items += fmt::format("<li><span>{}</span><a href=\"#{}\">{}</a></li>\n", i + 1, sections[i].id,
+                         html_label(sections[i].title));
+  return "<nav aria-label=\"Contents\"><ol>\n" + items + "</ol></nav>\n";
+}
+
+}  // namespace
+
+std::string report_html(const Campaign& campaign, const std::filesystem::path& file) {
+  const SummaryParts parts = summary_parts(campaign);
+  const std::vector<ReportSection> sections = report_sections({campaign, parts, file.filename().string()});
+  std::string body;
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    body += section_html(sections[i], i + 1);
+  // The policy keeps the promise that nothing is loaded from anywhere and that no script runs.
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+      "'unsafe-inline'; img-src data:\">\n"
+      "<meta name=\"generator\" content=\"mpmbench {3}\">\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<title>mpmbench: {0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n"
+      "<p class=\"eyebrow\">mpmbench report</p>\n<h1>{2}</h1>\n"
+      "<p>Study <strong>{0}</strong>, archive <code>{4}</code>. <span class=\"hint\">Rest a mouse on a "
+      "point to see its experiment.</span></p>\n{5}</header>\n<main>\n{6}</main>\n"
+      "<footer>Made by <code>mpmbench report</code> from {4}; written by mpmbench {3}. Intervals have a "
+      "confidence level of {7:g}&nbsp;%.</footer>\n</body>\n</html>\n",
+      html_text(campaign.study.name), kReportStyle, html_text(campaign.study.title),
+      html_text(campaign.info.mpmbench_version), html_text(file.filename().string()), contents_html(sections),
+      body, 100.0 * campaign.study.aggregate.confidence);
+}
+
+std::vector<std::filesystem::path> write_figures(const Campaign& campaign,
+                                                 const std::filesystem::path& folder, FigureFormat format) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (!std::filesystem::is_directory(folder))
+    throw ArchiveError(fmt::format("{}: cannot make the folder for the figures{}{}", folder.string(),
+                                   error ? ": " : "", error ? error.message() : ""));
+  const SummaryParts parts = summary_parts(campaign);
+  std::vector<std::filesystem::path> files;
+  for (const ReportSection& section : report_sections({campaign, parts, ""}))
+    for (const auto& piece : section.content) {
+      const Figure* const figure = std::get_if<Figure>(&piece);
+      if (figure == nullptr)
+        continue;
+      files.push_back(folder / fmt::format("{}.{}", figure->name, to_string(format)));
+      const std::string drawing = draw_figure(*figure, format);
+      write_file_atomically(files.back(), std::as_bytes(std::span(drawing)));
+    }
+  return files;
+}
+
+}  // namespace mpm

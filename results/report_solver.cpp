@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "analysis/quantile.hpp"
+#include "results/experiment_text.hpp"
+#include "results/html_table.hpp"
+#include "results/plot_text.hpp"
+#include "results/report_sections.hpp"
+
+namespace mpm {
+namespace {
+
+/// Solver statistics of some experiments.
+struct Effort {
+  std::int64_t experiments = 0, steps = 0;
+  std::vector<double> iterations_per_step;
+  double largest_residual = NAN;
+  std::int64_t worst = -1;  ///< experiment of the largest residual
+
+  void add(const ExperimentRecord& record) {
+    if (record.solver.steps <= 0)
+      return;
+    ++experiments;
+    steps += record.solver.steps;
+    iterations_per_step.push_back(static_cast<double>(record.solver.iterations) /
+                                  static_cast<double>(record.solver.steps));
+    const double residual = record.solver.largest_kkt_residual;
+    if (std::isfinite(residual) && !(residual <= largest_residual)) {
+      largest_residual = residual;
+      worst = record.draw.index;
+    }
+  }
+};
+
+void add_row(HtmlTable& table, const std::string& name, Effort effort) {
+  if (effort.experiments == 0)
+    return;
+  std::sort(effort.iterations_per_step.begin(), effort.iterations_per_step.end());
+  const auto& iterations = effort.iterations_per_step;
+  table.row({name, fmt::format("{}", effort.experiments), fmt::format("{}", effort.steps),
+             fmt::format("{:.1f}", sorted_quantile(iterations, 0.5)),
+             fmt::format("{:.1f}", iterations.back()),
+             std::isnan(effort.largest_residual) ? html_number(NAN)
+                                                 : fmt::format("{:.1e}", effort.largest_residual),
+             effort.worst < 0 ? html_number(NAN) : fmt::format("{}", effort.worst)});
+}
+
+}  // namespace
+
+ReportSection solver_section(const ReportInput& input) {
+  const Campaign& campaign = input.campaign;
+  ReportSection section{"solver", "Solver", {}};
+  HtmlTable table("Target and MPC problems of all closed loops; iterations and residuals cover both.",
+                  {{"Kind", HtmlTable::Align::left},
+                   {"Experiments"},
+                   {"Samples"},
+                   {"Iterations a sample, median"},
+                   {"Largest"},
+                   {"Largest KKT residual"},
+                   {"In experiment"}});
+  Effort all;
+  for (const ExperimentRecord& record : campaign.records)
+    all.add(record);
+  if (all.experiments == 0) {
+    section.leave_out("no experiment has solver statistics.");
+    return section;
+  }
+  for (const KindAggregate& kind : input.parts.aggregate.kinds) {
+    Effort effort;
+    for (const ExperimentRecord& record : campaign.records)
+      if (record.draw.kind == kind.kind)
+        effort.add(record);
+    add_row(table, kind_name(kind.kind), std::move(effort));
+  }
+  add_row(table, "all", std::move(all));
+  section.add(
+      fmt::format("<p>Every quadratic program was solved by <strong>{}</strong>. The KKT residual is "
+                  "computed from the problem alone, whichever solver gave the answer.</p>\n",
+                  html_text(campaign.info.solver)));
+  section.add(table.html());
+  return section;
+}
+
+}  // namespace mpm

@@ -1,0 +1,104 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "results/experiment_text.hpp"
+#include "results/html_table.hpp"
+#include "results/plot_text.hpp"
+#include "results/report_sections.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::size_t kMostRows = 500;
+
+/// "y3", or the wrong one marked.
+std::string located(const Study& study, const ExperimentRecord& record) {
+  const std::string found = html_text(cv_name(study, record.diagnosis.predicted_cv));
+  return record.diagnosis.predicted_cv == record.draw.true_cv() ? found
+                                                                : "<span class=\"no\">" + found + "</span>";
+}
+
+std::string source(const ExperimentRecord& record) {
+  const std::string found = kind_name(record.diagnosis.predicted_source);
+  const bool single = record.draw.kind != ExperimentKind::mpm_ud;
+  return single && record.diagnosis.predicted_source != record.draw.kind
+             ? "<span class=\"no\">" + found + "</span>"
+             : found;
+}
+
+std::string of_cv(const Eigen::VectorXd& values, Eigen::Index cv) {
+  return html_number(cv >= 0 && cv < values.size() ? values(cv) : NAN);
+}
+
+std::string command(const char* name, const ReportInput& input, const ExperimentRecord& record) {
+  return fmt::format("<code>mpmbench {} {} {}</code>", name, html_text(input.file), record.draw.index);
+}
+
+std::string wrong_table(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  HtmlTable table(
+      "Experiments with impact whose CV, or the source of a single fault, is not the true one (marked).",
+      {{"No."},
+       {"Kind", HtmlTable::Align::left},
+       {"Fault", HtmlTable::Align::text},
+       {"True CV", HtmlTable::Align::left},
+       {"Located", HtmlTable::Align::left},
+       {"Source", HtmlTable::Align::left},
+       {"I<sub>MPM</sub>"},
+       {"Ivar, true CV"},
+       {"Ivar<sub>diag</sub>, true CV"},
+       {"Ivar<sub>diag</sub>, located"},
+       {"Dominance"},
+       {"To replay it", HtmlTable::Align::left}});
+  const std::vector<const ExperimentRecord*>& wrong = input.parts.wrong;
+  for (std::size_t i = 0; i < std::min(wrong.size(), kMostRows); ++i) {
+    const ExperimentRecord& record = *wrong[i];
+    const Diagnosis& verdict = record.diagnosis;
+    table.row({fmt::format("{}", record.draw.index), kind_name(record.draw.kind),
+               html_text(fault_text(study, record.draw)), html_text(cv_name(study, record.draw.true_cv())),
+               located(study, record), source(record), html_number(verdict.indicator.i_mpm),
+               of_cv(verdict.ivar, record.draw.true_cv()), of_cv(verdict.ivar_diag, record.draw.true_cv()),
+               of_cv(verdict.ivar_diag, verdict.predicted_cv), html_number(record.dominance_mpm),
+               command("replay", input, record)});
+  }
+  std::string html = table.html();
+  if (wrong.size() > kMostRows)
+    html += fmt::format("<p>And {} more; <code>mpmbench summary {} --json</code> lists all.</p>\n",
+                        wrong.size() - kMostRows, html_text(input.file));
+  return html;
+}
+
+std::string failed_table(const ReportInput& input) {
+  HtmlTable table("Experiments that failed.", {{"No."},
+                                               {"Kind", HtmlTable::Align::left},
+                                               {"Fault", HtmlTable::Align::text},
+                                               {"Why", HtmlTable::Align::text},
+                                               {"To replay it", HtmlTable::Align::left}});
+  const std::vector<const ExperimentRecord*>& failed = input.parts.failed;
+  for (std::size_t i = 0; i < std::min(failed.size(), kMostRows); ++i)
+    table.row({fmt::format("{}", failed[i]->draw.index), kind_name(failed[i]->draw.kind),
+               html_text(fault_text(input.campaign.study, failed[i]->draw)), html_text(failed[i]->message),
+               command("replay", input, *failed[i])});
+  return table.html();
+}
+
+}  // namespace
+
+ReportSection wrong_verdict_section(const ReportInput& input) {
+  ReportSection section{"wrong-verdicts", "Wrong verdicts", {}};
+  if (!input.parts.failed.empty())
+    section.add(failed_table(input));
+  if (input.parts.wrong.empty()) {
+    section.leave_out("no experiment with impact got a wrong verdict.");
+    return section;
+  }
+  section.add(
+      fmt::format("<p>{} of the experiments with impact. <code>mpmbench plot {} INDEX -o FILE.svg</code> "
+                  "draws the closed loop of one.</p>\n",
+                  input.parts.wrong.size(), html_text(input.file)));
+  section.add(wrong_table(input));
+  return section;
+}
+
+}  // namespace mpm
