@@ -39,7 +39,8 @@ unset key
 std::string terminal(FigureFormat format, double width, double height) {
   switch (format) {
     case FigureFormat::svg:
-      return fmt::format("set terminal svg size {},{} fixed enhanced font 'Arial,12'\n", width, height);
+      return fmt::format("set terminal svg size {},{} fixed enhanced font 'Arial,12' background '#FFFFFF'\n",
+                         width, height);
     case FigureFormat::pdf:
       return fmt::format("set terminal pdfcairo size {}in,{}in enhanced font 'Arial,9' linewidth 0.75\n",
                          width / kPixelsPerInch, height / kPixelsPerInch);

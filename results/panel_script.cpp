@@ -17,8 +17,10 @@ std::string number(double value) {
   return fmt::format("{:.6g}", value);
 }
 
+/// Finite, far enough from overflow for arithmetic with it, and positive where the axis wants that.
 bool visible(const Axis& axis, double value) {
-  return std::isfinite(value) && (!axis.logarithmic || value > 0.0);
+  constexpr double kLargest = 1e100;
+  return std::abs(value) <= kLargest && (!axis.logarithmic || value >= 1.0 / kLargest);
 }
 
 /// The limits of an axis: what is set, and what is drawn with a margin where nothing is.
@@ -38,14 +40,21 @@ std::pair<double, double> limits(const Axis& axis, double lower, double upper) {
   return {std::isnan(axis.lower) ? lower : axis.lower, std::isnan(axis.upper) ? upper : axis.upper};
 }
 
-/// Ticks of a logarithmic axis: 1, 2, 5 in each decade, or the decades alone when these are many.
+/// Ticks of a logarithmic axis: 1, 2, 5 in each decade, or the decades alone when these are many, or every
+/// n-th of them.
 std::vector<double> logarithmic_ticks(double lower, double upper) {
-  const bool decades = std::log10(upper / lower) > 2.5;
+  constexpr double kMostTicks = 8;
+  const double decades = std::log10(upper / lower);
+  const int step = std::max(1, static_cast<int>(std::ceil(decades / kMostTicks)));
   std::vector<double> ticks;
-  for (double decade = std::pow(10.0, std::floor(std::log10(lower))); decade <= upper; decade *= 10.0)
-    for (const double digit : {1.0, 2.0, 5.0})
-      if (const double tick = digit * decade; tick >= lower && tick <= upper && (digit == 1.0 || !decades))
+  for (int exponent = static_cast<int>(std::floor(std::log10(lower))); exponent <= std::log10(upper);
+       ++exponent)
+    for (const double digit : {1.0, 2.0, 5.0}) {
+      const double tick = digit * std::pow(10.0, exponent);
+      const bool wanted = exponent % step == 0 && (digit == 1.0 || decades <= 2.5);
+      if (wanted && tick >= lower && tick <= upper)
         ticks.push_back(tick);
+    }
   return ticks;
 }
 
@@ -155,8 +164,10 @@ void PanelScript::draw_marks(const std::string& rows, const Pen& pen) {
 }
 
 void PanelScript::points(const std::vector<NamedPoint>& points, const Pen& pen) {
+  const std::size_t stride = (points.size() + kMostPoints - 1) / kMostPoints;
   std::string rows;
-  for (const NamedPoint& point : points) {
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    const NamedPoint& point = points[i];
     if (!shows(point.x, point.y))
       continue;
     see(x_, x_extent_, point.x);

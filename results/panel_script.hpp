@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ struct Whisker {
   std::string name;
 };
 
+inline constexpr std::size_t kMostPoints = 4000;  ///< of one series
+
 /// Writes the script of one panel. What is drawn later lies on top. Points that an axis cannot show (not
 /// finite, or not positive on a logarithmic axis) are left out of points and interrupt lines.
 class PanelScript {
@@ -40,6 +43,7 @@ class PanelScript {
   void line(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
   /// A line that keeps the value y[k] from x[k] to x[k + 1].
   void steps(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
+  /// Of more than kMostPoints points every n-th is drawn, so that a page of a large study stays readable.
   void points(const std::vector<NamedPoint>& points, const Pen& pen);
   /// Values at x = at with upright intervals.
   void upright_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen);

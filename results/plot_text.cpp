@@ -7,6 +7,8 @@
 namespace mpm {
 namespace {
 
+/// gnuplot 5.4 misreads a doubled quote at the beginning of a string, so the typographer's one stands for it.
+constexpr std::string_view kApostrophe = "\xE2\x80\x99";
 constexpr std::string_view kMarkup = "\\_^{}@&~";  // what gnuplot reads as markup, and '\' itself
 
 /// Takes a label apart and hands each piece on: on_text(characters), on_sub() at "_{", on_end() at its "}".
@@ -82,7 +84,7 @@ std::string gnuplot_label(std::string_view label) {
       [&](std::string_view text) {
         if (kMarkup.find(text[0]) != std::string_view::npos)
           quoted += '\\';
-        quoted += text == "'" ? "''" : std::string(text);
+        quoted += text == "'" ? kApostrophe : text;
       },
       [&] { quoted += "_{"; }, [&] { quoted += '}'; });
   return quoted + "'";

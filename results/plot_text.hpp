@@ -15,7 +15,7 @@ std::string shown_text(std::string_view text);
 std::string as_label(std::string_view text);
 
 /// A label as a string of gnuplot, quotes included. Single quotes: between them gnuplot runs no command and
-/// expands no macro.
+/// expands no macro. An apostrophe becomes U+2019.
 std::string gnuplot_label(std::string_view label);
 
 /// A label as HTML, `I<sub>MPM</sub>`.

@@ -17,7 +17,7 @@ const Pen kSeen{colour::kSky, Dash::solid, Mark::circle, 5.0, 0.7};
 const Pen kDiagnosed{colour::kBlue, Dash::solid, Mark::dot, 1.6, 0.55};
 const Pen kMissed{colour::kGrey, Dash::none, Mark::circle, 1.0, 0.35};
 const Pen kWrong{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.5};
-const Pen kNoFault{colour::kGrey, Dash::dotted, Mark::none, 1.2};
+const Pen kNoFault{colour::kGrey, Dash::dashed, Mark::none, 1.2};
 
 /// How the panel of a measure is labelled.
 struct Labels {

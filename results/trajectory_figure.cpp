@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kHeight = 210;  // pixels
 
-const Pen kMeasured{colour::kBlue, Dash::solid, Mark::none, 1.2};
-const Pen kNominal{colour::kOrange, Dash::dashed, Mark::none, 1.8};
+const Pen kMeasured{colour::kBlue, Dash::solid, Mark::none, 1.0};
+const Pen kNominal{colour::kOrange, Dash::solid, Mark::none, 2.8};
 const Pen kInput{colour::kBlack, Dash::solid, Mark::none, 1.3};
 const Pen kTarget{colour::kGreen, Dash::dashed, Mark::none, 1.5};
 const Pen kSoftLimit{colour::kPurple, Dash::dashed, Mark::none, 1.2};
@@ -59,8 +59,8 @@ Panel cv_panel(const Setting& at, const Trajectory& loop, const NominalOutputs& 
   PanelScript panel = at.panel("cv", i, variable);
   add_limits(panel, at.study.controller.cv_hard, i, kHardLimit);
   add_limits(panel, at.study.controller.cv_soft, i, kSoftLimit);
+  panel.line(at.time, row(nominal.y0, i, at.samples), kNominal);  // below the thinner line
   panel.line(at.time, row(loop.y, i, at.samples), kMeasured);
-  panel.line(at.time, row(nominal.y0, i, at.samples), kNominal);
   return panel.finish(fmt::format("Controlled variable {} and its nominal output over time.", variable.name),
                       kHeight);
 }
