@@ -38,6 +38,19 @@ TEST_CASE("options: check takes a gate file, and a JUnit file when there is to b
   CHECK(std::get<CheckCommand>(without).junit.empty());
 }
 
+TEST_CASE("options: report and plot") {
+  const Command command = parse({"report", "x.h5", "-o", "x.html", "--figures", "f", "--format", "pdf"});
+  const ReportCommand& report = std::get<ReportCommand>(command);
+  CHECK(report.archive == "x.h5");
+  CHECK(report.output == "x.html");
+  CHECK(report.figures == "f");
+  CHECK(report.format == "pdf");
+  CHECK(std::get<ReportCommand>(parse({"report", "x.h5", "--figures", "f"})).format == "svg");
+  const Command other = parse({"plot", "x.h5", "12", "-o", "x.png"});
+  CHECK(std::get<PlotCommand>(other).index == 12);
+  CHECK(std::get<PlotCommand>(other).output == "x.png");
+}
+
 TEST_CASE("options: wrong usage has exit code 2, help has 0") {
   const std::vector<std::vector<const char*>> wrong{{},
                                                     {"dance"},
@@ -50,6 +63,12 @@ TEST_CASE("options: wrong usage has exit code 2, help has 0") {
                                                     {"sweep", "chapter6"},
                                                                                                         {"replay", "x.h5", "-1"},
                                                     {"check", "x.h5"}};
+                                                    {"replay", "x.h5", "-1"},
+                                                    {"report", "x.h5"},
+                                                    {"report", "x.h5", "-o", "y", "--format", "pdf"},
+                                                    {"report", "x.h5", "--figures", "f", "--format", "gif"},
+                                                    {"plot", "x.h5", "3"},
+                                                    {"plot", "x.h5", "-3", "-o", "x.svg"}};
   for (const auto& words : wrong)
     CHECK(std::get<UsageText>(parse(words)).exit_code == 2);
   CHECK(std::get<UsageText>(parse({"--help"})).exit_code == 0);

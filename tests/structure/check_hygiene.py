@@ -10,7 +10,7 @@ MACHINE_PATH = re.compile(r"(?<![\w.])/(?:ho" r"me|wo" r"rk|fa" r"rm|ro" r"ot|Us
 MARKER = re.compile(r"\b(?:TO" r"DO|FIX" r"ME|XX" r"X|HA" r"CK)\b")
 NON_ASCII = re.compile(r"[^\x00-\x7f]")
 
-DOCUMENTS = {".md", ".cff", ".html", ".bib"}  # names of people and units may need more than ASCII
+DOCUMENTS = {".md", ".cff", ".html", ".bib", ".svg"}  # names of people and units may need more than ASCII
 
 
 def line_complaints(line, suffix):
