@@ -115,7 +115,7 @@ struct Layout {
     }
     width = kPanelWidth * static_cast<double>(columns);
     heading = kHeadingRow * static_cast<double>(figure.heading.size());
-    legend = kLegendRow * legend_rows(figure.legend, width);
+    legend = figure.legend.empty() ? 0 : kLegendRow * legend_rows(figure.legend, width) + kLegendRow / 2;
     height = std::accumulate(row_heights.begin(), row_heights.end(), heading + legend);
   }
 

@@ -93,10 +93,13 @@ ReportSection wrong_verdict_section(const ReportInput& input) {
     section.leave_out("no experiment with impact got a wrong verdict.");
     return section;
   }
+  std::int64_t impactful = 0;
+  for (const KindAggregate& kind : input.parts.aggregate.kinds)
+    impactful += kind.impactful.hits;
   section.add(
-      fmt::format("<p>{} of the experiments with impact. <code>mpmbench plot {} INDEX -o FILE.svg</code> "
-                  "draws the closed loop of one.</p>\n",
-                  input.parts.wrong.size(), html_text(input.file)));
+      fmt::format("<p>{} of {} experiments with impact got a wrong verdict. <code>mpmbench plot {} INDEX -o "
+                  "FILE.svg</code> draws the closed loop of one.</p>\n",
+                  input.parts.wrong.size(), impactful, html_text(input.file)));
   section.add(wrong_table(input));
   return section;
 }

@@ -13,9 +13,8 @@ namespace {
 
 constexpr double kHeight = 210;  // pixels
 
-const Pen kMeasured{colour::kBlue, Dash::solid, Mark::none, 1.0};
-const Pen kNominal{colour::kOrange, Dash::solid, Mark::none, 2.8};
-const Pen kInput{colour::kBlack, Dash::solid, Mark::none, 1.3};
+const Pen kRecorded{colour::kBlack, Dash::solid, Mark::none, 1.0};
+const Pen kNominal{colour::kSky, Dash::solid, Mark::none, 3.5};
 const Pen kTarget{colour::kGreen, Dash::dashed, Mark::none, 1.5};
 const Pen kSoftLimit{colour::kPurple, Dash::dashed, Mark::none, 1.2};
 const Pen kHardLimit{colour::kVermillion, Dash::dotted, Mark::none, 1.5};
@@ -60,7 +59,7 @@ Panel cv_panel(const Setting& at, const Trajectory& loop, const NominalOutputs& 
   add_limits(panel, at.study.controller.cv_hard, i, kHardLimit);
   add_limits(panel, at.study.controller.cv_soft, i, kSoftLimit);
   panel.line(at.time, row(nominal.y0, i, at.samples), kNominal);  // below the thinner line
-  panel.line(at.time, row(loop.y, i, at.samples), kMeasured);
+  panel.line(at.time, row(loop.y, i, at.samples), kRecorded);
   return panel.finish(fmt::format("Controlled variable {} and its nominal output over time.", variable.name),
                       kHeight);
 }
@@ -70,7 +69,7 @@ Panel mv_panel(const Setting& at, const Trajectory& loop, Eigen::Index i) {
   PanelScript panel = at.panel("mv", i, variable);
   add_limits(panel, at.study.controller.mv_hard, i, kHardLimit);
   panel.steps(at.time, row(loop.u_target, i, at.samples), kTarget);
-  panel.steps(at.time, row(loop.u, i, at.samples), kInput);
+  panel.steps(at.time, row(loop.u, i, at.samples), kRecorded);
   return panel.finish(fmt::format("Manipulated variable {} and its target over time.", variable.name),
                       kHeight);
 }
@@ -78,7 +77,7 @@ Panel mv_panel(const Setting& at, const Trajectory& loop, Eigen::Index i) {
 Panel md_panel(const Setting& at, const Trajectory& loop, Eigen::Index i) {
   const PlantModel::Variable& variable = at.study.plant.mds[static_cast<std::size_t>(i)];
   PanelScript panel = at.panel("md", i, variable);
-  panel.steps(at.time, row(loop.d, i, at.samples), kInput);
+  panel.steps(at.time, row(loop.d, i, at.samples), kRecorded);
   return panel.finish(fmt::format("Measured disturbance {} over time.", variable.name), kHeight);
 }
 
@@ -89,9 +88,11 @@ Figure trajectory_figure(const Study& study, const Trajectory& loop, const Nomin
   const Setting setting(study, loop);
   Figure figure;
   figure.name = name;
-  figure.legend = {{"CV measured, y", kMeasured}, {"nominal output, y_{0}", kNominal},
-                   {"MV or disturbance", kInput}, {"target of the MV", kTarget},
-                   {"soft limit", kSoftLimit},    {"hard limit", kHardLimit}};
+  figure.legend = {{"recorded CV, MV or MD", kRecorded},
+                   {"nominal output, y_{0}", kNominal},
+                   {"target of the MV", kTarget},
+                   {"soft limit of the CV", kSoftLimit},
+                   {"hard limit", kHardLimit}};
   for (Eigen::Index i = 0; i < study.cv_count(); ++i)
     figure.panels.push_back(cv_panel(setting, loop, nominal, i));
   for (Eigen::Index i = 0; i < study.mv_count(); ++i)
