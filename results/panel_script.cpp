@@ -68,10 +68,18 @@ double tick_step(double lower, double upper, double length, double room) {
   return 10.0 * decade;
 }
 
+/// A label of a tick is a format, too: a percent sign is written twice.
+std::string tick_word(const std::string& label) {
+  std::string word;
+  for (const char c : gnuplot_label(label))
+    word.append(c == '%' ? 2 : 1, c);
+  return word;
+}
+
 std::string tick_commands(char which, const Axis& axis, double lower, double upper, double length) {
   std::vector<std::string> places;
   for (std::size_t i = 0; i < axis.words.size(); ++i)
-    places.push_back(fmt::format("{} {}", gnuplot_label(axis.words[i]), i));
+    places.push_back(fmt::format("{} {}", tick_word(axis.words[i]), i));
   for (const double tick :
        axis.logarithmic&& axis.ticks.empty() ? logarithmic_ticks(lower, upper) : axis.ticks)
     places.push_back(number(tick));
@@ -227,15 +235,6 @@ void PanelScript::upright(double x, const Pen& pen) {
                            number(x), line_words(pen));
 }
 
-void PanelScript::band(double lower, double upper) {
-  if (!visible(y_, lower) || !visible(y_, upper))
-    return;
-  settings_ += fmt::format(
-      "set object rectangle from graph 0, first {} to graph 1, first {} behind fc rgb '#EEF1F4' "
-      "fs solid noborder\n",
-      number(lower), number(upper));
-}
-
 void PanelScript::upright_band(double lower, double upper) {
   if (!visible(x_, lower) || !visible(x_, upper))
     return;
@@ -243,6 +242,15 @@ void PanelScript::upright_band(double lower, double upper) {
       "set object rectangle from first {}, graph 0 to first {}, graph 1 behind fc rgb '#EEF1F4' "
       "fs solid noborder\n",
       number(lower), number(upper));
+}
+
+void PanelScript::field(double x, double y, std::string_view colour, double depth, const std::string& label) {
+  see(x_, x_extent_, x);
+  see(y_, y_extent_, y);
+  settings_ += fmt::format(
+      "set object rectangle center first {0}, first {1} size first 1, first 1 back fc rgb '{2}' "
+      "fs solid {3:.3f} noborder\nset label {4} at first {0}, first {1} center front\n",
+      number(x), number(y), colour, depth, gnuplot_label(label));
 }
 
 Panel PanelScript::finish(std::string description, double height) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "results/figure.hpp"
@@ -52,9 +53,10 @@ class PanelScript {
   /// A line across the panel at this y, or at this x.
   void across(double y, const Pen& pen);
   void upright(double x, const Pen& pen);
-  /// A light band behind everything between two values of y, or of x.
-  void band(double lower, double upper);
+  /// A light band behind everything between two values of x.
   void upright_band(double lower, double upper);
+  /// The field of a heat map around (x, y), one wide and high, with a label; `depth` from 0 (white) to 1.
+  void field(double x, double y, std::string_view colour, double depth, const std::string& label);
   /// Columns that the labels of the y axis take, in widths of a character.
   void left_margin(int characters) { left_margin_ = characters; }
 

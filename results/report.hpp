@@ -16,8 +16,8 @@ namespace mpm {
 /// Errors: GnuplotError.
 std::string report_html(const Campaign& campaign, const std::filesystem::path& file);
 
-/// Writes the same figures into `folder`, one file a figure, and returns their paths. The folder is made when
-/// its parent exists.
+/// Writes the same figures, and the confusion matrices as heat maps, into `folder`, one file a figure, and
+/// returns their paths. The folder is made when its parent exists.
 ///
 /// Errors: GnuplotError; ArchiveError when a file cannot be written.
 std::vector<std::filesystem::path> write_figures(const Campaign& campaign,

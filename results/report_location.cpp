@@ -1,12 +1,21 @@
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "results/experiment_text.hpp"
 #include "results/html_table.hpp"
+#include "results/panel_script.hpp"
 #include "results/plot_text.hpp"
 #include "results/report_sections.hpp"
 
 namespace mpm {
 namespace {
+
+/// How deep the colour of a field is that has this share of its row.
+double depth(double share) {
+  return 0.15 + 0.65 * share;
+}
 
 /// A cell of a heat map: blue for right verdicts, orange for wrong ones, deeper for a larger share of the
 /// row.
@@ -15,7 +24,7 @@ std::string cell(std::int64_t count, std::int64_t of_row, bool right) {
     return "<td class=\"number zero\">0</td>";
   const double share = static_cast<double>(count) / static_cast<double>(of_row);
   return fmt::format("<td class=\"number heat\" style=\"background:rgba({},{:.2f})\">{}</td>",
-                     right ? "86,180,233" : "230,159,0", 0.15 + 0.65 * share, count);
+                     right ? "86,180,233" : "230,159,0", depth(share), count);
 }
 
 /// A few experiments a row carry no decimals.
@@ -53,6 +62,37 @@ std::string matrix_table(const Study& study, const KindAggregate& kind) {
                   kind_name(kind.kind), head, interval_title(study), rows));
 }
 
+/// The matrix as a heat map, true CVs from top to bottom.
+Panel matrix_panel(const Study& study, const KindAggregate& kind) {
+  const ConfusionMatrix& confusion = kind.confusion;
+  const Eigen::Index classes = confusion.classes();
+  const double last = static_cast<double>(classes) - 1.0;
+  Axis located{.label = "CV located", .lower = -0.5, .upper = last + 0.5};
+  Axis truth{.label = "CV with the fault", .lower = -0.5, .upper = last + 0.5};
+  for (Eigen::Index cv = 0; cv < classes; ++cv) {
+    located.words.push_back(as_label(cv_name(study, cv)));
+    truth.words.push_back(as_label(cv_name(study, classes - 1 - cv)));
+  }
+  std::size_t longest = 0;
+  for (const PlantModel::Variable& cv : study.plant.cvs)
+    longest = std::max(longest, cv.name.size());
+  const Rate all = confusion.accuracy(study.aggregate.confidence);
+  PanelScript panel(fmt::format("confusion_{}", to_string(kind.kind)),
+                    fmt::format("{}: {} of {} located", kind_name(kind.kind), all.hits, all.total), located,
+                    truth);
+  panel.left_margin(static_cast<int>(std::min<std::size_t>(longest + 5, 24)));
+  for (Eigen::Index row = 0; row < classes; ++row) {
+    const auto of_row = static_cast<double>(confusion.counts().row(row).sum());
+    for (Eigen::Index column = 0; column < classes; ++column)
+      if (const std::int64_t count = confusion.counts()(row, column); count > 0)
+        panel.field(static_cast<double>(column), last - static_cast<double>(row),
+                    row == column ? colour::kSky : colour::kOrange,
+                    depth(static_cast<double>(count) / of_row), fmt::format("{}", count));
+  }
+  return panel.finish(
+      fmt::format("Confusion matrix of the {} experiments with impact.", kind_name(kind.kind)), 380);
+}
+
 }  // namespace
 
 ReportSection location_section(const ReportInput& input) {
@@ -60,12 +100,19 @@ ReportSection location_section(const ReportInput& input) {
   ReportSection section{"location", "Is the right CV found?", {}};
   std::string tables;
   std::string without;
+  Figure figure;
+  figure.name = "confusion";
+  figure.caption = "CV with the fault against CV located, experiments with impact.";
   for (const KindAggregate& kind : input.parts.aggregate.kinds) {
-    if (kind.confusion.total() > 0)
+    if (kind.confusion.total() > 0) {
       tables += matrix_table(study, kind);
-    else
+      figure.panels.push_back(matrix_panel(study, kind));
+    } else {
       without += (without.empty() ? "" : ", ") + kind_name(kind.kind);
+    }
   }
+  if (!figure.panels.empty())
+    section.file_figures.push_back(std::move(figure));
   if (!tables.empty())
     section.add(
         "<p>Experiments with impact: the CV that the fault is on (rows) against the CV whose "

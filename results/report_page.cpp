@@ -1,6 +1,5 @@
 #include <span>
 #include <system_error>
-#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -92,6 +91,15 @@ std::string contents_html(const std::vector<ReportSection>& sections) {
   return "<nav aria-label=\"Contents\"><ol>\n" + items + "</ol></nav>\n";
 }
 
+std::vector<Figure> all_figures(const ReportSection& section) {
+  std::vector<Figure> figures;
+  for (const auto& piece : section.content)
+    if (const Figure* const figure = std::get_if<Figure>(&piece))
+      figures.push_back(*figure);
+  figures.insert(figures.end(), section.file_figures.begin(), section.file_figures.end());
+  return figures;
+}
+
 }  // namespace
 
 std::string report_html(const Campaign& campaign, const std::filesystem::path& file) {
@@ -128,12 +136,9 @@ std::vector<std::filesystem::path> write_figures(const Campaign& campaign,
   const SummaryParts parts = summary_parts(campaign);
   std::vector<std::filesystem::path> files;
   for (const ReportSection& section : report_sections({campaign, parts, ""}))
-    for (const auto& piece : section.content) {
-      const Figure* const figure = std::get_if<Figure>(&piece);
-      if (figure == nullptr)
-        continue;
-      files.push_back(folder / fmt::format("{}.{}", figure->name, to_string(format)));
-      const std::string drawing = draw_figure(*figure, format);
+    for (const Figure& figure : all_figures(section)) {
+      files.push_back(folder / fmt::format("{}.{}", figure.name, to_string(format)));
+      const std::string drawing = draw_figure(figure, format);
       write_file_atomically(files.back(), std::as_bytes(std::span(drawing)));
     }
   return files;

@@ -27,6 +27,7 @@ struct ReportSection {
   std::string id;  ///< its anchor
   std::string title;
   std::vector<std::variant<Html, Figure>> content;
+  std::vector<Figure> file_figures = {};  ///< drawn into files only: the page shows a table in their place
 
   void add(std::string html) { content.emplace_back(Html{std::move(html)}); }
   void add(Figure figure) { content.emplace_back(std::move(figure)); }

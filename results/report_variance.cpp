@@ -20,6 +20,7 @@ const Pen kIdentity{colour::kBlack, Dash::dashed, Mark::none, 1.0};
 struct Pairs {
   std::vector<NamedPoint> affected, others;
   double least = INFINITY, largest = -INFINITY;  ///< Ivar
+  double least_basis = INFINITY;                 ///< Ivar_basis
 
   void add(const Study& study, const ExperimentRecord& record) {
     for (Eigen::Index cv = 0; cv < record.diagnosis.ivar.size(); ++cv) {
@@ -29,6 +30,7 @@ struct Pairs {
         continue;
       least = std::min(least, x);
       largest = std::max(largest, x);
+      least_basis = std::min(least_basis, y);
       (cv == record.draw.true_cv() ? affected : others)
           .push_back({x, y,
                       fmt::format("experiment {} ({}), {}: Ivar {:.3g}, Ivar_basis {:.3g}", record.draw.index,
@@ -46,13 +48,17 @@ Pairs pairs_of(const Campaign& campaign, ExperimentKind kind) {
   return pairs;
 }
 
-/// y = intercept + slope x from `first` to `last`, at points that are evenly spaced on a logarithmic axis.
-void add_fit(PanelScript& panel, const LinearFit& fit, double first, double last) {
+/// The regression line over the range of the pairs, at points that are evenly spaced on a logarithmic axis.
+void add_fit(PanelScript& panel, const LinearFit& fit, const Pairs& pairs) {
   constexpr int kPoints = 80;
   std::vector<double> x, y;
   for (int i = 0; i <= kPoints; ++i) {
-    x.push_back(first * std::pow(last / first, static_cast<double>(i) / kPoints));
-    y.push_back(fit.intercept + fit.slope * x.back());
+    const double at = pairs.least * std::pow(pairs.largest / pairs.least, static_cast<double>(i) / kPoints);
+    const double value = fit.intercept + fit.slope * at;
+    if (value < pairs.least_basis)
+      continue;  // on its way to zero it would stretch the axis
+    x.push_back(at);
+    y.push_back(value);
   }
   panel.line(x, y, kLine);
 }
@@ -72,7 +78,7 @@ Panel kind_panel(const ReportInput& input, const KindAggregate& kind, const Pair
   panel.points(pairs.others, kOther);
   panel.points(pairs.affected, kAffected);
   panel.line({pairs.least, pairs.largest}, {pairs.least, pairs.largest}, kIdentity);
-  add_fit(panel, fit.fit, pairs.least, pairs.largest);
+  add_fit(panel, fit.fit, pairs);
   return panel.finish(fmt::format("Ivar_basis against Ivar of every CV of the {} experiments, with the "
                                   "regression line.",
                                   kind_name(kind.kind)),

@@ -94,6 +94,17 @@ TEST_CASE("figures: a panel without data, with one point, and on logarithmic axe
   CHECK_THAT(svg, Contains("<title>shown</title>") && !Contains("zero") && !Contains("negative"));
 }
 
+TEST_CASE("figures: a heat map with foreign names on its axes") {
+  const std::string awkward = as_label("100 %d `x` 'y' {_^");
+  PanelScript map("a", "", {.label = "", .words = {"one", awkward}},
+                  {.label = "", .words = {awkward, "two"}});
+  map.field(0, 0, colour::kSky, 0.8, "12");
+  map.field(1, 1, colour::kOrange, 0.2, "34");
+  const std::string svg = draw_panel(map.finish("map"), "x");
+  CHECK(count(svg, "100 %d `x` \xE2\x80\x99y\xE2\x80\x99 {_^") == 2);
+  CHECK_THAT(svg, Contains(">12</tspan>") && Contains(">34</tspan>"));
+}
+
 TEST_CASE("figures: of very many points every n-th is drawn") {
   std::vector<NamedPoint> points;
   for (int i = 0; i < 3 * static_cast<int>(kMostPoints); ++i)
