@@ -14,9 +14,9 @@ Command parse(std::vector<const char*> words) {
 }
 
 TEST_CASE("options: run with everything") {
-  const Command command = parse({"run", "chapter6", "-o", "x.h5", "--experiments", "40", "--seed", "7",
-                                 "--jobs", "3", "--solver", "ipopt", "--store", "all", "--quiet",
-                                 "--parallel", "processes", "--audit", "0.25"});
+  const Command command =
+      parse({"run", "chapter6", "-o", "x.h5", "--experiments", "40", "--seed", "7", "--jobs", "3", "--solver",
+             "ipopt", "--store", "all", "--quiet", "--parallel", "processes", "--audit", "0.25"});
   const RunCommand& run = std::get<RunCommand>(command);
   CHECK(run.study == "chapter6");
   CHECK(run.experiments == 40);
@@ -61,18 +61,16 @@ TEST_CASE("options: wrong usage has exit code 2, help has 0") {
                                                     {"run", "chapter6", "-o", "x", "--audit", "2"},
                                                     {"run", "chapter6", "-o", "x", "--parallel", "both"},
                                                     {"sweep", "chapter6"},
-                                                                                                        {"replay", "x.h5", "-1"},
                                                     {"check", "x.h5"}};
-                                                    {"replay", "x.h5", "-1"},
-                                                    {"report", "x.h5"},
-                                                    {"report", "x.h5", "-o", "y", "--format", "pdf"},
-                                                    {"report", "x.h5", "--figures", "f", "--format", "gif"},
-                                                    {"plot", "x.h5", "3"},
-                                                    {"plot", "x.h5", "-3", "-o", "x.svg"}};
-  for (const auto& words : wrong)
-    CHECK(std::get<UsageText>(parse(words)).exit_code == 2);
-  CHECK(std::get<UsageText>(parse({"--help"})).exit_code == 0);
-  CHECK(std::get<UsageText>(parse({"--version"})).exit_code == 0);
+  {"replay", "x.h5", "-1"}, {"report", "x.h5"}, {"report", "x.h5", "-o", "y", "--format", "pdf"},
+      {"report", "x.h5", "--figures", "f", "--format", "gif"}, {"plot", "x.h5", "3"}, {
+    "plot", "x.h5", "-3", "-o", "x.svg"
+  }
+};
+for (const auto& words : wrong)
+  CHECK(std::get<UsageText>(parse(words)).exit_code == 2);
+CHECK(std::get<UsageText>(parse({"--help"})).exit_code == 0);
+CHECK(std::get<UsageText>(parse({"--version"})).exit_code == 0);
 }
 
 }  // namespace
