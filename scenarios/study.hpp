@@ -72,7 +72,7 @@ enum class StepDirection { into_range, out_of_range, mean };
 struct SensitivityOptions {
   int samples = 150;       ///< length of the step responses; the static gain holds after it
   double step_size = 0.1;  ///< of the active soft limit, in CV units
-  StepDirection step_direction = StepDirection::into_range;
+  StepDirection step_direction = StepDirection::out_of_range;
   /// CVs whose soft limit is taken as active, by index; empty: those that the basis case holds at a limit.
   std::vector<Eigen::Index> active_cvs;
 };

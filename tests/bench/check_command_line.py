@@ -44,7 +44,7 @@ def main(program, chapter6):
         error = run("run", broken, "-o", folder / "b.h5", code=2).stderr
         assert "broken.toml:" in error and "prediction_horizon" in error and "found 0" in error, error
         weak = folder / "weak.toml"
-        weak.write_text(pathlib.Path(chapter6).read_text().replace("noise_standard_deviation = 0.01", "noise_standard_deviation = 0.2"))
+        weak.write_text(pathlib.Path(chapter6).read_text().replace("{y1 = 0.005,", "{y1 = 0.2,"))
         error = run("run", weak, "-o", folder / "b.h5", "--solver", "active-set", code=2).stderr
         assert "self-check" in error, error
         assert "chapter6" in run("run", "no-such-study", "-o", folder / "b.h5", code=2).stderr

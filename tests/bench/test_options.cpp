@@ -61,16 +61,17 @@ TEST_CASE("options: wrong usage has exit code 2, help has 0") {
                                                     {"run", "chapter6", "-o", "x", "--audit", "2"},
                                                     {"run", "chapter6", "-o", "x", "--parallel", "both"},
                                                     {"sweep", "chapter6"},
-                                                    {"check", "x.h5"}};
-  {"replay", "x.h5", "-1"}, {"report", "x.h5"}, {"report", "x.h5", "-o", "y", "--format", "pdf"},
-      {"report", "x.h5", "--figures", "f", "--format", "gif"}, {"plot", "x.h5", "3"}, {
-    "plot", "x.h5", "-3", "-o", "x.svg"
-  }
-};
-for (const auto& words : wrong)
-  CHECK(std::get<UsageText>(parse(words)).exit_code == 2);
-CHECK(std::get<UsageText>(parse({"--help"})).exit_code == 0);
-CHECK(std::get<UsageText>(parse({"--version"})).exit_code == 0);
+                                                    {"check", "x.h5"},
+                                                    {"replay", "x.h5", "-1"},
+                                                    {"report", "x.h5"},
+                                                    {"report", "x.h5", "-o", "y", "--format", "pdf"},
+                                                    {"report", "x.h5", "--figures", "f", "--format", "gif"},
+                                                    {"plot", "x.h5", "3"},
+                                                    {"plot", "x.h5", "-3", "-o", "x.svg"}};
+  for (const auto& words : wrong)
+    CHECK(std::get<UsageText>(parse(words)).exit_code == 2);
+  CHECK(std::get<UsageText>(parse({"--help"})).exit_code == 0);
+  CHECK(std::get<UsageText>(parse({"--version"})).exit_code == 0);
 }
 
 }  // namespace
