@@ -1,7 +1,6 @@
 #include "results/panel_script.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,97 +9,6 @@
 #include "results/plot_text.hpp"
 
 namespace mpm {
-namespace {
-
-/// Enough digits for any screen or printer, and the same text on every machine.
-std::string number(double value) {
-  return fmt::format("{:.6g}", value);
-}
-
-/// Finite, far enough from overflow for arithmetic with it, and positive where the axis wants that.
-bool visible(const Axis& axis, double value) {
-  constexpr double kLargest = 1e100;
-  return std::abs(value) <= kLargest && (!axis.logarithmic || value >= 1.0 / kLargest);
-}
-
-/// The limits of an axis: what is set, and what is drawn with a margin where nothing is.
-std::pair<double, double> limits(const Axis& axis, double lower, double upper) {
-  constexpr double kMargin = 0.05;
-  if (lower > upper)  // nothing is drawn
-    lower = upper = 1.0;
-  if (axis.logarithmic) {
-    const double factor = std::max(1.1, std::pow(upper / lower, kMargin));
-    lower /= factor;
-    upper *= factor;
-  } else {
-    const double margin = upper > lower ? kMargin * (upper - lower) : std::max(0.5 * std::abs(upper), 0.1);
-    lower -= margin;
-    upper += margin;
-  }
-  return {std::isnan(axis.lower) ? lower : axis.lower, std::isnan(axis.upper) ? upper : axis.upper};
-}
-
-/// Ticks of a logarithmic axis: 1, 2, 5 in each decade, or the decades alone when these are many, or every
-/// n-th of them.
-std::vector<double> logarithmic_ticks(double lower, double upper) {
-  constexpr double kMostTicks = 8;
-  const double decades = std::log10(upper / lower);
-  const int step = std::max(1, static_cast<int>(std::ceil(decades / kMostTicks)));
-  std::vector<double> ticks;
-  for (int exponent = static_cast<int>(std::floor(std::log10(lower))); exponent <= std::log10(upper);
-       ++exponent)
-    for (const double digit : {1.0, 2.0, 5.0}) {
-      const double tick = digit * std::pow(10.0, exponent);
-      const bool wanted = exponent % step == 0 && (digit == 1.0 || decades <= 2.5);
-      if (wanted && tick >= lower && tick <= upper)
-        ticks.push_back(tick);
-    }
-  return ticks;
-}
-
-/// The smallest step of 1, 2 or 5 times a power of ten that leaves a tick this much room, in pixels.
-double tick_step(double lower, double upper, double length, double room) {
-  const double least = (upper - lower) * room / length;
-  const double decade = std::pow(10.0, std::floor(std::log10(least)));
-  for (const double digit : {1.0, 2.0, 5.0})
-    if (digit * decade >= least)
-      return digit * decade;
-  return 10.0 * decade;
-}
-
-/// A label of a tick is a format, too: a percent sign is written twice.
-std::string tick_word(const std::string& label) {
-  std::string word;
-  for (const char c : gnuplot_label(label))
-    word.append(c == '%' ? 2 : 1, c);
-  return word;
-}
-
-std::string tick_commands(char which, const Axis& axis, double lower, double upper, double length) {
-  std::vector<std::string> places;
-  for (std::size_t i = 0; i < axis.words.size(); ++i)
-    places.push_back(fmt::format("{} {}", tick_word(axis.words[i]), i));
-  for (const double tick :
-       axis.logarithmic&& axis.ticks.empty() ? logarithmic_ticks(lower, upper) : axis.ticks)
-    places.push_back(number(tick));
-  const double room = which == 'x' ? 42 : 28;  // numbers are wider than high
-  if (places.empty())
-    return fmt::format("set {}tics {}\n", which, number(tick_step(lower, upper, length, room)));
-  return fmt::format("set {}tics ({}){}\n", which, fmt::join(places, ", "),
-                     axis.words.empty() ? "" : " scale 0");
-}
-
-std::string axis_commands(char which, const Axis& axis, double least, double largest, double length) {
-  const auto [lower, upper] = limits(axis, least, largest);
-  std::string commands = fmt::format("set {}range [{}:{}]\n", which, number(lower), number(upper));
-  if (!axis.label.empty())
-    commands += fmt::format("set {}label {}\n", which, gnuplot_label(axis.label));
-  if (axis.logarithmic)
-    commands += fmt::format("set logscale {}\n", which);
-  return commands + tick_commands(which, axis, lower, upper, length);
-}
-
-}  // namespace
 
 std::string line_words(const Pen& pen) {
   const char* dash = pen.dash == Dash::dashed ? "(8,5)" : pen.dash == Dash::dotted ? "(2,3)" : "solid";
@@ -116,18 +24,18 @@ PanelScript::PanelScript(std::string name, std::string title, Axis x, Axis y)
     : name_(std::move(name)), title_(std::move(title)), x_(std::move(x)), y_(std::move(y)) {}
 
 void PanelScript::see(const Axis& axis, Extent& extent, double value) const {
-  if (!visible(axis, value))
+  if (!shows_value(axis, value))
     return;
   extent.least = std::min(extent.least, value);
   extent.largest = std::max(extent.largest, value);
 }
 
 bool PanelScript::shows(double x, double y) const {
-  return visible(x_, x) && visible(y_, y);
+  return shows_value(x_, x) && shows_value(y_, y);
 }
 
 std::string PanelScript::block(const std::string& rows) {
-  const std::string name = fmt::format("${}_{}", name_, blocks_++);
+  std::string name = fmt::format("${}_{}", name_, blocks_++);
   panel_.data += fmt::format("{} << EOD\n{}EOD\n", name, rows);
   return name;
 }
@@ -146,7 +54,7 @@ void PanelScript::curve(const std::vector<double>& x, const std::vector<double>&
     }
     see(x_, x_extent_, x[i]);
     see(y_, y_extent_, y[i]);
-    rows += number(x[i]) + " " + number(y[i]) + "\n";
+    rows += plot_number(x[i]) + " " + plot_number(y[i]) + "\n";
   }
   if (rows.find_first_not_of('\n') != std::string::npos)
     plot(fmt::format("{} using 1:2 with {} {} notitle", block(rows), style, line_words(pen)));
@@ -180,7 +88,7 @@ void PanelScript::points(const std::vector<NamedPoint>& points, const Pen& pen) 
       continue;
     see(x_, x_extent_, point.x);
     see(y_, y_extent_, point.y);
-    rows += fmt::format("{} {} {}\n", number(point.x), number(point.y), name_point(point.name));
+    rows += fmt::format("{} {} {}\n", plot_number(point.x), plot_number(point.y), name_point(point.name));
   }
   draw_marks(rows, pen);
 }
@@ -194,8 +102,9 @@ void PanelScript::upright_whiskers(const std::vector<Whisker>& whiskers, const P
       see(y_, y_extent_, y);
     see(x_, x_extent_, w.at);
     if (shows(w.at, w.lower) && shows(w.at, w.upper))
-      bars += fmt::format("{0} {1}\n{0} {2}\n\n", number(w.at), number(w.lower), number(w.upper));
-    marks += fmt::format("{} {} {}\n", number(w.at), number(w.value), name_point(w.name));
+      bars +=
+          fmt::format("{0} {1}\n{0} {2}\n\n", plot_number(w.at), plot_number(w.lower), plot_number(w.upper));
+    marks += fmt::format("{} {} {}\n", plot_number(w.at), plot_number(w.value), name_point(w.name));
   }
   if (!bars.empty())
     plot(fmt::format("{} using 1:2 with lines {} notitle", block(bars), line_words(pen)));
@@ -211,8 +120,9 @@ void PanelScript::level_whiskers(const std::vector<Whisker>& whiskers, const Pen
       see(x_, x_extent_, x);
     see(y_, y_extent_, w.at);
     if (shows(w.lower, w.at) && shows(w.upper, w.at))
-      bars += fmt::format("{1} {0}\n{2} {0}\n\n", number(w.at), number(w.lower), number(w.upper));
-    marks += fmt::format("{} {} {}\n", number(w.value), number(w.at), name_point(w.name));
+      bars +=
+          fmt::format("{1} {0}\n{2} {0}\n\n", plot_number(w.at), plot_number(w.lower), plot_number(w.upper));
+    marks += fmt::format("{} {} {}\n", plot_number(w.value), plot_number(w.at), name_point(w.name));
   }
   if (!bars.empty())
     plot(fmt::format("{} using 1:2 with lines {} notitle", block(bars), line_words(pen)));
@@ -220,28 +130,28 @@ void PanelScript::level_whiskers(const std::vector<Whisker>& whiskers, const Pen
 }
 
 void PanelScript::across(double y, const Pen& pen) {
-  if (!visible(y_, y))
+  if (!shows_value(y_, y))
     return;
   see(y_, y_extent_, y);
   settings_ += fmt::format("set arrow from graph 0, first {0} to graph 1, first {0} nohead back {1}\n",
-                           number(y), line_words(pen));
+                           plot_number(y), line_words(pen));
 }
 
 void PanelScript::upright(double x, const Pen& pen) {
-  if (!visible(x_, x))
+  if (!shows_value(x_, x))
     return;
   see(x_, x_extent_, x);
   settings_ += fmt::format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back {1}\n",
-                           number(x), line_words(pen));
+                           plot_number(x), line_words(pen));
 }
 
 void PanelScript::upright_band(double lower, double upper) {
-  if (!visible(x_, lower) || !visible(x_, upper))
+  if (!shows_value(x_, lower) || !shows_value(x_, upper))
     return;
   settings_ += fmt::format(
       "set object rectangle from first {}, graph 0 to first {}, graph 1 behind fc rgb '#EEF1F4' "
       "fs solid noborder\n",
-      number(lower), number(upper));
+      plot_number(lower), plot_number(upper));
 }
 
 void PanelScript::field(double x, double y, std::string_view colour, double depth, const std::string& label) {
@@ -250,7 +160,7 @@ void PanelScript::field(double x, double y, std::string_view colour, double dept
   settings_ += fmt::format(
       "set object rectangle center first {0}, first {1} size first 1, first 1 back fc rgb '{2}' "
       "fs solid {3:.3f} noborder\nset label {4} at first {0}, first {1} center front\n",
-      number(x), number(y), colour, depth, gnuplot_label(label));
+      plot_number(x), plot_number(y), colour, depth, gnuplot_label(label));
 }
 
 Panel PanelScript::finish(std::string description, double height) {

@@ -7,18 +7,9 @@
 #include <vector>
 
 #include "results/figure.hpp"
+#include "results/plot_axis.hpp"
 
 namespace mpm {
-
-/// An axis of a panel. A limit that is NaN follows from what is drawn, with a margin.
-struct Axis {
-  std::string label;  ///< label, with the unit
-  bool logarithmic = false;
-  double lower = std::numeric_limits<double>::quiet_NaN();
-  double upper = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> ticks = {};       ///< where numbers stand; chosen by themselves when empty
-  std::vector<std::string> words = {};  ///< words at 0, 1, 2, ... in place of numbers
-};
 
 /// A point that says what it is when a mouse rests on it.
 struct NamedPoint {

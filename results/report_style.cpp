@@ -37,7 +37,7 @@ nav li span { color: var(--soft); min-width: 1.3em; text-align: right; font-vari
 .scroll { overflow-x: auto; -webkit-overflow-scrolling: touch; }
 .scroll:focus-visible { outline: 2px solid var(--blue); outline-offset: 2px; }
 table { border-collapse: collapse; font-size: 0.9rem; line-height: 1.35; font-variant-numeric: tabular-nums; }
-th, td { padding: 0.36rem 0.8rem; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
+th, td { padding: 0.36rem 0.65rem; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
 th:first-child, td:first-child { padding-left: 0.3rem; }
 td.number, th.number { text-align: right; white-space: nowrap; }
 thead th { border-bottom: 1.5px solid var(--ink); vertical-align: bottom; font-weight: 600; }
@@ -53,7 +53,7 @@ td .none { color: var(--soft); }
 .matrix th, .matrix td { padding: 0.36rem 0.5rem; }
 .matrix .interval { color: var(--soft); }
 .matrix .zero { color: #98a1aa; }
-td.text { min-width: 13rem; }
+td.text { min-width: 15.5rem; }
 td code { white-space: nowrap; }
 figure { margin: 0 0 1.8rem; }
 figcaption { color: var(--soft); font-size: 0.92rem; max-width: 50rem; margin: 0.6rem 0 0; }
@@ -96,7 +96,7 @@ footer { margin-top: 3.5rem; padding-top: 1rem; border-top: 1px solid var(--rule
   th, td { padding: 0.14rem 0.28rem; }
   thead { display: table-header-group; }
   td code { font-size: 6.2pt; padding: 0; background: none; }
-  td.text { min-width: 33mm; }
+  td.text { min-width: 50mm; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 )";

@@ -31,36 +31,39 @@ std::string of_cv(const Eigen::VectorXd& values, Eigen::Index cv) {
   return html_number(cv >= 0 && cv < values.size() ? values(cv) : NAN);
 }
 
-std::string command(const char* name, const ReportInput& input, const ExperimentRecord& record) {
-  return fmt::format("<code>mpmbench {} {} {}</code>", name, html_text(input.file), record.draw.index);
+/// What was wrong, and below it the command that runs the experiment again.
+std::string fault_cell(const ReportInput& input, const ExperimentRecord& record) {
+  return fmt::format("{}<br><code>mpmbench replay {} {}</code>",
+                     html_text(fault_text(input.campaign.study, record.draw)), html_text(input.file),
+                     record.draw.index);
 }
 
 std::string wrong_table(const ReportInput& input) {
   const Study& study = input.campaign.study;
   HtmlTable table(
-      "Experiments with impact whose CV, or the source of a single fault, is not the true one (marked).",
+      "Experiments with impact whose CV, or the source of a single fault, is not the true one (marked). Ivar "
+      "and "
+      "Ivar<sub>diag</sub> are those of the true CV, then Ivar<sub>diag</sub> of the located one.",
       {{"No."},
        {"Kind", HtmlTable::Align::left},
-       {"Fault", HtmlTable::Align::text},
+       {"Fault, and how to replay it", HtmlTable::Align::text},
        {"True CV", HtmlTable::Align::left},
        {"Located", HtmlTable::Align::left},
        {"Source", HtmlTable::Align::left},
        {"I<sub>MPM</sub>"},
-       {"Ivar, true CV"},
-       {"Ivar<sub>diag</sub>, true CV"},
-       {"Ivar<sub>diag</sub>, located"},
-       {"Dominance"},
-       {"To replay it", HtmlTable::Align::left}});
+       {"Ivar"},
+       {"Ivar<sub>diag</sub>"},
+       {"of located"},
+       {"Dominance"}});
   const std::vector<const ExperimentRecord*>& wrong = input.parts.wrong;
   for (std::size_t i = 0; i < std::min(wrong.size(), kMostRows); ++i) {
     const ExperimentRecord& record = *wrong[i];
     const Diagnosis& verdict = record.diagnosis;
-    table.row({fmt::format("{}", record.draw.index), kind_name(record.draw.kind),
-               html_text(fault_text(study, record.draw)), html_text(cv_name(study, record.draw.true_cv())),
-               located(study, record), source(record), html_number(verdict.indicator.i_mpm),
-               of_cv(verdict.ivar, record.draw.true_cv()), of_cv(verdict.ivar_diag, record.draw.true_cv()),
-               of_cv(verdict.ivar_diag, verdict.predicted_cv), html_number(record.dominance_mpm),
-               command("replay", input, record)});
+    table.row({fmt::format("{}", record.draw.index), kind_name(record.draw.kind), fault_cell(input, record),
+               html_text(cv_name(study, record.draw.true_cv())), located(study, record), source(record),
+               html_number(verdict.indicator.i_mpm), of_cv(verdict.ivar, record.draw.true_cv()),
+               of_cv(verdict.ivar_diag, record.draw.true_cv()),
+               of_cv(verdict.ivar_diag, verdict.predicted_cv), html_number(record.dominance_mpm)});
   }
   std::string html = table.html();
   if (wrong.size() > kMostRows)
@@ -72,14 +75,12 @@ std::string wrong_table(const ReportInput& input) {
 std::string failed_table(const ReportInput& input) {
   HtmlTable table("Experiments that failed.", {{"No."},
                                                {"Kind", HtmlTable::Align::left},
-                                               {"Fault", HtmlTable::Align::text},
-                                               {"Why", HtmlTable::Align::text},
-                                               {"To replay it", HtmlTable::Align::left}});
+                                               {"Fault, and how to replay it", HtmlTable::Align::text},
+                                               {"Why", HtmlTable::Align::text}});
   const std::vector<const ExperimentRecord*>& failed = input.parts.failed;
   for (std::size_t i = 0; i < std::min(failed.size(), kMostRows); ++i)
     table.row({fmt::format("{}", failed[i]->draw.index), kind_name(failed[i]->draw.kind),
-               html_text(fault_text(input.campaign.study, failed[i]->draw)), html_text(failed[i]->message),
-               command("replay", input, *failed[i])});
+               fault_cell(input, *failed[i]), html_text(failed[i]->message)});
   return table.html();
 }
 
