@@ -92,6 +92,7 @@ footer { margin-top: 3.5rem; padding-top: 1rem; border-top: 1px solid var(--rule
   .panels svg, tr, .check, .facts div { break-inside: avoid; }
   .matrices { grid-template-columns: 1fr; }
   .scroll { overflow: visible; }
+  .table:not(:has(tr:nth-child(12))) { break-inside: avoid; }
   table { font-size: 7.2pt; }
   th, td { padding: 0.14rem 0.28rem; }
   thead { display: table-header-group; }
