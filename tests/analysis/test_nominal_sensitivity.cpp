@@ -62,13 +62,17 @@ TEST_CASE("the static gain of T0 is that of the nominal model under square contr
 }
 
 TEST_CASE("S0 + T0 = I by separate routes: S0 from a step disturbance on the output") {
+  // A limit that moves into the range is to the controller what a disturbance out of the range is.
+  const auto [direction, disturbance] = GENERATE(
+      table<StepDirection, double>({{StepDirection::into_range, -0.1}, {StepDirection::out_of_range, 0.1}}));
   Study study = find_study("chapter6");
+  study.sensitivity.step_direction = direction;
   study.simulation.samples = 60;
   study.simulation.steps.clear();
   study.simulation.noise_standard_deviation.setZero();
   const OperatingPoint point = operating_point(study, kFactory);
   const NominalSensitivity t0 = nominal_sensitivity(study, point, kFactory);
-  // The same relaxations as for T0, in a closed loop with a step of -0.1 on y2 from sample 0 on.
+  // The same relaxations as for T0, in a closed loop with a step on y2 from sample 0 on.
   for (const Eigen::Index cv : {2, 3, 4, 5}) {
     study.controller.cv_soft.lower(cv) = -INFINITY;
     study.controller.cv_soft.upper(cv) = INFINITY;
@@ -79,10 +83,10 @@ TEST_CASE("S0 + T0 = I by separate routes: S0 from a step disturbance on the out
   study.controller.mv_hard = Limits::none(3);
   LoopSignals signals{Eigen::MatrixXd::Zero(2, 60), Eigen::MatrixXd::Zero(7, 60),
                       Eigen::MatrixXd::Zero(7, 60)};
-  signals.y_d.row(1).setConstant(-0.1);
+  signals.y_d.row(1).setConstant(disturbance);
   const Trajectory loop = run_closed_loop(study, study.plant.G, signals, kFactory);
   REQUIRE(loop.status == ControlStatus::ok);
-  const Eigen::MatrixXd s0 = loop.y / -0.1;  // response of the outputs per unit disturbance on y2
+  const Eigen::MatrixXd s0 = loop.y / disturbance;  // response of the outputs per unit disturbance on y2
   for (Eigen::Index l = 1; l < 60; ++l)
     for (Eigen::Index i = 0; i < 7; ++i)
       // The two controllers solve the same QPs up to their tolerance, 1e-10, over a step of 0.1.

@@ -51,7 +51,8 @@ def main(program, chapter6):
         run("summary", broken, code=2)
         run("summary", folder / "none.h5", code=2)
         run("run", "chapter6", "-o", folder / "none" / "b.h5", code=3)
-        assert sorted(p.name for p in folder.iterdir()) == ["a.h5", "broken.toml", "swept", "sweep.toml", "weak.toml"]
+        left = sorted(p.name for p in folder.iterdir())
+        assert left == ["a.h5", "broken.toml", "sweep.toml", "swept", "weak.toml"], left
 
 
 if __name__ == "__main__":

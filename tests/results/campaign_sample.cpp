@@ -22,6 +22,9 @@ Campaign campaign_sample() {
   campaign.records[4].status = ExperimentStatus::failed;
   campaign.records[4].diagnosis = {};
   campaign.records[4].message = "ended by signal 9: \xc3\xbc";
-  campaign.info = {"0.1.0", "abcdef", "2026-01-01T00:00:00Z", "mpmbench run chapter6", "active-set", 1.5, 2};
+  campaign.info = {"0.1.0", "abcdef", "2026-01-01T00:00:00Z", "mpmbench run chapter6", "active-set", 1.5, 2,
+                   0.25,    0.5};
+  campaign.audit = {{2, 7, {true, 1e-11, 2e-9}, {true, 3e-7, 4e-9}, 5e-11},
+                    {5, 301, {true, 0.0, 0.0}, {false, std::nan(""), std::nan("")}, 6e-11}};
   return campaign;
 }

@@ -78,14 +78,14 @@ class Damage:
         variables, groups, attributes = objects(self.whole)
         for path in variables + groups:
             message = self.after(lambda file: file.pop(path))
-            if path in FOR_PEOPLE or path.startswith("/aggregate") or path == "/trajectories":
+            if path in FOR_PEOPLE or path.startswith("/aggregate") or path in ("/audit", "/trajectories"):
                 assert message is None, (path, message)
             else:
                 assert message and f"'{path}': missing" in message, (path, message)
         for group, name in attributes:
             path = group.rstrip("/") + "/" + name
             message = self.after(lambda file: file[group].attrs.pop(name))
-            if path in FOR_PEOPLE_ATTRIBUTES or group in ("/nominal", "/trajectories", "/aggregate"):
+            if path in FOR_PEOPLE_ATTRIBUTES or group in ("/nominal", "/audit", "/trajectories", "/aggregate"):
                 assert message is None, (path, message)
             else:
                 assert message and f"'{path}': missing" in message, (path, message)
