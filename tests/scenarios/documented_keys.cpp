@@ -1,6 +1,6 @@
 #include "tests/scenarios/documented_keys.hpp"
 
-#include <regex>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -12,24 +12,24 @@ namespace {
 
 using Keys = std::set<std::pair<std::string, std::string>>;  // table, key
 
+/// The text in backquotes that follows `begin` at the beginning of a line.
+std::optional<std::string> quoted_after(const std::string& begin, const std::string& line) {
+  if (!line.starts_with(begin + "`"))
+    return std::nullopt;
+  const std::size_t first = begin.size() + 1;
+  return line.substr(first, line.find('`', first) - first);
+}
+
 Keys documented_keys(const std::string& document) {
-  const std::regex heading("^## (`([^`]*)`|Top level).*");
-  const std::regex other_heading("^## .*");
-  const std::regex row("^\\| `([^`]*)` \\|.*");
   Keys keys;
-  std::string table;
-  bool of_table = false;
+  std::optional<std::string> table;
   std::istringstream lines(document);
   for (std::string line; std::getline(lines, line);) {
-    std::smatch match;
-    if (std::regex_match(line, match, heading)) {
-      of_table = true;
-      table = match[2];
-    } else if (std::regex_match(line, other_heading)) {
-      of_table = false;
-    } else if (of_table && std::regex_match(line, match, row)) {
-      keys.emplace(table, match[1]);
-    }
+    if (line.starts_with("## "))
+      table = line.starts_with("## Top level") ? "" : quoted_after("## ", line);
+    const std::optional<std::string> key = quoted_after("| ", line);
+    if (table && key)
+      keys.emplace(*table, *key);
   }
   return keys;
 }
