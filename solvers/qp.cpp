@@ -150,7 +150,9 @@ double kkt_residual(const QpStructure& structure, const QpData& data, const QpRe
 
   stationarity = data.gradient + result.bound_dual;
   stationarity.noalias() += structure.hessian * x;
-  stationarity.noalias() += structure.rows.transpose() * row_dual;
+  for (Eigen::Index i = 0; i < row_dual.size(); ++i)  // most rows do not push
+    if (row_dual(i) != 0.0)
+      stationarity += row_dual(i) * structure.rows.row(i).transpose();
   const double scale = std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>());
 
   double scaled = stationarity.lpNorm<Eigen::Infinity>();
