@@ -3,12 +3,12 @@
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-# mpm_packages build|test: the packages that this work needs, one a line; `test` includes `build`.
+# mpm_packages build|test|perf: the packages that this work needs, one a line; each includes those of `build`.
 mpm_packages() {
-  awk -v work="$1" '/^[^#]/ && NF && (work == "test" || $2 == work) { print $1 }' "$root/.ci/packages.txt"
+  awk -v work="$1" '/^[^#]/ && NF && ($2 == "build" || $2 == work) { print $1 }' "$root/.ci/packages.txt"
 }
 
-# mpm_missing build|test: those of them that are not installed.
+# mpm_missing build|test|perf: those of them that are not installed.
 mpm_missing() {
   local package
   for package in $(mpm_packages "$1"); do
@@ -16,7 +16,7 @@ mpm_missing() {
   done
 }
 
-# mpm_install build|test: installs what is missing and does nothing, not even ask for rights, when all is there.
+# mpm_install build|test|perf: installs what is missing and does nothing, not even ask for rights, when all is there.
 mpm_install() {
   local missing as_root=()
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -45,7 +45,8 @@ mpm_install() {
   fi
 }
 
-# mpm_build <target>: configures the release preset and builds the target.
+# mpm_build <target> [<preset>]: configures the preset (release when none is named) and builds the target.
 mpm_build() {
-  (cd "$root" && cmake --preset release && cmake --build --preset release --target "$1")
+  local preset=${2:-release}
+  (cd "$root" && cmake --preset "$preset" && cmake --build --preset "$preset" --target "$1")
 }

@@ -2,6 +2,7 @@
 
 option(MPMBENCH_TESTS "Build the tests" ON)
 option(MPMBENCH_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
+option(MPMBENCH_PERF "Build the benchmarks of bench/perf (needs Google Benchmark)" OFF)
 option(MPMBENCH_SANITIZERS "Build with the address and undefined-behaviour sanitizers" OFF)
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)

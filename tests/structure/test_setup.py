@@ -56,6 +56,10 @@ class Setup(unittest.TestCase):
         _, asked = self.call("mpm_install build", MISSING="catch2 python3-xarray")
         self.assertEqual(asked[1:], [f"{INSTALL} catch2"])
 
+    def test_to_measure_no_package_for_tests_is_installed(self):
+        _, asked = self.call("mpm_install perf", MISSING="catch2 python3-xarray libbenchmark-dev")
+        self.assertEqual(asked[1:], [f"{INSTALL} catch2 libbenchmark-dev"])
+
     def test_others_go_through_sudo(self):
         self.pretend("id", "echo 1000")
         self.pretend("sudo", SUDO)
@@ -90,9 +94,10 @@ class Setup(unittest.TestCase):
     def test_every_line_of_the_list_names_one_package_and_its_work(self):
         lines = (ROOT / ".ci/packages.txt").read_text(encoding="ascii").splitlines()
         entries = [line.split("#")[0].split() for line in lines if line and not line.startswith("#")]
-        self.assertTrue(all(len(entry) == 2 and entry[1] in ("build", "test") for entry in entries), entries)
-        listed, _ = self.call("mpm_packages test")
-        self.assertEqual(listed.stdout.split(), [entry[0] for entry in entries])
+        self.assertTrue(all(len(entry) == 2 and entry[1] in ("build", "test", "perf") for entry in entries), entries)
+        for work in ("build", "test", "perf"):
+            listed, _ = self.call(f"mpm_packages {work}")
+            self.assertEqual(listed.stdout.split(), [name for name, kind in entries if kind in ("build", work)])
 
 
 if __name__ == "__main__":

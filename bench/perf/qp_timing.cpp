@@ -1,0 +1,58 @@
+#include "bench/perf/qp_timing.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "analysis/quantile.hpp"
+
+namespace mpm {
+namespace {
+
+double quantile(std::vector<double> values, double probability) {
+  std::sort(values.begin(), values.end());
+  return sorted_quantile(values, probability);
+}
+
+}  // namespace
+
+QpTiming::QpTiming(const QpSequence& sequence, const QpSolverFactory& factory, StartOfSolve start)
+    : sequence_(sequence),
+      solver_(factory(sequence.structure)),
+      start_(start),
+      microseconds_(sequence.data.size()) {}
+
+double QpTiming::pass() {
+  using Clock = std::chrono::steady_clock;
+  double seconds = 0.0;
+  quality_ = {};
+  solver_->reset();
+  for (std::size_t k = 0; k < sequence_.data.size(); ++k) {
+    if (start_ == StartOfSolve::cold)
+      solver_->reset();
+    const Clock::time_point begin = Clock::now();
+    const QpResult& result = solver_->solve(sequence_.data[k]);
+    const double elapsed = std::chrono::duration<double>(Clock::now() - begin).count();
+    seconds += elapsed;
+    microseconds_[k].push_back(1e6 * elapsed);
+    quality_.iterations += result.iterations;
+    if (result.status == QpStatus::solved)
+      quality_.kkt_residual = std::max(quality_.kkt_residual, result.kkt_residual);
+    else
+      ++(result.status == QpStatus::infeasible ? quality_.infeasible : quality_.not_solved);
+  }
+  quality_.iterations /= static_cast<double>(sequence_.data.size());
+  return seconds;
+}
+
+QpTimes QpTiming::times() const {
+  std::vector<double> typical;
+  for (const std::vector<double>& passes : microseconds_)
+    typical.push_back(quantile(passes, 0.5));
+  QpTimes result = quality_;
+  result.median = quantile(typical, 0.5);
+  result.p99 = quantile(typical, 0.99);
+  result.max = quantile(typical, 1.0);
+  return result;
+}
+
+}  // namespace mpm

@@ -1,0 +1,90 @@
+#include <memory>
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include "analysis/basis_case.hpp"
+#include "bench/campaign_runner.hpp"
+#include "bench/perf/benchmarks.hpp"
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+void add_loops(const Study& study) {
+  for (const char* loop : {"quiet", "mpm", "ud"})
+    for (const char* back_end : {"active-set", "ipopt"}) {
+      const auto run = [&study, draw = recorded_draw(study, loop),
+                        factory = qp_solver_factory(back_end)](benchmark::State& state) {
+        Trajectory trajectory;
+        for ([[maybe_unused]] const auto pass : state)
+          trajectory = simulate_experiment(study, draw, factory);
+        state.counters["samples"] = static_cast<double>(trajectory.samples_done);
+        state.counters["kkt"] = trajectory.solver.largest_kkt_residual;
+      };
+      const auto name = fmt::format("loop/{}/{}", loop, back_end);
+      auto* entry = benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond);
+      if (std::string_view(back_end) == "ipopt")
+        entry->Iterations(1);
+    }
+}
+
+void add_sensitivity(const Study& study) {
+  for (const char* back_end : {"active-set", "ipopt"}) {
+    const auto run = [&study, factory = qp_solver_factory(back_end)](benchmark::State& state) {
+      const OperatingPoint point = operating_point(study, factory);
+      for ([[maybe_unused]] const auto pass : state)
+        benchmark::DoNotOptimize(nominal_sensitivity(study, point, factory));
+    };
+    auto* entry = benchmark::RegisterBenchmark(fmt::format("sensitivity/{}", back_end).c_str(), run)
+                      ->Unit(benchmark::kMillisecond);
+    if (std::string_view(back_end) == "ipopt")
+      entry->Iterations(1);
+  }
+}
+
+void add_diagnosis(const Study& study) {
+  const auto run = [&study](benchmark::State& state) {
+    const BasisCase basis = run_basis_case(study, qp_solver_factory("active-set"));
+    const Trajectory& loop = basis.trajectory;
+    DiagnosisChain chain(study);
+    for ([[maybe_unused]] const auto pass : state) {
+      const Eigen::MatrixXd y_sim =
+          simulated_output(study.plant.G, study.controller.sample_time, basis.point.u, loop.u, loop.d);
+      benchmark::DoNotOptimize(
+          chain.diagnose(loop.y, nominal_outputs(basis.sensitivity, loop.y, y_sim), loop.y));
+    }
+  };
+  benchmark::RegisterBenchmark("diagnosis", run)->Unit(benchmark::kMillisecond);
+}
+
+void add_study(const Study& study, std::int64_t experiments) {
+  const auto run = [&study, experiments](benchmark::State& state) {
+    CampaignOptions options;
+    options.experiments = experiments;
+    options.solver = "active-set";
+    options.store = StorePolicy::none;
+    for ([[maybe_unused]] const auto pass : state)
+      benchmark::DoNotOptimize(run_campaign(study, options));
+    state.counters["experiments"] = static_cast<double>(experiments);
+  };
+  // The experiments run in a worker process, whose time is no CPU time of this one.
+  benchmark::RegisterBenchmark(fmt::format("study/{}", experiments).c_str(), run)
+      ->Iterations(1)
+      ->UseRealTime()
+      ->Unit(benchmark::kSecond);
+}
+
+}  // namespace
+
+void register_study_benchmarks(const Study& study, std::int64_t experiments) {
+  if (experiments < 1 || experiments > study.experiments.total())
+    throw InputError("experiments", fmt::to_string(experiments),
+                     fmt::format("1 to {}", study.experiments.total()));
+  add_loops(study);
+  add_sensitivity(study);
+  add_diagnosis(study);
+  add_study(study, experiments);
+}
+
+}  // namespace mpm
