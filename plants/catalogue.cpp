@@ -6,8 +6,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "plants/distillation_column.hpp"
 #include "plants/error.hpp"
+#include "plants/quadruple_tank.hpp"
 #include "plants/shell_fractionator.hpp"
+#include "plants/siso_plant.hpp"
 
 namespace mpm {
 namespace {
@@ -19,6 +22,11 @@ struct CatalogueEntry {
 
 constexpr std::array kCatalogue{
     CatalogueEntry{"shell-7x3", shell_fractionator_7x3},
+    CatalogueEntry{"shell-3x3", shell_fractionator_3x3},
+    CatalogueEntry{"quadruple-tank", quadruple_tank_table_2_6},
+    CatalogueEntry{"quadruple-tank-table-3.1", quadruple_tank_table_3_1},
+    CatalogueEntry{"distillation-column", distillation_column},
+    CatalogueEntry{"siso", siso_plant},
 };
 
 }  // namespace

@@ -58,7 +58,7 @@ void LinearPlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) {
   measure();
 }
 
-void LinearPlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
+PlantStatus LinearPlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
   require_input_size(input.size(), input_count_);
   push_input(input);
   const double* newest = history_.data() + newest_ * input_count_;
@@ -66,6 +66,7 @@ void LinearPlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
   advance_second_order(newest);
   advance_general(newest);
   measure();
+  return PlantStatus::ok;
 }
 
 void LinearPlant::push_input(const Eigen::Ref<const Eigen::VectorXd>& input) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "plants/plant.hpp"
 #include "plants/transfer_matrix.hpp"
 
 namespace mpm {
@@ -22,29 +23,30 @@ struct ChannelTable;
 /// The discretised channels are shared by all copies. Assigning one plant to another that was copied from it
 /// (or built from a matrix with the same channel orders and delays) copies a few small arrays and allocates
 /// nothing, which makes it cheap to run the free response of a plant from its present state.
-class LinearPlant {
+class LinearPlant final : public Plant {
  public:
   /// A plant at rest. Errors: InputError as discretise().
   LinearPlant(const TransferMatrix& G, double sample_time);
 
-  Eigen::Index output_count() const { return output_.size(); }
-  Eigen::Index input_count() const { return input_count_; }
+  Eigen::Index output_count() const override { return output_.size(); }
+  Eigen::Index input_count() const override { return input_count_; }
 
   /// Ts, in the time unit of the transfer matrix.
-  double sample_time() const;
+  double sample_time() const override;
 
   /// Puts every channel at its steady state under the constant `steady_input` (input_count()), as if it had
   /// acted for ever. Errors: InputError for a wrong size, a number that is not finite, or a non-zero input of
   /// an integrating channel.
-  void reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input);
+  void reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) override;
 
   /// y(k), output_count(): just before the input of sample k is applied.
-  const Eigen::VectorXd& output() const { return output_; }
+  const Eigen::VectorXd& output() const override { return output_; }
 
   /// Holds u(k) = `input` (input_count()) over [k Ts, (k+1) Ts) and goes on to sample k + 1. Allocates
   /// nothing when `input` is a vector or a column (an expression is first stored by Eigen::Ref). Errors:
-  /// InputError for a wrong size. A number that is not finite spreads to the outputs.
-  void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
+  /// InputError for a wrong size. A number that is not finite spreads to the outputs; the status is always
+  /// ok.
+  PlantStatus advance(const Eigen::Ref<const Eigen::VectorXd>& input) override;
 
  private:
   void push_input(const Eigen::Ref<const Eigen::VectorXd>& input);

@@ -27,11 +27,22 @@ constexpr std::array<std::array<Entry, 5>, 7> kModel{{
 }};
 // clang-format on
 
-TransferMatrix make_transfer_matrix() {
-  TransferMatrix G(kModel.size(), kModel[0].size());
-  for (std::size_t row = 0; row < kModel.size(); ++row) {
-    for (std::size_t col = 0; col < kModel[row].size(); ++col) {
-      const Entry& entry = kModel[row][col];
+// clang-format off
+/// Eq. 2.25 and 4.18: outputs y1, y2 and y7 of eq. 6.18, but for the dead time of y3-u3, 19 min here.
+constexpr std::array<std::array<Entry, 3>, 3> kReducedModel{{
+  //      u1              u2              u3
+  {{{4.05, 27, 50}, {1.77, 28, 60}, {5.88, 27, 50}}},  // y1
+  {{{5.39, 18, 50}, {5.72, 14, 60}, {6.90, 15, 40}}},  // y2
+  {{{4.38, 20, 33}, {4.42, 22, 44}, {7.20, 19, 19}}},  // y3
+}};
+// clang-format on
+
+template <std::size_t Rows, std::size_t Cols>
+TransferMatrix make_transfer_matrix(const std::array<std::array<Entry, Cols>, Rows>& model) {
+  TransferMatrix G(Rows, Cols);
+  for (std::size_t row = 0; row < Rows; ++row) {
+    for (std::size_t col = 0; col < Cols; ++col) {
+      const Entry& entry = model[row][col];
       G(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col)) =
           TransferFunction::first_order(entry.gain, entry.time_constant, entry.dead_time);
     }
@@ -54,7 +65,19 @@ PlantModel shell_fractionator_7x3() {
                   {"y7", "1", "Bottoms Reflux Temperature"}},
           .mvs = {{"u1", "1", "Top Draw"}, {"u2", "1", "Side Draw"}, {"u3", "1", "Bottoms Reflux Duty"}},
           .mds = {{"d1", "1", "Intermediate Reflux Duty"}, {"d2", "1", "Upper Reflux Duty"}},
-          .G = make_transfer_matrix()};
+          .G = make_transfer_matrix(kModel)};
+}
+
+PlantModel shell_fractionator_3x3() {
+  return {.name = "shell-3x3",
+          .title = "Shell heavy oil fractionator, 3 CVs, 3 MVs",
+          .time_unit = "min",
+          .cvs = {{"y1", "1", "Top Composition"},
+                  {"y2", "1", "Side Composition"},
+                  {"y3", "1", "Bottoms Reflux Temperature"}},
+          .mvs = {{"u1", "1", "Top Draw"}, {"u2", "1", "Side Draw"}, {"u3", "1", "Bottoms Reflux Duty"}},
+          .mds = {},
+          .G = make_transfer_matrix(kReducedModel)};
 }
 
 }  // namespace mpm

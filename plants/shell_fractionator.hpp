@@ -12,4 +12,8 @@ namespace mpm {
 /// 12 min.
 PlantModel shell_fractionator_7x3();
 
+/// P2, the 3 x 3 part that chapters 2, 4 and 5 control by setpoints: eq. 2.25 and 4.18, times in minutes. Its
+/// y3 is the y7 of eq. 6.18, with a dead time of 19 min from u3 in the place of none.
+PlantModel shell_fractionator_3x3();
+
 }  // namespace mpm

@@ -17,6 +17,18 @@ void require_shape(const char* name, const Eigen::MatrixXd& signal, Eigen::Index
                      fmt::format("{} x {}", rows, cols));
 }
 
+void require_fit(const Study& study, const Plant& plant) {
+  if (plant.sample_time() != study.controller.sample_time)
+    throw InputError("sample time of the plant", fmt::to_string(plant.sample_time()),
+                     fmt::format("{}, that of the controller", study.controller.sample_time));
+  if (plant.output_count() != study.cv_count())
+    throw InputError("outputs of the plant", fmt::to_string(plant.output_count()),
+                     fmt::to_string(study.cv_count()));
+  if (plant.input_count() < study.mv_count() + study.md_count())
+    throw InputError("inputs of the plant", fmt::to_string(plant.input_count()),
+                     fmt::format("{} or more", study.mv_count() + study.md_count()));
+}
+
 Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
   Trajectory trajectory;
   const Eigen::Index samples = study.simulation.samples;
@@ -38,16 +50,23 @@ void SolverStatistics::add(const SolverStatistics& other) {
 
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model, const LoopSignals& signals,
                            const QpSolverFactory& factory, const StepObserver& observer) {
+Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
+                           const QpSolverFactory& factory) {
+  require_fit(study, plant);
   const Eigen::Index samples = study.simulation.samples;
   require_shape("measured disturbances", signals.d, study.md_count(), samples);
   require_shape("measurement noise", signals.noise, study.cv_count(), samples);
   require_shape("unmeasured disturbances", signals.y_d, study.cv_count(), samples);
 
+  const Eigen::Index within =
+      signals.within_plant.size() > 0 ? plant.input_count() - study.mv_count() - study.md_count() : 0;
+  if (signals.within_plant.size() > 0)
+    require_shape("disturbances within the plant", signals.within_plant, within, samples);
+
   RangeMpc controller(study.plant.G, study.mv_count(), study.controller, factory);
-  LinearPlant plant(plant_model, study.controller.sample_time);
   const Eigen::VectorXd d_rest = Eigen::VectorXd::Zero(study.md_count());
-  Eigen::VectorXd input(study.mv_count() + study.md_count());
-  input << controller.nominal_target(d_rest), d_rest;
+  Eigen::VectorXd input = Eigen::VectorXd::Zero(plant.input_count());
+  input.head(study.mv_count()) = controller.nominal_target(d_rest);
   controller.reset(input.head(study.mv_count()), d_rest);
   plant.reset(input);
 
@@ -65,10 +84,16 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
       break;
     trajectory.solver.largest_kkt_residual =
         std::max(trajectory.solver.largest_kkt_residual, move.kkt_residual);
+    input.head(study.mv_count()) = move.u;
+    input.segment(study.mv_count(), study.md_count()) = signals.d.col(k);
+    if (within > 0)
+      input.tail(within) = signals.within_plant.col(k);
+    if (plant.advance(input) != PlantStatus::ok) {
+      trajectory.status = ControlStatus::failed;
+      break;
+    }
     trajectory.u.col(k) = move.u;
     trajectory.u_target.col(k) = move.u_target;
-    input << move.u, signals.d.col(k);
-    plant.advance(input);
     trajectory.samples_done = k + 1;
   }
   return trajectory;
@@ -76,6 +101,14 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
 
 Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
                                const StepObserver& observer) {
+Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model, const LoopSignals& signals,
+                           const QpSolverFactory& factory) {
+  LinearPlant plant(plant_model, study.controller.sample_time);
+  return run_closed_loop(study, plant, signals, factory);
+}
+
+Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw,
+                               const QpSolverFactory& factory) {
   const TransferMatrix plant = draw.mismatch ? with_mismatch(study.plant.G, *draw.mismatch) : study.plant.G;
   return run_closed_loop(study, plant,
                          {measured_disturbances(study), measurement_noise(study, draw.index),

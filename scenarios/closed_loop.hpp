@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "plants/plant.hpp"
 #include "plants/transfer_matrix.hpp"
 #include "scenarios/draw.hpp"
 #include "scenarios/study.hpp"
@@ -42,6 +43,9 @@ struct LoopSignals {
   Eigen::MatrixXd d;      ///< measured disturbances, nd x N
   Eigen::MatrixXd noise;  ///< added to the measurements, ny x N
   Eigen::MatrixXd y_d;    ///< unmeasured disturbances, added to the outputs, ny x N
+  /// Unmeasured disturbances that act within the plant: its inputs after MVs and MDs, from sample k on, one
+  /// column a sample. Empty: they stay zero.
+  Eigen::MatrixXd within_plant{};
 };
 
 /// Called after each step with the controller, whose two problems and answers it may look at.
@@ -50,6 +54,17 @@ using StepObserver = std::function<void(const RangeMpc& controller)>;
 /// Runs the controller of the study on `plant` from the economic steady state of the nominal model at zero
 /// disturbances. Stops at the first sample whose problem is infeasible or cannot be solved.
 /// Throws InputError when a signal has not the shape that the study asks for.
+/// Runs the controller of the study on `plant`, whose inputs are the MVs and then the MDs of the study, from
+/// the economic steady state of the nominal model at zero disturbances.
+/// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant
+/// cannot be integrated (status `failed`). Throws InputError when a signal has not the shape that the study
+/// asks for, or the plant another sample time, other outputs or fewer inputs.
+///
+/// A controller on a linear model thinks in deviations: a nonlinear plant goes in as a DeviationPlant.
+Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
+                           const QpSolverFactory& factory);
+
+/// The same on the linear plant with these transfer functions.
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
                            const QpSolverFactory& factory, const StepObserver& observer = {});
 

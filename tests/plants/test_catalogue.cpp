@@ -1,3 +1,7 @@
+#include <array>
+#include <complex>
+
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include "plants/catalogue.hpp"
@@ -106,6 +110,46 @@ TEST_CASE("shell-7x3 steps as first-order lags with dead time", "[catalogue]") {
       }
     }
   }
+}
+
+TEST_CASE("shell-3x3 is the part of shell-7x3 that eq. 2.25 prints", "[catalogue]") {
+  const TransferMatrix G = benchmark_plant("shell-3x3").G;
+  const std::array<Eigen::Index, 3> cv{0, 1, 6};
+  REQUIRE(G.rows() == 3);
+  REQUIRE(G.cols() == 3);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      INFO("y" << i + 1 << ", u" << j + 1);
+      const Eigen::Index row = cv[static_cast<std::size_t>(i)];
+      CHECK(G(i, j).static_gain() == shell_gains()(row, j));
+      CHECK(G(i, j).denominator()(0) == shell_time_constants()(row, j));
+      const bool differs = i == 2 && j == 2;  // 19 min in (2.25) and (4.18), none in (6.18)
+      CHECK(G(i, j).dead_time() == (differs ? 19 : shell_dead_times()(row, j)));
+    }
+  }
+}
+
+TEST_CASE("the distillation column has the gains, the time constant and the RGA of 4.3.1", "[catalogue]") {
+  const PlantModel plant = benchmark_plant("distillation-column");
+  const Eigen::MatrixXd gain = plant.G.static_gain();
+  CHECK(gain == (Eigen::Matrix2d() << 87.8, -86.4, 108.2, -109.6).finished());
+  for (Eigen::Index i = 0; i < 2; ++i)
+    for (Eigen::Index j = 0; j < 2; ++j)
+      CHECK(std::abs(plant.G(i, j)(std::complex<double>(0, 1.0 / 75)) / gain(i, j) -
+                     1.0 / std::complex<double>(1, 1)) < 1e-14);
+  // The diagonal of the relative gain array, "approximately equal to 35".
+  const double relative_gain = gain(0, 0) * gain(1, 1) / gain.determinant();
+  CHECK(std::abs(relative_gain - 35) < 0.5);
+}
+
+TEST_CASE("the SISO plant has the gain and the inverse response of table 5.1", "[catalogue]") {
+  const TransferMatrix G = benchmark_plant("siso").G;
+  CHECK(G.static_gain()(0, 0) == 3.04);
+  const std::complex<double> s(0.02, 0.3);
+  CHECK(std::abs(G(0, 0)(s) - (-100.0 * s + 3.04) / (305.0 * s * s + 40.0 * s + 1.0)) < 1e-14);
+  const Eigen::MatrixXd step = step_response(G, 10, 40)[0];  // 10 s, table 5.1
+  CHECK(step(0, 0) < -1);                                    // the zero at +0.03 / s
+  CHECK(std::abs(step(0, 39) - 3.04) < 1e-3);
 }
 
 }  // namespace mpm

@@ -1,0 +1,43 @@
+#include "plants/ode_plant.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+
+namespace mpm {
+
+OdePlant::OdePlant(std::shared_ptr<const OdeSystem> system, double sample_time, const OdeOptions& options)
+    : system_(std::move(system)), sample_time_(sample_time), integrator_(system_, options) {
+  if (!(sample_time_ > 0 && std::isfinite(sample_time_)))
+    throw InputError("sample time", fmt::to_string(sample_time_), "> 0");
+  input_.setZero(system_->input_count());
+  output_.setZero(system_->output_count());
+  set_state(Eigen::VectorXd::Zero(system_->state_count()));
+}
+
+void OdePlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) {
+  if (steady_input.size() != input_count())
+    throw InputError("number of plant inputs", fmt::format("{}", steady_input.size()),
+                     fmt::format("{}", input_count()));
+  if (!steady_input.allFinite())
+    throw InputError("steady plant input", "a number that is not finite", "finite numbers");
+  input_ = steady_input;
+  set_state(system_->steady_state(input_));
+}
+
+PlantStatus OdePlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
+  const OdeStatus status = integrator_.advance(input, sample_time_);
+  input_ = input;
+  system_->output(integrator_.state(), input_, output_);
+  return status == OdeStatus::ok ? PlantStatus::ok : PlantStatus::failed;
+}
+
+void OdePlant::set_state(const Eigen::Ref<const Eigen::VectorXd>& x) {
+  integrator_.reset(x);
+  system_->output(integrator_.state(), input_, output_);
+}
+
+}  // namespace mpm

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+
+#include "plants/ode_integrator.hpp"
+#include "plants/ode_system.hpp"
+#include "plants/plant.hpp"
+
+namespace mpm {
+
+/// A nonlinear plant: an OdeSystem, integrated by CVODE from sample to sample.
+class OdePlant final : public Plant {
+ public:
+  /// At the state zero, with the input zero. Errors: InputError when there is no system, the sample time is
+  /// not positive or an option is out of range.
+  OdePlant(std::shared_ptr<const OdeSystem> system, double sample_time, const OdeOptions& options = {});
+
+  Eigen::Index output_count() const override { return system_->output_count(); }
+  Eigen::Index input_count() const override { return system_->input_count(); }
+  double sample_time() const override { return sample_time_; }
+  void reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) override;
+  const Eigen::VectorXd& output() const override { return output_; }
+
+  /// Besides a wrong size, an input that is not finite is refused with InputError.
+  PlantStatus advance(const Eigen::Ref<const Eigen::VectorXd>& input) override;
+
+  const Eigen::VectorXd& state() const { return integrator_.state(); }
+  /// Goes on from the state `x`, with the output that it has under the last input (zero at first). Errors:
+  /// InputError for a wrong size or a number that is not finite.
+  void set_state(const Eigen::Ref<const Eigen::VectorXd>& x);
+
+  OdeStatistics statistics() const { return integrator_.statistics(); }
+
+ private:
+  std::shared_ptr<const OdeSystem> system_;
+  double sample_time_;
+  OdeIntegrator integrator_;
+  Eigen::VectorXd input_, output_;
+};
+
+}  // namespace mpm
