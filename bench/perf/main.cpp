@@ -1,6 +1,7 @@
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
-#include <iostream>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,6 @@
 #include "bench/perf/benchmarks.hpp"
 #include "bench/perf/octave_file.hpp"
 #include "bench/version.hpp"
-#include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
 
 namespace {
@@ -55,25 +55,32 @@ int measure(std::string program, std::vector<std::string> rest) {
   return 0;
 }
 
+int run(int argc, char** argv) {
+  CLI::App app("Measures how long the parts of a study take (docs/performance.md).", "mpmbench_perf");
+  PerfOptions options;
+  try {
+    options = parse(app, argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  const mpm::Study study = mpm::find_study("chapter6");
+  const std::vector<mpm::QpSequence> sequences = mpm::recorded_sequences(study);
+  if (!options.export_folder.empty()) {
+    export_programs(options.export_folder, sequences);
+    return 0;
+  }
+  mpm::register_qp_benchmarks(sequences);
+  mpm::register_study_benchmarks(study, options.experiments);
+  return measure(argv[0], options.rest);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures how long the parts of a study take (docs/performance.md).", "mpmbench_perf");
   try {
-    const PerfOptions options = parse(app, argc, argv);
-    const mpm::Study study = mpm::find_study("chapter6");
-    const std::vector<mpm::QpSequence> sequences = mpm::recorded_sequences(study);
-    if (!options.export_folder.empty()) {
-      export_programs(options.export_folder, sequences);
-      return 0;
-    }
-    mpm::register_qp_benchmarks(sequences);
-    mpm::register_study_benchmarks(study, options.experiments);
-    return measure(argv[0], options.rest);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return run(argc, argv);
   } catch (const std::exception& error) {
-    std::cerr << "mpmbench_perf: " << error.what() << '\n';
+    std::fprintf(stderr, "mpmbench_perf: %s\n", error.what());
     return 2;
   }
 }

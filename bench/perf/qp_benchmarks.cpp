@@ -30,7 +30,7 @@ void report(benchmark::State& state, const QpTimes& times, std::size_t count) {
   state.counters["programs"] = static_cast<double>(count);
 }
 
-void add(const std::string& name, std::shared_ptr<const QpSequence> sequence, const char* back_end,
+void add(const std::string& name, const std::shared_ptr<const QpSequence>& sequence, const char* back_end,
          StartOfSolve start, int passes) {
   const auto run = [sequence, factory = qp_solver_factory(back_end), start](benchmark::State& state) {
     QpTiming timing(*sequence, factory, start);

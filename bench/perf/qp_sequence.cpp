@@ -50,7 +50,7 @@ std::array<QpSequence, 2> record(const Study& study, const ExperimentDraw& draw)
   sequences[1].problem = "moves";
   const QpSolverFactory active_set = qp_solver_factory("active-set");
   std::size_t made = 0;
-  simulate_experiment(study, draw, [&](std::shared_ptr<const QpStructure> structure) {
+  simulate_experiment(study, draw, [&](const std::shared_ptr<const QpStructure>& structure) {
     QpSequence& sequence = sequences.at(made++);
     sequence.structure = structure;
     return std::make_unique<RecordingSolver>(active_set(structure), structure, sequence.data);

@@ -38,10 +38,16 @@ def main(file):
                 print(f"samples: {samples}, {start}\n")
                 table(["program / slack / loop, back end", "median/us", "p99/us", "max/us", "iterations",
                        "KKT residual", "not solved / infeasible / all"], rows)
-    rest = [b for b in benchmarks if not b["name"].startswith("qp/")]
-    table(["part of a study", "time"],
-          [[b["name"].removesuffix("/iterations:1").removesuffix("/real_time"),
-            f"{b['real_time']:.3g} {b['time_unit']}"] for b in rest])
+    rest = [[b["name"].removesuffix("/real_time").removesuffix("/iterations:1"), whole_time(b)]
+            for b in benchmarks if not b["name"].startswith("qp/")]
+    if rest:
+        table(["part of a study", "time"], rest)
+
+
+def whole_time(benchmark):
+    """Processor time, or, where the work is done in other processes, the time on the clock."""
+    kind = "real_time" if benchmark["name"].endswith("/real_time") else "cpu_time"
+    return f"{benchmark[kind]:.3g} {benchmark['time_unit']}"
 
 
 if __name__ == "__main__":

@@ -34,6 +34,23 @@ std::unique_ptr<Plant> nonlinear_tank(const QuadrupleTankParameters& parameters)
       quadruple_tank_operating_point());
 }
 
+/// A plant that stands still and cannot be integrated beyond its third sample.
+class StuckPlant final : public Plant {
+ public:
+  Eigen::Index output_count() const override { return 4; }
+  Eigen::Index input_count() const override { return 4; }
+  double sample_time() const override { return 10; }
+  void reset(const Eigen::Ref<const Eigen::VectorXd>&) override { samples_ = 0; }
+  const Eigen::VectorXd& output() const override { return output_; }
+  PlantStatus advance(const Eigen::Ref<const Eigen::VectorXd>&) override {
+    return ++samples_ > 3 ? PlantStatus::failed : PlantStatus::ok;
+  }
+
+ private:
+  Eigen::VectorXd output_ = Eigen::VectorXd::Zero(4);
+  int samples_ = 0;
+};
+
 }  // namespace
 
 TEST_CASE("closed loop: a linear plant gives the same bits by its matrix and as a plant") {
@@ -124,6 +141,15 @@ TEST_CASE("closed loop: a disturbance within the plant spreads, one of the measu
   within.within_plant.setZero(3, study.simulation.samples);
   CHECK_THROWS_WITH(run(within),
                     Catch::Contains("disturbances within the plant") && Catch::Contains("8 x 100"));
+}
+
+TEST_CASE("closed loop: it ends as failed where the plant does") {
+  const Study study = tank_study();
+  StuckPlant plant;
+  const Trajectory loop = run_closed_loop(study, plant, quiet(study), qp_solver_factory("active-set"));
+  CHECK(loop.status == ControlStatus::failed);
+  CHECK(loop.samples_done == 3);
+  CHECK(loop.u.rightCols(97).isZero(0));
 }
 
 TEST_CASE("closed loop: a plant that does not fit the study is refused") {
