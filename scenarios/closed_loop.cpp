@@ -48,10 +48,8 @@ void SolverStatistics::add(const SolverStatistics& other) {
   largest_kkt_residual = std::max(largest_kkt_residual, other.largest_kkt_residual);
 }
 
-Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model, const LoopSignals& signals,
-                           const QpSolverFactory& factory, const StepObserver& observer) {
 Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
-                           const QpSolverFactory& factory) {
+                           const QpSolverFactory& factory, const StepObserver& observer) {
   require_fit(study, plant);
   const Eigen::Index samples = study.simulation.samples;
   require_shape("measured disturbances", signals.d, study.md_count(), samples);
@@ -99,16 +97,14 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   return trajectory;
 }
 
-Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
-                               const StepObserver& observer) {
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model, const LoopSignals& signals,
-                           const QpSolverFactory& factory) {
+                           const QpSolverFactory& factory, const StepObserver& observer) {
   LinearPlant plant(plant_model, study.controller.sample_time);
-  return run_closed_loop(study, plant, signals, factory);
+  return run_closed_loop(study, plant, signals, factory, observer);
 }
 
-Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw,
-                               const QpSolverFactory& factory) {
+Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
+                               const StepObserver& observer) {
   const TransferMatrix plant = draw.mismatch ? with_mismatch(study.plant.G, *draw.mismatch) : study.plant.G;
   return run_closed_loop(study, plant,
                          {measured_disturbances(study), measurement_noise(study, draw.index),

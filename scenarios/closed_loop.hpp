@@ -51,9 +51,6 @@ struct LoopSignals {
 /// Called after each step with the controller, whose two problems and answers it may look at.
 using StepObserver = std::function<void(const RangeMpc& controller)>;
 
-/// Runs the controller of the study on `plant` from the economic steady state of the nominal model at zero
-/// disturbances. Stops at the first sample whose problem is infeasible or cannot be solved.
-/// Throws InputError when a signal has not the shape that the study asks for.
 /// Runs the controller of the study on `plant`, whose inputs are the MVs and then the MDs of the study, from
 /// the economic steady state of the nominal model at zero disturbances.
 /// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant
@@ -62,7 +59,7 @@ using StepObserver = std::function<void(const RangeMpc& controller)>;
 ///
 /// A controller on a linear model thinks in deviations: a nonlinear plant goes in as a DeviationPlant.
 Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
-                           const QpSolverFactory& factory);
+                           const QpSolverFactory& factory, const StepObserver& observer = {});
 
 /// The same on the linear plant with these transfer functions.
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
