@@ -13,9 +13,9 @@
 namespace mpm {
 namespace {
 
-constexpr std::uint64_t kValuesPerStream = std::uint64_t{1} << 33;
+[[maybe_unused]] constexpr std::uint64_t kValuesPerStream = std::uint64_t{1} << 33;
 constexpr std::uint32_t kRepetitionShift = 16;
-constexpr std::uint32_t kRepetitions = 1U << 16;
+[[maybe_unused]] constexpr std::uint32_t kRepetitions = 1U << 16;
 constexpr double kTwoToMinus53 = 0x1p-53;
 constexpr double kSqrt2 = 1.4142135623730951;
 

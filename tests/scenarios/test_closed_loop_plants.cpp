@@ -140,7 +140,7 @@ TEST_CASE("closed loop: a disturbance within the plant spreads, one of the measu
 
   within.within_plant.setZero(3, study.simulation.samples);
   CHECK_THROWS_WITH(run(within),
-                    Catch::Contains("disturbances within the plant") && Catch::Contains("8 x 100"));
+                    Catch::Contains("disturbances within the plant") && Catch::Contains("8 x 120"));
 }
 
 TEST_CASE("closed loop: it ends as failed where the plant does") {
