@@ -47,6 +47,30 @@ void add_row(HtmlTable& table, const std::string& name, Effort effort) {
              effort.worst < 0 ? html_number(NAN) : fmt::format("{}", effort.worst)});
 }
 
+/// What the solver `auto` adds: fallbacks, and the audit.
+std::string audit_html(const SummaryParts& parts, const CampaignInfo& info) {
+  const AuditSummary& audit = parts.audit;
+  const std::string fallbacks = fmt::format(
+      "<p>Ipopt answered <strong>{}</strong> problems in place of the active-set method, whose answer "
+      "was not certified. ",
+      parts.fallbacks);
+  if (audit.steps == 0)
+    return fallbacks + "No step was audited.</p>\n";
+  HtmlTable table(
+      fmt::format("Audit: a random share of {:g} of all steps, also solved by Ipopt.", info.audit_share),
+      {{"Steps"},
+       {"With another status"},
+       {"Largest difference of a move"},
+       {"Of a target"},
+       {"Of an objective, relative"},
+       {"Processor time, s"}});
+  table.row({fmt::format("{}", audit.steps), fmt::format("{}", audit.disagreements),
+             fmt::format("{:.1e}", audit.largest_move), fmt::format("{:.1e}", audit.largest_target),
+             fmt::format("{:.1e}", audit.largest_objective), fmt::format("{:.1f}", info.audit_seconds)});
+  return fallbacks + "An interior point is off by about 1e-6 at a limit that touches without pushing.</p>\n" +
+         table.html();
+}
+
 }  // namespace
 
 ReportSection solver_section(const ReportInput& input) {
@@ -80,6 +104,8 @@ ReportSection solver_section(const ReportInput& input) {
                   "computed from the problem alone, whichever solver gave the answer.</p>\n",
                   html_text(campaign.info.solver)));
   section.add(table.html());
+  if (campaign.info.solver == "auto")
+    section.add(audit_html(input.parts, campaign.info));
   return section;
 }
 

@@ -46,6 +46,19 @@ void WorkingSet::fill(const QpStructure& structure, const QpData& data) {
   }
 }
 
+void WorkingSet::add_active(const QpStructure& structure, const QpData& data, const QpResult& answer,
+                            double tolerance) {
+  for (int i = 0; i < structure.row_count(); ++i) {
+    const int q = structure.slack_of_row(i);
+    if (std::abs(answer.hard_dual(i)) > tolerance)
+      add(i, RowSide::hard, q);
+    if (answer.soft_dual(i) < -tolerance && std::isfinite(data.soft_lower(i)))
+      add(i, RowSide::soft_lower, q);
+    if (answer.soft_dual(i) > tolerance && std::isfinite(data.soft_upper(i)))
+      add(i, RowSide::soft_upper, q);
+  }
+}
+
 int WorkingSet::add_violated(const QpStructure& structure, const QpData& data, const Eigen::VectorXd& x,
                              const Eigen::VectorXd& slack, double margin, double tolerance) {
   row_value_.noalias() = structure.rows * x;

@@ -29,6 +29,9 @@ class WorkingSet {
   /// Every limit that exists.
   void fill(const QpStructure& structure, const QpData& data);
 
+  /// Adds the limits that push in `answer`: those with a multiplier above `tolerance`.
+  void add_active(const QpStructure& structure, const QpData& data, const QpResult& answer, double tolerance);
+
   /// Adds the limits that (x, slack) violates, or comes nearer to than `margin`. Returns how many of the
   /// added ones were violated by more than `tolerance`: zero means that nothing was left out wrongly.
   int add_violated(const QpStructure& structure, const QpData& data, const Eigen::VectorXd& x,

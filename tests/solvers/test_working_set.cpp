@@ -84,4 +84,20 @@ TEST_CASE("the margin lets near limits in without counting them", "[working_set]
   CHECK(set.rows()[0].row == 0);
 }
 
+TEST_CASE("the limits that push in an answer enter, on the side they push from", "[working_set]") {
+  const NamedQp qp = problem();
+  WorkingSet set(*qp.structure);
+  QpResult answer = QpResult::zero(*qp.structure);
+  answer.soft_dual(1) = -2.0;  // lower limit of row 1
+  answer.soft_dual(2) = 1e-9;  // next to nothing
+  answer.hard_dual(0) = 1.0;
+  set.add_active(*qp.structure, qp.data, answer, 1e-6);
+  REQUIRE(set.rows().size() == 2);
+  CHECK(set.rows()[0].row == 0);
+  CHECK(set.rows()[0].side == RowSide::hard);
+  CHECK(set.rows()[1].row == 1);
+  CHECK(set.rows()[1].side == RowSide::soft_lower);
+  CHECK(set.slacks() == std::vector<int>{0});
+}
+
 }  // namespace mpm
