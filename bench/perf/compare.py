@@ -6,7 +6,7 @@ usage: compare.py BEFORE AFTER [--rounds N] [--core C] [--filter REGEX]
 Build both with bench/perf/run.sh in two working copies, or keep a copy of the first binary. The builds take
 turns, and begin in turn, so that a machine that slows down slows both. For a benchmark with the counter
 median_us (those of single programs) that counter is compared, for all others the processor time of one
-iteration, or, where the work is done in other processes, the time on the clock.
+iteration, worker processes included.
 Printed are the medians over the rounds, their ratio after / before, and the least and largest ratio of the
 rounds, each round's two runs side by side: a ratio is a difference only when that range leaves out 1.
 """
@@ -38,7 +38,7 @@ def microseconds(benchmark):
     """What is compared of one benchmark."""
     if "median_us" in benchmark:
         return benchmark["median_us"]
-    kind = "real_time" if benchmark["name"].endswith("/real_time") else "cpu_time"
+    kind = "real_time" if benchmark["name"].endswith("/manual_time") else "cpu_time"
     return benchmark[kind] * {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}[benchmark["time_unit"]]
 
 

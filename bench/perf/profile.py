@@ -22,7 +22,6 @@ PARTS = [
     (1, "simulate_experiment", "closed loops (basis case and experiments)"),
     (2, "RangeMpc::RangeMpc", "making the controllers"),
     (2, "RangeMpc::step", "steps of the controller (T0 too)"),
-    (3, "TargetOptimizer::solve", "target optimizer"),
     (3, "free_response", "free response"),
     (3, "RangeQp::update", "limits and gradient of the moves"),
     (3, "QpSolver::solve", "quadratic programs (targets too)"),

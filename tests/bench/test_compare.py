@@ -20,7 +20,7 @@ done
 echo {name} >> {log}
 row='{{"name": "qp", "run_type": "iteration", "real_time": 7, "time_unit": "ms", "median_us": {median}}},
      {{"name": "loop", "run_type": "iteration", "real_time": 99, "cpu_time": {real}, "time_unit": "ms"}},
-     {{"name": "study/real_time", "run_type": "iteration", "real_time": {real}, "cpu_time": 99, "time_unit": "s"}}'
+     {{"name": "study/manual_time", "run_type": "iteration", "real_time": {real}, "cpu_time": 99, "time_unit": "s"}}'
 echo "{{\\"benchmarks\\": [${{nothing:+}}${{nothing:-$row}}]}}" | sed 's/\\[1\\]/[]/' > "$out"
 """
 
@@ -50,7 +50,7 @@ class Compare(unittest.TestCase):
         rows = {line.split()[0]: line.split()[1:] for line in result.stdout.splitlines()}
         self.assertEqual(rows["qp"], ["50.0", "40.0", "0.800", "0.800", "..", "0.800"])
         self.assertEqual(rows["loop"], ["30000.0", "33000.0", "1.100", "1.100", "..", "1.100"])
-        self.assertEqual(rows["study/real_time"][:3], ["30000000.0", "33000000.0", "1.100"])
+        self.assertEqual(rows["study/manual_time"][:3], ["30000000.0", "33000000.0", "1.100"])
 
     def test_the_builds_take_turns(self):
         self.call(self.before, self.after, "--rounds", 2)
