@@ -3,7 +3,7 @@
 #
 #   bench/perf/octave.sh [PER_CV [PER_SAMPLE]]    how many programs of each loop: 20 and 3 by default
 #
-# With a slack per sample one program takes qp 10 to 20 s, hence the few of them.
+# With a slack per sample one program takes qp some 4 s of processor time, hence the few of them.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
