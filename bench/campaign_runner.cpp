@@ -1,15 +1,18 @@
 #include "bench/campaign_runner.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <tuple>
+#include <numeric>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "bench/experiment_execution.hpp"
+#include "bench/outcome_collection.hpp"
+#include "bench/shard_store.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
 
@@ -43,11 +46,45 @@ void require_options(const CampaignOptions& options, std::int64_t count) {
     throw InputError("audit share", fmt::format("{}", options.audit_share), "a number from 0 to 1");
 }
 
-bool earlier(const AuditedStep& one, const AuditedStep& other) {
-  return std::tie(one.experiment, one.step) < std::tie(other.experiment, other.step);
+std::vector<std::int64_t> all_of(std::int64_t count) {
+  std::vector<std::int64_t> indices(static_cast<std::size_t>(count));
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
+/// Runs what no shard has yet, and brings everything into order. Without shards, outcomes wait in memory;
+/// with shards, on the disk, so that a campaign without kept loops needs no more memory the longer it is.
+OutcomeCollection run_experiments(ExecutionPlan plan, bool threads, std::int64_t count, ShardStore* shards,
+                                  const CampaignOptions& options) {
+  plan.indices = shards != nullptr ? shards->missing() : all_of(count);
+  std::int64_t done = count - static_cast<std::int64_t>(plan.indices.size());
+  if (options.on_start)
+    options.on_start(done);
+  OutcomeCollection outcomes(count);
+  const auto take = [&](ExperimentOutcome outcome) {
+    ++done;
+    if (options.on_done)
+      options.on_done(outcome.record);
+    if (shards != nullptr)
+      shards->add(outcome);
+    else
+      outcomes.add(std::move(outcome));
+  };
+  if (!plan.indices.empty())
+    (threads ? execute_in_threads : execute_in_processes)(plan, take);
+  if (shards != nullptr)
+    shards->flush();
+  if (done < count)
+    throw Interrupted(done, count);
+  if (shards != nullptr)
+    shards->read([&](ExperimentOutcome outcome) { outcomes.add(std::move(outcome)); });
+  return outcomes;
 }
 
 }  // namespace
+
+Interrupted::Interrupted(std::int64_t done, std::int64_t count)
+    : std::runtime_error(fmt::format("stopped when {} of {} experiments were done", done, count)) {}
 
 Campaign run_campaign(Study study, const CampaignOptions& options) {
   const std::int64_t count = options.experiments.value_or(study.experiments.total());
@@ -56,31 +93,27 @@ Campaign run_campaign(Study study, const CampaignOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const QpSolverFactory factory = qp_solver_factory(options.solver);
   const bool threads = runs_in_threads(options);
+  const SolverPlan solver{options.solver, options.solver == "auto" ? options.audit_share : 0.0};
+  std::optional<ShardStore> shards;
+  if (options.shards)
+    shards.emplace(*options.shards, shard_identity(study, solver, options.store), count, options.on_warning);
+
   Campaign campaign;
   campaign.study = std::move(study);
   campaign.basis = run_basis_case(campaign.study, factory);
   require_health(campaign.basis, options);
-
-  campaign.info.audit_share = options.solver == "auto" ? options.audit_share : 0.0;
-  const ExecutionPlan plan{campaign.study, campaign.basis, {options.solver, campaign.info.audit_share},
-                           options.store,  count,          options.jobs};
-  campaign.records.resize(static_cast<std::size_t>(count));
-  (threads ? execute_in_threads : execute_in_processes)(plan, [&](ExperimentOutcome outcome) {
-    ExperimentRecord& record = campaign.records[static_cast<std::size_t>(outcome.record.draw.index)];
-    record = std::move(outcome.record);
-    campaign.audit.insert(campaign.audit.end(), outcome.audited.begin(), outcome.audited.end());
-    campaign.info.audit_seconds += outcome.audit_seconds;
-    if (options.on_done)
-      options.on_done(record);
-  });
-  std::sort(campaign.audit.begin(), campaign.audit.end(), earlier);
+  const ExecutionPlan plan{campaign.study, campaign.basis, solver, options.store, {},
+                           options.jobs,   options.stop};
+  run_experiments(plan, threads, count, shards ? &*shards : nullptr, options).move_into(campaign);
 
   campaign.info.mpmbench_version = mpmbench_version();
   campaign.info.git_sha = source_revision();
   campaign.info.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   campaign.info.solver = options.solver;
   campaign.info.jobs = options.jobs;
-  campaign.info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  campaign.info.audit_share = solver.audit_share;
+  campaign.info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() +
+                          (shards ? shards->earlier_seconds() : 0.0);
   return campaign;
 }
 

@@ -3,9 +3,12 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "analysis/experiment.hpp"
+#include "bench/experiment_execution.hpp"
+#include "bench/shard_store.hpp"
 #include "plants/error.hpp"
 #include "results/campaign.hpp"
 
@@ -25,8 +28,15 @@ struct CampaignOptions {
   Parallel parallel = Parallel::by_solver;
   StorePolicy store = StorePolicy::flagged;
   bool allow_unhealthy_basis = false;  ///< run although the basis case fails its self-check
+  std::optional<ShardOptions> shards;  ///< where finished experiments are kept; in memory only without
+  StopRequest stop;                    ///< asked before each experiment; may be empty
   /// Called after each experiment that is done, in the order of completion; may be empty.
   std::function<void(const ExperimentRecord&)> on_done;
+  /// Called once before the first experiment, with the number of those that an earlier run has left in
+  /// shards; may be empty.
+  std::function<void(std::int64_t)> on_start;
+  /// Called with a text that the user must see; may be empty.
+  std::function<void(const std::string&)> on_warning;
 };
 
 /// The basis case of the study failed its self-check: its verdicts would mean nothing.
@@ -35,12 +45,20 @@ class UnhealthyBasis : public InputError {
   using InputError::InputError;
 };
 
+/// A campaign was stopped before its end. What was finished is in its shards.
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted(std::int64_t done, std::int64_t count);
+};
+
 /// Runs the basis case, checks it, and then the experiments. The records stand in the order of their index;
 /// an experiment whose worker process died is marked `failed` and the campaign goes on. Records and audit are
-/// the same for any number of jobs, in threads and in processes.
+/// the same for any number of jobs, in threads and in processes, and whether the campaign was run in one go
+/// or resumed. The shards are still there when it returns: they may go when the archive is written.
 ///
 /// Throws InputError for options that make no campaign (threads for a solver that is not thread-safe),
 /// UnhealthyBasis as above (or, when the basis case does not even run through, in any case),
+/// Interrupted when a stop was requested, InputError and ArchiveError of ShardStore,
 /// std::system_error when no worker process can be made.
 Campaign run_campaign(Study study, const CampaignOptions& options);
 

@@ -12,11 +12,10 @@
 #include <fmt/format.h>
 
 #include "analysis/study_aggregate.hpp"
-#include "bench/campaign_runner.hpp"
 #include "bench/command_plot.hpp"
 #include "bench/command_report.hpp"
+#include "bench/command_run.hpp"
 #include "bench/files.hpp"
-#include "bench/progress.hpp"
 #include "bench/record_bytes.hpp"
 #include "bench/sweep_command.hpp"
 #include "plants/error.hpp"
@@ -31,34 +30,6 @@
 
 namespace mpm {
 namespace {
-
-ExitCode run(const RunCommand& command, const std::string& command_line) {
-  Study study = find_study(command.study);
-  if (command.seed)
-    study.seed = *command.seed;
-  require_output_folder(command.output, "archive");
-
-  CampaignOptions options;
-  options.experiments = command.experiments;
-  options.solver = command.solver;
-  options.jobs = command.jobs;
-  options.parallel = command.parallel;
-  options.audit_share = command.audit_share;
-  options.store = command.store;
-  options.allow_unhealthy_basis = command.allow_unhealthy_basis;
-  Progress progress(command.experiments.value_or(study.experiments.total()),
-                    command.quiet ? Progress::Mode::quiet : Progress::Mode::automatic);
-  options.on_done = [&](const ExperimentRecord& record) {
-    progress.advance(record.status == ExperimentStatus::failed);
-  };
-  Campaign campaign = run_campaign(std::move(study), options);
-  progress.finish();
-  campaign.info.command = command_line;
-  write_archive(command.output, campaign);
-  if (!command.quiet)
-    fmt::print("{}", summary_text(campaign, command.output));
-  return ExitCode::done;
-}
 
 ExitCode replay(const ReplayCommand& command) {
   const Campaign campaign = read_input(command.archive);

@@ -1,7 +1,10 @@
 #include "bench/experiment_execution.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <deque>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -17,12 +20,28 @@
 namespace mpm {
 namespace {
 
-/// Experiments a thread between two meetings of the threads: enough that waiting for the last one is little.
-constexpr std::int64_t kBatch = 64;
+using Clock = std::chrono::steady_clock;
+
+/// How often a waiting process looks whether it is to stop.
+constexpr std::chrono::milliseconds kLook(100);
+
+/// How long threads run before what they have added for the reference processes is worked off: much longer
+/// than an experiment, so that waiting for the last one is little, and no more than a killed run may lose.
+constexpr std::chrono::seconds kRound(2);
 
 bool needs_reference(const ExperimentRecord& record) {
   return record.status == ExperimentStatus::failed ||
          record.solver.largest_kkt_residual > kCertifiedKktResidual;
+}
+
+bool requested(const StopRequest& stop) {
+  return stop && stop();
+}
+
+/// A worker that dies after a stop was requested may have died of the same signal: that says nothing about
+/// its experiment, which a resumed run will run again.
+bool is_finding(const std::optional<TaskResult>& result, const StopRequest& stop) {
+  return result && !(result->crashed && requested(stop));
 }
 
 /// The audit of steps whose worker died: no number, and no agreement either.
@@ -47,9 +66,9 @@ class ReferenceProcesses {
 
   void add(ExperimentOutcome outcome) { waiting_.push_back(std::move(outcome)); }
 
-  /// Works off everything that was added.
-  void finish(const OutcomeSink& deliver) {
-    while (!waiting_.empty() || pool_.has_busy()) {
+  /// Works off everything that was added, unless it is to stop.
+  void finish(const OutcomeSink& deliver, const StopRequest& stop) {
+    while (!requested(stop) && (!waiting_.empty() || pool_.has_busy())) {
       if (!waiting_.empty() && pool_.has_idle()) {
         const auto id = static_cast<std::int64_t>(under_way_.size());
         pool_.start(id, to_bytes(waiting_.front()));
@@ -57,8 +76,9 @@ class ReferenceProcesses {
         waiting_.pop_front();
         continue;
       }
-      const TaskResult result = pool_.wait();
-      deliver(result.crashed ? lost(result) : outcome_from_bytes(result.bytes));
+      const std::optional<TaskResult> result = pool_.wait_for(kLook);
+      if (is_finding(result, stop))
+        deliver(result->crashed ? lost(*result) : outcome_from_bytes(result->bytes));
     }
     under_way_.clear();
   }
@@ -87,30 +107,83 @@ class ReferenceProcesses {
   std::vector<ExperimentOutcome> under_way_;
 };
 
+/// Gives out the experiments of a plan, one by one, to threads that ask for them.
+class IndexQueue {
+ public:
+  IndexQueue(const std::vector<std::int64_t>& indices, const StopRequest& stop)
+      : indices_(indices), stop_(stop) {}
+
+  bool done() const { return next_ >= indices_.size() || closed_ || requested(stop_); }
+
+  /// Gives out what is left, until `end`. By one thread, before the others ask.
+  void open_until(Clock::time_point end) { end_ = end; }
+  /// Gives out no more.
+  void close() { closed_ = true; }
+
+  /// The next experiment; none when there is none, the time is over, or it is to stop.
+  std::optional<std::int64_t> take() {
+    if (done() || Clock::now() >= end_)
+      return std::nullopt;
+    const std::size_t position = next_++;  // several threads may pass the end
+    return position < indices_.size() ? std::optional(indices_[position]) : std::nullopt;
+  }
+
+ private:
+  const std::vector<std::int64_t>& indices_;
+  const StopRequest& stop_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> closed_{false};
+  Clock::time_point end_;
+};
+
+using ThreadWork = std::vector<std::unique_ptr<ExperimentWork>>;  // one a thread
+
+/// Runs experiments of the queue until it gives out no more. No exception may leave the threads: the first
+/// one of `deliver` is kept until they have ended.
+void run_threads(const ThreadWork& work, IndexQueue& queue, const OutcomeSink& deliver) {
+  std::exception_ptr failure;
+#pragma omp parallel num_threads(static_cast <int>(work.size()))
+  while (const std::optional<std::int64_t> index = queue.take()) {
+    ExperimentOutcome outcome = work[static_cast<std::size_t>(omp_get_thread_num())]->run(*index);
+#pragma omp critical(mpm_deliver)
+    try {
+      if (!failure)
+        deliver(std::move(outcome));
+    } catch (...) {
+      failure = std::current_exception();
+      queue.close();
+    }
+  }
+  if (failure)
+    std::rethrow_exception(failure);
+}
+
 }  // namespace
 
 void execute_in_processes(const ExecutionPlan& plan, const OutcomeSink& deliver) {
   const auto work = std::make_shared<ExperimentWork>(plan.study, plan.basis, plan.solver, plan.store);
-  WorkerPool pool(static_cast<int>(std::min<std::int64_t>(plan.jobs, plan.count)),
+  WorkerPool pool(static_cast<int>(std::min(static_cast<std::size_t>(plan.jobs), plan.indices.size())),
                   [work](const std::string& request) {
                     ExperimentOutcome outcome = work->run(std::stoll(request));
                     work->audit(outcome);
                     return to_bytes(outcome);
                   });
-  std::int64_t next = 0;
-  while (next < plan.count || pool.has_busy()) {
-    if (next < plan.count && pool.has_idle()) {
-      pool.start(next, fmt::to_string(next));
+  auto next = plan.indices.begin();
+  while (!requested(plan.stop) && (next != plan.indices.end() || pool.has_busy())) {
+    if (next != plan.indices.end() && pool.has_idle()) {
+      pool.start(*next, fmt::to_string(*next));
       ++next;
       continue;
     }
-    TaskResult result = pool.wait();
-    if (!result.crashed) {
-      deliver(outcome_from_bytes(result.bytes));
+    std::optional<TaskResult> result = pool.wait_for(kLook);
+    if (!is_finding(result, plan.stop))
+      continue;
+    if (!result->crashed) {
+      deliver(outcome_from_bytes(result->bytes));
       continue;
     }
     ExperimentOutcome outcome;
-    outcome.record = lost_record(plan.study, result.id, std::move(result.bytes));
+    outcome.record = lost_record(plan.study, result->id, std::move(result->bytes));
     deliver(std::move(outcome));
   }
 }
@@ -122,30 +195,23 @@ void execute_in_threads(const ExecutionPlan& plan, const OutcomeSink& deliver) {
     reference.emplace(plan);  // before the first thread starts
   SolverPlan in_thread = plan.solver;
   in_thread.solver = "active-set";
-  std::vector<std::unique_ptr<ExperimentWork>> work;
+  ThreadWork work;
   for (int thread = 0; thread < plan.jobs; ++thread)
     work.push_back(std::make_unique<ExperimentWork>(plan.study, plan.basis, in_thread, plan.store));
 
-  const std::int64_t batch = kBatch * plan.jobs;
-  std::vector<ExperimentOutcome> outcomes;
-  for (std::int64_t first = 0; first < plan.count; first += batch) {
-    const std::int64_t size = std::min(batch, plan.count - first);
-    outcomes.assign(static_cast<std::size_t>(size), {});
-#pragma omp parallel for schedule(dynamic) num_threads(plan.jobs)
-    for (std::int64_t i = 0; i < size; ++i)
-      outcomes[static_cast<std::size_t>(i)] =
-          work[static_cast<std::size_t>(omp_get_thread_num())]->run(first + i);
-    for (ExperimentOutcome& outcome : outcomes) {
-      if (fall_back && needs_reference(outcome.record))
-        outcome.samples.clear();
-      else if (outcome.samples.empty()) {
-        deliver(std::move(outcome));
-        continue;
-      }
-      reference->add(std::move(outcome));
-    }
+  const OutcomeSink sort_out = [&](ExperimentOutcome outcome) {
+    if (fall_back && needs_reference(outcome.record))
+      outcome.samples.clear();
+    else if (outcome.samples.empty())
+      return deliver(std::move(outcome));
+    reference->add(std::move(outcome));
+  };
+  IndexQueue queue(plan.indices, plan.stop);
+  while (!queue.done()) {
+    queue.open_until(reference ? Clock::now() + kRound : Clock::time_point::max());
+    run_threads(work, queue, sort_out);
     if (reference)
-      reference->finish(deliver);
+      reference->finish(deliver, plan.stop);
   }
 }
 

@@ -2,10 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "bench/experiment_work.hpp"
 
 namespace mpm {
+
+/// Says whether a campaign is to stop; asked by several threads at once. May be empty: it never is.
+using StopRequest = std::function<bool()>;
 
 /// What is to be run, and how.
 struct ExecutionPlan {
@@ -13,12 +17,17 @@ struct ExecutionPlan {
   const BasisCase& basis;
   SolverPlan solver;
   StorePolicy store = StorePolicy::none;
-  std::int64_t count = 0;  ///< experiments 0 <= index < count
-  int jobs = 1;            ///< how many run at once
+  std::vector<std::int64_t> indices;  ///< the experiments, each once
+  int jobs = 1;                       ///< how many run at once
+  StopRequest stop;
 };
 
-/// Takes the outcome of each experiment, its audits done, in the order in which they come.
+/// Takes the outcome of each experiment, its audits done, in the order in which they come; one call at a
+/// time, but from any thread. An exception from it ends the execution and is passed on.
 using OutcomeSink = std::function<void(ExperimentOutcome)>;
+
+// When a stop is requested, both give out no more experiments and return: without those in worker processes,
+// which may take minutes, and with those in threads, which take milliseconds, unless they wait for an audit.
 
 /// Runs the experiments in `jobs` worker processes: any solver, and a crash costs one experiment only. The
 /// process must have no other thread.

@@ -1,3 +1,4 @@
+#include <csignal>
 #include <cstdlib>
 #include <string>
 
@@ -18,10 +19,21 @@ void use_single_threaded_blas(char** argv) {
   ::execv("/proc/self/exe", argv);  // returns only when it fails: then go on as we are
 }
 
+/// A word as a shell reads it back.
+std::string quoted(const std::string& word) {
+  constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:=+@%-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos)
+    return word;
+  std::string text = "'";
+  for (const char c : word)
+    text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 std::string joined(int argc, const char* const* argv) {
   std::string line = "mpmbench";
   for (int i = 1; i < argc; ++i)
-    line.append(" ").append(argv[i]);
+    line.append(" ").append(quoted(argv[i]));
   return line;
 }
 
@@ -29,5 +41,6 @@ std::string joined(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   use_single_threaded_blas(argv);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of its size is an error of write(), with a text
   return static_cast<int>(mpm::execute(mpm::parse_command_line(argc, argv), joined(argc, argv)));
 }

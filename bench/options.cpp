@@ -46,6 +46,18 @@ void add_run(CLI::App& app, RunCommand& run) {
       ->default_str("flagged");
   app.add_flag("--allow-unhealthy-basis", run.allow_unhealthy_basis,
                "Run although the basis case fails its self-check");
+  CLI::Option* const resume = app.add_flag_callback(
+      "--resume", [&run] { run.leftovers = Leftovers::resume; },
+      "Go on with an interrupted run of this output: run only what is missing");
+  app.add_flag_callback(
+         "--discard", [&run] { run.leftovers = Leftovers::discard; },
+         "Delete what an interrupted run of this output has done, and start anew")
+      ->excludes(resume);
+  app.add_option(
+         "--shard-interval", run.shard_interval,
+         "Seconds between two shards, which keep what is finished: as much is lost when a run is killed")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_flag("--quiet", run.quiet, "No progress and no summary");
 }
 

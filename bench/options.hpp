@@ -22,6 +22,8 @@ struct RunCommand {
   double audit_share = 0.001;
   StorePolicy store = StorePolicy::flagged;
   bool allow_unhealthy_basis = false;
+  Leftovers leftovers = Leftovers::refuse;  ///< --resume, --discard
+  double shard_interval = 2.0;              ///< s
   bool quiet = false;
 };
 

@@ -26,6 +26,13 @@ Progress::Progress(std::int64_t total, Mode mode)
       start_(Clock::now()),
       shown_(start_) {}
 
+void Progress::start_from(std::int64_t done) {
+  earlier_ = done_ = done;
+  start_ = Clock::now();
+  if (!quiet_ && done > 0)
+    fmt::print(stderr, "{} of {} experiments are done already\n", done, total_);
+}
+
 void Progress::advance(bool failed) {
   ++done_;
   if (failed)
@@ -39,7 +46,7 @@ void Progress::advance(bool failed) {
 void Progress::show() {
   shown_ = Clock::now();
   const double seconds = std::chrono::duration<double>(shown_ - start_).count();
-  const double rate = static_cast<double>(done_) / std::max(seconds, 1e-9);
+  const double rate = static_cast<double>(done_ - earlier_) / std::max(seconds, 1e-9);
   const std::string text = fmt::format("{}/{} experiments, {:.3g}/s, {} left{}", done_, total_, rate,
                                        duration(static_cast<double>(total_ - done_) / rate),
                                        failed_ > 0 ? fmt::format(", {} failed", failed_) : "");

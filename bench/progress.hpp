@@ -13,6 +13,8 @@ class Progress {
 
   Progress(std::int64_t total, Mode mode);
 
+  /// `done` tasks were done before; they do not count in the rate. Before the first advance().
+  void start_from(std::int64_t done);
   /// One more task is done; `failed` counts tasks worth mentioning.
   void advance(bool failed);
   /// Ends the line.
@@ -23,7 +25,7 @@ class Progress {
 
   void show();
 
-  std::int64_t total_, done_ = 0, failed_ = 0;
+  std::int64_t total_, earlier_ = 0, done_ = 0, failed_ = 0;
   bool quiet_, terminal_;
   Clock::time_point start_, shown_;
 };

@@ -191,13 +191,22 @@ void WorkerPool::start(std::int64_t id, const std::string& request) {
 }
 
 TaskResult WorkerPool::wait() {
+  constexpr std::chrono::milliseconds kForever(-1);  // as poll() has it
+  for (;;)
+    if (std::optional<TaskResult> result = wait_for(kForever))
+      return std::move(*result);
+}
+
+std::optional<TaskResult> WorkerPool::wait_for(std::chrono::milliseconds longest) {
   assert(has_busy());
   std::vector<pollfd> watched(workers_.size());
   for (std::size_t w = 0; w < workers_.size(); ++w)  // poll() passes over negative descriptors
     watched[w] = {workers_[w]->idle() ? -1 : workers_[w]->socket(), POLLIN, 0};
-  while (::poll(watched.data(), watched.size(), -1) < 0)
-    if (errno != EINTR)
-      throw std::system_error(errno, std::generic_category(), "waiting for worker processes");
+  const int count = ::poll(watched.data(), watched.size(), static_cast<int>(longest.count()));
+  if (count < 0 && errno != EINTR)
+    throw std::system_error(errno, std::generic_category(), "waiting for worker processes");
+  if (count <= 0)
+    return std::nullopt;
   std::size_t ready = 0;
   while (watched[ready].revents == 0)
     ++ready;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,9 @@ class WorkerPool {
 
   /// The next result, in the order in which they arrive; blocks. Some task must be under way.
   TaskResult wait();
+
+  /// The same, but none when no result arrives within `longest` or a signal arrives first.
+  std::optional<TaskResult> wait_for(std::chrono::milliseconds longest);
 
  private:
   class Worker;

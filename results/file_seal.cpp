@@ -1,16 +1,15 @@
 #include "results/file_seal.hpp"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
-#include <stdexcept>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include "results/archive_error.hpp"
+#include "results/sha256.hpp"
 
 namespace mpm {
 namespace {
@@ -18,20 +17,11 @@ namespace {
 constexpr std::string_view kSealBegin = "\nmpmbench sha256 ";
 constexpr std::string_view kSealEnd = "\n";
 constexpr std::string_view kHdf5Signature = "\x89HDF\r\n\x1A\n";
-constexpr std::size_t kHashBytes = 32;
-static_assert(kSealBytes == kSealBegin.size() + 2 * kHashBytes + kSealEnd.size());
+constexpr std::size_t kHashDigits = 64;
+static_assert(kSealBytes == kSealBegin.size() + kHashDigits + kSealEnd.size());
 
-/// SHA-256 in hexadecimal digits, as sha256sum prints it.
-std::string sha256(std::span<const std::byte> content) {
-  std::array<unsigned char, kHashBytes> hash{};
-  unsigned length = 0;
-  if (EVP_Digest(content.data(), content.size(), hash.data(), &length, EVP_sha256(), nullptr) != 1 ||
-      length != hash.size())
-    throw std::runtime_error("OpenSSL computes no SHA-256");
-  std::string digits;
-  for (const unsigned char byte : hash)
-    digits += fmt::format("{:02x}", byte);
-  return digits;
+bool is_seal(std::string_view text) {
+  return text.size() == kSealBytes && text.starts_with(kSealBegin) && text.ends_with(kSealEnd);
 }
 
 /// A file that is read piece by piece.
@@ -73,8 +63,8 @@ class InputFile {
 std::string read_seal(InputFile& file) {
   const std::size_t begin = file.size() - std::min(file.size(), kSealBytes);
   const auto seal = file.read<std::string>(begin, kSealBytes);
-  if (seal.size() == kSealBytes && seal.starts_with(kSealBegin) && seal.ends_with(kSealEnd))
-    return seal.substr(kSealBegin.size(), 2 * kHashBytes);
+  if (is_seal(seal))
+    return seal.substr(kSealBegin.size(), kHashDigits);
   if (file.read<std::string>(0, kHdf5Signature.size()) != kHdf5Signature)
     file.refuse("no HDF5 file, or not a whole one");
   file.refuse(
@@ -88,6 +78,15 @@ std::vector<std::byte> sealed(std::vector<std::byte> content) {
   const std::string seal = fmt::format("{}{}{}", kSealBegin, sha256(content), kSealEnd);
   const auto bytes = std::as_bytes(std::span(seal));
   content.insert(content.end(), bytes.begin(), bytes.end());
+  return content;
+}
+
+std::optional<std::string_view> unsealed(std::string_view file) {
+  const std::string_view content = file.substr(0, file.size() - std::min(file.size(), kSealBytes));
+  const std::string_view seal = file.substr(content.size());
+  if (!is_seal(seal) ||
+      seal.substr(kSealBegin.size(), kHashDigits) != sha256(std::as_bytes(std::span(content))))
+    return std::nullopt;
   return content;
 }
 

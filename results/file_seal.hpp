@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace mpm {
@@ -19,6 +21,10 @@ inline constexpr std::size_t kSealBytes = 82;
 
 /// `content` with its seal.
 std::vector<std::byte> sealed(std::vector<std::byte> content);
+
+/// The content of a sealed file that was read as a whole, without the seal; none when it has no seal or the
+/// seal is that of another content.
+std::optional<std::string_view> unsealed(std::string_view file);
 
 /// The content of a sealed file, without the seal.
 ///

@@ -1,12 +1,19 @@
+#include <atomic>
+#include <filesystem>
+
 #include <catch2/catch.hpp>
 
 #include "bench/campaign_runner.hpp"
 #include "bench/record_bytes.hpp"
+#include "results/archive_error.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/results/made_up_campaign.hpp"
 
 namespace {
 
 using namespace mpm;
+using Catch::Contains;
+using mpm::testing::TemporaryFolder;
 
 CampaignOptions fourteen() {
   CampaignOptions options;
@@ -92,6 +99,80 @@ TEST_CASE("campaign: an unhealthy basis case stops it, unless it is allowed") {
   CHECK(run_campaign(study, options).records.size() == 1);
 }
 
+/// Stops a campaign after some experiments, in the way of a signal.
+Campaign interrupted(const Study& study, CampaignOptions options, int experiments) {
+  std::atomic<int> left = experiments;
+  options.on_done = [&](const ExperimentRecord&) { --left; };
+  options.stop = [&] { return left <= 0; };
+  return run_campaign(study, options);
+}
+
+TEST_CASE("campaign: stopped and resumed until it is done, it is the campaign of one go") {
+  const TemporaryFolder folder;
+  const Study study = find_study("wood-berry");
+  CampaignOptions options = fourteen();
+  const Campaign whole = run_campaign(study, options);
+  options.parallel = GENERATE(Parallel::threads, Parallel::processes);
+  options.jobs = 2;
+  options.shards = ShardOptions{folder / "s", Leftovers::refuse};
+  CHECK_THROWS_WITH(interrupted(study, options, 3), Contains("of 14 experiments"));
+  CHECK_THROWS_WITH(run_campaign(study, options), Contains("--resume"));
+  options.shards->leftovers = Leftovers::resume;
+  CHECK_THROWS_AS(interrupted(study, options, 3), Interrupted);
+  std::int64_t done = -1;
+  options.on_start = [&](std::int64_t count) { done = count; };
+  const Campaign resumed = run_campaign(study, options);
+  CHECK(done >= 6);
+  CHECK(done < 14);
+  check_same(resumed, whole, 14);
+  REQUIRE(resumed.audit.size() == whole.audit.size());
+  for (std::size_t i = 0; i < whole.audit.size(); ++i) {
+    CHECK(resumed.audit[i].experiment == whole.audit[i].experiment);
+    CHECK(resumed.audit[i].step == whole.audit[i].step);
+    CHECK(resumed.audit[i].moves.x == whole.audit[i].moves.x);
+  }
+}
+
+TEST_CASE("campaign: shards of another seed, solver, audit, store policy or study are refused") {
+  const TemporaryFolder folder;
+  const Study study = find_study("wood-berry");
+  CampaignOptions options = fourteen();
+  options.shards = ShardOptions{folder / "s", Leftovers::resume};
+  CHECK_THROWS_AS(interrupted(study, options, 2), Interrupted);
+  const auto refusal = [&](const Study& other_study, const CampaignOptions& other) -> std::string {
+    try {
+      run_campaign(other_study, other);
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  Study other_study = study;
+  other_study.seed += 1;
+  CHECK_THAT(refusal(other_study, options), Contains("another seed"));
+  other_study = study;
+  other_study.source += "\n# a comment\n";
+  CHECK_THAT(refusal(other_study, options), Contains("another study"));
+  CampaignOptions other = options;
+  other.solver = "active-set";
+  CHECK_THAT(refusal(study, other), Contains("another solver"));
+  other = options;
+  other.audit_share = 0.5;
+  CHECK_THAT(refusal(study, other), Contains("another audit"));
+  other = options;
+  other.store = StorePolicy::none;
+  CHECK_THAT(refusal(study, other), Contains("another store"));
+  CHECK(run_campaign(study, options).records.size() == 14);
+}
+
+TEST_CASE("campaign: an exception on the way of an outcome ends threads and processes, and is passed on") {
+  CampaignOptions options = fourteen();
+  options.jobs = 2;
+  options.parallel = GENERATE(Parallel::threads, Parallel::processes);
+  options.on_done = [](const ExperimentRecord&) { throw ArchiveError("disk full"); };
+  CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options), "disk full");
+}
+
 TEST_CASE("campaign: options that make no campaign are refused") {
   CampaignOptions options;
   options.experiments = 0;
@@ -101,13 +182,13 @@ TEST_CASE("campaign: options that make no campaign are refused") {
   CHECK_THROWS_AS(run_campaign(find_study("wood-berry"), options), InputError);
   options.jobs = 1;
   options.audit_share = 1.5;
-  CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options), Catch::Contains("audit share"));
+  CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options), Contains("audit share"));
   options.audit_share = 0.0;
   options.solver = "ipopt";
   options.parallel = Parallel::threads;
-  CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options), Catch::Contains("threads"));
+  CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options), Contains("threads"));
   options.solver = "none";
-  CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options), Catch::Contains("ipopt"));
+  CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options), Contains("ipopt"));
 }
 
 }  // namespace

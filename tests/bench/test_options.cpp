@@ -14,9 +14,11 @@ Command parse(std::vector<const char*> words) {
 }
 
 TEST_CASE("options: run with everything") {
-  const Command command =
-      parse({"run", "chapter6", "-o", "x.h5", "--experiments", "40", "--seed", "7", "--jobs", "3", "--solver",
-             "ipopt", "--store", "all", "--quiet", "--parallel", "processes", "--audit", "0.25"});
+  const Command command = parse({"run",        "chapter6",  "-o",      "x.h5",   "--experiments",
+                                 "40",         "--seed",    "7",       "--jobs", "3",
+                                 "--solver",   "ipopt",     "--store", "all",    "--quiet",
+                                 "--parallel", "processes", "--audit", "0.25",   "--shard-interval",
+                                 "0.5"});
   const RunCommand& run = std::get<RunCommand>(command);
   CHECK(run.study == "chapter6");
   CHECK(run.experiments == 40);
@@ -27,6 +29,17 @@ TEST_CASE("options: run with everything") {
   CHECK(run.solver == "ipopt");
   CHECK(run.parallel == Parallel::processes);
   CHECK(run.audit_share == 0.25);
+  CHECK(run.shard_interval == 0.5);
+}
+
+TEST_CASE("options: what is to become of an interrupted run") {
+  const auto leftovers = [](std::vector<const char*> more) {
+    more.insert(more.begin(), {"run", "chapter6", "-o", "x.h5"});
+    return std::get<RunCommand>(parse(more)).leftovers;
+  };
+  CHECK(leftovers({}) == Leftovers::refuse);
+  CHECK(leftovers({"--resume"}) == Leftovers::resume);
+  CHECK(leftovers({"--discard"}) == Leftovers::discard);
 }
 
 TEST_CASE("options: check takes a gate file, and a JUnit file when there is to be one") {
@@ -60,6 +73,8 @@ TEST_CASE("options: wrong usage has exit code 2, help has 0") {
                                                     {"run", "chapter6", "-o", "x", "--solver", "none"},
                                                     {"run", "chapter6", "-o", "x", "--audit", "2"},
                                                     {"run", "chapter6", "-o", "x", "--parallel", "both"},
+                                                    {"run", "chapter6", "-o", "x", "--resume", "--discard"},
+                                                    {"run", "chapter6", "-o", "x", "--shard-interval", "-1"},
                                                     {"sweep", "chapter6"},
                                                     {"check", "x.h5"},
                                                     {"replay", "x.h5", "-1"},

@@ -1,0 +1,90 @@
+#include "bench/command_run.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bench/campaign_runner.hpp"
+#include "bench/files.hpp"
+#include "bench/progress.hpp"
+#include "bench/shard_folder.hpp"
+#include "bench/stop_signals.hpp"
+#include "plants/error.hpp"
+#include "results/archive.hpp"
+#include "results/summary.hpp"
+#include "scenarios/study_library.hpp"
+
+namespace mpm {
+namespace {
+
+CampaignOptions campaign_options(const RunCommand& command) {
+  CampaignOptions options;
+  options.experiments = command.experiments;
+  options.solver = command.solver;
+  options.jobs = command.jobs;
+  options.parallel = command.parallel;
+  options.audit_share = command.audit_share;
+  options.store = command.store;
+  options.allow_unhealthy_basis = command.allow_unhealthy_basis;
+  options.shards = ShardOptions{shard_folder_of(command.output), command.leftovers, command.shard_interval};
+  return options;
+}
+
+Campaign run_with_progress(Study study, const RunCommand& command, const StopSignals& signals) {
+  CampaignOptions options = campaign_options(command);
+  Progress progress(command.experiments.value_or(study.experiments.total()),
+                    command.quiet ? Progress::Mode::quiet : Progress::Mode::automatic);
+  options.stop = [&] { return signals.received(); };
+  options.on_start = [&](std::int64_t done) { progress.start_from(done); };
+  options.on_done = [&](const ExperimentRecord& record) {
+    progress.advance(record.status == ExperimentStatus::failed);
+  };
+  options.on_warning = [](const std::string& text) { fmt::print(stderr, "mpmbench: warning: {}\n", text); };
+  try {
+    Campaign campaign = run_campaign(std::move(study), options);
+    progress.finish();
+    return campaign;
+  } catch (...) {
+    progress.finish();
+    throw;
+  }
+}
+
+/// The command line again, with --resume.
+std::string resuming(std::string command_line, Leftovers leftovers) {
+  constexpr std::string_view kDiscard = " --discard";
+  if (leftovers == Leftovers::discard)
+    command_line.erase(command_line.rfind(kDiscard), kDiscard.size());
+  return leftovers == Leftovers::resume ? command_line : command_line + " --resume";
+}
+
+}  // namespace
+
+ExitCode run(const RunCommand& command, const std::string& command_line) {
+  Study study = find_study(command.study);
+  if (command.seed)
+    study.seed = *command.seed;
+  require_output_folder(command.output, "archive");
+
+  const StopSignals signals;
+  try {
+    Campaign campaign = run_with_progress(std::move(study), command, signals);
+    campaign.info.command = command_line;
+    write_archive(command.output, campaign);
+    ShardFolder(shard_folder_of(command.output)).clear();
+    if (!command.quiet)
+      fmt::print("{}", summary_text(campaign, command.output));
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    if (!has_shards(command.output))
+      throw;
+    throw std::runtime_error(fmt::format("{}\nWhat is done is kept in {}. To go on with it:\n  {}",
+                                         error.what(), shard_folder_of(command.output).string(),
+                                         resuming(command_line, command.leftovers)));
+  }
+  return ExitCode::done;
+}
+
+}  // namespace mpm

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace mpm {
+
+/// The folder of the shards of one output. It is locked against other runs as long as the object lives.
+class ShardFolder {
+ public:
+  /// Makes the folder unless it is there. Throws ArchiveError when it cannot be made, InputError when another
+  /// run is at work in it.
+  explicit ShardFolder(std::filesystem::path folder);
+  /// Removes the folder when there is no shard in it.
+  ~ShardFolder();
+  ShardFolder(const ShardFolder&) = delete;
+  ShardFolder& operator=(const ShardFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  /// The shards in it, whole or not, in the order in which they were written.
+  std::vector<std::filesystem::path> shards() const;
+
+  /// A name for one more shard.
+  std::filesystem::path next();
+
+  /// Removes the shards, and what a killed run has left half-written.
+  void clear();
+
+ private:
+  void lock();
+
+  std::filesystem::path path_;
+  int lock_ = -1;
+  int last_ = 0;  ///< number of the last shard
+};
+
+/// Where the shards of an output lie: beside it.
+std::filesystem::path shard_folder_of(const std::filesystem::path& output);
+
+/// Whether an interrupted run of this output has left shards.
+bool has_shards(const std::filesystem::path& output);
+
+}  // namespace mpm

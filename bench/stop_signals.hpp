@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string_view>
+
+#include <signal.h>
+
+namespace mpm {
+
+/// Turns Ctrl-C (SIGINT) and SIGTERM into a request to stop, for as long as it lives. A signal that the
+/// caller of the program has set to be ignored stays ignored (`nohup`, background jobs of a script).
+///
+/// The first of each is noted only; the second one finds the default action again and ends the process at
+/// once. Processes that are forked meanwhile inherit this: a Ctrl-C goes to them too, and must leave it to
+/// their parent when they end. At most one object at a time.
+class StopSignals {
+ public:
+  StopSignals();
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+  /// Whether one of the signals has come. From any thread.
+  bool received() const;
+
+  /// "SIGINT" or "SIGTERM"; empty when none has come.
+  std::string_view name() const;
+
+ private:
+  struct sigaction interrupt_ {};
+  struct sigaction terminate_ {};
+};
+
+}  // namespace mpm

@@ -1,0 +1,208 @@
+"""Interrupts runs in every way and resumes them: each data set must be that of a run in one go, bit for bit.
+
+usage: check_resume.py MPMBENCH
+"""
+
+import os
+import pathlib
+import random
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+
+EXPERIMENTS = 600
+WORDS = ["wood-berry", "--experiments", str(EXPERIMENTS), "--jobs", "2", "--quiet", "--store", "all",
+         "--audit", "0.0005", "--shard-interval", "0.05"]
+PATIENCE = 300  # s, for a machine that is busy with other things
+
+
+def contents(path):
+    """Every data set: its type, shape, bytes and attributes; every group and its attributes but those of /."""
+    found = {}
+
+    def attributes(thing):
+        return {key: str(thing.attrs[key]) for key in thing.attrs if key not in ("DIMENSION_LIST", "REFERENCE_LIST")}
+
+    def take(name, thing):
+        if isinstance(thing, h5py.Group):
+            found[name] = attributes(thing)
+            return
+        values = thing[()]
+        plain = thing.dtype.kind != "O"
+        found[name] = (str(thing.dtype), thing.shape, values.tobytes() if plain else list(values.flat),
+                       attributes(thing))
+
+    with h5py.File(path, "r") as file:
+        file.visititems(take)
+    assert len(found) > 50, sorted(found)
+    return found
+
+
+class Trial:
+    """One output in a folder of its own, and the runs that write it."""
+
+    def __init__(self, program, folder, name):
+        self.program = program
+        self.output = folder / name
+        self.shards = folder / (name + ".shards")
+
+    def start(self, *words, **options):
+        def defaults():  # what a background job of a script ignores would be ignored by the program too
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, signal.SIG_DFL)
+            if "limit" in options:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (options["limit"],) * 2)
+
+        return subprocess.Popen([self.program, "run", *WORDS, "-o", str(self.output), *words], text=True,
+                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, preexec_fn=defaults)
+
+    def run(self, *words, code=0, **options):
+        process = self.start(*words, **options)
+        error = process.communicate(timeout=PATIENCE)[1]
+        assert process.returncode == code, (words, process.returncode, error)
+        return error
+
+    def files(self):
+        return sorted(self.shards.glob("*.shard"))
+
+    def wait_for_shards(self, process, count):
+        end = time.monotonic() + PATIENCE
+        while len(self.files()) < count and process.poll() is None:
+            assert time.monotonic() < end
+            time.sleep(0.005)
+
+    def interrupt(self, *words, number=signal.SIGKILL, shards=1):
+        """Starts a run, and sends it a signal when it has written some more shards."""
+        process = self.start(*words)
+        self.wait_for_shards(process, len(self.files()) + shards)
+        process.send_signal(number)
+        error = process.communicate(timeout=PATIENCE)[1]
+        assert not self.output.exists(), "finished before it was interrupted: " + error
+        return process.returncode, error
+
+
+def check_kills(trial, reference):
+    """SIGKILL at 20 moments; some before the first experiment, some in the middle of a shard."""
+    moments = random.Random(20150401)
+    kills = 0
+    for turn in range(20):
+        way = "threads" if turn % 2 else "processes"
+        process = trial.start("--resume", "--parallel", way)
+        if turn % 4:
+            trial.wait_for_shards(process, len(trial.files()) + 1)
+        time.sleep(moments.uniform(0.0, 0.2))
+        process.kill()
+        process.communicate(timeout=PATIENCE)
+        kills += process.returncode == -signal.SIGKILL
+        if trial.output.exists():
+            break
+    assert kills >= 10, kills  # a machine so fast that it needs a larger number of experiments
+    trial.run("--resume")
+    assert contents(trial.output) == reference
+    assert not trial.shards.exists()
+
+
+def check_stops(trial, reference):
+    """Ctrl-C and SIGTERM end a run in order, and say how to go on; a run does not delete what lies there."""
+    for number, way in ((signal.SIGINT, "threads"), (signal.SIGTERM, "processes")):
+        code, error = trial.interrupt("--resume", "--parallel", way, number=number)
+        assert code == 3, (code, error)
+        assert f"of {EXPERIMENTS} experiments were done" in error, error
+        assert error.rstrip().endswith(" --resume") and f"-o {trial.output}" in error, error
+    files = trial.files()
+    error = trial.run(code=2)
+    assert "--resume" in error and "--discard" in error, error
+    assert trial.files() == files
+
+    # Another run: it says what differs, and leaves the shards alone.
+    for words, name in ((("--seed", "7"), "seed"), (("--solver", "active-set"), "solver"),
+                        (("--store", "none"), "store"), (("--audit", "0.5"), "audit")):
+        error = trial.run(*words, "--resume", code=2)
+        assert f"another {name}" in error, error
+    error = trial.run("--resume", "--experiments", "1", code=2)
+    assert "--experiments" in error and "or more" in error, error
+    assert trial.files() == files
+
+    # Shards that are cut off, damaged, empty: named, and run again.
+    assert len(files) >= 4, files
+    os.truncate(files[0], files[0].stat().st_size // 2)
+    content = bytearray(files[1].read_bytes())
+    content[len(content) // 3] ^= 1
+    files[1].write_bytes(content)
+    files[2].write_bytes(b"")
+    error = trial.run("--resume")
+    for file in files[:3]:
+        assert f"{file}: cut off or damaged" in error, error
+    assert error.count("warning") == 3, error
+    assert contents(trial.output) == reference
+    assert not trial.shards.exists()
+
+
+def check_two_at_once(trial):
+    """A second run of the same output is refused while the first one is at work; --discard starts anew."""
+    process = trial.start()
+    trial.wait_for_shards(process, 1)
+    assert f"process {process.pid}" in trial.run("--resume", code=2)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=PATIENCE) == 3
+    trial.run("--discard", "--experiments", "3")
+    with h5py.File(trial.output) as file:
+        assert len(file["experiment"]) == 3
+    assert not trial.shards.exists()
+
+
+def check_full_disk(trial, reference):
+    """A limit of the file size, once for a shard and once for the archive: nothing under the final name."""
+    error = trial.run(code=3, limit=1000)
+    assert "cannot write" in error and ".shard" in error, error
+    assert not trial.output.exists() and not trial.files()
+    error = trial.run("--resume", "--shard-interval", "0", code=3, limit=2_000_000)
+    assert f"{trial.output}: cannot write" in error and error.rstrip().endswith(" --resume"), error
+    assert list(trial.output.parent.glob(trial.output.name + "*")) == [trial.shards]
+    assert len(trial.files()) >= EXPERIMENTS // 2
+    trial.run("--resume")
+    assert contents(trial.output) == reference
+
+
+def check_disk_of_a_megabyte(trial):
+    """The same on a disk that is really full; only root can make one."""
+    folder = trial.output.parent
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "none", folder], capture_output=True)
+    if mounted.returncode != 0:
+        return
+    try:
+        error = trial.run(code=3)
+        assert "No space left on device" in error and error.rstrip().endswith(" --resume"), error
+        assert not trial.output.exists() and trial.files()
+        assert not list(trial.shards.glob("*.tmp"))
+    finally:
+        subprocess.run(["umount", folder], check=True)
+
+
+def main(program):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        trial = Trial(program, folder, "reference.h5")
+        trial.run()
+        reference = contents(trial.output)
+        assert sorted(p.name for p in folder.iterdir()) == ["reference.h5"]
+        trial.run("--resume")  # without shards it just runs
+        assert contents(trial.output) == reference
+
+        check_kills(Trial(program, folder, "killed.h5"), reference)
+        check_stops(Trial(program, folder, "stopped.h5"), reference)
+        check_two_at_once(Trial(program, folder, "two.h5"))
+        check_full_disk(Trial(program, folder, "full.h5"), reference)
+        (folder / "disk").mkdir()
+        check_disk_of_a_megabyte(Trial(program, folder / "disk", "a.h5"))
+        error = Trial(program, folder / "none", "a.h5").run(code=3)
+        assert "does not exist" in error, error
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,199 @@
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "bench/outcome_bytes.hpp"
+#include "bench/shard_store.hpp"
+#include "plants/error.hpp"
+#include "results/archive_error.hpp"
+#include "results/atomic_file.hpp"
+#include "results/file_seal.hpp"
+#include "tests/results/made_up_campaign.hpp"
+
+namespace {
+
+using namespace mpm;
+using namespace mpm::testing;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+const ShardIdentity kIdentity{{"program", "p"}, {"study", "s"}, {"seed", "7"}};
+
+ExperimentOutcome outcome_of(std::int64_t index) {
+  ExperimentOutcome outcome;
+  outcome.record.draw.index = index;
+  outcome.record.message = fmt::format("experiment {}", index);
+  outcome.audited.resize(2);
+  outcome.audited.back().experiment = index;
+  outcome.audit_seconds = 0.5;
+  return outcome;
+}
+
+fs::path written(const TemporaryFolder& folder, std::vector<std::int64_t> indices) {
+  ShardBytes bytes;
+  for (const std::int64_t index : indices)
+    bytes.add(outcome_of(index));
+  bytes.write(folder / "a.shard", kIdentity, 1.5);
+  return folder / "a.shard";
+}
+
+void make_sealed(const fs::path& path, const std::string& content) {
+  const auto bytes = std::as_bytes(std::span(content));
+  write_file_atomically(path, sealed({bytes.begin(), bytes.end()}));
+}
+
+/// A store of five experiments, of which an earlier one was given some in a shard each.
+ShardStore store_of(const fs::path& folder, Leftovers leftovers, std::vector<std::string>* warnings = nullptr,
+                    std::int64_t count = 5, const ShardIdentity& identity = kIdentity) {
+  return ShardStore({folder, leftovers}, identity, count, [=](const std::string& text) {
+    if (warnings != nullptr)
+      warnings->push_back(text);
+  });
+}
+
+void leave_behind(const fs::path& folder, const std::vector<std::int64_t>& indices) {
+  ShardStore store = store_of(folder, Leftovers::resume);
+  for (const std::int64_t index : indices) {
+    store.add(outcome_of(index));
+    store.flush();
+  }
+}
+
+std::vector<std::int64_t> indices_in(const ShardStore& store) {
+  std::vector<std::int64_t> indices;
+  store.read([&](const ExperimentOutcome& outcome) { indices.push_back(outcome.record.draw.index); });
+  return indices;
+}
+
+using Indices = std::vector<std::int64_t>;
+
+TEST_CASE("shard: outcomes come back with every bit, loops and audits among them") {
+  const TemporaryFolder folder;
+  const Campaign campaign = made_up_campaign();
+  ShardBytes bytes;
+  std::vector<std::string> expected;
+  for (const ExperimentRecord& record : campaign.records) {
+    ExperimentOutcome outcome = outcome_of(0);
+    outcome.record = record;
+    bytes.add(outcome);
+    expected.push_back(to_bytes(outcome));
+  }
+  bytes.write(folder / "a.shard", kIdentity, 1.5);
+  CHECK(bytes.empty());
+  const std::optional<Shard> shard = read_shard(folder / "a.shard", kIdentity);
+  REQUIRE(shard);
+  CHECK(shard->seconds == 1.5);
+  REQUIRE(shard->outcomes.size() == expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    CHECK(to_bytes(shard->outcomes[i]) == expected[i]);
+}
+
+TEST_CASE("shard: cut off anywhere or with any byte changed, it is seen to be damaged") {
+  const TemporaryFolder folder;
+  const fs::path path = written(folder, {3});
+  const std::string whole = file_content(path);
+  REQUIRE(read_shard(path, kIdentity));
+  for (std::size_t i = 0; i < whole.size(); i += 7) {
+    make_file(path, whole.substr(0, i));
+    CHECK_FALSE(read_shard(path, kIdentity));
+    std::string changed = whole;
+    changed[i] = static_cast<char>(changed[i] ^ 0x10);
+    make_file(path, changed);
+    CHECK_FALSE(read_shard(path, kIdentity));
+  }
+  CHECK_FALSE(read_shard(folder / "none.shard", kIdentity));
+}
+
+TEST_CASE("shard: one of another run, format version or file type is refused, and the difference named") {
+  const TemporaryFolder folder;
+  const fs::path path = written(folder, {3});
+  ShardIdentity other = kIdentity;
+  other[2].value = "8";
+  CHECK_THROWS_WITH(read_shard(path, other),
+                    Contains("a.shard") && Contains("another seed") && Contains("found 7; allowed: 8"));
+  other = kIdentity;
+  other.pop_back();
+  CHECK_THROWS_AS(read_shard(path, other), InputError);
+  other = kIdentity;
+  other.push_back({"solver", "auto"});
+  CHECK_THROWS_WITH(read_shard(path, other), Contains("another solver"));
+
+  const std::string whole = file_content(path);
+  std::string content = whole.substr(0, whole.size() - kSealBytes);
+  const std::size_t version = std::string("mpmbench shard\n").size();
+  content[version] = 9;
+  make_sealed(path, content);
+  CHECK_THROWS_WITH(read_shard(path, kIdentity),
+                    Contains("format version") && Contains("found 9; allowed: 1"));
+  make_sealed(path, "some other file");
+  CHECK_THROWS_WITH(read_shard(path, kIdentity), Contains("a shard of mpmbench"));
+}
+
+TEST_CASE("shard store: what an earlier run has left is not missing, and is given once") {
+  const TemporaryFolder folder;
+  leave_behind(folder / "s", {4, 1});
+  ShardStore store = store_of(folder / "s", Leftovers::resume);
+  CHECK(store.missing() == Indices{0, 2, 3});
+  CHECK(store.earlier_seconds() > 0.0);
+  for (const std::int64_t index : {3, 0, 1, 2})  // 1 a second time
+    store.add(outcome_of(index));
+  store.flush();
+  CHECK(indices_in(store) == Indices{4, 1, 3, 0, 2});
+}
+
+TEST_CASE("shard store: a longer run takes up a shorter one, and a shorter one refuses a longer one") {
+  const TemporaryFolder folder;
+  leave_behind(folder / "s", {4, 1});
+  CHECK(store_of(folder / "s", Leftovers::resume, nullptr, 7).missing() == Indices{0, 2, 3, 5, 6});
+  CHECK_THROWS_WITH(store_of(folder / "s", Leftovers::resume, nullptr, 4),
+                    Contains("--experiments") && Contains("5 or more"));
+  CHECK(store_of(folder / "s", Leftovers::resume).missing() == Indices{0, 2, 3});
+}
+
+TEST_CASE("shard store: a damaged shard is named, its experiments are missing, and nothing is overwritten") {
+  const TemporaryFolder folder;
+  leave_behind(folder / "s", {0, 1, 2});
+  const fs::path damaged = folder / "s" / "00000002.shard";
+  make_file(damaged, file_content(damaged).substr(0, 50));
+  std::vector<std::string> warnings;
+  ShardStore store = store_of(folder / "s", Leftovers::resume, &warnings);
+  CHECK(store.missing() == Indices{1, 3, 4});
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings.front(), Contains("00000002.shard") && Contains("run again"));
+  store.add(outcome_of(1));
+  store.flush();
+  CHECK(fs::exists(folder / "s" / "00000004.shard"));
+  CHECK(indices_in(store) == Indices{0, 2, 1});
+}
+
+TEST_CASE("shard store: shards are refused unless told otherwise, and stay until they are to be discarded") {
+  const TemporaryFolder folder;
+  leave_behind(folder / "s", {0, 1});
+  CHECK_THROWS_WITH(store_of(folder / "s", Leftovers::refuse),
+                    Contains("2 shards") && Contains("--resume") && Contains("--discard"));
+  ShardIdentity other = kIdentity;
+  other[0].value = "q";
+  CHECK_THROWS_WITH(store_of(folder / "s", Leftovers::resume, nullptr, 5, other),
+                    Contains("another program"));
+  CHECK(store_of(folder / "s", Leftovers::resume).missing().size() == 3);
+  CHECK(store_of(folder / "s", Leftovers::discard).missing().size() == 5);
+  CHECK_FALSE(fs::exists(folder / "s"));  // nothing was added
+  CHECK(store_of(folder / "s", Leftovers::refuse).missing().size() == 5);
+}
+
+TEST_CASE("shard store: a folder that cannot be made is an error, and files of others stay") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_AS(store_of(folder / "none" / "s", Leftovers::refuse), ArchiveError);
+  make_file(folder / "file", "x");
+  CHECK_THROWS_AS(store_of(folder / "file", Leftovers::refuse), ArchiveError);
+  leave_behind(folder / "s", {0});
+  make_file(folder / "s" / "notes.txt", "x");
+  ShardFolder(folder / "s").clear();
+  CHECK(fs::exists(folder / "s" / "notes.txt"));
+}
+
+}  // namespace
