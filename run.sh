@@ -3,6 +3,7 @@
 #
 #   ./run.sh                          the 400-experiment study; leaves out/chapter6.h5 and .html
 #   ./run.sh --experiments 40         the same study with more options of `mpmbench run`
+#   ./run.sh --resume                 goes on where it was interrupted
 #   ./run.sh summary out/chapter6.h5  any other mpmbench command
 set -euo pipefail
 # shellcheck source=.ci/setup.sh

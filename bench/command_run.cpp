@@ -1,6 +1,8 @@
 #include "bench/command_run.hpp"
 
+#include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include "bench/stop_signals.hpp"
 #include "plants/error.hpp"
 #include "results/archive.hpp"
+#include "results/atomic_file.hpp"
 #include "results/summary.hpp"
 #include "scenarios/study_library.hpp"
 
@@ -51,12 +54,20 @@ Campaign run_with_progress(Study study, const RunCommand& command, const StopSig
   }
 }
 
-/// The command line again, with --resume.
-std::string resuming(std::string command_line, Leftovers leftovers) {
+std::string how_to_go_on(const RunCommand& command, std::string command_line) {
   constexpr std::string_view kDiscard = " --discard";
-  if (leftovers == Leftovers::discard)
+  if (command.leftovers == Leftovers::discard)
     command_line.erase(command_line.rfind(kDiscard), kDiscard.size());
-  return leftovers == Leftovers::resume ? command_line : command_line + " --resume";
+  return fmt::format("\nWhat is done is kept in {}. To go on with it:\n  {}{}",
+                     shard_folder_of(command.output).string(), command_line,
+                     command.leftovers == Leftovers::resume ? "" : " --resume");
+}
+
+/// After the archive is written: removes the shards, and what killed runs have left.
+void clean_up(const std::filesystem::path& output) {
+  ShardFolder shards(shard_folder_of(output));
+  shards.clear();
+  remove_abandoned_files(output);
 }
 
 }  // namespace
@@ -72,17 +83,17 @@ ExitCode run(const RunCommand& command, const std::string& command_line) {
     Campaign campaign = run_with_progress(std::move(study), command, signals);
     campaign.info.command = command_line;
     write_archive(command.output, campaign);
-    ShardFolder(shard_folder_of(command.output)).clear();
+    clean_up(command.output);
     if (!command.quiet)
       fmt::print("{}", summary_text(campaign, command.output));
   } catch (const InputError&) {
     throw;
+  } catch (const Interrupted& error) {
+    throw std::runtime_error(
+        fmt::format("{}: {}{}", signals.name(), error.what(), how_to_go_on(command, command_line)));
   } catch (const std::exception& error) {
-    if (!has_shards(command.output))
-      throw;
-    throw std::runtime_error(fmt::format("{}\nWhat is done is kept in {}. To go on with it:\n  {}",
-                                         error.what(), shard_folder_of(command.output).string(),
-                                         resuming(command_line, command.leftovers)));
+    throw std::runtime_error(error.what() +
+                             (has_shards(command.output) ? how_to_go_on(command, command_line) : ""));
   }
   return ExitCode::done;
 }

@@ -3,7 +3,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,6 +16,8 @@
 namespace mpm {
 namespace {
 
+constexpr std::string_view kExtension = ".tmp";  // after the number of the process
+
 [[noreturn]] void fail(const std::filesystem::path& path, const char* action) {
   const std::error_code error(errno, std::generic_category());
   throw ArchiveError(fmt::format("{}: cannot {}: {}", path.string(), action, error.message()));
@@ -23,7 +27,7 @@ namespace {
 class TemporaryFile {
  public:
   TemporaryFile(const std::filesystem::path& target)
-      : target_(target), path_(target.string() + fmt::format(".{}.tmp", ::getpid())) {
+      : target_(target), path_(fmt::format("{}.{}{}", target.string(), ::getpid(), kExtension)) {
     constexpr mode_t kAnybody = 0666;  // less the umask, as for any new file
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kAnybody);
     if (descriptor_ < 0)
@@ -73,11 +77,25 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+/// Whether `name` is one that TemporaryFile gives for the target of this name.
+bool is_temporary_name(std::string_view name, std::string_view target) {
+  if (!name.starts_with(target) || !name.ends_with(kExtension) ||
+      name.size() < target.size() + kExtension.size())
+    return false;
+  const std::string_view process =
+      name.substr(target.size(), name.size() - target.size() - kExtension.size());
+  return process.size() > 1 && process.front() == '.' &&
+         process.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
 /// Makes the rename itself last. The file is complete by now, so that nothing is lost when a file system
 /// cannot do this.
 void flush_folder(const std::filesystem::path& file) {
-  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int descriptor = ::open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0)
     return;
   ::fsync(descriptor);
@@ -92,6 +110,16 @@ void write_file_atomically(const std::filesystem::path& path, std::span<const st
   file.flush_and_close();
   file.rename();
   flush_folder(path);
+}
+
+void remove_abandoned_files(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> abandoned;
+  std::error_code error;  // what cannot be listed or removed stays
+  for (const auto& entry : std::filesystem::directory_iterator(folder_of(path), error))
+    if (is_temporary_name(entry.path().filename().string(), path.filename().string()))
+      abandoned.push_back(entry.path());
+  for (const std::filesystem::path& file : abandoned)
+    std::filesystem::remove(file, error);
 }
 
 }  // namespace mpm

@@ -14,4 +14,8 @@ namespace mpm {
 /// file is then removed and a file that was at `path` is as it was.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content);
 
+/// Removes the temporary files of `path` that killed processes have left beside it. No other process may be
+/// writing `path`.
+void remove_abandoned_files(const std::filesystem::path& path);
+
 }  // namespace mpm

@@ -15,9 +15,8 @@ import time
 
 import h5py
 
-EXPERIMENTS = 600
-WORDS = ["wood-berry", "--experiments", str(EXPERIMENTS), "--jobs", "2", "--quiet", "--store", "all",
-         "--audit", "0.0005", "--shard-interval", "0.05"]
+MANY, SOME = 400, 150
+OPTIONS = {"--experiments": SOME, "--jobs": 2, "--store": "all", "--audit": 0.0005, "--shard-interval": 0.05}
 PATIENCE = 300  # s, for a machine that is busy with other things
 
 
@@ -51,6 +50,12 @@ class Trial:
         self.output = folder / name
         self.shards = folder / (name + ".shards")
 
+    def command(self, words):
+        """`words` may give an option of OPTIONS another value."""
+        return [self.program, "run", "wood-berry", "-o", str(self.output), "--quiet",
+                *[str(word) for option in OPTIONS.items() if option[0] not in words for word in option],
+                *map(str, words)]
+
     def start(self, *words, **options):
         def defaults():  # what a background job of a script ignores would be ignored by the program too
             for number in (signal.SIGINT, signal.SIGTERM):
@@ -58,8 +63,8 @@ class Trial:
             if "limit" in options:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (options["limit"],) * 2)
 
-        return subprocess.Popen([self.program, "run", *WORDS, "-o", str(self.output), *words], text=True,
-                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, preexec_fn=defaults)
+        return subprocess.Popen(self.command(words), text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                preexec_fn=defaults)
 
     def run(self, *words, code=0, **options):
         process = self.start(*words, **options)
@@ -92,28 +97,30 @@ def check_kills(trial, reference):
     kills = 0
     for turn in range(20):
         way = "threads" if turn % 2 else "processes"
-        process = trial.start("--resume", "--parallel", way)
+        process = trial.start("--resume", "--experiments", MANY, "--parallel", way)
         if turn % 4:
             trial.wait_for_shards(process, len(trial.files()) + 1)
-        time.sleep(moments.uniform(0.0, 0.2))
+        time.sleep(moments.uniform(0.0, 0.1))
         process.kill()
         process.communicate(timeout=PATIENCE)
         kills += process.returncode == -signal.SIGKILL
         if trial.output.exists():
             break
+    litter = trial.output.with_name(trial.output.name + ".4711.tmp")  # as if killed while it wrote the archive
+    litter.write_bytes(b"x")
     assert kills >= 10, kills  # a machine so fast that it needs a larger number of experiments
-    trial.run("--resume")
+    trial.run("--resume", "--experiments", MANY)
     assert contents(trial.output) == reference
-    assert not trial.shards.exists()
+    assert not trial.shards.exists() and not litter.exists()
 
 
 def check_stops(trial, reference):
     """Ctrl-C and SIGTERM end a run in order, and say how to go on; a run does not delete what lies there."""
     for number, way in ((signal.SIGINT, "threads"), (signal.SIGTERM, "processes")):
-        code, error = trial.interrupt("--resume", "--parallel", way, number=number)
+        code, error = trial.interrupt("--resume", "--parallel", way, number=number, shards=2)
         assert code == 3, (code, error)
-        assert f"of {EXPERIMENTS} experiments were done" in error, error
-        assert error.rstrip().endswith(" --resume") and f"-o {trial.output}" in error, error
+        assert f"of {SOME} experiments were done" in error, error
+        assert "--resume" in error.splitlines()[-1] and f"-o {trial.output}" in error.splitlines()[-1], error
     files = trial.files()
     error = trial.run(code=2)
     assert "--resume" in error and "--discard" in error, error
@@ -122,7 +129,7 @@ def check_stops(trial, reference):
     # Another run: it says what differs, and leaves the shards alone.
     for words, name in ((("--seed", "7"), "seed"), (("--solver", "active-set"), "solver"),
                         (("--store", "none"), "store"), (("--audit", "0.5"), "audit")):
-        error = trial.run(*words, "--resume", code=2)
+        error = trial.run("--resume", *words, code=2)
         assert f"another {name}" in error, error
     error = trial.run("--resume", "--experiments", "1", code=2)
     assert "--experiments" in error and "or more" in error, error
@@ -162,9 +169,9 @@ def check_full_disk(trial, reference):
     assert "cannot write" in error and ".shard" in error, error
     assert not trial.output.exists() and not trial.files()
     error = trial.run("--resume", "--shard-interval", "0", code=3, limit=2_000_000)
-    assert f"{trial.output}: cannot write" in error and error.rstrip().endswith(" --resume"), error
+    assert f"{trial.output}: cannot write" in error and "--resume" in error.splitlines()[-1], error
     assert list(trial.output.parent.glob(trial.output.name + "*")) == [trial.shards]
-    assert len(trial.files()) >= EXPERIMENTS // 2
+    assert len(trial.files()) >= SOME // 2
     trial.run("--resume")
     assert contents(trial.output) == reference
 
@@ -177,7 +184,7 @@ def check_disk_of_a_megabyte(trial):
         return
     try:
         error = trial.run(code=3)
-        assert "No space left on device" in error and error.rstrip().endswith(" --resume"), error
+        assert "No space left on device" in error and "--resume" in error.splitlines()[-1], error
         assert not trial.output.exists() and trial.files()
         assert not list(trial.shards.glob("*.tmp"))
     finally:
@@ -187,17 +194,19 @@ def check_disk_of_a_megabyte(trial):
 def main(program):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        trial = Trial(program, folder, "reference.h5")
-        trial.run()
-        reference = contents(trial.output)
-        assert sorted(p.name for p in folder.iterdir()) == ["reference.h5"]
-        trial.run("--resume")  # without shards it just runs
-        assert contents(trial.output) == reference
+        references = {}
+        for count in (MANY, SOME):
+            trial = Trial(program, folder, f"{count}.h5")
+            trial.run("--experiments", count)
+            references[count] = contents(trial.output)
+            assert references[count]["experiment"][1] == (count,)
+        assert sorted(p.name for p in folder.iterdir()) == [f"{SOME}.h5", f"{MANY}.h5"]
+        trial.run("--resume", "--experiments", 3)  # without shards it just runs
 
-        check_kills(Trial(program, folder, "killed.h5"), reference)
-        check_stops(Trial(program, folder, "stopped.h5"), reference)
+        check_kills(Trial(program, folder, "killed.h5"), references[MANY])
+        check_stops(Trial(program, folder, "stopped.h5"), references[SOME])
         check_two_at_once(Trial(program, folder, "two.h5"))
-        check_full_disk(Trial(program, folder, "full.h5"), reference)
+        check_full_disk(Trial(program, folder, "full.h5"), references[SOME])
         (folder / "disk").mkdir()
         check_disk_of_a_megabyte(Trial(program, folder / "disk", "a.h5"))
         error = Trial(program, folder / "none", "a.h5").run(code=3)

@@ -112,7 +112,7 @@ TEST_CASE("shard: one of another run, format version or file type is refused, an
   const TemporaryFolder folder;
   const fs::path path = written(folder, {3});
   ShardIdentity other = kIdentity;
-  other[2].value = "8";
+  other[2] = {"seed", "8"};
   CHECK_THROWS_WITH(read_shard(path, other),
                     Contains("a.shard") && Contains("another seed") && Contains("found 7; allowed: 8"));
   other = kIdentity;
@@ -176,7 +176,7 @@ TEST_CASE("shard store: shards are refused unless told otherwise, and stay until
   CHECK_THROWS_WITH(store_of(folder / "s", Leftovers::refuse),
                     Contains("2 shards") && Contains("--resume") && Contains("--discard"));
   ShardIdentity other = kIdentity;
-  other[0].value = "q";
+  other[0] = {"program", "q"};
   CHECK_THROWS_WITH(store_of(folder / "s", Leftovers::resume, nullptr, 5, other),
                     Contains("another program"));
   CHECK(store_of(folder / "s", Leftovers::resume).missing().size() == 3);
