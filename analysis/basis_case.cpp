@@ -1,8 +1,11 @@
 #include "analysis/basis_case.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
+
+#include "plants/error.hpp"
 
 namespace mpm {
 namespace {
@@ -32,12 +35,26 @@ void check_health(const Study& study, BasisCase& basis) {
                 ivar(worst), name, options.self_check_lower, options.self_check_upper);
 }
 
+/// A CV without an active limit has T0 = 0, which no multiplier changes.
+void require_active(const Study& study, const NominalSensitivity& sensitivity) {
+  for (const Eigen::Index cv : study.s0_perturbation.cvs)
+    if (std::none_of(sensitivity.active.begin(), sensitivity.active.end(),
+                     [cv](const ActiveLimit& limit) { return limit.cv == cv; }))
+      throw InputError(
+          "s0_perturbation.cvs",
+          fmt::format("'{}', which is at no soft limit", study.plant.cvs[static_cast<std::size_t>(cv)].name),
+          "CVs at an active soft limit");
+}
+
 }  // namespace
 
 BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory) {
   BasisCase basis;
   basis.point = operating_point(study, factory);
   basis.sensitivity = nominal_sensitivity(study, basis.point, factory);
+  require_active(study, basis.sensitivity);
+  if (!study.s0_perturbation.fixed_mvs.empty())
+    basis.sensitivity_fixed = nominal_sensitivity(study, with_fixed_mvs(study, basis.point), factory);
   basis.trajectory = simulate_experiment(study, basis_draw(), factory);
   if (basis.trajectory.status == ControlStatus::ok) {
     const Eigen::MatrixXd y_sim = simulated_output(study.plant.G, study.controller.sample_time, basis.point.u,

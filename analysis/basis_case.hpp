@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "analysis/diagnosis.hpp"
@@ -17,6 +18,8 @@ namespace mpm {
 struct BasisCase {
   OperatingPoint point;
   NominalSensitivity sensitivity;
+  /// T0 with the MVs of `study.s0_perturbation.fixed_mvs` held; none when the study names none.
+  std::optional<NominalSensitivity> sensitivity_fixed;
   Trajectory trajectory;
   NominalOutputs nominal;
   Diagnosis diagnosis;

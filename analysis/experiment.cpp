@@ -60,7 +60,11 @@ bool ExperimentRecord::wrong() const {
 }
 
 ExperimentRunner::ExperimentRunner(const Study& study, const BasisCase& basis, QpSolverFactory factory)
-    : study_(study), basis_(basis), factory_(std::move(factory)), chain_(study) {}
+    : study_(study),
+      basis_(basis),
+      factory_(std::move(factory)),
+      chain_(study),
+      perturbation_(study, basis.sensitivity) {}
 
 ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw& draw,
                                                            const StepObserver& observer) {
@@ -98,8 +102,12 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
           record.ivar_diag_mpm_alone / (record.ivar_diag_mpm_alone + record.ivar_diag_ud_alone);
     }
   }
-  if (record.status == ExperimentStatus::ok)
+  if (record.status == ExperimentStatus::ok) {
+    const Eigen::Index cv = record.draw.true_cv();
     record.diagnosis = std::move(main.diagnosis);
+    record.perturbed = perturbation_.ivar_diag(cv, Eigen::RowVectorXd(main.loop.trajectory.y.row(cv)),
+                                               Eigen::RowVectorXd(main.loop.y_sim.row(cv)));
+  }
   if (record.status == ExperimentStatus::failed)
     record.message = "the solver gave no answer";
   if (store == StorePolicy::all || (store == StorePolicy::flagged && record.wrong()))

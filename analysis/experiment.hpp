@@ -9,6 +9,7 @@
 
 #include "analysis/basis_case.hpp"
 #include "analysis/diagnosis.hpp"
+#include "analysis/s0_perturbation.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/draw.hpp"
 
@@ -47,7 +48,8 @@ struct ExperimentRecord {
   double ivar_diag_mpm_alone = std::numeric_limits<double>::quiet_NaN();
   double ivar_diag_ud_alone = std::numeric_limits<double>::quiet_NaN();
   double dominance_mpm = std::numeric_limits<double>::quiet_NaN();
-  SolverStatistics solver;         ///< of all loops of the experiment
+  PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for
+  SolverStatistics solver;  ///< of all loops of the experiment
   std::optional<LoopRecord> loop;  ///< the loop that was diagnosed, when it was asked for
 
   /// The verdict is wrong: the experiment is impactful and the CV, or the source of a single fault, is not
@@ -79,6 +81,7 @@ class ExperimentRunner {
   const BasisCase& basis_;
   QpSolverFactory factory_;
   DiagnosisChain chain_;
+  S0Perturbation perturbation_;
 };
 
 }  // namespace mpm

@@ -42,6 +42,18 @@ Eigen::MatrixXd simulated_output(const TransferMatrix& model, double sample_time
   return y_sim;
 }
 
+Eigen::RowVectorXd diagonal_nominal_output(const Eigen::Ref<const Eigen::RowVectorXd>& step,
+                                           const Eigen::Ref<const Eigen::RowVectorXd>& y,
+                                           const Eigen::Ref<const Eigen::RowVectorXd>& y_sim) {
+  if (y.size() != y_sim.size())
+    throw InputError("y and y_sim", fmt::format("{} and {} samples", y.size(), y_sim.size()),
+                     "equal lengths");
+  // y + S0 (y_sim - y) = y_sim + T0 (y - y_sim)
+  Eigen::RowVectorXd y0_diag = y_sim;
+  add_response(step, y - y_sim, y0_diag);
+  return y0_diag;
+}
+
 NominalOutputs nominal_outputs(const NominalSensitivity& sensitivity,
                                const Eigen::Ref<const Eigen::MatrixXd>& y,
                                const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
@@ -60,7 +72,7 @@ NominalOutputs nominal_outputs(const NominalSensitivity& sensitivity,
     const RowMajor step = sensitivity.step_response[a];
     for (Eigen::Index i = 0; i < y.rows(); ++i)
       add_response(step.row(i), error.row(j), y0.row(i));
-    add_response(step.row(j), error.row(j), y0_diag.row(j));
+    y0_diag.row(j) = diagonal_nominal_output(step.row(j), RowMajor(y.row(j)), RowMajor(y_sim.row(j)));
   }
   return {y_sim, y0, y0_diag};
 }

@@ -25,6 +25,13 @@ Eigen::MatrixXd simulated_output(const TransferMatrix& model, double sample_time
                                  const Eigen::Ref<const Eigen::MatrixXd>& u,
                                  const Eigen::Ref<const Eigen::MatrixXd>& d);
 
+/// y0_diag = y + S0_diag (y_sim - y) (6.6) of one CV whose diagonal element of T0 has the unit step response
+/// `step` (values 1 ... L samples after the step, the last one held), from the records y and y_sim (N samples
+/// each). Throws InputError when their lengths differ.
+Eigen::RowVectorXd diagonal_nominal_output(const Eigen::Ref<const Eigen::RowVectorXd>& step,
+                                           const Eigen::Ref<const Eigen::RowVectorXd>& y,
+                                           const Eigen::Ref<const Eigen::RowVectorXd>& y_sim);
+
 /// y0 and y0_diag of the record y (ny x N) with the model output y_sim (ny x N). A CV inside its range has
 /// S0_diag = 1, hence y0_diag = y_sim (6.17). Throws InputError when the shapes differ.
 NominalOutputs nominal_outputs(const NominalSensitivity& sensitivity,

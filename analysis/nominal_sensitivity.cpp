@@ -20,14 +20,20 @@ bool at(double value, double limit) {
   return std::isfinite(limit) && std::abs(value - limit) <= kActiveTolerance * std::max(1.0, std::abs(limit));
 }
 
+std::vector<ActiveLimit> nearest_limits(const Study& study, const std::vector<Eigen::Index>& cvs,
+                                        const Eigen::VectorXd& y) {
+  const Limits& soft = study.controller.cv_soft;
+  std::vector<ActiveLimit> nearest;
+  for (const Eigen::Index cv : cvs)
+    nearest.push_back({cv, std::abs(soft.upper(cv) - y(cv)) < std::abs(y(cv) - soft.lower(cv))});
+  return nearest;
+}
+
 std::vector<ActiveLimit> active_limits(const Study& study, const Eigen::VectorXd& y) {
   const Limits& soft = study.controller.cv_soft;
   std::vector<ActiveLimit> active;
-  if (!study.sensitivity.active_cvs.empty()) {
-    for (const Eigen::Index cv : study.sensitivity.active_cvs)
-      active.push_back({cv, std::abs(soft.upper(cv) - y(cv)) < std::abs(y(cv) - soft.lower(cv))});
-    return active;
-  }
+  if (!study.sensitivity.active_cvs.empty())
+    return nearest_limits(study, study.sensitivity.active_cvs, y);
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
     if (at(y(cv), soft.lower(cv)) || at(y(cv), soft.upper(cv)))
       active.push_back({cv, at(y(cv), soft.upper(cv))});
@@ -112,6 +118,15 @@ OperatingPoint operating_point(const Study& study, const QpSolverFactory& factor
   for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
     if (at(point.u(mv), hard.lower(mv)) || at(point.u(mv), hard.upper(mv)))
       point.fixed_mvs.push_back(mv);
+  return point;
+}
+
+OperatingPoint with_fixed_mvs(const Study& study, OperatingPoint point) {
+  point.active = nearest_limits(study, study.s0_perturbation.fixed_active_cvs, point.y);
+  std::vector<Eigen::Index>& fixed = point.fixed_mvs;
+  fixed.insert(fixed.end(), study.s0_perturbation.fixed_mvs.begin(), study.s0_perturbation.fixed_mvs.end());
+  std::sort(fixed.begin(), fixed.end());
+  fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
   return point;
 }
 

@@ -28,6 +28,11 @@ struct OperatingPoint {
 /// are those, at the limit they are nearest to. Throws InputError when the target problem has no solution.
 OperatingPoint operating_point(const Study& study, const QpSolverFactory& factory);
 
+/// The operating point `point` when the MVs of `study.s0_perturbation.fixed_mvs` are not available: they are
+/// held where they are, and of the CVs those of `fixed_active_cvs` stay at the limit they are nearest to (one
+/// degree of freedom is lost with each MV).
+OperatingPoint with_fixed_mvs(const Study& study, OperatingPoint point);
+
 /// The nominal complementary sensitivity T0 of a range MPC as step responses, and S0 = I - T0 (6.3).
 ///
 /// A CV at an active soft limit acts as if the limit were its setpoint; a CV inside its range has no

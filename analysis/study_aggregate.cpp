@@ -121,6 +121,19 @@ AggregateValue of_rate(std::string name, std::string description, const Rate& va
   return {std::move(name), std::move(description), value.value, value.interval, value.total};
 }
 
+void add_change(std::vector<AggregateValue>& values, const std::string& of, const char* parameter,
+                const S0Change& change) {
+  values.push_back({of + ".largest_change",
+                    fmt::format("largest relative change of Ivar_diag, {} of S0 within tolerance", parameter),
+                    change.largest,
+                    {kNaN, kNaN},
+                    change.within_band.total});
+  values.push_back(
+      of_rate(of + ".within_band",
+              fmt::format("experiments whose Ivar_diag stays in band, {} of S0 within tolerance", parameter),
+              change.within_band));
+}
+
 }  // namespace
 
 SampleSummary summarise(const std::vector<double>& values, double confidence) {
@@ -171,6 +184,8 @@ StudyAggregate aggregate(const Study& study, std::span<const ExperimentRecord> r
       result.kinds.push_back(aggregate_kind(study, records, kind));
   if (study.experiments.mpm_ud > 0)
     result.dominance = aggregate_dominance(study, records);
+  if (!study.s0_perturbation.multipliers.empty())
+    result.s0_changes = s0_changes(study, records);
   return result;
 }
 
@@ -200,11 +215,15 @@ std::vector<AggregateValue> named_values(const StudyAggregate& aggregate) {
     values.push_back({fmt::format("mpm_ud.i_mpm_mean_at_dominance_{:g}_to_{:g}", bin.lower, bin.upper),
                       fmt::format("mean I_MPM at dominance {:g} to {:g}", bin.lower, bin.upper),
                       bin.i_mpm.mean, bin.i_mpm.mean_interval, bin.i_mpm.count});
+  if (aggregate.s0_changes) {
+    add_change(values, "s0_time_constant", "time constant", aggregate.s0_changes->time_constant);
+    add_change(values, "s0_damping", "damping", aggregate.s0_changes->damping);
+  }
   return values;
 }
 
 bool has_interval(std::string_view name) {
-  return !name.ends_with(".i_mpm_min") && !name.ends_with(".i_mpm_max");
+  return !name.ends_with(".i_mpm_min") && !name.ends_with(".i_mpm_max") && !name.ends_with(".largest_change");
 }
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "analysis/experiment.hpp"
 #include "analysis/interval.hpp"
 #include "analysis/regression.hpp"
+#include "analysis/s0_curves.hpp"
 
 namespace mpm {
 
@@ -59,6 +61,7 @@ struct StudyAggregate {
   std::vector<KindAggregate> kinds;  ///< the kinds that the study has, in the order mpm, ud, mpm_ud
   std::vector<DominanceBin>
       dominance;  ///< edges 0, 0.3, 0.5, 0.7, 1; empty without experiments of both faults
+  std::optional<S0Changes> s0_changes;  ///< none in a study that does not perturb S0
 };
 
 /// One number of an aggregate under the name by which studies, gates and people refer to it.
@@ -77,7 +80,7 @@ StudyAggregate aggregate(const Study& study, std::span<const ExperimentRecord> r
 /// `mpm_ud.located`.
 std::vector<AggregateValue> named_values(const StudyAggregate& aggregate);
 
-/// Can the number of this name have an interval? The least and the largest I_MPM never have one.
+/// Can the number of this name have an interval? Least and largest values never have one.
 bool has_interval(std::string_view name);
 
 }  // namespace mpm

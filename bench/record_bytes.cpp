@@ -32,6 +32,7 @@ void transfer_record(Stream& stream, Record& record) {
   all(indicator.co_dkts, indicator.co_dskn, indicator.i_mpm, indicator.co_kts, indicator.co_skn,
       indicator.scanned, indicator.used);
   all(record.ivar_diag_mpm_alone, record.ivar_diag_ud_alone, record.dominance_mpm);
+  all(record.perturbed.time_constant, record.perturbed.damping);
   const auto statistics = [&](auto& s) { all(s.steps, s.iterations, s.fallbacks, s.largest_kkt_residual); };
   statistics(record.solver);
   transfer_optional(stream, record.loop, [&](auto& loop) {

@@ -20,8 +20,10 @@ Campaign read_groups(const std::filesystem::path& path) {
   const Study& study = campaign.study;
   campaign.records = read_experiments(root, study, file);
   read_trajectories(root, study, campaign.records, file);
+  read_s0_sensitivity(root, study, campaign.records, file);
   campaign.audit = read_audit(root, file);
   campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
+  campaign.basis.sensitivity_fixed = read_nominal_fixed(root, study, file);
   return campaign;
 }
 
@@ -38,7 +40,9 @@ void write_archive(const std::filesystem::path& path, const Campaign& campaign) 
   write_experiments(root, campaign);
   write_basis(root, campaign.study, campaign.basis);
   write_nominal(root, campaign.study, campaign.basis.sensitivity);
+  write_nominal_fixed(root, campaign.study, campaign.basis.sensitivity_fixed);
   write_trajectories(root, campaign);
+  write_s0_sensitivity(root, campaign);
   write_audit(root, campaign.audit);
   write_aggregate(root, campaign);
   write_file_atomically(path, file.image());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,18 @@ std::vector<ExperimentRecord> read_experiments(const Hdf5Group& root, const Stud
 /// /nominal: T0.
 void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity);
 NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file);
+
+/// /nominal_fixed: T0 with the fixed MVs of the study held; no such group when it fixes none.
+void write_nominal_fixed(Hdf5Group& root, const Study& study,
+                         const std::optional<NominalSensitivity>& sensitivity);
+std::optional<NominalSensitivity> read_nominal_fixed(const Hdf5Group& root, const Study& study,
+                                                     const std::string& file);
+
+/// /s0_sensitivity: Ivar_diag with a modified S0; no such group when the study asks for none. What follows
+/// from the rest (fits, ratios) is not read back.
+void write_s0_sensitivity(Hdf5Group& root, const Campaign& campaign);
+void read_s0_sensitivity(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
+                         const std::string& file);
 
 /// /basis: the operating point and the run without mismatch and disturbance.
 void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis);

@@ -13,27 +13,26 @@ namespace mpm {
 namespace {
 
 constexpr const char* kGroup = "nominal";
+constexpr const char* kFixedGroup = "nominal_fixed";
 constexpr const char* kResponse = "t0_step_response";
 
 VariableText side_text() {
   return {"side", "soft limit that the CV is at", "1", "", {{0, 1}, {"lower", "upper"}}};
 }
 
-Eigen::Index position(const Study& study, const std::string& name, const std::string& file) {
+Eigen::Index position(const Study& study, const std::string& name, const char* group,
+                      const std::string& file) {
   const auto& cvs = study.plant.cvs;
   const auto found = std::find_if(cvs.begin(), cvs.end(), [&](const auto& cv) { return cv.name == name; });
   if (found == cvs.end())
     throw ArchiveError(fmt::format("{}: dimension '/{}/active_cv': found '{}', which is no CV of the study",
-                                   file, kGroup, name));
+                                   file, group, name));
   return found - cvs.begin();
 }
 
-}  // namespace
-
-void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity) {
-  Hdf5Group group = root.create_group(kGroup);
-  group.write_attribute("title",
-                        "Nominal complementary sensitivity T0; S0 = I - T0, and T0 = 0 from other CVs");
+void write_sensitivity(Hdf5Group group, const std::string& title, const Study& study,
+                       const NominalSensitivity& sensitivity) {
+  group.write_attribute("title", title);
   std::vector<PlantModel::Variable> active;
   std::vector<std::int8_t> side;
   std::vector<const Eigen::MatrixXd*> responses;
@@ -57,8 +56,9 @@ void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity
                  responses, study.cv_count(), lags);
 }
 
-NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file) {
-  const Hdf5Group group = root.group(kGroup);
+NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, const Study& study,
+                                    const std::string& file) {
+  const Hdf5Group group = root.group(name);
   const std::vector<std::string> active = group.read_list<std::string>("active_cv");
   const std::vector<std::int8_t> side = group.read<std::int8_t>("side", {active.size()});
   const auto lags = static_cast<Eigen::Index>(group.read_list<std::int32_t>("lag").size());
@@ -67,11 +67,37 @@ NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const
   sensitivity.step_response.resize(active.size());
   std::vector<Eigen::MatrixXd*> responses;
   for (std::size_t a = 0; a < active.size(); ++a) {
-    sensitivity.active.push_back({position(study, active[a], file), side[a] != 0});
+    sensitivity.active.push_back({position(study, active[a], name, file), side[a] != 0});
     responses.push_back(&sensitivity.step_response[a]);
   }
   read_matrices(group, kResponse, true, responses, study.cv_count(), lags);
   return sensitivity;
+}
+
+}  // namespace
+
+void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity) {
+  write_sensitivity(root.create_group(kGroup),
+                    "Nominal complementary sensitivity T0; S0 = I - T0, and T0 = 0 from other CVs", study,
+                    sensitivity);
+}
+
+NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file) {
+  return read_sensitivity(root, kGroup, study, file);
+}
+
+void write_nominal_fixed(Hdf5Group& root, const Study& study,
+                         const std::optional<NominalSensitivity>& sensitivity) {
+  if (sensitivity)
+    write_sensitivity(root.create_group(kFixedGroup), "T0 with the fixed MVs of s0_perturbation held", study,
+                      *sensitivity);
+}
+
+std::optional<NominalSensitivity> read_nominal_fixed(const Hdf5Group& root, const Study& study,
+                                                     const std::string& file) {
+  if (!root.has_group(kFixedGroup))
+    return std::nullopt;
+  return read_sensitivity(root, kFixedGroup, study, file);
 }
 
 }  // namespace mpm

@@ -11,10 +11,13 @@ void ReportSection::leave_out(const std::string& why) {
 }
 
 std::vector<ReportSection> report_sections(const ReportInput& input) {
-  return {run_section(input),      rates_section(input),      variance_section(input),
-          location_section(input), indicator_section(input),  dominance_section(input),
-          roc_section(input),      fault_size_section(input), sensitivity_section(input),
-          basis_section(input),    solver_section(input),     wrong_verdict_section(input)};
+  return {run_section(input),          rates_section(input),
+          variance_section(input),     location_section(input),
+          indicator_section(input),    dominance_section(input),
+          roc_section(input),          fault_size_section(input),
+          sensitivity_section(input),  s0_perturbation_section(input),
+          basis_section(input),        solver_section(input),
+          wrong_verdict_section(input)};
 }
 
 std::string interval_title(const Study& study) {

@@ -37,18 +37,19 @@ struct ReportSection {
 
 // Each section, in the order in which a reader asks.
 
-ReportSection run_section(const ReportInput& input);            ///< what was run, and its self-check
-ReportSection rates_section(const ReportInput& input);          ///< the headline rates
-ReportSection variance_section(const ReportInput& input);       ///< Ivar_basis against Ivar (6.18, 6.22)
-ReportSection location_section(const ReportInput& input);       ///< confusion matrices (6.20, 6.23)
-ReportSection indicator_section(const ReportInput& input);      ///< I_MPM by experiment (6.21)
-ReportSection dominance_section(const ReportInput& input);      ///< I_MPM against dominance (6.24)
-ReportSection roc_section(const ReportInput& input);            ///< I_MPM as a classifier, any threshold
-ReportSection fault_size_section(const ReportInput& input);     ///< which small faults are missed
-ReportSection sensitivity_section(const ReportInput& input);    ///< T0 (6.10)
-ReportSection basis_section(const ReportInput& input);          ///< the basis case (6.8, 6.9)
-ReportSection solver_section(const ReportInput& input);         ///< effort and accuracy of the QP solver
-ReportSection wrong_verdict_section(const ReportInput& input);  ///< wrong verdicts and failures, one by one
+ReportSection run_section(const ReportInput& input);              ///< what was run, and its self-check
+ReportSection rates_section(const ReportInput& input);            ///< the headline rates
+ReportSection variance_section(const ReportInput& input);         ///< Ivar_basis against Ivar (6.18, 6.22)
+ReportSection location_section(const ReportInput& input);         ///< confusion matrices (6.20, 6.23)
+ReportSection indicator_section(const ReportInput& input);        ///< I_MPM by experiment (6.21)
+ReportSection dominance_section(const ReportInput& input);        ///< I_MPM against dominance (6.24)
+ReportSection roc_section(const ReportInput& input);              ///< I_MPM as a classifier, any threshold
+ReportSection fault_size_section(const ReportInput& input);       ///< which small faults are missed
+ReportSection sensitivity_section(const ReportInput& input);      ///< T0 (6.10)
+ReportSection s0_perturbation_section(const ReportInput& input);  ///< S0 modified (6.27 to 6.29, 6.32)
+ReportSection basis_section(const ReportInput& input);            ///< the basis case (6.8, 6.9)
+ReportSection solver_section(const ReportInput& input);           ///< effort and accuracy of the QP solver
+ReportSection wrong_verdict_section(const ReportInput& input);    ///< wrong verdicts and failures, one by one
 
 /// All of them. A later section is a function as above and a line in the list of this one.
 std::vector<ReportSection> report_sections(const ReportInput& input);

@@ -88,6 +88,32 @@ Json audit_json(const SummaryParts& parts, const CampaignInfo& info) {
           {"fallbacks", parts.fallbacks}};
 }
 
+Json change_json(const S0Change& change) {
+  return {{"largest_change", change.largest}, {"within_band", change.within_band.value}};
+}
+
+Json s0_perturbation_json(const Study& study, const SummaryParts& parts) {
+  const auto name = [&](Eigen::Index cv) { return study.plant.cvs[static_cast<std::size_t>(cv)].name; };
+  Json fits = Json::array(), curves = Json::array(), structures = Json::array();
+  for (const DiagonalFit& fit : parts.s0_fits)
+    fits.push_back({{"cv", name(fit.cv)},
+                    {"time_constant", fit.fit.model.time_constant},
+                    {"damping", fit.fit.model.damping},
+                    {"rms_error", fit.fit.rms_error}});
+  for (const S0Curve& curve : parts.s0_curves)
+    curves.push_back({{"cv", name(curve.cv)},
+                      {"experiments", curve.experiments},
+                      {"time_constant", change_json(curve.time_constant_change)},
+                      {"damping", change_json(curve.damping_change)}});
+  for (const StructureFit& fit : parts.structure_fits)
+    structures.push_back({{"cv", name(fit.cv)},
+                          {"time_constant", fit.fixed.model.time_constant},
+                          {"damping", fit.fixed.model.damping},
+                          {"time_constant_multiplier", fit.time_constant_multiplier},
+                          {"damping_multiplier", fit.damping_multiplier}});
+  return {{"fits", fits}, {"changes", curves}, {"fixed_mvs", structures}};
+}
+
 Json failures_json(const std::vector<const ExperimentRecord*>& failed) {
   Json list = Json::array();
   for (const ExperimentRecord* record : failed)
@@ -121,6 +147,7 @@ std::string summary_json(const Campaign& campaign) {
                      {"confidence", campaign.study.aggregate.confidence},
                      {"aggregates", aggregates_json(parts.values)},
                      {"dominance", dominance_json(total.dominance)},
+                     {"s0_perturbation", s0_perturbation_json(campaign.study, parts)},
                      {"audit", audit_json(parts, campaign.info)},
                      {"failures", failures_json(parts.failed)},
                      {"wrong_verdicts", wrong_json(parts.wrong)}};

@@ -10,8 +10,8 @@
 namespace mpm {
 
 bool is_share(std::string_view name) {
-  constexpr std::array<std::string_view, 4> kShares{"infeasible", "impactful", "located",
-                                                    "source_recognised"};
+  constexpr std::array<std::string_view, 5> kShares{"infeasible", "impactful", "located", "source_recognised",
+                                                    "within_band"};
   const std::string_view last = name.substr(name.rfind('.') + 1);  // the whole name without a '.'
   for (const std::string_view share : kShares)
     if (last == share)
@@ -29,6 +29,11 @@ SummaryParts summary_parts(const Campaign& campaign) {
   for (AggregateValue& value : named_values(parts.aggregate)) {
     const double reported = reference_value(campaign.study, value.name);
     parts.values.push_back({std::move(value), reported});
+  }
+  if (!campaign.study.s0_perturbation.multipliers.empty()) {
+    parts.s0_curves = s0_curves(campaign.study, campaign.records);
+    parts.s0_fits = diagonal_fits(campaign.basis.sensitivity, campaign.study.controller.sample_time);
+    parts.structure_fits = structure_fits(campaign.study, campaign.basis);
   }
   parts.audit = summarise(campaign.audit);
   for (const ExperimentRecord& record : campaign.records) {

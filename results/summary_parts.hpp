@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/s0_structure.hpp"
 #include "analysis/study_aggregate.hpp"
 #include "results/campaign.hpp"
 
@@ -25,7 +26,10 @@ struct SummaryParts {
   StudyAggregate aggregate;
   std::vector<SummaryValue> values;
   AuditSummary audit;
-  std::int64_t fallbacks = 0;  ///< problems that Ipopt answered in place of the active-set method
+  std::int64_t fallbacks = 0;        ///< problems that Ipopt answered in place of the active-set method
+  std::vector<S0Curve> s0_curves;    ///< this and the next two: none unless the study perturbs S0
+  std::vector<DiagonalFit> s0_fits;  ///< of the CVs at a soft limit
+  std::vector<StructureFit> structure_fits;  ///< none unless the study fixes MVs
   std::vector<const ExperimentRecord*> failed;
   std::vector<const ExperimentRecord*> wrong;  ///< verdicts, ExperimentRecord::wrong()
 };

@@ -147,6 +147,59 @@ void add_others(Text& text, const Study& study, const std::vector<SummaryValue>&
   }
 }
 
+std::string cv_name(const Study& study, Eigen::Index cv) {
+  return cv < 0 ? "no CV" : study.plant.cvs[static_cast<std::size_t>(cv)].name;
+}
+
+std::string digits(double value) {
+  return std::isnan(value) ? "-" : fmt::format("{:.3g}", value);
+}
+
+constexpr std::size_t kCvWidth = 32;
+
+/// Fits and changes of the CVs at a soft limit when S0 is modified.
+void add_s0_perturbation(Text& text, const Study& study, const SummaryParts& parts) {
+  if (parts.s0_fits.empty())
+    return;
+  const S0PerturbationOptions& options = study.s0_perturbation;
+  constexpr auto kRow = "{:<{}}  {:>8}  {:>6}  {:>6}  {:>8}  {:>8}  {:>8}  {:>8}";
+  text.line("");
+  text.line(kRow,
+            fmt::format("S0 modified, {:g} to {:g} times", options.tolerance_lower, options.tolerance_upper),
+            kCvWidth, "tau", "xi", "count", "by tau", "in band", "by xi", "in band");
+  for (const DiagonalFit& fit : parts.s0_fits) {
+    S0Curve none{fit.cv, 0, {}, {}, {}, {}};
+    none.time_constant_change.within_band = none.damping_change.within_band = rate(0, 0);
+    const S0Curve* curve = &none;
+    for (const S0Curve& known : parts.s0_curves)
+      if (known.cv == fit.cv)
+        curve = &known;
+    text.line(kRow, cv_name(study, fit.cv), kCvWidth, digits(fit.fit.model.time_constant),
+              digits(fit.fit.model.damping), curve->experiments, digits(curve->time_constant_change.largest),
+              number(curve->time_constant_change.within_band.value, true),
+              digits(curve->damping_change.largest), number(curve->damping_change.within_band.value, true));
+  }
+  text.line("(tau, xi: fit of (6.24) to T0; by tau, by xi: largest relative change of Ivar_diag of the");
+  text.line("affected CV when it is multiplied; in band: experiments whose change keeps to {:g} to {:g})",
+            study.diagnosis.impact_lower, study.diagnosis.impact_upper);
+}
+
+/// The fits with MVs fixed, and their multipliers.
+void add_structures(Text& text, const Study& study, const std::vector<StructureFit>& fits) {
+  if (fits.empty())
+    return;
+  std::string fixed;
+  for (const Eigen::Index mv : study.s0_perturbation.fixed_mvs)
+    fixed += (fixed.empty() ? "" : ", ") + study.plant.mvs[static_cast<std::size_t>(mv)].name;
+  text.line("");
+  text.line("{:<{}}  {:>8}  {:>6}  {:>10}  {:>10}", "S0 with " + fixed + " fixed", kCvWidth, "tau", "xi",
+            "tau times", "xi times");
+  for (const StructureFit& fit : fits)
+    text.line("{:<{}}  {:>8}  {:>6}  {:>10}  {:>10}", cv_name(study, fit.cv), kCvWidth,
+              digits(fit.fixed.model.time_constant), digits(fit.fixed.model.damping),
+              digits(fit.time_constant_multiplier), digits(fit.damping_multiplier));
+}
+
 void add_dominance(Text& text, const Study& study, const std::vector<DominanceBin>& bins) {
   if (bins.empty())
     return;
@@ -157,10 +210,6 @@ void add_dominance(Text& text, const Study& study, const std::vector<DominanceBi
     text.line("{:<{}}  {:>10}  {:>18}  {:>8}  {:>10}", fmt::format("{:g} to {:g}", bin.lower, bin.upper),
               kNameWidth, number(bin.i_mpm.mean, false), interval(bin.i_mpm.mean_interval, false),
               bin.i_mpm.count, number(bin.above_threshold.value, true));
-}
-
-std::string cv_name(const Study& study, Eigen::Index cv) {
-  return cv < 0 ? "no CV" : study.plant.cvs[static_cast<std::size_t>(cv)].name;
 }
 
 void add_more(Text& text, std::size_t count) {
@@ -202,6 +251,8 @@ std::string summary_text(const Campaign& campaign, const std::string& file) {
   add_compared(text, campaign.study, parts.values);
   add_others(text, campaign.study, parts.values);
   add_dominance(text, campaign.study, parts.aggregate.dominance);
+  add_s0_perturbation(text, campaign.study, parts);
+  add_structures(text, campaign.study, parts.structure_fits);
   add_failed(text, parts.failed);
   add_wrong(text, campaign.study, parts.wrong, file);
   return text.take();

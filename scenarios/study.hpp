@@ -77,6 +77,16 @@ struct SensitivityOptions {
   std::vector<Eigen::Index> active_cvs;
 };
 
+/// How S0 is made wrong on purpose, to see what an error in it costs ("Sensitivity of S0" in section 6.5.2).
+struct S0PerturbationOptions {
+  std::vector<double> multipliers;      ///< of time constant and damping in (6.24), ascending; empty: none
+  std::vector<Eigen::Index> cvs;        ///< whose experiments are looked at; empty: all at an active limit
+  double tolerance_lower = 0.75;        ///< multipliers within [tolerance_lower, tolerance_upper] are those
+  double tolerance_upper = 1.25;        ///< that the method should bear
+  std::vector<Eigen::Index> fixed_mvs;  ///< MVs held in a second control structure; empty: there is none
+  std::vector<Eigen::Index> fixed_active_cvs;  ///< CVs at an active soft limit in it
+};
+
 /// How the distance of Ivar_diag from 1 is measured when the CV is located.
 enum class LocationDistance { linear, logarithmic };
 
@@ -121,6 +131,7 @@ struct Study {
   MismatchRanges mismatch;
   DisturbanceRanges disturbance;
   SensitivityOptions sensitivity;
+  S0PerturbationOptions s0_perturbation;
   DiagnosisOptions diagnosis;
   AggregateOptions aggregate;
   std::vector<ReferenceValue> reference;  ///< shown beside the results, never used to make them

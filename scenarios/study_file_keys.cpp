@@ -9,6 +9,9 @@ namespace {
 /// The aggregates of analysis/study_aggregate.hpp that a study may give reported values for.
 std::vector<std::string> reference_names() {
   std::vector<std::string> names{"infeasible"};
+  for (const char* parameter : {"s0_time_constant", "s0_damping"})
+    for (const char* quantity : {"largest_change", "within_band"})
+      names.push_back(std::string(parameter) + "." + quantity);
   for (const char* kind : {"mpm", "ud", "mpm_ud"})
     for (const char* quantity : {"infeasible", "r_squared", "slope", "located", "source_recognised",
                                  "i_mpm_min", "i_mpm_mean", "i_mpm_max"})
@@ -22,7 +25,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
   static const std::vector<StudyFileTable> tables{
       {"",
        {"study", "plant", "controller", "simulation", "experiments", "mismatch", "disturbance", "sensitivity",
-        "diagnosis", "aggregate", "reference"}},
+        "s0_perturbation", "diagnosis", "aggregate", "reference"}},
       {"study", {"name", "title", "seed"}},
       {"plant", {"catalogue", "name", "title", "time_unit", "cv", "mv", "md", "channel"}},
       {"plant.cv[]", {"name", "unit", "description"}},
@@ -42,6 +45,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
       {"mismatch.parameter_weights", {"gain", "time_constant", "dead_time"}},
       {"disturbance", {"gain", "time_constant", "v_standard_deviation"}},
       {"sensitivity", {"samples", "step_size", "step_direction", "active_cvs"}},
+      {"s0_perturbation", {"multipliers", "cvs", "tolerance", "fixed_mvs", "fixed_active_cvs"}},
       {"diagnosis",
        {"impact_band", "location_distance", "mpm_threshold", "windows", "window_stride", "source_population",
         "self_check_band"}},

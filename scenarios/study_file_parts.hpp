@@ -35,6 +35,10 @@ DisturbanceRanges read_disturbance(const TomlTable& document);
 SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel& plant,
                                     const RangeMpcOptions& controller);
 
+/// [s0_perturbation] (study_file_s0_perturbation.cpp)
+S0PerturbationOptions read_s0_perturbation(const TomlTable& document, const PlantModel& plant,
+                                           const RangeMpcOptions& controller);
+
 /// [diagnosis]
 DiagnosisOptions read_diagnosis(const TomlTable& document);
 

@@ -17,6 +17,7 @@ TEST_CASE("record bytes: there and back, whatever is in the record") {
   record.message = "text";
   record.diagnosis.ivar = Eigen::Vector3d(1.0, std::nan(""), INFINITY);
   record.diagnosis.predicted_cv = 2;
+  record.perturbed = {Eigen::Vector3d(0.5, std::nan(""), 2.0), Eigen::Vector3d(1.0, 2.0, 3.0)};
   record.loop.emplace();
   record.loop->y_sim = Eigen::MatrixXd::Random(3, 5);
   record.loop->trajectory.samples_done = 5;
@@ -24,6 +25,7 @@ TEST_CASE("record bytes: there and back, whatever is in the record") {
   const ExperimentRecord again = record_from_bytes(bytes);
   CHECK(to_bytes(again) == bytes);
   CHECK(again.draw.mismatch->value == -1.5);
+  CHECK(again.perturbed.damping == record.perturbed.damping);
   CHECK(again.loop->y_sim == record.loop->y_sim);
   record.draw.disturbance.reset();
   record.loop.reset();

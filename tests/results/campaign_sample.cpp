@@ -19,8 +19,10 @@ Campaign campaign_sample() {
   campaign.records[2].diagnosis.ivar_diag(0) = INFINITY;
   campaign.records[3].status = ExperimentStatus::infeasible;
   campaign.records[3].diagnosis = {};
+  campaign.records[3].perturbed = {};
   campaign.records[4].status = ExperimentStatus::failed;
   campaign.records[4].diagnosis = {};
+  campaign.records[4].perturbed = {};
   campaign.records[4].message = "ended by signal 9: \xc3\xbc";
   campaign.info = {"0.1.0", "abcdef", "2026-01-01T00:00:00Z", "mpmbench run chapter6", "active-set", 1.5, 2,
                    0.25,    0.5};

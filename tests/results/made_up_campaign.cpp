@@ -18,6 +18,9 @@ std::string small_study() {
   return file_content(MPMBENCH_SOURCE_DIR "/tests/scenarios/data/small.toml");
 }
 
+constexpr const char* kS0Perturbation =
+    "\n[s0_perturbation]\nmultipliers = [0.5, 1, 2]\nfixed_mvs = ['hot']\nfixed_active_cvs = ['level']\n";
+
 /// Numbers, one in eight of them an awkward one.
 class Numbers {
  public:
@@ -93,6 +96,8 @@ ExperimentRecord record(Numbers& numbers, const Study& study, std::int64_t index
     made.diagnosis = diagnosis(numbers, study.cv_count());
   if (made.status == ExperimentStatus::failed)
     made.message = "died: \xC3\xBC \xE6\xB8\xAC";
+  if (made.status == ExperimentStatus::ok && index % 4 == 1)
+    made.perturbed = {numbers.vector(3), numbers.vector(3)};
   made.ivar_diag_mpm_alone = numbers.next();
   made.ivar_diag_ud_alone = numbers.next();
   made.dominance_mpm = numbers.next();
@@ -132,11 +137,13 @@ BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<Act
 Campaign made_up_campaign() {
   Numbers numbers;
   Campaign campaign;
-  campaign.study = parse_study(small_study() + "\n[aggregate]\nbootstrap_replications = 200\n", "small");
+  campaign.study =
+      parse_study(small_study() + "\n[aggregate]\nbootstrap_replications = 200\n" + kS0Perturbation, "small");
   campaign.study.seed = 18446744073709551615U;  // not the one in the text, and above the signed range
   campaign.info = {"1.2.3", "abc+", "2015-04-01T12:00:00Z", "mpmbench run \xC3\xBC.toml", "ipopt", 0.1, 3,
                    0.25,    0.7};
   campaign.basis = basis_case(numbers, campaign.study, {{1, true}, {0, false}});
+  campaign.basis.sensitivity_fixed = NominalSensitivity{2, {{0, false}}, {numbers.matrix(2, 17)}};
   for (std::int64_t index = 0; index < 40; ++index)
     campaign.records.push_back(record(numbers, campaign.study, index));
   for (std::int64_t step = 0; step < 5; ++step)

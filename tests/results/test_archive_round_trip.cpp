@@ -49,6 +49,13 @@ void check_same(const BasisCase& a, const BasisCase& b) {
   REQUIRE(a.sensitivity.step_response.size() == b.sensitivity.step_response.size());
   for (std::size_t i = 0; i < a.sensitivity.step_response.size(); ++i)
     CHECK(same_bits(a.sensitivity.step_response[i], b.sensitivity.step_response[i]));
+  REQUIRE(a.sensitivity_fixed.has_value() == b.sensitivity_fixed.has_value());
+  if (a.sensitivity_fixed) {
+    check_same_limits(a.sensitivity_fixed->active, b.sensitivity_fixed->active);
+    REQUIRE(a.sensitivity_fixed->step_response.size() == b.sensitivity_fixed->step_response.size());
+    for (std::size_t i = 0; i < a.sensitivity_fixed->step_response.size(); ++i)
+      CHECK(same_bits(a.sensitivity_fixed->step_response[i], b.sensitivity_fixed->step_response[i]));
+  }
   CHECK(basis_bytes(a) == basis_bytes(b));
   CHECK(same_bits(a.nominal.y0, b.nominal.y0));
   CHECK(same_bits(a.nominal.y0_diag, b.nominal.y0_diag));

@@ -79,6 +79,8 @@ TEST_CASE("keys that are left out have the defaults of Study", "[study_file]") {
   CHECK(study.sensitivity.samples == defaults.sensitivity.samples);
   CHECK(study.sensitivity.step_size == defaults.sensitivity.step_size);
   CHECK(study.sensitivity.active_cvs.empty());
+  CHECK(study.s0_perturbation.multipliers.empty());
+  CHECK(study.s0_perturbation.fixed_mvs.empty());
   CHECK(study.diagnosis.impact_lower == defaults.diagnosis.impact_lower);
   CHECK(study.diagnosis.impact_upper == defaults.diagnosis.impact_upper);
   CHECK(study.diagnosis.location_distance == defaults.diagnosis.location_distance);
@@ -101,6 +103,22 @@ TEST_CASE("the optional keys of the controller land in their place", "[study_fil
   CHECK(study.controller.weight_convention == WeightConvention::squared);
   CHECK(study.controller.slack_form == SlackForm::per_cv);
   CHECK(study.controller.target_violation_cost == 50);
+}
+
+TEST_CASE("the keys of s0_perturbation land in their place", "[study_file]") {
+  const S0PerturbationOptions options =
+      parse_study(small_study() +
+                      "\n[s0_perturbation]\nmultipliers = [0.5, 1, 2]\ncvs = ['heat']\n"
+                      "tolerance = [0.9, 1.2]\nfixed_mvs = ['cold']\n"
+                      "fixed_active_cvs = ['level']\n",
+                  "s.toml")
+          .s0_perturbation;
+  CHECK(options.multipliers == std::vector<double>{0.5, 1, 2});
+  CHECK(options.cvs == std::vector<Eigen::Index>{1});
+  CHECK(options.tolerance_lower == 0.9);
+  CHECK(options.tolerance_upper == 1.2);
+  CHECK(options.fixed_mvs == std::vector<Eigen::Index>{1});
+  CHECK(options.fixed_active_cvs == std::vector<Eigen::Index>{0});
 }
 
 TEST_CASE("noise can differ between the CVs, by their names", "[study_file]") {

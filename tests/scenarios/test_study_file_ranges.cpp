@@ -168,6 +168,27 @@ TEST_CASE("active CVs need soft limits, and no more of them can be active than t
                              ": sensitivity.active_cvs: found 4 CVs; allowed: at most as many as MVs, 3");
 }
 
+TEST_CASE("the options of the perturbation of S0 are checked", "[study_file]") {
+  check_refusals({
+      {"", "[s0_perturbation]\ncvs = ['level']\n", "[s0_perturbation]",
+       "s0_perturbation.multipliers: found nothing; allowed: a list of 1 to 1000, each a number > 0"},
+      {"", "[s0_perturbation]\nmultipliers = [0.5, 2, 1]\n", "multipliers",
+       "s0_perturbation.multipliers: found 1 after 2; allowed: numbers that grow"},
+      {"", "[s0_perturbation]\nmultipliers = [1]\ncvs = ['cold']\n", "cvs",
+       "s0_perturbation.cvs: found 'cold'; allowed: level, heat"},
+      {"", "[s0_perturbation]\nmultipliers = [1]\ntolerance = [1.2, 0.8]\n", "tolerance",
+       "s0_perturbation.tolerance: found [1.2, 0.8]; allowed: [low, high] with low < high, each a number > "
+       "0"},
+      {"", "[s0_perturbation]\nmultipliers = [1]\nfixed_active_cvs = ['heat']\n", "fixed_active_cvs",
+       "s0_perturbation.fixed_active_cvs: found a list without fixed_mvs; allowed: a list beside fixed_mvs"},
+      {"",
+       "[s0_perturbation]\nmultipliers = [1]\nfixed_mvs = ['hot']\nfixed_active_cvs = ['heat', 'level']\n",
+       "fixed_active_cvs",
+       "s0_perturbation.fixed_active_cvs: found 2 CVs; allowed: at most as many as MVs that are not fixed, "
+       "1"},
+  });
+}
+
 TEST_CASE("the options of the diagnosis and of the aggregates are checked", "[study_file]") {
   const std::string band = "[low, high] with low < high, each a number > 0";
   check_refusals({
