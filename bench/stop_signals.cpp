@@ -20,9 +20,7 @@ struct sigaction install(int signal) {
   struct sigaction before {};
   action.sa_handler = note;
   action.sa_flags = SA_RESTART | SA_RESETHAND;
-  ::sigaction(signal, nullptr, &before);
-  if (before.sa_handler != SIG_IGN)
-    ::sigaction(signal, &action, nullptr);
+  ::sigaction(signal, &action, &before);
   return before;
 }
 

@@ -6,8 +6,9 @@
 
 namespace mpm {
 
-/// Turns Ctrl-C (SIGINT) and SIGTERM into a request to stop, for as long as it lives. A signal that the
-/// caller of the program has set to be ignored stays ignored (`nohup`, background jobs of a script).
+/// Turns Ctrl-C (SIGINT) and SIGTERM into a request to stop, for as long as it lives. Also where the
+/// caller of the program ignores them: a shell does so with the SIGINT of background jobs in a script, and
+/// whoever sends one to such a job means it.
 ///
 /// The first of each is noted only; the second one finds the default action again and ends the process at
 /// once. Processes that are forked meanwhile inherit this: a Ctrl-C goes to them too, and must leave it to

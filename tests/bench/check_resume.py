@@ -57,14 +57,12 @@ class Trial:
                 *map(str, words)]
 
     def start(self, *words, **options):
-        def defaults():  # what a background job of a script ignores would be ignored by the program too
-            for number in (signal.SIGINT, signal.SIGTERM):
-                signal.signal(number, signal.SIG_DFL)
+        def limit():
             if "limit" in options:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (options["limit"],) * 2)
 
         return subprocess.Popen(self.command(words), text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                preexec_fn=defaults)
+                                preexec_fn=limit)
 
     def run(self, *words, code=0, **options):
         process = self.start(*words, **options)
