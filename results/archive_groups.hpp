@@ -27,7 +27,7 @@ std::vector<ExperimentRecord> read_experiments(const Hdf5Group& root, const Stud
 void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity);
 NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file);
 
-/// /nominal_fixed: T0 with the fixed MVs of the study held; no such group when it fixes none.
+/// /nominal_fixed: T0 with the fixed MVs of the study held; there is no such group when it fixes none.
 void write_nominal_fixed(Hdf5Group& root, const Study& study,
                          const std::optional<NominalSensitivity>& sensitivity);
 std::optional<NominalSensitivity> read_nominal_fixed(const Hdf5Group& root, const Study& study,

@@ -95,7 +95,7 @@ void write_nominal_fixed(Hdf5Group& root, const Study& study,
 
 std::optional<NominalSensitivity> read_nominal_fixed(const Hdf5Group& root, const Study& study,
                                                      const std::string& file) {
-  if (!root.has_group(kFixedGroup))
+  if (study.s0_perturbation.fixed_mvs.empty())
     return std::nullopt;
   return read_sensitivity(root, kFixedGroup, study, file);
 }

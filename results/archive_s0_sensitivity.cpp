@@ -158,7 +158,7 @@ void write_s0_sensitivity(Hdf5Group& root, const Campaign& campaign) {
 
 void read_s0_sensitivity(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
                          const std::string& file) {
-  if (!root.has_group(kGroup))
+  if (study.s0_perturbation.multipliers.empty())
     return;
   const Hdf5Group group = root.group(kGroup);
   const std::vector<ExperimentRecord*> perturbed = perturbed_records(group, records, file);

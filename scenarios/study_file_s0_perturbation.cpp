@@ -17,7 +17,7 @@ constexpr std::size_t kMostMultipliers = 1000;
 std::vector<double> read_multipliers(const TomlTable& table) {
   const Eigen::VectorXd numbers =
       read_numbers(table, "multipliers", NumberRule::positive(), kMostMultipliers);
-  const std::vector<double> multipliers(numbers.begin(), numbers.end());
+  std::vector<double> multipliers(numbers.begin(), numbers.end());
   const auto place = std::adjacent_find(multipliers.begin(), multipliers.end(), std::greater_equal<>());
   if (place != multipliers.end())
     table.refuse("multipliers", fmt::format("{} after {}", *(place + 1), *place), "numbers that grow");

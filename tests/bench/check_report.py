@@ -16,8 +16,9 @@ import tempfile
 
 SKIPPED = 77
 SECTIONS = ["run", "rates", "variance", "location", "indicator", "dominance", "roc", "fault-size", "sensitivity",
-            "basis", "solver", "wrong-verdicts"]
-FIGURES = ["headline-rates", "ivar", "i-mpm", "dominance", "roc", "fault-size", "t0", "basis-case"]
+            "s0-perturbation", "basis", "solver", "wrong-verdicts"]
+FIGURES = ["headline-rates", "ivar", "i-mpm", "dominance", "roc", "fault-size", "t0", "s0-perturbation", "s0-structure",
+           "basis-case"]
 PHONE, DESKTOP = 390, 1280  # pixels
 
 # The page in a frame of either width, which a script can look into because it has the same origin.

@@ -17,8 +17,9 @@ import seal
 # What follows from the rest of the file or is there for people: a reader does not need it.
 FOR_PEOPLE = {"/cv", "/mv", "/md", "/basis/cv", "/basis/mv", "/basis/md", "/basis/sample", "/basis/time",
               "/basis/active_limit", "/basis/lag", "/basis/lag_time", "/basis/acf_y", "/basis/acf_y0",
-              "/basis/acf_y0_diag", "/nominal/cv", "/nominal/time", "/trajectories/cv", "/trajectories/mv",
+              "/basis/acf_y0_diag", "/nominal/cv", "/nominal/time", "/nominal_fixed/cv", "/nominal_fixed/time", "/trajectories/cv", "/trajectories/mv",
               "/trajectories/md", "/trajectories/sample", "/trajectories/time"}
+READ_OF_S0_SENSITIVITY = {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"}
 FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/basis/title"}
 
 
@@ -78,14 +79,17 @@ class Damage:
         variables, groups, attributes = objects(self.whole)
         for path in variables + groups:
             message = self.after(lambda file: file.pop(path))
-            if path in FOR_PEOPLE or path.startswith("/aggregate") or path in ("/audit", "/trajectories"):
+            if (path in FOR_PEOPLE or path.startswith("/aggregate") or path in ("/audit", "/trajectories")
+                    or (path.startswith("/s0_sensitivity/")
+                        and path.split("/")[-1] not in READ_OF_S0_SENSITIVITY)):
                 assert message is None, (path, message)
             else:
                 assert message and f"'{path}': missing" in message, (path, message)
         for group, name in attributes:
             path = group.rstrip("/") + "/" + name
             message = self.after(lambda file: file[group].attrs.pop(name))
-            if path in FOR_PEOPLE_ATTRIBUTES or group in ("/nominal", "/audit", "/trajectories", "/aggregate"):
+            if path in FOR_PEOPLE_ATTRIBUTES or group in (
+                    "/nominal", "/nominal_fixed", "/s0_sensitivity", "/audit", "/trajectories", "/aggregate"):
                 assert message is None, (path, message)
             else:
                 assert message and f"'{path}': missing" in message, (path, message)

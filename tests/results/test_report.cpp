@@ -106,7 +106,7 @@ TEST_CASE("report: awkward numbers and foreign texts make no broken page") {
 TEST_CASE("report: the same figures as files, and a folder that cannot be made") {
   const TemporaryFolder folder;
   const auto files = write_figures(sample(), folder / "figures", FigureFormat::svg);
-  CHECK(files.size() == 9);
+  CHECK(files.size() == 11);
   for (const auto& file : files)
     CHECK_THAT(file_content(file), Contains("<svg ") && Contains("</svg>"));
   make_file(folder / "file", "");
