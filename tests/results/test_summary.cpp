@@ -90,6 +90,23 @@ TEST_CASE(
   CHECK_THAT(text, Contains("experiments failed:\n") && Contains("died: \xC3\xBC"));
 }
 
+TEST_CASE("summary: fits and changes of a modified S0, and S0 with MVs fixed, in both forms") {
+  const std::string text = summary_text(sample(), "out.h5");
+  CHECK_THAT(text, Contains("S0 modified, 0.75 to 1.25 times") && Contains("S0 with u1 fixed"));
+  const nlohmann::json json = nlohmann::json::parse(summary_json(sample()))["s0_perturbation"];
+  REQUIRE(json["fits"].size() == 3);  // y1, y2, y7
+  CHECK(json["fits"][2]["cv"] == "y7");
+  CHECK(json["fixed_mvs"].size() == 2);
+  const std::vector<S0Curve> curves = s0_curves(sample().study, sample().records);
+  REQUIRE_FALSE(curves.empty());
+  REQUIRE(json["changes"].size() == curves.size());
+  CHECK(json["changes"][0]["experiments"] == curves[0].experiments);
+  CHECK(same(json["changes"][0]["damping"]["largest_change"], curves[0].damping_change.largest));
+
+  const std::string without = summary_text(empty_campaign(), "out.h5");
+  CHECK_THAT(without, !Contains("S0 modified") && !Contains("fixed"));
+}
+
 TEST_CASE("summary: no line of the sample is longer than 100 columns or ends with a blank") {
   std::istringstream lines(summary_text(sample(), "out.h5"));
   for (std::string line; std::getline(lines, line);) {
