@@ -19,7 +19,7 @@ struct sigaction install(int signal) {
   struct sigaction action {};
   struct sigaction before {};
   action.sa_handler = note;
-  action.sa_flags = SA_RESTART | SA_RESETHAND;
+  action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
   ::sigaction(signal, &action, &before);
   return before;
 }
