@@ -20,14 +20,10 @@ ExperimentWork::ExperimentWork(const Study& study, const BasisCase& basis, const
 ExperimentOutcome ExperimentWork::run(std::int64_t index) {
   ExperimentOutcome outcome;
   try {
-    if (plan_.audit_share > 0.0) {
-      AuditSampler sampler(study_.seed, index, plan_.audit_share);
-      outcome.record =
-          runner_.run(index, store_, [&](const RangeMpc& controller) { sampler.observe(controller); });
-      outcome.samples = sampler.take();
-    } else {
-      outcome.record = runner_.run(index, store_);
-    }
+    AuditSampler sampler(study_.seed, index, plan_.audit_share);
+    outcome.record =
+        runner_.run(index, store_, [&](const RangeMpc& controller) { sampler.observe(controller); });
+    outcome.samples = sampler.take();
   } catch (const std::exception& error) {
     outcome = {};
     outcome.record = lost_record(study_, index, error.what());

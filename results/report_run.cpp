@@ -77,9 +77,8 @@ ReportSection run_section(const ReportInput& input) {
               fact("Controller", controller_text(study)) + fact("Experiments", experiments_text(input)) +
               fact("Seed", fmt::format("{}", study.seed)) + fact("Program", program_text(info)) +
               fact("Solver", html_text(info.solver)) +
-              fact("Finished", fmt::format("{}<br><small>after {:.1f} s with {} worker process{}</small>",
-                                           html_text(info.created), info.seconds, info.jobs,
-                                           info.jobs == 1 ? "" : "es")) +
+              fact("Finished", fmt::format("{}<br><small>after {:.1f} s, {} at once</small>",
+                                           html_text(info.created), info.seconds, info.jobs)) +
               fact("Command", "<code>" + html_text(info.command) + "</code>") + "</dl>\n");
   section.add(self_check(input));
   return section;

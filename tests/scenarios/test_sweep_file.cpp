@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -90,10 +91,20 @@ TEST_CASE("what is no sweep is refused by its key", "[sweep_file]") {
   CHECK_THROWS_AS(load_sweep("no-such-sweep.toml"), InputError);
 }
 
-TEST_CASE("the shipped sweep has the base study and three values of each choice at least", "[sweep_file]") {
+TEST_CASE("each variant of the shipped sweep is another study, and the variants of a choice stand together",
+          "[sweep_file]") {
   const Sweep sweep = find_sweep("chapter6");
-  CHECK(sweep.variants.size() > 25);
   CHECK(sweep.variants.front().study.name == "chapter6");
+  std::set<std::string> texts, choices;
+  std::string last;
+  for (const SweepVariant& variant : sweep.variants) {
+    INFO(variant.choice << " = " << variant.value);
+    CHECK(texts.insert(variant.study.source).second);
+    if (variant.choice != last)
+      CHECK(choices.insert(variant.choice).second);
+    last = variant.choice;
+  }
+  CHECK(choices.size() >= 7);  // weights, slack, noise, length, excitation, amplitude of v, windows
 }
 
 }  // namespace mpm
