@@ -39,11 +39,11 @@ void check_health(const Study& study, BasisCase& basis) {
 void require_active(const Study& study, const NominalSensitivity& sensitivity) {
   for (const Eigen::Index cv : study.s0_perturbation.cvs)
     if (std::none_of(sensitivity.active.begin(), sensitivity.active.end(),
-                     [cv](const ActiveLimit& limit) { return limit.cv == cv; }))
-      throw InputError(
-          "s0_perturbation.cvs",
-          fmt::format("'{}', which is at no soft limit", study.plant.cvs[static_cast<std::size_t>(cv)].name),
-          "CVs at an active soft limit");
+                     [cv](const ActiveReference& reference) { return reference.cv == cv; }))
+      throw InputError("s0_perturbation.cvs",
+                       fmt::format("'{}', which is at no setpoint and no soft limit",
+                                   study.plant.cvs[static_cast<std::size_t>(cv)].name),
+                       "CVs at a setpoint or an active soft limit");
 }
 
 }  // namespace

@@ -20,27 +20,55 @@ bool at(double value, double limit) {
   return std::isfinite(limit) && std::abs(value - limit) <= kActiveTolerance * std::max(1.0, std::abs(limit));
 }
 
-std::vector<ActiveLimit> nearest_limits(const Study& study, const std::vector<Eigen::Index>& cvs,
-                                        const Eigen::VectorXd& y) {
-  const Limits& soft = study.controller.cv_soft;
-  std::vector<ActiveLimit> nearest;
-  for (const Eigen::Index cv : cvs)
-    nearest.push_back({cv, std::abs(soft.upper(cv) - y(cv)) < std::abs(y(cv) - soft.lower(cv))});
-  return nearest;
+ActiveReference limit_reference(Eigen::Index cv, bool upper) {
+  return {cv, upper ? ReferenceKind::upper_limit : ReferenceKind::lower_limit};
 }
 
-std::vector<ActiveLimit> active_limits(const Study& study, const Eigen::VectorXd& y) {
+ActiveReference nearest_limit(const Study& study, Eigen::Index cv, const Eigen::VectorXd& y) {
   const Limits& soft = study.controller.cv_soft;
-  std::vector<ActiveLimit> active;
-  if (!study.sensitivity.active_cvs.empty())
-    return nearest_limits(study, study.sensitivity.active_cvs, y);
+  return limit_reference(cv, std::abs(soft.upper(cv) - y(cv)) < std::abs(y(cv) - soft.lower(cv)));
+}
+
+bool contains(const std::vector<Eigen::Index>& list, Eigen::Index i) {
+  return std::find(list.begin(), list.end(), i) != list.end();
+}
+
+/// The setpoints, and of the CVs in ranges those of `cvs` at the limit they are nearest to; in the order of
+/// the CVs.
+std::vector<ActiveReference> references(const Study& study, const std::vector<Eigen::Index>& cvs,
+                                        const Eigen::VectorXd& y) {
+  std::vector<ActiveReference> active;
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    if (at(y(cv), soft.lower(cv)) || at(y(cv), soft.upper(cv)))
-      active.push_back({cv, at(y(cv), soft.upper(cv))});
+    if (study.controller.has_setpoint(cv))
+      active.push_back({cv, ReferenceKind::setpoint});
+    else if (contains(cvs, cv))
+      active.push_back(nearest_limit(study, cv, y));
   return active;
 }
 
-/// The controller of A3 b and d: only the active limits are left.
+std::vector<Eigen::Index> cvs_at_limit(const Study& study, const Eigen::VectorXd& y) {
+  const Limits& soft = study.controller.cv_soft;
+  std::vector<Eigen::Index> cvs;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    if (at(y(cv), soft.lower(cv)) || at(y(cv), soft.upper(cv)))
+      cvs.push_back(cv);
+  return cvs;
+}
+
+/// Where the reference lies while T0 is determined.
+double reference_value(const Study& study, const OperatingPoint& point, const ActiveReference& reference) {
+  if (reference.kind == ReferenceKind::setpoint || !study.controller.has_targets())
+    return point.y(reference.cv);
+  const Limits& soft = study.controller.cv_soft;
+  return (reference.kind == ReferenceKind::upper_limit ? soft.upper : soft.lower)(reference.cv);
+}
+
+/// The limit of `soft` that the reference is.
+double& limit_of(Limits& soft, const ActiveReference& reference) {
+  return (reference.kind == ReferenceKind::upper_limit ? soft.upper : soft.lower)(reference.cv);
+}
+
+/// The controller of A3 b and d: only the setpoints and the active limits are left.
 RangeMpcOptions relaxed_options(const Study& study, const OperatingPoint& point) {
   RangeMpcOptions options = study.controller;
   options.mv_hard = Limits::none(study.mv_count());
@@ -48,17 +76,28 @@ RangeMpcOptions relaxed_options(const Study& study, const OperatingPoint& point)
     options.mv_hard.lower(mv) = options.mv_hard.upper(mv) = point.u(mv);
   options.cv_hard = Limits::none(study.cv_count());
   options.cv_soft = Limits::none(study.cv_count());
-  for (const auto [cv, upper] : point.active)
-    (upper ? options.cv_soft.upper : options.cv_soft.lower)(cv) =
-        (upper ? study.controller.cv_soft.upper : study.controller.cv_soft.lower)(cv);
+  for (const ActiveReference& reference : point.active)
+    if (reference.kind != ReferenceKind::setpoint)
+      limit_of(options.cv_soft, reference) = reference_value(study, point, reference);
   return options;
 }
 
-/// Response of the outputs per unit of a step of the limit, `step` in CV units.
-Eigen::MatrixXd limit_step_response(const Study& study, const OperatingPoint& point, const ActiveLimit& limit,
-                                    double step, const QpSolverFactory& factory) {
+Eigen::VectorXd setpoints_at_rest(const Study& study, const OperatingPoint& point) {
+  Eigen::VectorXd y_set = Eigen::VectorXd::Zero(study.cv_count());
+  for (const ActiveReference& reference : point.active)
+    if (reference.kind == ReferenceKind::setpoint)
+      y_set(reference.cv) = reference_value(study, point, reference);
+  return y_set;
+}
+
+/// Response of the outputs per unit of a step of the reference, `step` in CV units.
+Eigen::MatrixXd reference_response(const Study& study, const OperatingPoint& point,
+                                   const ActiveReference& reference, double step,
+                                   const QpSolverFactory& factory) {
   const RangeMpcOptions options = relaxed_options(study, point);
   RangeMpc controller(study.plant.G, study.mv_count(), options, factory);
+  Eigen::VectorXd y_set = setpoints_at_rest(study, point);
+  controller.set_setpoints(y_set);
   const Eigen::VectorXd d = Eigen::VectorXd::Zero(study.md_count());
   const Eigen::VectorXd u = controller.nominal_target(d);
   Eigen::VectorXd input(u.size() + d.size());
@@ -68,19 +107,24 @@ Eigen::MatrixXd limit_step_response(const Study& study, const OperatingPoint& po
   controller.reset(u, d);
   const Eigen::VectorXd rest = plant.output();
 
-  Limits stepped = options.cv_soft;
-  (limit.upper ? stepped.upper : stepped.lower)(limit.cv) += step;
-  controller.set_cv_soft(stepped);
+  if (reference.kind == ReferenceKind::setpoint) {
+    y_set(reference.cv) += step;
+    controller.set_setpoints(y_set);
+  } else {
+    Limits stepped = options.cv_soft;
+    limit_of(stepped, reference) += step;
+    controller.set_cv_soft(stepped);
+  }
 
   Eigen::MatrixXd response(study.cv_count(), study.sensitivity.samples);
   for (Eigen::Index l = 0; l < response.cols(); ++l) {
     const ControlMove& move = controller.step(plant.output(), d);
     if (move.status != ControlStatus::ok)
-      throw InputError(
-          "nominal sensitivity",
-          fmt::format("a controller that is {} after a step in the limit of {}", to_string(move.status),
-                      study.plant.cvs[static_cast<std::size_t>(limit.cv)].name),
-          "a relaxed controller with a solution (are the active CVs right?)");
+      throw InputError("nominal sensitivity",
+                       fmt::format("a controller that is {} after a step in the {} of {}",
+                                   to_string(move.status), to_string(reference.kind),
+                                   study.plant.cvs[static_cast<std::size_t>(reference.cv)].name),
+                       "a relaxed controller with a solution (are the active CVs right?)");
     input.head(u.size()) = move.u;
     plant.advance(input);
     response.col(l) = (plant.output() - rest) / step;
@@ -88,32 +132,51 @@ Eigen::MatrixXd limit_step_response(const Study& study, const OperatingPoint& po
   return response;
 }
 
-Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& point, const ActiveLimit& limit,
-                                  const QpSolverFactory& factory) {
-  const double into_range = limit.upper ? -study.sensitivity.step_size : study.sensitivity.step_size;
+Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& point,
+                                  const ActiveReference& reference, const QpSolverFactory& factory) {
+  const auto response = [&](double step) {
+    return reference_response(study, point, reference, step, factory);
+  };
+  const double size = study.sensitivity.step_size;
+  if (reference.kind == ReferenceKind::setpoint)  // the same either way
+    return response(size);
+  const double into_range = reference.kind == ReferenceKind::upper_limit ? -size : size;
   switch (study.sensitivity.step_direction) {
     case StepDirection::into_range:
-      return limit_step_response(study, point, limit, into_range, factory);
+      return response(into_range);
     case StepDirection::out_of_range:
-      return limit_step_response(study, point, limit, -into_range, factory);
+      return response(-into_range);
     case StepDirection::mean:
       break;
   }
-  return 0.5 * (limit_step_response(study, point, limit, into_range, factory) +
-                limit_step_response(study, point, limit, -into_range, factory));
+  return 0.5 * (response(into_range) + response(-into_range));
 }
 
 }  // namespace
 
+std::string_view to_string(ReferenceKind kind) {
+  switch (kind) {
+    case ReferenceKind::lower_limit:
+      return "lower limit";
+    case ReferenceKind::upper_limit:
+      return "upper limit";
+    case ReferenceKind::setpoint:
+      return "setpoint";
+  }
+  return "unknown";
+}
+
 OperatingPoint operating_point(const Study& study, const QpSolverFactory& factory) {
   RangeMpc controller(study.plant.G, study.mv_count(), study.controller, factory);
+  controller.set_setpoints(study.simulation.initial_setpoint);
   const Eigen::VectorXd d = Eigen::VectorXd::Zero(study.md_count());
   OperatingPoint point;
   point.u = controller.nominal_target(d);
   if (!point.u.allFinite())
     throw InputError("controller", "a target problem without a solution", "MV limits that contain a target");
   point.y = study.plant.G.static_gain().leftCols(study.mv_count()) * point.u;
-  point.active = active_limits(study, point.y);
+  const std::vector<Eigen::Index>& named = study.sensitivity.active_cvs;
+  point.active = references(study, named.empty() ? cvs_at_limit(study, point.y) : named, point.y);
   const Limits& hard = study.controller.mv_hard;
   for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
     if (at(point.u(mv), hard.lower(mv)) || at(point.u(mv), hard.upper(mv)))
@@ -122,7 +185,7 @@ OperatingPoint operating_point(const Study& study, const QpSolverFactory& factor
 }
 
 OperatingPoint with_fixed_mvs(const Study& study, OperatingPoint point) {
-  point.active = nearest_limits(study, study.s0_perturbation.fixed_active_cvs, point.y);
+  point.active = references(study, study.s0_perturbation.fixed_active_cvs, point.y);
   std::vector<Eigen::Index>& fixed = point.fixed_mvs;
   fixed.insert(fixed.end(), study.s0_perturbation.fixed_mvs.begin(), study.s0_perturbation.fixed_mvs.end());
   std::sort(fixed.begin(), fixed.end());
@@ -150,8 +213,8 @@ double NominalSensitivity::unsettled() const {
 NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint& point,
                                        const QpSolverFactory& factory) {
   NominalSensitivity sensitivity{study.cv_count(), point.active, {}};
-  for (const ActiveLimit& limit : point.active)
-    sensitivity.step_response.push_back(directed_response(study, point, limit, factory));
+  for (const ActiveReference& reference : point.active)
+    sensitivity.step_response.push_back(directed_response(study, point, reference, factory));
   return sensitivity;
 }
 

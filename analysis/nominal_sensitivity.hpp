@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,10 +11,18 @@
 
 namespace mpm {
 
-/// A CV at one of its soft limits.
-struct ActiveLimit {
+/// What the controller holds a CV at.
+enum class ReferenceKind : std::int8_t { lower_limit = 0, upper_limit = 1, setpoint = 2 };
+
+/// "lower limit", "upper limit" or "setpoint".
+std::string_view to_string(ReferenceKind kind);
+
+/// A CV at its setpoint, or at one of its soft limits.
+struct ActiveReference {
   Eigen::Index cv;
-  bool upper;  ///< at the upper limit, else at the lower one
+  ReferenceKind kind;
+
+  bool operator==(const ActiveReference&) const = default;
 };
 
 /// The operating point at which a study is assessed: what the target optimizer chooses for the nominal model
@@ -20,31 +30,33 @@ struct ActiveLimit {
 struct OperatingPoint {
   Eigen::VectorXd u;                    ///< nu
   Eigen::VectorXd y;                    ///< ny
-  std::vector<ActiveLimit> active;      ///< CVs at a soft limit
+  std::vector<ActiveReference> active;  ///< CVs at a setpoint or a soft limit
   std::vector<Eigen::Index> fixed_mvs;  ///< MVs at a hard limit: not available for control
 };
 
-/// The economic optimum of the study at zero disturbances. With `study.sensitivity.active_cvs` the active CVs
-/// are those, at the limit they are nearest to. Throws InputError when the target problem has no solution.
+/// Where the loops of the study start (RangeMpc::nominal_target): the economic optimum at zero disturbances,
+/// or the operating point of the model when the MVs have no targets. Active are the CVs with a setpoint, and
+/// with `study.sensitivity.active_cvs` those, at the limit they are nearest to; without that list the CVs
+/// that are at a limit. Throws InputError when the target problem has no solution.
 OperatingPoint operating_point(const Study& study, const QpSolverFactory& factory);
 
 /// The operating point `point` when the MVs of `study.s0_perturbation.fixed_mvs` are not available: they are
-/// held where they are, and of the CVs those of `fixed_active_cvs` stay at the limit they are nearest to (one
-/// degree of freedom is lost with each MV).
+/// held where they are, and of the CVs in ranges those of `fixed_active_cvs` stay at the limit they are
+/// nearest to (one degree of freedom is lost with each MV).
 OperatingPoint with_fixed_mvs(const Study& study, OperatingPoint point);
 
-/// The nominal complementary sensitivity T0 of a range MPC as step responses, and S0 = I - T0 (6.3).
+/// The nominal complementary sensitivity T0 as step responses, and S0 = I - T0 (2.15 to 2.17, 6.3).
 ///
 /// A CV at an active soft limit acts as if the limit were its setpoint; a CV inside its range has no
 /// influence on the moves, and T0 = 0 from it (6.3 of the thesis, figure 6.5).
 ///
 /// | symbol       | member           | shape           | meaning                                           |
 /// |--------------|------------------|-----------------|---------------------------------------------------|
-/// | j            | active[a].cv     |                 | a CV with an active limit                         |
+/// | j            | active[a].cv     |                 | a CV with a setpoint or an active limit           |
 /// | T0(:, j) / s | step_response[a] | ny x L          | column l-1: outputs l samples after a unit step   |
 struct NominalSensitivity {
   Eigen::Index cv_count = 0;
-  std::vector<ActiveLimit> active;
+  std::vector<ActiveReference> active;
   std::vector<Eigen::MatrixXd> step_response;
 
   /// Last values of the step responses, ny x ny; column j is zero for a CV inside its range.
@@ -55,9 +67,11 @@ struct NominalSensitivity {
 
 /// T0 by simulation of the controller on its own model, appendix A3 of the thesis (steps a to p): limits of
 /// the CVs inside their range and of the available MVs relaxed, MVs at a limit held there, no noise and no
-/// disturbance, then for each active soft limit in turn a step of `study.sensitivity.step_size` into the
-/// range. The thesis fits Box-Jenkins models to these data; with noise-free data of the controller itself the
-/// step response is the model. Throws InputError when the relaxed controller has no solution.
+/// disturbance, then for each setpoint and each active soft limit in turn a step of
+/// `study.sensitivity.step_size`. A controller without targets has nothing that draws a CV to its limit: its
+/// active limits are taken to lie where the CVs are. The thesis fits Box-Jenkins models to these data; with
+/// noise-free data of the controller itself the step response is the model. Throws InputError when the
+/// relaxed controller has no solution.
 NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint& point,
                                        const QpSolverFactory& factory);
 

@@ -25,8 +25,15 @@ std::vector<Nominal> nominal_columns(const Study& study) {
 }
 
 VariableText active_limit_text() {
-  return {
-      "active_limit", "soft limit that the CV is held at", "1", "", {{-1, 0, 1}, {"lower", "none", "upper"}}};
+  return {"active_limit",
+          "soft limit or setpoint that the CV is held at",
+          "1",
+          "",
+          {{-1, 0, 1, 2}, {"lower", "none", "upper", "setpoint"}}};
+}
+
+std::int8_t active_limit(ReferenceKind kind) {
+  return kind == ReferenceKind::lower_limit ? std::int8_t{-1} : static_cast<std::int8_t>(kind);
 }
 
 VariableText fixed_mv_text() {
@@ -45,8 +52,8 @@ void write_operating_point(Hdf5Group& group, const Study& study, const Operating
   write_vectors(group, {"mv"}, u_point_text(study), {&point.u}, study.mv_count());
   write_vectors(group, {"cv"}, y_point_text(study), {&point.y}, study.cv_count());
   std::vector<std::int8_t> limit(study.plant.cvs.size(), 0), fixed(study.plant.mvs.size(), 0);
-  for (const auto& [cv, upper] : point.active)
-    limit[static_cast<std::size_t>(cv)] = upper ? 1 : -1;
+  for (const auto& [cv, kind] : point.active)
+    limit[static_cast<std::size_t>(cv)] = active_limit(kind);
   for (const Eigen::Index mv : point.fixed_mvs)
     fixed[static_cast<std::size_t>(mv)] = 1;
   group.write("active_limit", {"cv"}, limit, attributes<std::int8_t>(active_limit_text()));

@@ -17,7 +17,11 @@ constexpr const char* kFixedGroup = "nominal_fixed";
 constexpr const char* kResponse = "t0_step_response";
 
 VariableText side_text() {
-  return {"side", "soft limit that the CV is at", "1", "", {{0, 1}, {"lower", "upper"}}};
+  return {"side",
+          "soft limit or setpoint that the CV is at",
+          "1",
+          "",
+          {{0, 1, 2}, {"lower", "upper", "setpoint"}}};
 }
 
 Eigen::Index position(const Study& study, const std::string& name, const char* group,
@@ -30,6 +34,12 @@ Eigen::Index position(const Study& study, const std::string& name, const char* g
   return found - cvs.begin();
 }
 
+ReferenceKind reference_kind(std::int8_t side, const char* group, const std::string& file) {
+  if (side < 0 || side > static_cast<std::int8_t>(ReferenceKind::setpoint))
+    throw ArchiveError(fmt::format("{}: '/{}/side': found {}; allowed: 0, 1 or 2", file, group, side));
+  return static_cast<ReferenceKind>(side);
+}
+
 void write_sensitivity(Hdf5Group group, const std::string& title, const Study& study,
                        const NominalSensitivity& sensitivity) {
   group.write_attribute("title", title);
@@ -38,17 +48,17 @@ void write_sensitivity(Hdf5Group group, const std::string& title, const Study& s
   std::vector<const Eigen::MatrixXd*> responses;
   for (std::size_t a = 0; a < sensitivity.active.size(); ++a) {
     active.push_back(study.plant.cvs[static_cast<std::size_t>(sensitivity.active[a].cv)]);
-    side.push_back(sensitivity.active[a].upper ? 1 : 0);
+    side.push_back(static_cast<std::int8_t>(sensitivity.active[a].kind));
     responses.push_back(&sensitivity.step_response[a]);
   }
   const Eigen::Index lags = responses.empty() ? study.sensitivity.samples : responses.front()->cols();
-  write_variable_dimension(group, "active_cv", "CV at a soft limit, whose limit is stepped", active);
+  write_variable_dimension(group, "active_cv", "CV at a soft limit or a setpoint, which is stepped", active);
   write_variable_dimension(group, "cv", "controlled variable", study.plant.cvs);
   write_sample_dimension(group, "lag", "samples after the step", "time", study, 1, lags);
   group.write("side", {"active_cv"}, side, attributes<std::int8_t>(side_text()));
   write_matrices(group, {"active_cv", "cv", "lag"},
                  {kResponse,
-                  "response of cv to a unit step of the limit of active_cv",
+                  "response of cv to a unit step of the limit or setpoint of active_cv",
                   "1",
                   "in the unit of cv per unit of active_cv; stays at its last value",
                   {},
@@ -67,7 +77,8 @@ NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, con
   sensitivity.step_response.resize(active.size());
   std::vector<Eigen::MatrixXd*> responses;
   for (std::size_t a = 0; a < active.size(); ++a) {
-    sensitivity.active.push_back({position(study, active[a], name, file), side[a] != 0});
+    sensitivity.active.push_back(
+        {position(study, active[a], name, file), reference_kind(side[a], name, file)});
     responses.push_back(&sensitivity.step_response[a]);
   }
   read_matrices(group, kResponse, true, responses, study.cv_count(), lags);

@@ -245,13 +245,18 @@ std::vector<SignalColumn> signal_columns(const Study& study) {
   const PlantModel& plant = study.plant;
   const std::string u_comment = "u(k) acts from sample k on";
   const std::string d_comment = "d(k) acts from sample k on";
-  return {
+  std::vector<SignalColumn> columns{
       {{"y", "measured CVs, noise included", common_unit(plant.cvs), "", {}, "time"}, "cv", &Trajectory::y},
       {{"u", "MVs", common_unit(plant.mvs), u_comment, {}, "time"}, "mv", &Trajectory::u},
       {{"u_target", "targets of the MVs", common_unit(plant.mvs), "", {}, "time"},
        "mv",
        &Trajectory::u_target},
       {{"d", "measured disturbances", common_unit(plant.mds), d_comment, {}, "time"}, "md", &Trajectory::d}};
+  if (study.controller.has_setpoints())
+    columns.push_back({{"y_set", "setpoints; 0 for a CV without one", common_unit(plant.cvs), "", {}, "time"},
+                       "cv",
+                       &Trajectory::y_set});
+  return columns;
 }
 
 Eigen::Index row_count(const SignalColumn& signal, const Study& study) {

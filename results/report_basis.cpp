@@ -25,14 +25,14 @@ Pen cv_pen(Eigen::Index cv, bool stepped) {
 }
 
 Panel step_panel(const Study& study, const NominalSensitivity& sensitivity, std::size_t a) {
-  const ActiveLimit& limit = sensitivity.active[a];
+  const ActiveReference& reference = sensitivity.active[a];
   const Eigen::MatrixXd& response = sensitivity.step_response[a];
   std::vector<double> time{0.0};
   for (Eigen::Index l = 0; l < response.cols(); ++l)
     time.push_back(study.controller.sample_time * static_cast<double>(l + 1));
-  const std::string cv = cv_name(study, limit.cv);
+  const std::string cv = cv_name(study, reference.cv);
   PanelScript panel(fmt::format("t0_{}", a),
-                    fmt::format("step of the {} limit of {}", limit.upper ? "upper" : "lower", as_label(cv)),
+                    fmt::format("step of the {} of {}", to_string(reference.kind), as_label(cv)),
                     {.label = "time (" + as_label(unit_text(study.plant.time_unit)) + ")",
                      .lower = 0.0,
                      .upper = time.back()},
@@ -40,9 +40,10 @@ Panel step_panel(const Study& study, const NominalSensitivity& sensitivity, std:
   for (Eigen::Index i = 0; i < response.rows(); ++i) {
     std::vector<double> y{0.0};
     y.insert(y.end(), response.row(i).begin(), response.row(i).end());
-    panel.line(time, y, cv_pen(i, i == limit.cv));
+    panel.line(time, y, cv_pen(i, i == reference.cv));
   }
-  return panel.finish(fmt::format("Responses of all CVs to a unit step of the limit of {}.", cv));
+  return panel.finish(
+      fmt::format("Responses of all CVs to a unit step of the {} of {}.", to_string(reference.kind), cv));
 }
 
 }  // namespace
@@ -54,7 +55,7 @@ ReportSection sensitivity_section(const ReportInput& input) {
   Figure figure;
   figure.name = "t0";
   figure.caption =
-      "Step responses of T_{0} = I - S_{0} from each CV at a soft limit, the diagonal one thick; "
+      "Step responses of T_{0} = I - S_{0} from each CV at a setpoint or soft limit, the diagonal one thick; "
       "thesis figure 6.10. T_{0} from the other CVs is zero.";
   for (Eigen::Index i = 0; i < study.cv_count(); ++i)
     figure.legend.push_back({as_label(cv_name(study, i)), cv_pen(i, false)});
@@ -62,7 +63,7 @@ ReportSection sensitivity_section(const ReportInput& input) {
     if (sensitivity.step_response[a].size() > 0)
       figure.panels.push_back(step_panel(study, sensitivity, a));
   if (figure.panels.empty())
-    section.leave_out("no CV is at a soft limit, so T_0 is zero.");
+    section.leave_out("no CV is at a setpoint or a soft limit, so T_0 is zero.");
   else
     section.add(std::move(figure));
   return section;

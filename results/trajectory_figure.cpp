@@ -15,6 +15,7 @@ constexpr double kHeight = 210;  // pixels
 
 const Pen kRecorded{colour::kBlack, Dash::solid, Mark::none, 1.0};
 const Pen kNominal{colour::kSky, Dash::solid, Mark::none, 3.5};
+const Pen kSetpoint{colour::kGreen, Dash::solid, Mark::none, 1.5};
 const Pen kTarget{colour::kGreen, Dash::dashed, Mark::none, 1.5};
 const Pen kSoftLimit{colour::kPurple, Dash::dashed, Mark::none, 1.2};
 const Pen kHardLimit{colour::kVermillion, Dash::dotted, Mark::none, 1.5};
@@ -59,6 +60,8 @@ Panel cv_panel(const Setting& at, const Trajectory& loop, const NominalOutputs& 
   add_limits(panel, at.study.controller.cv_hard, i, kHardLimit);
   add_limits(panel, at.study.controller.cv_soft, i, kSoftLimit);
   panel.line(at.time, row(nominal.y0, i, at.samples), kNominal);  // below the thinner line
+  if (at.study.controller.has_setpoint(i))
+    panel.steps(at.time, row(loop.y_set, i, at.samples), kSetpoint);
   panel.line(at.time, row(loop.y, i, at.samples), kRecorded);
   return panel.finish(fmt::format("Controlled variable {} and its nominal output over time.", variable.name),
                       kHeight);
@@ -68,7 +71,8 @@ Panel mv_panel(const Setting& at, const Trajectory& loop, Eigen::Index i) {
   const PlantModel::Variable& variable = at.study.plant.mvs[static_cast<std::size_t>(i)];
   PanelScript panel = at.panel("mv", i, variable);
   add_limits(panel, at.study.controller.mv_hard, i, kHardLimit);
-  panel.steps(at.time, row(loop.u_target, i, at.samples), kTarget);
+  if (at.study.controller.has_targets())
+    panel.steps(at.time, row(loop.u_target, i, at.samples), kTarget);
   panel.steps(at.time, row(loop.u, i, at.samples), kRecorded);
   return panel.finish(fmt::format("Manipulated variable {} and its target over time.", variable.name),
                       kHeight);
@@ -88,11 +92,14 @@ Figure trajectory_figure(const Study& study, const Trajectory& loop, const Nomin
   const Setting setting(study, loop);
   Figure figure;
   figure.name = name;
-  figure.legend = {{"recorded CV, MV or MD", kRecorded},
-                   {"nominal output, y_{0}", kNominal},
-                   {"target of the MV", kTarget},
-                   {"soft limit of the CV", kSoftLimit},
-                   {"hard limit", kHardLimit}};
+  figure.legend = {
+      {"recorded CV, MV or MD", kRecorded}, {"nominal output, y_{0}", kNominal}, {"hard limit", kHardLimit}};
+  if (study.controller.has_setpoints())
+    figure.legend.push_back({"setpoint of the CV", kSetpoint});
+  if (study.controller.has_targets())
+    figure.legend.push_back({"target of the MV", kTarget});
+  if (study.controller.has_soft_limits())
+    figure.legend.push_back({"soft limit of the CV", kSoftLimit});
   for (Eigen::Index i = 0; i < study.cv_count(); ++i)
     figure.panels.push_back(cv_panel(setting, loop, nominal, i));
   for (Eigen::Index i = 0; i < study.mv_count(); ++i)

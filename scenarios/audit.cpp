@@ -48,8 +48,10 @@ void AuditSampler::observe(const RangeMpc& controller) {
   const std::int64_t step = step_++;
   if (!(stream_.uniform() < share_))
     return;
-  AuditSample sample{experiment_, step, copy_of(controller.target_problem()), {}};
-  if (sample.targets.status == QpStatus::solved)  // otherwise the moves are of an earlier step
+  AuditSample sample{experiment_, step, {}, {}};
+  if (const std::optional<SolvedQp> targets = controller.target_problem())
+    sample.targets = copy_of(*targets);
+  if (!sample.targets.posed() || sample.targets.status == QpStatus::solved)
     sample.moves = copy_of(controller.move_problem());
   samples_.push_back(std::move(sample));
 }
@@ -57,25 +59,27 @@ void AuditSampler::observe(const RangeMpc& controller) {
 Auditor::Auditor(const Study& study, const QpSolverFactory& reference) {
   // The controller makes the structures; its own solvers are never asked.
   const RangeMpc controller(study.plant.G, study.mv_count(), study.controller, reference);
-  targets_ = reference(std::make_shared<QpStructure>(controller.target_problem().structure));
+  if (const std::optional<SolvedQp> targets = controller.target_problem())
+    targets_ = reference(std::make_shared<QpStructure>(targets->structure));
   moves_ = reference(std::make_shared<QpStructure>(controller.move_problem().structure));
+}
+
+AuditDifference Auditor::check(const AuditedProblem& problem, QpSolver* reference,
+                               double& kkt_residual) const {
+  if (!problem.posed())
+    return {true, 0.0, 0.0};
+  const QpResult& result = reference->solve_from(problem.data, problem.x);
+  if (result.status == QpStatus::solved)
+    kkt_residual = std::max(kkt_residual, result.kkt_residual);
+  return compare(problem, result);
 }
 
 AuditedStep Auditor::check(const AuditSample& sample) {
   AuditedStep step;
   step.experiment = sample.experiment;
   step.step = sample.step;
-  const QpResult& targets = targets_->solve_from(sample.targets.data, sample.targets.x);
-  step.targets = compare(sample.targets, targets);
-  step.moves = {true, 0.0, 0.0};
-  if (targets.status == QpStatus::solved)
-    step.reference_kkt_residual = targets.kkt_residual;
-  if (sample.targets.status != QpStatus::solved)
-    return step;
-  const QpResult& moves = moves_->solve_from(sample.moves.data, sample.moves.x);
-  step.moves = compare(sample.moves, moves);
-  if (moves.status == QpStatus::solved)
-    step.reference_kkt_residual = std::max(step.reference_kkt_residual, moves.kkt_residual);
+  step.targets = check(sample.targets, targets_.get(), step.reference_kkt_residual);
+  step.moves = check(sample.moves, moves_.get(), step.reference_kkt_residual);
   return step;
 }
 

@@ -17,6 +17,10 @@ namespace mpm {
 
 /// A problem and the answer to it that is to be checked.
 struct AuditedProblem {
+  /// False when the step did not pose it: no targets in the controller, or no moves after targets without an
+  /// answer.
+  bool posed() const { return data.gradient.size() > 0; }
+
   QpData data;
   QpStatus status = QpStatus::numerical_error;
   Eigen::VectorXd x;
@@ -84,7 +88,9 @@ class Auditor {
   AuditedStep check(const AuditSample& sample);
 
  private:
-  std::unique_ptr<QpSolver> targets_, moves_;
+  AuditDifference check(const AuditedProblem& problem, QpSolver* reference, double& kkt_residual) const;
+
+  std::unique_ptr<QpSolver> targets_, moves_;  ///< no target solver for a controller without targets
 };
 
 }  // namespace mpm

@@ -36,6 +36,7 @@ Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
   trajectory.u.setZero(study.mv_count(), samples);
   trajectory.u_target.setZero(study.mv_count(), samples);
   trajectory.d = signals.d;
+  trajectory.y_set = signals.y_set;
   return trajectory;
 }
 
@@ -55,6 +56,8 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   require_shape("measured disturbances", signals.d, study.md_count(), samples);
   require_shape("measurement noise", signals.noise, study.cv_count(), samples);
   require_shape("unmeasured disturbances", signals.y_d, study.cv_count(), samples);
+  if (signals.y_set.size() > 0)
+    require_shape("setpoints", signals.y_set, study.cv_count(), samples);
 
   const Eigen::Index within =
       signals.within_plant.size() > 0 ? plant.input_count() - study.mv_count() - study.md_count() : 0;
@@ -63,6 +66,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
 
   RangeMpc controller(study.plant.G, study.mv_count(), study.controller, factory);
   const Eigen::VectorXd d_rest = Eigen::VectorXd::Zero(study.md_count());
+  controller.set_setpoints(study.simulation.initial_setpoint);
   Eigen::VectorXd input = Eigen::VectorXd::Zero(plant.input_count());
   input.head(study.mv_count()) = controller.nominal_target(d_rest);
   controller.reset(input.head(study.mv_count()), d_rest);
@@ -71,6 +75,8 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   Trajectory trajectory = empty_trajectory(study, signals);
   for (Eigen::Index k = 0; k < samples; ++k) {
     trajectory.y.col(k) = plant.output() + signals.y_d.col(k) + signals.noise.col(k);
+    if (signals.y_set.size() > 0)
+      controller.set_setpoints(signals.y_set.col(k));
     const ControlMove& move = controller.step(trajectory.y.col(k), signals.d.col(k));
     trajectory.solver.steps += 1;
     trajectory.solver.iterations += move.iterations;
@@ -108,7 +114,7 @@ Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, c
   const TransferMatrix plant = draw.mismatch ? with_mismatch(study.plant.G, *draw.mismatch) : study.plant.G;
   return run_closed_loop(study, plant,
                          {measured_disturbances(study), measurement_noise(study, draw.index),
-                          unmeasured_disturbances(study, draw)},
+                          unmeasured_disturbances(study, draw), setpoints(study)},
                          factory, observer);
 }
 

@@ -31,18 +31,20 @@ struct SolverStatistics {
 /// | u        | u        | nu x N | MVs, u(k) acts from sample k on              |
 /// | u_target | u_target | nu x N | targets of the optimizer                     |
 /// | d        | d        | nd x N | measured disturbances, d(k) acts from k on   |
+/// | y_set    | y_set    | ny x N | setpoints; empty when no CV has one          |
 struct Trajectory {
   ControlStatus status = ControlStatus::ok;
   Eigen::Index samples_done = 0;  ///< columns after these are zero when the status is not `ok`
-  Eigen::MatrixXd y, u, u_target, d;
+  Eigen::MatrixXd y, u, u_target, d, y_set;
   SolverStatistics solver;
 };
 
 /// The signals that act on a loop from outside.
 struct LoopSignals {
-  Eigen::MatrixXd d;      ///< measured disturbances, nd x N
-  Eigen::MatrixXd noise;  ///< added to the measurements, ny x N
-  Eigen::MatrixXd y_d;    ///< unmeasured disturbances, added to the outputs, ny x N
+  Eigen::MatrixXd d;        ///< measured disturbances, nd x N
+  Eigen::MatrixXd noise;    ///< added to the measurements, ny x N
+  Eigen::MatrixXd y_d;      ///< unmeasured disturbances, added to the outputs, ny x N
+  Eigen::MatrixXd y_set{};  ///< setpoints, ny x N; empty: they stay as they are at the start
   /// Unmeasured disturbances that act within the plant: its inputs after MVs and MDs, from sample k on, one
   /// column a sample. Empty: they stay zero.
   Eigen::MatrixXd within_plant{};
@@ -52,7 +54,8 @@ struct LoopSignals {
 using StepObserver = std::function<void(const RangeMpc& controller)>;
 
 /// Runs the controller of the study on `plant`, whose inputs are the MVs and then the MDs of the study, from
-/// the economic steady state of the nominal model at zero disturbances.
+/// the steady state of the nominal model at zero disturbances that RangeMpc::nominal_target() gives for the
+/// first setpoints.
 /// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant
 /// cannot be integrated (status `failed`). Throws InputError when a signal has not the shape that the study
 /// asks for, or the plant another sample time, other outputs or fewer inputs.

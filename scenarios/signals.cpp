@@ -14,6 +14,11 @@ RandomStream stream_of(const Study& study, std::int64_t index, StreamId id) {
   return {study.seed, static_cast<std::uint64_t>(index), id};
 }
 
+void add_steps(const std::vector<SignalStep>& steps, Eigen::MatrixXd& signal) {
+  for (const SignalStep& step : steps)
+    signal.row(step.variable).tail(signal.cols() - step.sample).setConstant(step.level);
+}
+
 void add_random_steps(const Study& study, Eigen::MatrixXd& d) {
   RandomStream stream = stream_of(study, kBasisIndex, StreamId::excitation);
   for (Eigen::Index md = 0; md < d.rows(); ++md) {
@@ -34,12 +39,16 @@ Eigen::MatrixXd measured_disturbances(const Study& study) {
   Eigen::MatrixXd d = Eigen::MatrixXd::Zero(study.md_count(), study.simulation.samples);
   if (study.simulation.random_steps)
     add_random_steps(study, d);
-  std::vector<DisturbanceStep> steps = study.simulation.steps;
-  std::stable_sort(steps.begin(), steps.end(),
-                   [](const auto& a, const auto& b) { return a.sample < b.sample; });
-  for (const DisturbanceStep& step : steps)
-    d.row(step.md).tail(d.cols() - step.sample).setConstant(step.level);
+  add_steps(study.simulation.steps, d);
   return d;
+}
+
+Eigen::MatrixXd setpoints(const Study& study) {
+  if (!study.controller.has_setpoints())
+    return {};
+  Eigen::MatrixXd y_set = study.simulation.initial_setpoint.replicate(1, study.simulation.samples);
+  add_steps(study.simulation.setpoint_steps, y_set);
+  return y_set;
 }
 
 Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index) {

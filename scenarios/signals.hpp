@@ -10,6 +10,10 @@ namespace mpm {
 /// The measured disturbances, nd x samples: the same in every experiment of a study, as in figure 6.17.
 Eigen::MatrixXd measured_disturbances(const Study& study);
 
+/// The setpoints, ny x samples: the same in every experiment of a study; zero for CVs without a setpoint.
+/// Empty (0 x 0) when no CV has one.
+Eigen::MatrixXd setpoints(const Study& study);
+
 /// White normal measurement noise of the experiment, ny x samples.
 Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index);
 

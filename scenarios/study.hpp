@@ -19,9 +19,9 @@ enum class ExperimentKind : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3 
 /// Which parameter of a channel a model-plant mismatch changes, as in table 6.4.
 enum class MismatchParameter : std::int8_t { gain = 0, time_constant = 1, dead_time = 2 };
 
-/// One step of a measured disturbance: from `sample` on it has the value `level`.
-struct DisturbanceStep {
-  Eigen::Index md;
+/// One step of a signal, of a measured disturbance or a setpoint: from `sample` on it has the value `level`.
+struct SignalStep {
+  Eigen::Index variable;
   int sample;
   double level;
 };
@@ -30,7 +30,9 @@ struct DisturbanceStep {
 struct SimulationOptions {
   int samples = 400;
   Eigen::VectorXd noise_standard_deviation;  ///< of the white normal measurement noise, one a CV
-  std::vector<DisturbanceStep> steps;        ///< explicit steps; or
+  Eigen::VectorXd initial_setpoint;          ///< ny; of CVs with a setpoint
+  std::vector<SignalStep> setpoint_steps;    ///< of CVs; the same in every experiment
+  std::vector<SignalStep> steps;             ///< of MDs, in the order of their samples; or
   bool random_steps = false;                 ///< steps drawn once for the study, the same in every experiment
   Distribution step_interval = Distribution::uniform(60, 100);  ///< samples between random steps
   Distribution step_level = Distribution::uniform(-0.4, 0.4);   ///< level after a random step

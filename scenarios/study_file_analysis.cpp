@@ -27,7 +27,7 @@ std::vector<Eigen::Index> read_active_cvs(const TomlTable& table, const PlantMod
   }
   for (const std::size_t cv : read_some_of(table, "active_cvs", variable_names(plant.cvs))) {
     const auto i = static_cast<Eigen::Index>(cv);
-    if (std::isinf(controller.cv_soft.lower(i)) && std::isinf(controller.cv_soft.upper(i))) {
+    if (!controller.has_soft_limit(i)) {
       table.refuse("active_cvs", fmt::format("'{}', which has no soft limit", plant.cvs[cv].name),
                    "CVs with a soft limit");
     }

@@ -19,13 +19,12 @@ void set_limits(Limits& limits, Eigen::Index i, const NumberPair& range) {
 }
 
 void read_mv(const TomlTable& table, Eigen::Index i, RangeMpcOptions& options) {
-  options.mv_cost(i) = read_number(table, "cost", NumberRule::finite());
   options.move_suppression(i) = read_number(table, "move_suppression", NumberRule::at_least(0));
-  options.target_weight(i) = read_number(table, "target_weight", NumberRule::at_least(0));
-  if (options.move_suppression(i) + options.target_weight(i) == 0) {
-    table.refuse("", "move_suppression and target_weight both 0",
-                 "at least one > 0, or the moves are not determined");
-  }
+  options.target_weight(i) = read_number_or(table, "target_weight", NumberRule::at_least(0), 0.0);
+  // A cost decides where the target lies: an MV with a target has to say it.
+  options.mv_cost(i) = options.target_weight(i) > 0
+                           ? read_number(table, "cost", NumberRule::finite())
+                           : read_number_or(table, "cost", NumberRule::finite(), 0.0);
   set_limits(options.mv_hard, i, read_limits(table, "hard"));
 }
 
@@ -40,13 +39,19 @@ void refuse_soft_outside_hard(const TomlTable& table, const NumberPair& soft, co
   }
 }
 
+/// A CV has a setpoint, a soft range, or both.
 void read_cv(const TomlTable& table, Eigen::Index i, RangeMpcOptions& options) {
+  const NumberPair hard = read_limits(table, "hard");
+  set_limits(options.cv_hard, i, hard);
+  const bool has_setpoint = table.has("setpoint_weight");
+  if (has_setpoint)
+    options.setpoint_weight(i) = read_number(table, "setpoint_weight", NumberRule::positive());
+  if (has_setpoint && !table.has("soft") && !table.has("slack_weight"))
+    return;
   options.slack_weight(i) = read_number(table, "slack_weight", NumberRule::positive());
   const NumberPair soft = read_limits(table, "soft");
-  const NumberPair hard = read_limits(table, "hard");
   refuse_soft_outside_hard(table, soft, hard);
   set_limits(options.cv_soft, i, soft);
-  set_limits(options.cv_hard, i, hard);
 }
 
 using ReadVariable = void (*)(const TomlTable&, Eigen::Index, RangeMpcOptions&);
@@ -65,6 +70,7 @@ RangeMpcOptions sized_options(Eigen::Index cv_count, Eigen::Index mv_count) {
   RangeMpcOptions options;
   options.move_suppression.setZero(mv_count);
   options.target_weight.setZero(mv_count);
+  options.setpoint_weight.setZero(cv_count);
   options.slack_weight.setZero(cv_count);
   options.mv_cost.setZero(mv_count);
   options.mv_hard = Limits::none(mv_count);
@@ -113,6 +119,21 @@ RangeMpcOptions read_controller(const TomlTable& document, const PlantModel& pla
   read_group(table, "cv", variable_names(plant.cvs), read_cv, options);
   table.located("", [&] { return options.validate(cv_count, mv_count); });
   return options;
+}
+
+Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantModel& plant,
+                                       const RangeMpcOptions& controller) {
+  const std::vector<std::string> names = variable_names(plant.cvs);
+  const TomlTable tables = document.table("controller", study_file_keys("controller")).table("cv", names);
+  Eigen::VectorXd setpoint = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const TomlTable table = tables.table(names[i], study_file_keys("controller.cv.NAME"));
+    const auto cv = static_cast<Eigen::Index>(i);
+    if (table.has("setpoint") && !controller.has_setpoint(cv))
+      table.refuse("setpoint", "a setpoint without setpoint_weight", "both or none");
+    setpoint(cv) = read_number_or(table, "setpoint", NumberRule::finite(), 0.0);
+  }
+  return setpoint;
 }
 
 }  // namespace mpm

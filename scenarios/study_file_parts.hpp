@@ -19,8 +19,13 @@ PlantModel read_plant(const TomlTable& document);
 /// [controller] (study_file_controller.cpp).
 RangeMpcOptions read_controller(const TomlTable& document, const PlantModel& plant);
 
+/// The setpoints at the start, of [controller.cv.NAME]; ny numbers, 0 for a CV without a setpoint.
+Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantModel& plant,
+                                       const RangeMpcOptions& controller);
+
 /// [simulation] (study_file_simulation.cpp). The steps are returned in the order of their samples.
-SimulationOptions read_simulation(const TomlTable& document, const PlantModel& plant);
+SimulationOptions read_simulation(const TomlTable& document, const PlantModel& plant,
+                                  const RangeMpcOptions& controller);
 
 /// [experiments] (study_file_draws.cpp), as the next two.
 ExperimentCounts read_experiments(const TomlTable& document);

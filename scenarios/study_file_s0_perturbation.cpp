@@ -43,7 +43,7 @@ void read_fixed_structure(const TomlTable& table, const PlantModel& plant, const
   options.fixed_mvs = read_variables(table, "fixed_mvs", plant.mvs);
   options.fixed_active_cvs = read_variables(table, "fixed_active_cvs", plant.cvs);
   for (const Eigen::Index cv : options.fixed_active_cvs)
-    if (std::isinf(controller.cv_soft.lower(cv)) && std::isinf(controller.cv_soft.upper(cv)))
+    if (!controller.has_soft_limit(cv))
       table.refuse("fixed_active_cvs",
                    fmt::format("'{}', which has no soft limit", plant.cvs[static_cast<std::size_t>(cv)].name),
                    "CVs with a soft limit");

@@ -52,8 +52,14 @@ RangeMpc::RangeMpc(const TransferMatrix& model, Eigen::Index mv_count, const Ran
       model_(model, checked(options, model, mv_count).sample_time),
       scratch_(model_),
       qp_(model, mv_count, options),
-      targets_(model.static_gain().leftCols(mv_count), options, factory),
-      solver_(factory(qp_.structure())) {
+      solver_(factory(qp_.structure())),
+      setpoint_(Eigen::VectorXd::Zero(model.rows())),
+      setpoint_weight_(options.setpoint_weight),
+      cv_soft_(options.cv_soft) {
+  if (options.has_targets()) {
+    targets_.emplace(model.static_gain().leftCols(mv_count), options, factory);
+    pass_on_limits();
+  }
   md_gain_ = model.static_gain().rightCols(model.cols() - mv_count);
   input_.setZero(model.cols());
   bias_.setZero(model.rows());
@@ -68,7 +74,8 @@ void RangeMpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Re
   require_signal("measured disturbances", d, md_gain_.cols());
   input_ << u, d;
   model_.reset(input_);
-  targets_.reset();
+  if (targets_)
+    targets_->reset();
   solver_->reset();
   move_.status = ControlStatus::ok;
   move_.u = u;
@@ -78,13 +85,39 @@ void RangeMpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Re
 void RangeMpc::set_cv_soft(const Limits& limits) {
   limits.validate("cv_soft", model_.output_count());
   qp_.set_cv_soft(limits);
-  targets_.set_cv_soft(limits);
+  cv_soft_ = limits;
+  pass_on_limits();
+}
+
+void RangeMpc::set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) {
+  require_signal("setpoints", y_set, setpoint_.size());
+  setpoint_ = y_set;
+  pass_on_limits();
+}
+
+/// The target optimizer sees a setpoint as a range without width.
+void RangeMpc::pass_on_limits() {
+  if (!targets_)
+    return;
+  target_range_ = cv_soft_;
+  for (Eigen::Index cv = 0; cv < setpoint_.size(); ++cv)
+    if (setpoint_weight_(cv) > 0.0)
+      target_range_.lower(cv) = target_range_.upper(cv) = setpoint_(cv);
+  targets_->set_cv_soft(target_range_);
+}
+
+std::optional<SolvedQp> RangeMpc::target_problem() const {
+  if (!targets_)
+    return std::nullopt;
+  return targets_->problem();
 }
 
 Eigen::VectorXd RangeMpc::nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) {
   require_signal("measured disturbances", d, md_gain_.cols());
-  targets_.reset();
-  return targets_.solve(md_gain_ * d).x;
+  if (!targets_)
+    return Eigen::VectorXd::Zero(nu_);
+  targets_->reset();
+  return targets_->solve(md_gain_ * d).x;
 }
 
 const ControlMove& RangeMpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
@@ -97,7 +130,7 @@ const ControlMove& RangeMpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   move_.kkt_residual = 0.0;
   move_.iterations = 0;
   move_.fallbacks = 0;
-  if (solve_targets())
+  if (!targets_ || solve_targets())
     solve_moves();
   input_.head(nu_) = move_.u;
   model_.advance(input_);
@@ -107,7 +140,7 @@ const ControlMove& RangeMpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
 bool RangeMpc::solve_targets() {
   y_at_zero_.noalias() = md_gain_ * input_.tail(md_gain_.cols());
   y_at_zero_ += bias_;
-  const QpResult& target = targets_.solve(y_at_zero_);
+  const QpResult& target = targets_->solve(y_at_zero_);
   move_.status = control_status(target.status);
   move_.iterations += target.iterations;
   move_.fallbacks += target.from_reference ? 1 : 0;
@@ -121,7 +154,7 @@ bool RangeMpc::solve_targets() {
 void RangeMpc::solve_moves() {
   free_response(model_, input_, scratch_, free_);
   free_.colwise() += bias_;
-  const QpResult& plan = solver_->solve(qp_.update(free_, input_.head(nu_), move_.u_target));
+  const QpResult& plan = solver_->solve(qp_.update({free_, input_.head(nu_), move_.u_target, setpoint_}));
   move_.status = control_status(plan.status);
   move_.iterations += plan.iterations;
   move_.fallbacks += plan.from_reference ? 1 : 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include <Eigen/Core>
@@ -32,12 +33,14 @@ struct ControlMove {
   int fallbacks = 0;          ///< problems whose answer is the reference's, see CertifiedSolver
 };
 
-/// Model predictive control by ranges with a target optimizer above it (thesis 6.3, 6.4).
+/// Model predictive control to setpoints, within ranges, or both, with a target optimizer above it where MVs
+/// have targets (thesis 2.4, 3.3, 6.3, 6.4).
 ///
 /// At sample k, from the measured CVs y(k) and MDs d(k):
 /// 1. Output-bias feedback: b(k) = y(k) - y_sim(k), y_sim = G0 (u, d), is added to every prediction.
 /// 2. The targets for the steady state K_d d(k) + b(k) + K u (6.19).
-/// 3. The moves from the free response with MVs held at u(k-1) and MDs held at d(k) (6.20).
+/// 3. The moves from the free response with MVs held at u(k-1) and MDs held at d(k) (6.20). Setpoints are
+///    those of this sample, held over the horizon: the controller does not know their changes beforehand.
 ///
 /// y(k) and d(k) are measured just before u(k) acts; d(k) acts from sample k on, as u(k) does.
 ///
@@ -64,19 +67,25 @@ class RangeMpc {
   /// Output of the nominal model at the sample to come (y_sim of 6.4).
   const Eigen::VectorXd& model_output() const { return model_.output(); }
 
-  /// The two problems of the last step. When the targets have no answer, the moves are those of an earlier
-  /// step.
-  SolvedQp target_problem() const { return targets_.problem(); }
+  /// The problems of the last step; there is no target problem without targets. When the targets have no
+  /// answer, the moves are those of an earlier step.
+  std::optional<SolvedQp> target_problem() const;
   SolvedQp move_problem() const { return {solver_->structure(), qp_.data(), solver_->result()}; }
 
   /// Replaces the soft limits of the CVs, in the MPC and in the target optimizer.
   void set_cv_soft(const Limits& limits);
 
-  /// The targets for measured disturbances `d` and no bias. Forgets the warm start of the target optimizer,
-  /// so that the answer depends on `d` alone.
+  /// The setpoints from the next step on, in the MPC and in the target optimizer; ny numbers, of which those
+  /// of CVs without a setpoint are not read. They are zero until this is called.
+  void set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set);
+
+  /// The MVs at which a loop starts: the targets for measured disturbances `d`, the setpoints as they are and
+  /// no bias; without targets zero, the operating point of the model. Forgets the warm start of the target
+  /// optimizer, so that the answer depends on its arguments alone.
   Eigen::VectorXd nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d);
 
  private:
+  void pass_on_limits();
   bool solve_targets();
   void solve_moves();
 
@@ -84,10 +93,12 @@ class RangeMpc {
   Eigen::MatrixXd md_gain_;
   LinearPlant model_, scratch_;
   RangeQp qp_;
-  TargetOptimizer targets_;
+  std::optional<TargetOptimizer> targets_;
   std::unique_ptr<QpSolver> solver_;
   Eigen::VectorXd input_;  ///< (u(k-1), d(k)), then (u(k), d(k))
-  Eigen::VectorXd bias_, y_at_zero_;
+  Eigen::VectorXd bias_, y_at_zero_, setpoint_;
+  Eigen::VectorXd setpoint_weight_;
+  Limits cv_soft_, target_range_;
   Eigen::MatrixXd free_;  ///< ny x Hp
   ControlMove move_;
 };

@@ -13,13 +13,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-void require_weights(const char* name, const Eigen::VectorXd& weights, Eigen::Index size, bool positive) {
+void require_weights(const char* name, const Eigen::VectorXd& weights, Eigen::Index size) {
   if (weights.size() != size)
     throw InputError(name, fmt::format("{} numbers", weights.size()), fmt::format("{}", size));
   for (Eigen::Index i = 0; i < size; ++i)
-    if (!std::isfinite(weights(i)) || weights(i) < 0 || (positive && weights(i) == 0))
-      throw InputError(fmt::format("{}[{}]", name, i), fmt::format("{}", weights(i)),
-                       positive ? "a number > 0" : "a number >= 0");
+    if (!std::isfinite(weights(i)) || weights(i) < 0)
+      throw InputError(fmt::format("{}[{}]", name, i), fmt::format("{}", weights(i)), "a number >= 0");
 }
 
 }  // namespace
@@ -47,6 +46,14 @@ void Limits::validate(std::string_view what, Eigen::Index size) const {
                        "lower <= upper, no NaN, an absent limit is -inf below and inf above");
 }
 
+bool RangeMpcOptions::has_soft_limit(Eigen::Index cv) const {
+  return std::isfinite(cv_soft.lower(cv)) || std::isfinite(cv_soft.upper(cv));
+}
+
+bool RangeMpcOptions::has_soft_limits() const {
+  return cv_soft.lower.array().isFinite().any() || cv_soft.upper.array().isFinite().any();
+}
+
 void RangeMpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) const {
   if (!(std::isfinite(sample_time) && sample_time > 0))
     throw InputError("sample_time", fmt::format("{}", sample_time), "a number > 0");
@@ -55,16 +62,20 @@ void RangeMpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) con
   if (control_horizon < 1 || control_horizon > prediction_horizon)
     throw InputError("control_horizon", fmt::format("{}", control_horizon),
                      fmt::format("1 to prediction_horizon = {}", prediction_horizon));
-  require_weights("move_suppression", move_suppression, mv_count, false);
-  require_weights("target_weight", target_weight, mv_count, false);
+  require_weights("move_suppression", move_suppression, mv_count);
+  require_weights("target_weight", target_weight, mv_count);
+  require_weights("setpoint_weight", setpoint_weight, cv_count);
   for (Eigen::Index i = 0; i < mv_count; ++i)
-    if (move_suppression(i) + target_weight(i) == 0)
+    if (move_suppression(i) + target_weight(i) == 0 && !has_setpoints())
       throw InputError(fmt::format("move_suppression[{0}] and target_weight[{0}]", i), "both 0",
-                       "at least one > 0: the moves would not be determined");
-  require_weights("slack_weight", slack_weight, cv_count, true);
+                       "at least one > 0: without setpoints the moves would not be determined");
   mv_hard.validate("mv_hard", mv_count);
   cv_hard.validate("cv_hard", cv_count);
   cv_soft.validate("cv_soft", cv_count);
+  require_weights("slack_weight", slack_weight, cv_count);
+  for (Eigen::Index i = 0; i < cv_count; ++i)
+    if (has_soft_limit(i) && slack_weight(i) == 0)
+      throw InputError(fmt::format("slack_weight[{}]", i), "0", "a number > 0 for a CV with a soft limit");
   if (mv_cost.size() != mv_count || !mv_cost.allFinite())
     throw InputError(
         "mv_cost", fmt::format("{} numbers{}", mv_cost.size(), mv_cost.allFinite() ? "" : ", not all finite"),

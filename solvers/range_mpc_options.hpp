@@ -30,7 +30,19 @@ struct Limits {
   void validate(std::string_view what, Eigen::Index size) const;
 };
 
-/// Tuning of the range MPC (6.20) and of the target optimizer above it (6.19).
+/// Tuning of a model predictive controller: which terms its objective has and which limits it keeps.
+///
+/// Every CV may have a setpoint (setpoint_weight > 0), a soft range, hard limits, any two or all of them, or
+/// none; every MV a target (target_weight > 0) or none. The controllers of the thesis are special cases:
+///
+/// | controller                        | setpoint_weight | cv_soft | target_weight |
+/// |-----------------------------------|-----------------|---------|---------------|
+/// | range MPC (2.33, 6.20)            | 0               | finite  | > 0           |
+/// | setpoint MPC (2.26, 3.8, 3.30)    | > 0             | none    | 0             |
+/// | soft-constraint MPC (3.33)        | 0               | finite  | 0             |
+///
+/// Where an MV has a target, a target optimizer (6.19) stands above the controller. It holds the setpoints of
+/// the CVs that have one, and the soft ranges of the others.
 ///
 /// | symbol   | member             | shape | unit                        |
 /// |----------|--------------------|-------|-----------------------------|
@@ -39,6 +51,7 @@ struct Limits {
 /// | mh       | control_horizon    |       | samples                     |
 /// | Q_du     | move_suppression   | nu    | 1 / MV^2                    |
 /// | Q_u      | target_weight      | nu    | 1 / MV^2                    |
+/// | Q_y      | setpoint_weight    | ny    | 1 / CV^2                    |
 /// | tau_y    | slack_weight       | ny    | 1 / CV^2                    |
 /// | phi_u    | mv_cost            | nu    | 1 / MV                      |
 struct RangeMpcOptions {
@@ -47,7 +60,8 @@ struct RangeMpcOptions {
   int control_horizon = 1;
   Eigen::VectorXd move_suppression;
   Eigen::VectorXd target_weight;
-  Eigen::VectorXd slack_weight;
+  Eigen::VectorXd setpoint_weight;  ///< 0: the CV has no setpoint
+  Eigen::VectorXd slack_weight;     ///< above 0 for a CV with a soft limit
   WeightConvention weight_convention = WeightConvention::direct;
   SlackForm slack_form = SlackForm::per_sample;
   Limits mv_hard;
@@ -57,6 +71,13 @@ struct RangeMpcOptions {
   /// Cost of a unit of steady-state violation of a CV soft limit in the target optimizer, relative to the
   /// largest |mv_cost|. Large enough that limits are left only when no target keeps them (docs/methods.md).
   double target_violation_cost = 1000.0;
+
+  bool has_setpoint(Eigen::Index cv) const { return setpoint_weight(cv) > 0.0; }
+  bool has_setpoints() const { return (setpoint_weight.array() > 0.0).any(); }
+  /// A target optimizer chooses the targets of the MVs.
+  bool has_targets() const { return (target_weight.array() > 0.0).any(); }
+  bool has_soft_limit(Eigen::Index cv) const;
+  bool has_soft_limits() const;
 
   /// Throws InputError for sizes, signs or horizons that make no controller.
   void validate(Eigen::Index cv_count, Eigen::Index mv_count) const;

@@ -135,7 +135,7 @@ TEST_CASE("without noise and mismatch the basis case has y0 = y and every index 
 
 TEST_CASE("a basis case without excitation fails its self-check and says which CV") {
   Study study = find_study("chapter6");
-  for (DisturbanceStep& step : study.simulation.steps)
+  for (SignalStep& step : study.simulation.steps)
     step.level *= 0.02;
   const BasisCase basis = run_basis_case(study, kFactory);
   CHECK_FALSE(basis.healthy);

@@ -89,7 +89,7 @@ TEST_CASE("campaign: Ipopt in worker processes is reproducible too") {
 
 TEST_CASE("campaign: an unhealthy basis case stops it, unless it is allowed") {
   Study study = find_study("chapter6");
-  for (DisturbanceStep& step : study.simulation.steps)
+  for (SignalStep& step : study.simulation.steps)
     step.level *= 0.02;
   CampaignOptions options;
   options.solver = "active-set";

@@ -114,7 +114,7 @@ AuditDifference difference(Numbers& numbers) {
   return {numbers.index(2) == 1, numbers.next(), numbers.next()};
 }
 
-BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<ActiveLimit>& active) {
+BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<ActiveReference>& active) {
   const Eigen::Index ny = study.cv_count();
   const Eigen::Index samples = study.simulation.samples;
   BasisCase made;
@@ -142,8 +142,8 @@ Campaign made_up_campaign() {
   campaign.study.seed = 18446744073709551615U;  // not the one in the text, and above the signed range
   campaign.info = {"1.2.3", "abc+", "2015-04-01T12:00:00Z", "mpmbench run \xC3\xBC.toml", "ipopt", 0.1, 3,
                    0.25,    0.7};
-  campaign.basis = basis_case(numbers, campaign.study, {{1, true}, {0, false}});
-  campaign.basis.sensitivity_fixed = NominalSensitivity{2, {{0, false}}, {numbers.matrix(2, 17)}};
+  campaign.basis = basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}, {0, ReferenceKind::setpoint}});
+  campaign.basis.sensitivity_fixed = NominalSensitivity{2, {{0, ReferenceKind::lower_limit}}, {numbers.matrix(2, 17)}};
   for (std::int64_t index = 0; index < 40; ++index)
     campaign.records.push_back(record(numbers, campaign.study, index));
   for (std::int64_t step = 0; step < 5; ++step)

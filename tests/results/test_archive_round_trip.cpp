@@ -31,11 +31,11 @@ std::string basis_bytes(const BasisCase& basis) {
   return to_bytes(record);
 }
 
-void check_same_limits(const std::vector<ActiveLimit>& a, const std::vector<ActiveLimit>& b) {
+void check_same_limits(const std::vector<ActiveReference>& a, const std::vector<ActiveReference>& b) {
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     CHECK(a[i].cv == b[i].cv);
-    CHECK(a[i].upper == b[i].upper);
+    CHECK(a[i].kind == b[i].kind);
   }
 }
 

@@ -65,8 +65,8 @@ TEST_CASE("signals: disturbance steps, noise and G_d v are what the study says")
   Study study = find_study("chapter6");
   const Eigen::MatrixXd d = measured_disturbances(study);
   CHECK(d.col(0).isZero());
-  for (const DisturbanceStep& step : study.simulation.steps)
-    CHECK(d(step.md, step.sample) == step.level);
+  for (const SignalStep& step : study.simulation.steps)
+    CHECK(d(step.variable, step.sample) == step.level);
 
   study.simulation.samples = 4000;
   const Eigen::MatrixXd noise = measurement_noise(study, 5);

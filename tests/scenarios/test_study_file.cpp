@@ -60,7 +60,7 @@ TEST_CASE("the steps of a study come in the order of time", "[study_file]") {
   CHECK(study.simulation.steps[0].level == 0.5);
   CHECK(study.simulation.steps[1].sample == 30);
   CHECK(study.simulation.steps[1].level == -0.25);
-  CHECK(study.simulation.steps[0].md == 0);
+  CHECK(study.simulation.steps[0].variable == 0);
 }
 
 TEST_CASE("keys that are left out have the defaults of Study", "[study_file]") {

@@ -33,13 +33,13 @@ TEST_CASE("the simulation is checked", "[study_file]") {
       {"sample = 30", "sample = -1", "sample = -1",
        "simulation.step[0].sample: found -1; allowed: a whole number from 0 to 59"},
       {"sample = 30", "sample = 10", "sample = 10\nlevel = 0.5",
-       "simulation.step[1].sample: found 10 for a second step of this MD; allowed: one step a sample"},
+       "simulation.step[1].sample: found 10 for a second step of this variable; allowed: one step a sample"},
       {"md = \"drain\"", "md = \"hot\"", "md = \"hot\"",
        "simulation.step[0].md: found 'hot'; allowed: drain"},
       {"level = 0.5", "level = inf", "level = inf",
        "simulation.step[1].level: found inf; allowed: a finite number"},
       {"deviation = 0.01", "deviation = 0.01\nrandom_steps = {}", "[simulation]",
-       "simulation: found both step and random_steps; allowed: exactly one of the two"},
+       "simulation: found both step of an MD and random_steps; allowed: exactly one of the two"},
   });
 }
 
@@ -50,7 +50,8 @@ TEST_CASE("a plant with measured disturbances must be excited", "[study_file]") 
   const std::string line = std::to_string(line_of(text, "[simulation]"));
   CHECK(refusal(text) ==
         "s.toml:" + line +
-            ": simulation: found neither step nor random_steps; allowed: exactly one of the two");
+            ": simulation: found neither step nor random_steps; allowed: steps of setpoints or MDs, or "
+            "random_steps");
   CHECK(refusal(replaced(text, "= 0.01", "= 0.01\nstep = []")).find("simulation.step: found a list of 0") !=
         std::string::npos);
   CHECK(refusal(replaced(text, "= 0.01", "= 0.01\nrandom_steps.interval.uniform = [0, 9]")) ==

@@ -55,7 +55,7 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
       {"cost = 6", "cost = 6\nzzz = 1", "zzz",
        "controller.mv.cold: found unknown key 'zzz'; allowed: cost, move_suppression, target_weight, hard"},
       {"level = -0.25", "level = -0.25\nmv = 'hot'", "mv = 'hot'",
-       "simulation.step[0]: found unknown key 'mv' (nearest: 'md'); allowed: md, sample, level"},
+       "simulation.step[0]: found unknown key 'mv' (nearest: 'md'); allowed: md, cv, sample, level"},
       {"dead_time = 2", "dead_tim = 2", "dead_tim = 2",
        "plant.channel[1]: found unknown key 'dead_tim' (nearest: 'dead_time'); allowed: cv, input, gain, "
        "time_constant, numerator, denominator, dead_time"},
@@ -79,8 +79,8 @@ TEST_CASE("missing tables and keys are refused at the line of their table", "[st
        "controller.sample_time: found nothing; allowed: a number > 0"},
       {"[controller.cv.heat]\nslack_weight = 9\nsoft = [-inf, 0.5]\nhard = [-inf, 3]\n", "",
        "[controller.cv.level]", "controller.cv.heat: found nothing; allowed: a table"},
-      {"target_weight = 0\n", "", "[controller.mv.cold]",
-       "controller.mv.cold.target_weight: found nothing; allowed: a number >= 0"},
+      {"cost = -1\n", "", "[controller.mv.hot]",
+       "controller.mv.hot.cost: found nothing; allowed: a finite number"},
       {"soft = [0, 1]\n", "", "[controller.cv.level]",
        "controller.cv.level.soft: found nothing; allowed: [low, high] with low <= high; -inf and inf for no "
        "limit"},

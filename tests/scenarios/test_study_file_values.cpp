@@ -131,10 +131,9 @@ TEST_CASE("the numbers of the controller are checked", "[study_file]") {
        "controller.mv.hot.move_suppression: found -2; allowed: a number >= 0"},
       {"target_weight = 3", "target_weight = inf", "target_weight = inf",
        "controller.mv.hot.target_weight: found inf; allowed: a number >= 0"},
-      {"move_suppression = 7", "move_suppression = 0", "[controller.mv.cold]",
-       "controller.mv.cold: found move_suppression and target_weight both 0; allowed: at least one > 0, or "
-       "the "
-       "moves are not determined"},
+      {"move_suppression = 7", "move_suppression = 0", "[controller]",
+       "controller: move_suppression[1] and target_weight[1]: found both 0; allowed: at least one > 0: "
+       "without setpoints the moves would not be determined"},
       {"slack_weight = 8", "slack_weight = 0", "slack_weight = 0",
        "controller.cv.level.slack_weight: found 0; allowed: a number > 0"},
   });

@@ -10,6 +10,7 @@ RangeMpcOptions p1_options() {
   options.mv_cost = Eigen::Vector3d(8, 3, 4);
   options.target_weight = Eigen::Vector3d::Constant(1);
   options.move_suppression = Eigen::Vector3d::Constant(25);
+  options.setpoint_weight = Eigen::VectorXd::Zero(7);
   options.slack_weight = Eigen::VectorXd::Constant(7, 100);
   options.mv_hard = {Eigen::Vector3d::Constant(-0.5), Eigen::Vector3d::Constant(0.5)};
   options.cv_hard = {Eigen::VectorXd::Constant(7, -1), Eigen::VectorXd::Constant(7, 1)};

@@ -17,6 +17,7 @@ RangeMpcOptions small_options() {
   options.control_horizon = 4;
   options.move_suppression = Eigen::Vector2d(3, 5);
   options.target_weight = Eigen::Vector2d(1, 0.5);
+  options.setpoint_weight = Eigen::Vector2d::Zero();
   options.slack_weight = Eigen::Vector2d(20, 30);
   options.mv_hard = {Eigen::Vector2d(-2, -2), Eigen::Vector2d(2, 2)};
   options.cv_hard = Limits::none(2);

@@ -161,6 +161,7 @@ TEST_CASE("the weight of a slack per CV counts once a sample", "[range_mpc]") {
   options.prediction_horizon = 7;
   options.move_suppression = 2 * one;
   options.target_weight = 0.5 * one;
+  options.setpoint_weight = 0 * one;
   options.slack_weight = 3 * one;
   options.slack_form = form;
   options.mv_hard = {-4 * one, 4 * one};

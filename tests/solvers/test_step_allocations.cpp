@@ -18,6 +18,9 @@ TEST_CASE("a step of the closed loop of P1 allocates nothing, whatever disturbs 
   const auto slack = GENERATE(SlackForm::per_sample, SlackForm::per_cv);
   RangeMpcOptions options = samples::p1_options();
   options.slack_form = slack;
+  const bool setpoints = GENERATE(false, true);
+  if (setpoints)
+    options.setpoint_weight.head(2).setConstant(2.0);
   const PlantModel p1 = benchmark_plant("shell-7x3");
   const auto mv_count = static_cast<Eigen::Index>(p1.mvs.size());
   RangeMpc controller(p1.G, mv_count, options, qp_solver_factory(back_end));
@@ -30,6 +33,7 @@ TEST_CASE("a step of the closed loop of P1 allocates nothing, whatever disturbs 
   plant.reset(input);
   Eigen::VectorXd y(p1.G.rows());
 
+  Eigen::VectorXd y_set = Eigen::VectorXd::Zero(7);
   int solved = 0;
   const std::size_t before = allocation_count();
   for (int k = 0; k < 150; ++k) {
@@ -38,6 +42,9 @@ TEST_CASE("a step of the closed loop of P1 allocates nothing, whatever disturbs 
     for (Eigen::Index i = 0; i < y.size();
          ++i)  // noise, and a slow wave that drives some CVs over their limits
       y(i) += 0.01 * std::sin(3.7 * k + 1.3 * static_cast<double>(i)) + 0.15 * std::sin(0.05 * k);
+    y_set.head(2).setConstant(k < 70 ? 0.1 : 0.2);
+    if (setpoints)
+      controller.set_setpoints(y_set);
     const ControlMove& move = controller.step(y, d);
     solved += move.status == ControlStatus::ok ? 1 : 0;
     input << move.u, d;

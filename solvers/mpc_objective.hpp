@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "solvers/qp.hpp"
+#include "solvers/range_mpc_options.hpp"
+
+// The terms of the objective of a model predictive controller. Each is a sum of squares over the horizon in
+// the planned MV positions relative to the last one, x = (v(0), ..., v(Hc-1)), v(i) = u(k+i) - u(k-1), and
+// adds its part to the Hessian and to the gradient of 1/2 x'Hx + g'x. A controller is the sum of those it
+// needs: (2.26), (3.8) and (3.30) have moves and setpoints, (3.33) moves alone, (6.20) moves and targets.
+// Weights are in the convention of the options.
+
+namespace mpm {
+
+/// What the terms refer to at one sample.
+///
+/// | symbol    | member   | shape   | meaning                                          |
+/// |-----------|----------|---------|--------------------------------------------------|
+/// | y_free    | free     | ny x Hp | free response, output bias included              |
+/// | u(k-1)    | previous | nu      | MVs that act until this sample                   |
+/// | u_target  | target   | nu      | targets of the optimizer                         |
+/// | y_set     | setpoint | ny      | setpoints, held over the horizon                 |
+struct MpcSample {
+  const Eigen::Ref<const Eigen::MatrixXd>& free;
+  const Eigen::Ref<const Eigen::VectorXd>& previous;
+  const Eigen::Ref<const Eigen::VectorXd>& target;
+  const Eigen::Ref<const Eigen::VectorXd>& setpoint;
+};
+
+/// sum_{i=0}^{Hc-1} sum_j Q_du,j |v_j(i) - v_j(i-1)|^2,  v(-1) = 0. Constant; it adds nothing to the
+/// gradient.
+class MoveSuppression {
+ public:
+  explicit MoveSuppression(const RangeMpcOptions& options);
+  void add_hessian(Eigen::MatrixXd& hessian) const;
+
+ private:
+  int control_horizon_;
+  Eigen::VectorXd weight_;
+};
+
+/// sum_{i=0}^{Hp-1} sum_j Q_u,j |u_j(k+i) - u_target,j|^2,  u held after the control horizon.
+class TargetTracking {
+ public:
+  explicit TargetTracking(const RangeMpcOptions& options);
+  void add_hessian(Eigen::MatrixXd& hessian) const;
+  void add_gradient(const MpcSample& sample, Eigen::VectorXd& gradient) const;
+
+ private:
+  double samples_held(int i) const;
+
+  int prediction_horizon_, control_horizon_;
+  Eigen::VectorXd weight_;
+};
+
+/// sum_{l=1}^{Hp} sum_j Q_y,j |y_j(k+l) - y_set,j|^2 over the CVs with a setpoint weight above 0. The sums of
+/// (2.26) and (6.20) begin at the sample k itself, which no move can change any more.
+class SetpointTracking {
+ public:
+  /// `forced` are the rows of forced_response(): cv * Hp + l - 1.
+  SetpointTracking(const RangeMpcOptions& options, const RowMajorMatrix& forced);
+  void add_hessian(Eigen::MatrixXd& hessian) const;
+  void add_gradient(const MpcSample& sample, Eigen::VectorXd& gradient) const;
+
+ private:
+  struct TrackedCv {
+    Eigen::Index cv;
+    double weight;
+    RowMajorMatrix forced;  ///< Hp x (nu Hc)
+  };
+  std::vector<TrackedCv> tracked_;
+};
+
+}  // namespace mpm
