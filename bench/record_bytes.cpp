@@ -37,7 +37,7 @@ void transfer_record(Stream& stream, Record& record) {
   statistics(record.solver);
   transfer_optional(stream, record.loop, [&](auto& loop) {
     all(loop.trajectory.status, loop.trajectory.samples_done, loop.trajectory.y, loop.trajectory.u,
-        loop.trajectory.u_target, loop.trajectory.d, loop.y_sim);
+        loop.trajectory.u_target, loop.trajectory.d, loop.trajectory.y_set, loop.y_sim);
     statistics(loop.trajectory.solver);
   });
 }

@@ -20,9 +20,9 @@ TEST_CASE("operating point of P1: y1, y2 at the lower limit, y7 at the upper one
   study.sensitivity.active_cvs.clear();  // found, not told
   const OperatingPoint point = operating_point(study, kFactory);
   REQUIRE(point.active.size() == 3);
-  CHECK((point.active[0].cv == 0 && !point.active[0].upper));
-  CHECK((point.active[1].cv == 1 && !point.active[1].upper));
-  CHECK((point.active[2].cv == 6 && point.active[2].upper));
+  CHECK(point.active[0] == ActiveReference{0, ReferenceKind::lower_limit});
+  CHECK(point.active[1] == ActiveReference{1, ReferenceKind::lower_limit});
+  CHECK(point.active[2] == ActiveReference{6, ReferenceKind::upper_limit});
   CHECK(point.fixed_mvs.empty());
 }
 

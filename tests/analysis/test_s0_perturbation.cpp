@@ -35,7 +35,7 @@ Eigen::RowVectorXd wandering(std::int64_t index) {
 NominalSensitivity second_order_sensitivity(double tau, double xi) {
   Eigen::MatrixXd response = Eigen::MatrixXd::Zero(7, 150);
   response.row(1) = second_order_response({tau, xi}, 4.0, 150);
-  return {7, {{1, false}}, {response}};
+  return {7, {{1, ReferenceKind::lower_limit}}, {response}};
 }
 
 Study study_with(const std::vector<double>& multipliers) {
@@ -209,7 +209,8 @@ TEST_CASE("a CV that is at no limit cannot be the one whose S0 is modified") {
   Study study = find_study("chapter6");
   study.s0_perturbation.cvs = {2};
   CHECK_THROWS_WITH(run_basis_case(study, kFactory),
-                    "s0_perturbation.cvs: found 'y3', which is at no soft limit; allowed: CVs at an active "
+                    "s0_perturbation.cvs: found 'y3', which is at no setpoint and no soft limit; allowed: "
+                    "CVs at a setpoint or an active "
                     "soft limit");
 }
 

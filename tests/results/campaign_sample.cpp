@@ -1,14 +1,33 @@
 #include "tests/results/campaign_sample.hpp"
 
 #include <cmath>
+#include <string>
 
+#include "scenarios/study_file.hpp"
 #include "scenarios/study_library.hpp"
 
 using namespace mpm;
 
+namespace {
+
+std::string after(std::string text, const std::string& line, const std::string& inserted) {
+  return text.insert(text.find(line) + line.size(), inserted);
+}
+
+/// The chapter 6 study with a setpoint, which is stepped, beside the range of y1: an archive has records of
+/// setpoints only then.
+Study study_with_setpoint() {
+  std::string text = after(find_study("chapter6").source, "[controller.cv.y1]\n", "setpoint_weight = 10.0\n");
+  for (const char* step : {"sample = 30\nlevel = 0.2", "sample = 200\nlevel = 0.05"})
+    text = after(text, "level = 0.4\n", std::string("\n[[simulation.step]]\ncv = \"y1\"\n") + step + "\n");
+  return parse_study(text, "chapter6");
+}
+
+}  // namespace
+
 Campaign campaign_sample() {
   Campaign campaign;
-  campaign.study = find_study("chapter6");
+  campaign.study = study_with_setpoint();
   campaign.study.seed = 12345678901234567890ULL;  // not the one in the file, and above the signed range
   const QpSolverFactory factory = qp_solver_factory("active-set");
   campaign.basis = run_basis_case(campaign.study, factory);

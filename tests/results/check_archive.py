@@ -113,7 +113,7 @@ def check_xarray(path, variables):
     with xarray.open_dataset(path, group="nominal") as nominal:
         assert nominal.lag[0] == 1 and nominal.time[0] == 4 and nominal.time.dims == ("lag",)
         assert "time" in nominal.t0_step_response.coords
-        assert list(nominal.active_cv.values) == ["y1", "y2", "y7"] and list(nominal.side.values) == [0, 0, 1]
+        assert list(nominal.active_cv.values) == ["y1", "y2", "y7"] and list(nominal.side.values) == [2, 0, 1]
     with xarray.open_dataset(path, group="aggregate") as aggregate:
         assert aggregate.reference.sel(name="infeasible") == 0.04
         assert list(aggregate.kind.values) == ["mpm", "ud", "mpm_ud"]

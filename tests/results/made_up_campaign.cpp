@@ -70,6 +70,12 @@ Diagnosis diagnosis(Numbers& numbers, Eigen::Index ny) {
   return made;
 }
 
+/// The small study with a setpoint beside the range of its first CV.
+std::string with_setpoint(std::string text) {
+  const std::string weight = "slack_weight = 8";
+  return text.insert(text.find(weight), "setpoint_weight = 5\n");
+}
+
 Trajectory trajectory(Numbers& numbers, const Study& study, ControlStatus status) {
   const Eigen::Index samples = study.simulation.samples;
   return {status,
@@ -78,6 +84,7 @@ Trajectory trajectory(Numbers& numbers, const Study& study, ControlStatus status
           numbers.matrix(study.mv_count(), samples),
           numbers.matrix(study.mv_count(), samples),
           numbers.matrix(study.md_count(), samples),
+          study.controller.has_setpoints() ? numbers.matrix(study.cv_count(), samples) : Eigen::MatrixXd(),
           solver(numbers)};
 }
 
@@ -137,13 +144,16 @@ BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<Act
 Campaign made_up_campaign() {
   Numbers numbers;
   Campaign campaign;
-  campaign.study =
-      parse_study(small_study() + "\n[aggregate]\nbootstrap_replications = 200\n" + kS0Perturbation, "small");
+  campaign.study = parse_study(
+      with_setpoint(small_study()) + "\n[aggregate]\nbootstrap_replications = 200\n" + kS0Perturbation,
+      "small");
   campaign.study.seed = 18446744073709551615U;  // not the one in the text, and above the signed range
   campaign.info = {"1.2.3", "abc+", "2015-04-01T12:00:00Z", "mpmbench run \xC3\xBC.toml", "ipopt", 0.1, 3,
                    0.25,    0.7};
-  campaign.basis = basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}, {0, ReferenceKind::setpoint}});
-  campaign.basis.sensitivity_fixed = NominalSensitivity{2, {{0, ReferenceKind::lower_limit}}, {numbers.matrix(2, 17)}};
+  campaign.basis =
+      basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}, {0, ReferenceKind::setpoint}});
+  campaign.basis.sensitivity_fixed =
+      NominalSensitivity{2, {{0, ReferenceKind::lower_limit}}, {numbers.matrix(2, 17)}};
   for (std::int64_t index = 0; index < 40; ++index)
     campaign.records.push_back(record(numbers, campaign.study, index));
   for (std::int64_t step = 0; step < 5; ++step)
