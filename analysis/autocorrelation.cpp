@@ -41,7 +41,8 @@ Autocorrelation autocorrelation(const Eigen::Ref<const Eigen::VectorXd>& signal,
   result.white_band = z / std::sqrt(static_cast<double>(n));
   const Eigen::VectorXd deviation = signal.array() - centre.value_or(signal.mean());
   const double power = deviation.squaredNorm();
-  if (power <= static_cast<double>(n) * variance_floor(signal)) {
+  const bool still = !centre && stands_still(signal);
+  if (still || power <= static_cast<double>(n) * variance_floor(signal)) {
     result.values = Eigen::VectorXd::Constant(max_lag + 1, std::numeric_limits<double>::quiet_NaN());
     result.bartlett_band = result.values;
     return result;

@@ -5,17 +5,6 @@
 #include "analysis/variance.hpp"
 
 namespace mpm {
-namespace {
-
-Eigen::VectorXd variance_indices(const Eigen::Ref<const Eigen::MatrixXd>& y,
-                                 const Eigen::Ref<const Eigen::MatrixXd>& reference) {
-  Eigen::VectorXd index(y.rows());
-  for (Eigen::Index i = 0; i < y.rows(); ++i)
-    index(i) = variance_index(y.row(i).transpose(), reference.row(i).transpose());
-  return index;
-}
-
-}  // namespace
 
 WindowScan window_scan(const Study& study) {
   const double hp = study.controller.prediction_horizon;

@@ -36,6 +36,10 @@ void require_confidence(double confidence) {
   }
 }
 
+bool stands_still(const Eigen::Ref<const Eigen::VectorXd>& signal) {
+  return signal.size() == 0 || (signal.array() == signal[0]).all();
+}
+
 double variance_floor(const Eigen::Ref<const Eigen::VectorXd>& signal) {
   if (signal.size() == 0) {
     return 0.0;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include <Eigen/Core>
 
 namespace mpm {
@@ -34,11 +37,30 @@ double variance_ratio(double numerator, double denominator);
 double variance_index(const Eigen::Ref<const Eigen::VectorXd>& y,
                       const Eigen::Ref<const Eigen::VectorXd>& y_ref);
 
-/// Variance index about a setpoint, Ivar = var(y - y_set)/var(y_ref - y_set) (3.24), with one setpoint a
-/// sample. Zero variances as in the index about the means.
+/// Variance index about a setpoint, Ivar = var(y - y_set)/var(y_ref - y_set): (3.24) for y_ref = y0, (4.14)
+/// for y_ref = y0_diag, with one setpoint a sample. `var` of a control error is its mean square: about its
+/// own mean an offset would not count, and under a constant setpoint (A2.3) would be the same as (A2.4). Zero
+/// variances as in the index about the means.
 /// @throws InputError for no sample, different lengths or values that are not finite
 double variance_index(const Eigen::Ref<const Eigen::VectorXd>& y,
                       const Eigen::Ref<const Eigen::VectorXd>& y_ref,
                       const Eigen::Ref<const Eigen::VectorXd>& y_set);
+
+/// Setpoints of the CVs of a loop: entry i has one value a sample for a CV at a setpoint, and none for a CV
+/// that is kept in a range.
+using SetpointTrajectories = std::vector<std::optional<Eigen::VectorXd>>;
+
+/// Variance index of each CV: about its setpoint if it has one, (3.24), (A2.3), about the means if not,
+/// (6.7), (A2.4).
+///
+/// | symbol | meaning | shape | unit |
+/// |--------|---------|-------|------|
+/// | y, y_ref | measured output and its reference | ny x N | those of the CVs |
+/// | y_set  | setpoints; empty when no CV has one | ny | the same |
+///
+/// @throws InputError for different shapes, a number of setpoints other than 0 or ny, and as `variance_index`
+Eigen::VectorXd variance_indices(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& y_ref,
+                                 const SetpointTrajectories& y_set = {});
 
 }  // namespace mpm

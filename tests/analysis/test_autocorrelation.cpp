@@ -81,6 +81,7 @@ TEST_CASE("a signal that stands still has no autocorrelation") {
   CHECK(acf.values.array().isNaN().all());
   CHECK(acf.bartlett_band.array().isNaN().all());
   CHECK(acf.values.size() == 4);
+  CHECK(std::isnan(autocorrelation(VectorXd::Constant(400, 0.3), 3).values[1]));  // its mean is not 0.3
   // About another centre it has: a constant deviation.
   CHECK(autocorrelation(VectorXd::Constant(50, 0.1), 3, 0.95, 0.0).values[1] == Approx(49.0 / 50.0));
 }

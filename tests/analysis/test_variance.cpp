@@ -62,6 +62,14 @@ TEST_CASE("variance indices without a denominator") {
   CHECK(std::isnan(mpm::variance_ratio(0.0, 0.0)));
 }
 
+TEST_CASE("a long signal that stands still has no variance, although its mean is rounded") {
+  for (const Eigen::Index samples : {100, 400, 5000}) {
+    const VectorXd still = VectorXd::Constant(samples, 0.3);
+    CHECK(variance(still) == 0.0);
+    CHECK(std::isnan(variance_index(still, still)));
+  }
+}
+
 TEST_CASE("variances refuse impossible input") {
   using mpm::InputError;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -77,4 +85,25 @@ TEST_CASE("variances refuse impossible input") {
   CHECK_THROWS_AS(variance_index(kSmall, bad), InputError);
   CHECK_THROWS_AS(variance_index(kSmall, kSmall.head(3), kSmall), InputError);
   CHECK_THROWS_AS(variance_index(kSmall, kSmall, kSmall.head(3)), InputError);
+}
+
+TEST_CASE("variance indices of a loop with setpoints and ranges") {
+  // An offset of 5 counts about a setpoint (3.24), not about the mean (6.7).
+  Eigen::MatrixXd y_ref(2, 100);
+  y_ref.row(0) = white_noise(100, 4).transpose();
+  y_ref.row(1) = white_noise(100, 5).transpose();
+  const Eigen::MatrixXd y = y_ref.array() + 5.0;
+  const VectorXd about_means = mpm::variance_indices(y, y_ref);
+  CHECK(about_means[0] == Approx(1.0).epsilon(1e-12));
+  CHECK(about_means[1] == Approx(1.0).epsilon(1e-12));
+  const VectorXd setpoint = VectorXd::LinSpaced(100, -1.0, 1.0);
+  const VectorXd mixed = mpm::variance_indices(y, y_ref, {setpoint, std::nullopt});
+  const VectorXd error = y.row(0).transpose() - setpoint;
+  const VectorXd error_ref = y_ref.row(0).transpose() - setpoint;
+  CHECK(mixed[0] == Approx(error.squaredNorm() / error_ref.squaredNorm()).epsilon(1e-13));
+  CHECK(mixed[1] == about_means[1]);
+  CHECK_THROWS_AS(mpm::variance_indices(y, y_ref.leftCols(99)), mpm::InputError);
+  CHECK_THROWS_AS(mpm::variance_indices(y, y_ref.topRows(1)), mpm::InputError);
+  CHECK_THROWS_AS(mpm::variance_indices(y, y_ref, {setpoint}), mpm::InputError);
+  CHECK_THROWS_AS(mpm::variance_indices(y, y_ref, {setpoint.head(99), std::nullopt}), mpm::InputError);
 }
