@@ -4,29 +4,10 @@
 
 #include <Eigen/Core>
 
+#include "analysis/moment_scatter.hpp"
+#include "analysis/window_scan.hpp"
+
 namespace mpm {
-
-/// The window lengths of a scan, in samples: shortest, shortest + stride, ... up to `longest` at most.
-struct WindowScan {
-  int shortest = 0;
-  int longest = 0;
-  int stride = 1;
-
-  /// Number of window lengths, n_MW.
-  int count() const { return (longest - shortest) / stride + 1; }
-
-  /// @throws InputError unless 3 <= shortest <= longest and 1 <= stride
-  void validate() const;
-};
-
-/// Every length from 0.5 Hp to 2 Hp, the scan of the thesis (6.13). Half a sample is rounded up, as there:
-/// Hp = 11 is scanned from 6 to 22.
-/// @throws InputError when the prediction horizon is below 5 samples
-WindowScan default_window_scan(int prediction_horizon);
-
-/// A window length takes part in a mean only with this many pairs: below it, chance alone makes a
-/// |correlation| of about 0.18 = sqrt(2/(20 pi)), above the threshold 0.1 of the indicator.
-inline constexpr Eigen::Index kFewestCorrelatedPairs = 20;
 
 /// How alike the distributions of nominal output and nominal error change with time.
 ///
@@ -49,12 +30,37 @@ struct MpmIndicator {
   int used = 0;
 };
 
+/// The means of `MpmIndicator`, added up window length by window length.
+class MpmMeans {
+ public:
+  /// Takes the scatter of one window length into the means.
+  void add(const PerStatistic<CentredSums>& sums);
+  /// The indicator of what was added so far.
+  MpmIndicator result() const;
+
+ private:
+  /// The mean of those |correlations| that exist.
+  class Magnitude {
+   public:
+    void add(const CentredSums& sums);
+    int count() const { return count_; }
+    double value() const;
+
+   private:
+    double sum_ = 0.0;
+    int count_ = 0;
+  };
+
+  PerStatistic<Magnitude> co_;
+  int scanned_ = 0;
+};
+
 /// Computes `MpmIndicator` for signals of one length; holds the memory for it, so that a computation
 /// allocates nothing. One scanner a thread.
 class MpmScanner {
  public:
   /// @throws InputError when `samples` is below 3 + kFewestCorrelatedPairs, the shortest usable record
-  explicit MpmScanner(Eigen::Index samples);
+  explicit MpmScanner(Eigen::Index samples) : scatter_(samples) {}
 
   /// The indicators of one controlled variable, (6.13) to (6.15) with the signals that the text means (the
   /// print of (6.13) has lost the subscript diag):
@@ -80,21 +86,7 @@ class MpmScanner {
                     const Eigen::Ref<const Eigen::VectorXd>& e0_diag, const WindowScan& windows);
 
  private:
-  /// Skewness and kurtosis of one signal in the windows of one length.
-  struct Moments {
-    Eigen::VectorXd skewness;
-    Eigen::VectorXd kurtosis;
-  };
-
-  double raw_correlation(const Eigen::VectorXd& z_y0, const Eigen::VectorXd& z_e0,
-                         Eigen::Index positions) const;
-  double difference_correlation(const Eigen::VectorXd& z_y0, const Eigen::VectorXd& z_e0,
-                                Eigen::Index positions);
-
-  Moments y0_;
-  Moments e0_;
-  Eigen::VectorXd y0_difference_;
-  Eigen::VectorXd e0_difference_;
+  MomentScatter scatter_;
 };
 
 /// `MpmScanner::scan` for a single use.
