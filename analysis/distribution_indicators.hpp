@@ -90,9 +90,9 @@ class DistributionScanner {
   /// | y       | measured output | N | any |
   /// | y0      | nominal output, chapter 2 | N | the same |
   /// | y0_diag | nominal diagonal output, chapters 5 and 6 | N | the same |
-  /// | window  | the one window length of chapter 2, and of the ellipses of chapter 5 (there the prediction
-  ///   horizon) | - | samples |
+  /// | window  | one window length, for chapter 2 and for the ellipses of chapter 5 | - | samples |
   ///
+  /// The ellipses of the thesis have the prediction horizon as their window length (section 5.3.1).
   /// Nominal errors are e0 = y0 - y (2.21), (5.4) and e0_diag = y0_diag - y (5.11). Chapter 3 has y - y0:
   /// that leaves every kurtosis, changes the sign of every skewness, and so changes no indicator.
   /// @throws InputError as `MomentScatter::scan`

@@ -14,9 +14,9 @@ namespace mpm {
 ///
 /// | symbol | member | meaning | unit |
 /// |--------|--------|---------|------|
-/// | alpha, gamma | angle | from the x axis to the eigenvector of the largest eigenvalue, above -90 up to 90
-/// | degrees | | a      | major  | square root of the largest eigenvalue | that of x and y | | b      | minor
-/// | square root of the smallest eigenvalue | the same |
+/// | alpha, gamma | angle | from the x axis to the major axis, above -90 up to 90 | degrees |
+/// | a      | major  | square root of the largest eigenvalue | that of x and y |
+/// | b      | minor  | square root of the smallest eigenvalue | the same |
 ///
 /// The angle has the sign of the correlation: with y - y0 in place of y0 - y (5.4) it changes its sign, and
 /// magnitudes stay. Where a = b it says nothing.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include <Eigen/Core>
 
@@ -25,6 +27,24 @@ inline Eigen::VectorXd autoregression(Eigen::Index samples, double a, std::uint6
     signal[k] += a * signal[k - 1];
   }
   return signal;
+}
+
+/// The last `samples` values of a first-order autoregression that has forgotten its start.
+inline Eigen::VectorXd settled_autoregression(Eigen::Index samples, double a, std::uint64_t number) {
+  return autoregression(samples + 500, a, number).tail(samples);
+}
+
+/// Second-order autoregression under unit white noise whose poles give oscillations of `period` samples that
+/// decay by the factor `half_period_decay` over half of it, after it has forgotten its start.
+inline Eigen::VectorXd settled_second_order(Eigen::Index samples, double half_period_decay, double period,
+                                            std::uint64_t number) {
+  const double radius = std::pow(half_period_decay, 2.0 / period);
+  const double cosine = std::cos(2.0 * std::numbers::pi / period);
+  Eigen::VectorXd signal = white_noise(samples + 500, number);
+  for (Eigen::Index k = 2; k < signal.size(); ++k) {
+    signal[k] += 2.0 * radius * cosine * signal[k - 1] - radius * radius * signal[k - 2];
+  }
+  return signal.tail(samples);
 }
 
 }  // namespace mpm::testing
