@@ -29,24 +29,31 @@ CentredSums centred_sums(const Signal& x, const Signal& y) {
     throw InputError("lengths of the members of a correlation", fmt::format("{} and {}", x.size(), y.size()),
                      "equal lengths");
   }
-  CentredSums sums;
+  Eigen::Index pairs = 0;
+  double mean_x = 0.0;
+  double mean_y = 0.0;
   for_each_finite_pair(x, y, [&](double a, double b) {
-    ++sums.pairs;
-    sums.mean_x += a;
-    sums.mean_y += b;
+    ++pairs;
+    mean_x += a;
+    mean_y += b;
   });
-  if (sums.pairs == 0) {
-    return sums;
+  if (pairs == 0) {
+    return {};
   }
-  const double n = static_cast<double>(sums.pairs);
-  sums.mean_x /= n;
-  sums.mean_y /= n;
+  const double n = static_cast<double>(pairs);
+  mean_x /= n;
+  mean_y /= n;
+
+  // Local sums stay in registers; those of the returned struct would not.
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
   for_each_finite_pair(x, y, [&](double a, double b) {
-    sums.xx += (a - sums.mean_x) * (a - sums.mean_x);
-    sums.xy += (a - sums.mean_x) * (b - sums.mean_y);
-    sums.yy += (b - sums.mean_y) * (b - sums.mean_y);
+    xx += (a - mean_x) * (a - mean_x);
+    xy += (a - mean_x) * (b - mean_y);
+    yy += (b - mean_y) * (b - mean_y);
   });
-  return sums;
+  return {pairs, mean_x, mean_y, xx, xy, yy};
 }
 
 double pearson_correlation(const Signal& x, const Signal& y, Eigen::Index fewest_pairs, double resolution) {
