@@ -1,0 +1,67 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// How a number of a table becomes a verdict.
+enum class RuleKind {
+  outside,     ///< outside the band
+  any_above,   ///< some number of the row, of those that the rule is for, is above the threshold
+  any_within,  ///< some number of the row, of those that the rule is for, lies within the band
+  rank,        ///< its place among the rows, from the smallest number of the column on
+};
+
+/// What is concluded from the quantities of a table, and how it is called.
+struct VerdictRule {
+  std::vector<std::string> quantities;
+  RuleKind kind = RuleKind::outside;
+  double lower = 0.0, upper = 0.0;  ///< the band; of any_above the threshold is `lower`
+  std::string yes, no;              ///< the two verdicts, such as "flagged" and "not flagged"
+  std::string source;               ///< where the thesis says so
+};
+
+/// One cell of a table: a quantity of one CV in one scenario, and what the thesis has for it.
+struct TableCell {
+  std::string cv;
+  std::string quantity;
+  std::optional<double> thesis;
+};
+
+/// One row: the loop of one scenario under one variant of the study.
+struct TableRow {
+  std::string label;
+  std::string variant;   ///< empty: the study as it is
+  std::string scenario;  ///< the scenario of the study; empty: the basis case
+  std::vector<TableCell> cells;
+};
+
+/// A table of the thesis, and the study that reproduces it.
+struct ThesisTable {
+  std::string number;  ///< "4.5"
+  int chapter = 0;
+  std::string title;
+  std::string note;                      ///< what was chosen where the thesis gives no numbers; may be empty
+  std::map<std::string, Study> studies;  ///< by the name of the variant; "" is the study as it is
+  std::vector<std::string> heads;        ///< of the columns
+  std::vector<TableRow> rows;
+  std::vector<VerdictRule> rules;
+
+  /// The rule for a quantity; none when its numbers are only compared.
+  const VerdictRule* rule_for(const std::string& quantity) const;
+};
+
+/// Reads a table file (docs/reproduction.md). Errors: InputError "FILE:LINE: KEY: ...".
+ThesisTable load_table(const std::filesystem::path& path);
+
+/// The shipped tables, in the order of their numbers, that match `which`: "all", "chapter4", or a number.
+/// Errors: InputError that lists the known ones when none matches.
+std::vector<ThesisTable> find_tables(const std::string& which);
+
+}  // namespace mpm
