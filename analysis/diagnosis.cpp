@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "analysis/simulation_error.hpp"
 #include "analysis/variance.hpp"
 
 namespace mpm {
@@ -46,12 +47,36 @@ Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, c
   diagnosis.predicted_cv = farthest_from_one(diagnosis.ivar_diag, options_.location_distance);
   if (diagnosis.predicted_cv < 0)
     return diagnosis;
-  const Eigen::VectorXd y0_diag = nominal.y0_diag.row(diagnosis.predicted_cv);
-  const Eigen::VectorXd e0_diag = y0_diag - y.row(diagnosis.predicted_cv).transpose();  // (6.9)
-  diagnosis.indicator = scanner_.scan(y0_diag, e0_diag, windows_);
-  diagnosis.predicted_source =
-      diagnosis.indicator.i_mpm > options_.mpm_threshold ? ExperimentKind::mpm : ExperimentKind::ud;
+  diagnosis.indicator = indicator_of(diagnosis.predicted_cv, y, nominal);
+  diagnosis.predicted_source = source_of(diagnosis.indicator);
   return diagnosis;
+}
+
+std::vector<CvDiagnosis> DiagnosisChain::diagnose_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                                       const NominalOutputs& nominal,
+                                                       const Eigen::Ref<const Eigen::VectorXd>& ivar_diag) {
+  const Eigen::VectorXd sse = simulation_errors(y, nominal.y_sim);
+  std::vector<CvDiagnosis> cvs;
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+    CvDiagnosis of_cv;
+    of_cv.flagged = options_.has_impact(ivar_diag(cv));
+    of_cv.indicator = indicator_of(cv, y, nominal);
+    of_cv.source = of_cv.flagged ? source_of(of_cv.indicator) : ExperimentKind::none;
+    of_cv.sse = sse(cv);
+    cvs.push_back(of_cv);
+  }
+  return cvs;
+}
+
+MpmIndicator DiagnosisChain::indicator_of(Eigen::Index cv, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                          const NominalOutputs& nominal) {
+  const Eigen::VectorXd y0_diag = nominal.y0_diag.row(cv);
+  const Eigen::VectorXd e0_diag = y0_diag - y.row(cv).transpose();  // (6.9)
+  return scanner_.scan(y0_diag, e0_diag, windows_);
+}
+
+ExperimentKind DiagnosisChain::source_of(const MpmIndicator& indicator) const {
+  return indicator.i_mpm > options_.mpm_threshold ? ExperimentKind::mpm : ExperimentKind::ud;
 }
 
 }  // namespace mpm

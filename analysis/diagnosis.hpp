@@ -1,5 +1,8 @@
 #pragma once
 
+#include <limits>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "analysis/mpm_indicator.hpp"
@@ -7,6 +10,14 @@
 #include "scenarios/study.hpp"
 
 namespace mpm {
+
+/// What the chain says of one CV of a named scenario, in which several CVs may be affected.
+struct CvDiagnosis {
+  bool flagged = false;                          ///< Ivar_diag lies outside the band of impact
+  ExperimentKind source = ExperimentKind::none;  ///< of a flagged CV: mpm when I_MPM exceeds its threshold
+  MpmIndicator indicator;                        ///< (6.13) to (6.15)
+  double sse = std::numeric_limits<double>::quiet_NaN();  ///< (4.17), CV unit
+};
 
 /// What the chain of the thesis says of one closed loop (appendix A2).
 ///
@@ -21,6 +32,8 @@ struct Diagnosis {
   Eigen::Index predicted_cv = -1;                          ///< the CV whose Ivar_diag is farthest from 1
   MpmIndicator indicator;                                  ///< of the predicted CV, (6.13) to (6.15)
   ExperimentKind predicted_source = ExperimentKind::none;  ///< mpm when I_MPM exceeds its threshold, else ud
+  /// Every CV on its own, for named scenarios; empty for random experiments, which look at one CV.
+  std::vector<CvDiagnosis> cvs = {};
 };
 
 /// The window lengths of (6.13) for this study, in samples.
@@ -39,7 +52,16 @@ class DiagnosisChain {
   Diagnosis diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal,
                      const Eigen::Ref<const Eigen::MatrixXd>& y_basis);
 
+  /// Every CV of the record y on its own; `ivar_diag` is that of diagnose().
+  std::vector<CvDiagnosis> diagnose_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                         const NominalOutputs& nominal,
+                                         const Eigen::Ref<const Eigen::VectorXd>& ivar_diag);
+
  private:
+  MpmIndicator indicator_of(Eigen::Index cv, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                            const NominalOutputs& nominal);
+  ExperimentKind source_of(const MpmIndicator& indicator) const;
+
   DiagnosisOptions options_;
   WindowScan windows_;
   MpmScanner scanner_;

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "analysis/scenario_verdict.hpp"
+
 namespace mpm {
 namespace {
 
@@ -47,13 +49,17 @@ std::string_view to_string(MismatchParameter parameter) {
       return "time_constant";
     case MismatchParameter::dead_time:
       return "dead_time";
+    case MismatchParameter::channel:
+      return "channel";
   }
   return "unknown";
 }
 
 bool ExperimentRecord::wrong() const {
-  if (status != ExperimentStatus::ok || !diagnosis.impactful)
+  if (status != ExperimentStatus::ok || (!draw.named && !diagnosis.impactful))
     return false;
+  if (draw.named)
+    return !scenario_verdict(*this).right();
   const bool single_fault = draw.kind == ExperimentKind::mpm || draw.kind == ExperimentKind::ud;
   return diagnosis.predicted_cv != draw.true_cv() ||
          (single_fault && diagnosis.predicted_source != draw.kind);
@@ -74,9 +80,12 @@ ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw&
   result.status = experiment_status(loop.status);
   result.loop.y_sim =
       simulated_output(study_.plant.G, study_.controller.sample_time, basis_.point.u, loop.u, loop.d);
-  if (result.status == ExperimentStatus::ok)
-    result.diagnosis = chain_.diagnose(loop.y, nominal_outputs(basis_.sensitivity, loop.y, result.loop.y_sim),
-                                       basis_.trajectory.y);
+  if (result.status != ExperimentStatus::ok)
+    return result;
+  const NominalOutputs nominal = nominal_outputs(basis_.sensitivity, loop.y, result.loop.y_sim);
+  result.diagnosis = chain_.diagnose(loop.y, nominal, basis_.trajectory.y);
+  if (draw.named)
+    result.diagnosis.cvs = chain_.diagnose_each(loop.y, nominal, result.diagnosis.ivar_diag);
   return result;
 }
 
@@ -87,7 +96,8 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
   DiagnosedLoop main = run_loop(record.draw, observer);
   record.status = main.status;
   record.solver = main.loop.trajectory.solver;
-  if (record.draw.kind == ExperimentKind::mpm_ud && record.status == ExperimentStatus::ok) {
+  const Eigen::Index true_cv = record.draw.true_cv();
+  if (record.draw.kind == ExperimentKind::mpm_ud && true_cv >= 0 && record.status == ExperimentStatus::ok) {
     const DiagnosedLoop mpm_alone = run_loop(record.draw.mismatch_alone(), observer);
     const DiagnosedLoop ud_alone = run_loop(record.draw.disturbance_alone(), observer);
     for (const DiagnosedLoop* part : {&mpm_alone, &ud_alone}) {
@@ -95,18 +105,18 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
       record.status = std::max(record.status, part->status);
     }
     if (record.status == ExperimentStatus::ok) {
-      const Eigen::Index cv = record.draw.true_cv();
-      record.ivar_diag_mpm_alone = mpm_alone.diagnosis.ivar_diag(cv);
-      record.ivar_diag_ud_alone = ud_alone.diagnosis.ivar_diag(cv);
+      record.ivar_diag_mpm_alone = mpm_alone.diagnosis.ivar_diag(true_cv);
+      record.ivar_diag_ud_alone = ud_alone.diagnosis.ivar_diag(true_cv);
       record.dominance_mpm =
           record.ivar_diag_mpm_alone / (record.ivar_diag_mpm_alone + record.ivar_diag_ud_alone);
     }
   }
   if (record.status == ExperimentStatus::ok) {
-    const Eigen::Index cv = record.draw.true_cv();
     record.diagnosis = std::move(main.diagnosis);
-    record.perturbed = perturbation_.ivar_diag(cv, Eigen::RowVectorXd(main.loop.trajectory.y.row(cv)),
-                                               Eigen::RowVectorXd(main.loop.y_sim.row(cv)));
+    if (true_cv >= 0)
+      record.perturbed =
+          perturbation_.ivar_diag(true_cv, Eigen::RowVectorXd(main.loop.trajectory.y.row(true_cv)),
+                                  Eigen::RowVectorXd(main.loop.y_sim.row(true_cv)));
   }
   if (record.status == ExperimentStatus::failed)
     record.message = "the solver gave no answer";

@@ -36,9 +36,9 @@ struct LoopRecord {
 
 /// Everything that is known of one experiment.
 ///
-/// In an experiment with mismatch and disturbance the loop is run three times: with both, with the mismatch
-/// alone and with the disturbance alone. The diagnosis is that of the loop with both; the other two give the
-/// dominance of the mismatch on the affected CV (6.23),
+/// In an experiment with mismatch and disturbance on one CV the loop is run three times: with both, with the
+/// mismatch alone and with the disturbance alone. The diagnosis is that of the loop with both; the other two
+/// give the dominance of the mismatch on the affected CV (6.23),
 ///     dominance_MPM = Ivar_diag^MPM / (Ivar_diag^MPM + Ivar_diag^UD).
 struct ExperimentRecord {
   ExperimentDraw draw;
@@ -53,7 +53,8 @@ struct ExperimentRecord {
   std::optional<LoopRecord> loop;  ///< the loop that was diagnosed, when it was asked for
 
   /// The verdict is wrong: the experiment is impactful and the CV, or the source of a single fault, is not
-  /// the true one.
+  /// the true one. Of a named scenario: a CV that is not affected is flagged, or an affected one is not, or
+  /// has the wrong source (scenario_verdict()).
   bool wrong() const;
 };
 

@@ -23,17 +23,18 @@ MismatchParameter parameter_of(FaultSize size) {
   }
 }
 
-/// The size of the only fault of the experiment; none when it is of another sort.
+/// The size of the only fault of a random experiment; none when it is of another sort.
 std::optional<double> size_of(const Study& study, const ExperimentDraw& draw, FaultSize size) {
   if (size == FaultSize::disturbance_deviation) {
-    if (draw.kind != ExperimentKind::ud || !draw.disturbance)
+    if (draw.kind != ExperimentKind::ud || draw.named)
       return std::nullopt;
-    return disturbance_deviation(*draw.disturbance, study.disturbance.v_standard_deviation,
+    return disturbance_deviation(draw.disturbances.front(), study.disturbance.v_standard_deviation,
                                  study.controller.sample_time);
   }
-  if (draw.kind != ExperimentKind::mpm || !draw.mismatch || draw.mismatch->parameter != parameter_of(size))
+  if (draw.kind != ExperimentKind::mpm || draw.named ||
+      draw.mismatches.front().parameter != parameter_of(size))
     return std::nullopt;
-  return draw.mismatch->value;
+  return draw.mismatches.front().value;
 }
 
 SizeBin bin_of(std::span<const SizedFault> faults, double confidence) {

@@ -1,5 +1,7 @@
 #include "analysis/verdict.hpp"
 
+#include "analysis/scenario_verdict.hpp"
+
 namespace mpm {
 namespace {
 
@@ -22,7 +24,11 @@ std::string_view to_string(Verdict verdict) {
 }
 
 Verdict location_verdict(const ExperimentRecord& record) {
-  if (record.status != ExperimentStatus::ok || !record.diagnosis.impactful)
+  if (record.status != ExperimentStatus::ok)
+    return Verdict::none;
+  if (record.draw.named)
+    return verdict(scenario_verdict(record).located());
+  if (!record.diagnosis.impactful)
     return Verdict::none;
   return verdict(record.diagnosis.predicted_cv == record.draw.true_cv());
 }
@@ -33,6 +39,10 @@ bool in_source_population(const Study& study, const ExperimentRecord& record) {
 }
 
 Verdict source_verdict(const Study& study, const ExperimentRecord& record) {
+  if (record.draw.named) {
+    const ScenarioVerdict of_cvs = scenario_verdict(record);
+    return of_cvs.judged_source ? verdict(of_cvs.wrong_source.empty()) : Verdict::none;
+  }
   const bool single_fault = record.draw.kind == ExperimentKind::mpm || record.draw.kind == ExperimentKind::ud;
   if (!single_fault || !in_source_population(study, record))
     return Verdict::none;

@@ -17,13 +17,15 @@ enum class Verdict : std::int8_t {
 std::string_view to_string(Verdict verdict);
 
 /// Is the affected CV the one that Ivar_diag points at (figures 6.20, 6.23)? Asked of impactful experiments.
+/// Of a named scenario: are the affected CVs those that are flagged?
 Verdict location_verdict(const ExperimentRecord& record);
 
 /// The experiments over which the study counts the rates of I_MPM.
 bool in_source_population(const Study& study, const ExperimentRecord& record);
 
 /// Does I_MPM lie on the side of its threshold that the fault belongs to (figure 6.21)? Asked of experiments
-/// with a single fault in that population.
+/// with a single fault in that population, and of the found CVs of a named scenario that have one sort of
+/// fault.
 Verdict source_verdict(const Study& study, const ExperimentRecord& record);
 
 }  // namespace mpm

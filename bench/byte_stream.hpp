@@ -81,6 +81,33 @@ void transfer(Stream& stream, Matrix& matrix) {
   stream.block(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double));
 }
 
+/// A list of `members(element)`.
+template <class Stream, class List, class Members>
+void transfer_list(Stream& stream, List& list, const Members& members) {
+  std::size_t size = list.size();
+  transfer(stream, size);
+  if constexpr (!std::is_const_v<List>) {
+    if (size > stream.left())  // each element has a byte at least
+      throw std::runtime_error("message between processes: a list that does not fit");
+    list.resize(size);
+  }
+  for (auto& element : list)
+    members(element);
+}
+
+/// Whether there is a value, and then `members(value)`.
+template <class Stream, class Optional, class Members>
+void transfer_optional(Stream& stream, Optional& value, const Members& members) {
+  bool present = value.has_value();
+  transfer(stream, present);
+  if constexpr (!std::is_const_v<Optional>) {
+    if (present)
+      value.emplace();
+  }
+  if (present)
+    members(*value);
+}
+
 /// All `values`, one after the other.
 template <class Stream, class... Values>
 void transfer_all(Stream& stream, Values&... values) {

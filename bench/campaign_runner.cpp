@@ -37,7 +37,10 @@ bool runs_in_threads(const CampaignOptions& options) {
   return safe && options.parallel != Parallel::processes;
 }
 
-void require_options(const CampaignOptions& options, std::int64_t count) {
+void require_options(const CampaignOptions& options, const Study& study, std::int64_t count) {
+  if (study.names_scenarios() && count > study.experiment_count())
+    throw InputError("experiments", fmt::format("{}", count),
+                     fmt::format("at most {}, the named scenarios of the study", study.experiment_count()));
   if (count < 1)
     throw InputError("experiments", fmt::format("{}", count), "a whole number >= 1");
   if (options.jobs < 1)
@@ -87,8 +90,8 @@ Interrupted::Interrupted(std::int64_t done, std::int64_t count)
     : std::runtime_error(fmt::format("stopped when {} of {} experiments were done", done, count)) {}
 
 Campaign run_campaign(Study study, const CampaignOptions& options) {
-  const std::int64_t count = options.experiments.value_or(study.experiments.total());
-  require_options(options, count);
+  const std::int64_t count = options.experiments.value_or(study.experiment_count());
+  require_options(options, study, count);
 
   const auto start = std::chrono::steady_clock::now();
   const QpSolverFactory factory = qp_solver_factory(options.solver);

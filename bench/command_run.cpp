@@ -36,7 +36,7 @@ CampaignOptions campaign_options(const RunCommand& command) {
 
 Campaign run_with_progress(Study study, const RunCommand& command, const StopSignals& signals) {
   CampaignOptions options = campaign_options(command);
-  Progress progress(command.experiments.value_or(study.experiments.total()),
+  Progress progress(command.experiments.value_or(study.experiment_count()),
                     command.quiet ? Progress::Mode::quiet : Progress::Mode::automatic);
   options.stop = [&] { return signals.received(); };
   options.on_start = [&](std::int64_t done) { progress.start_from(done); };

@@ -22,6 +22,7 @@
 #include "results/archive.hpp"
 #include "results/archive_error.hpp"
 #include "results/atomic_file.hpp"
+#include "results/experiment_text.hpp"
 #include "results/gate_check.hpp"
 #include "results/gate_file.hpp"
 #include "results/gate_report.hpp"
@@ -42,11 +43,13 @@ ExitCode replay(const ReplayCommand& command) {
                                .run(command.index, archived.loop ? StorePolicy::all : StorePolicy::none);
   const bool identical = to_bytes(archived) == to_bytes(again);
   fmt::print("experiment {}: {}, {}\n", command.index, to_string(again.draw.kind), to_string(again.status));
-  if (again.status == ExperimentStatus::ok)
+  if (again.draw.named)
+    fmt::print("{}\n", experiment_line(campaign.study, again));
+  else if (again.status == ExperimentStatus::ok)
     fmt::print("located CV {} (true {}), I_MPM {:.4f}: {}\n",
-               campaign.study.plant.cvs[static_cast<std::size_t>(again.diagnosis.predicted_cv)].name,
-               campaign.study.plant.cvs[static_cast<std::size_t>(again.draw.true_cv())].name,
-               again.diagnosis.indicator.i_mpm, to_string(again.diagnosis.predicted_source));
+               cv_name(campaign.study, again.diagnosis.predicted_cv),
+               cv_name(campaign.study, again.draw.true_cv()), again.diagnosis.indicator.i_mpm,
+               to_string(again.diagnosis.predicted_source));
   fmt::print("{}\n", identical ? "bit-identical to the archive" : "DIFFERS from the archive");
   return identical ? ExitCode::done : ExitCode::comparison_failed;
 }

@@ -6,19 +6,6 @@
 namespace mpm {
 namespace {
 
-template <class Stream, class List, class Members>
-void transfer_list(Stream& stream, List& list, const Members& members) {
-  std::size_t size = list.size();
-  transfer(stream, size);
-  if constexpr (!std::is_const_v<List>) {
-    if (size > stream.left())  // each element has more than one byte
-      throw std::runtime_error("message between processes: a list that does not fit");
-    list.resize(size);
-  }
-  for (auto& element : list)
-    members(element);
-}
-
 template <class Stream, class Outcome>
 void transfer_audit(Stream& stream, Outcome& outcome) {
   const auto all = [&stream](auto&... values) { transfer_all(stream, values...); };

@@ -1,36 +1,27 @@
 #include "bench/record_bytes.hpp"
 
-#include <optional>
-#include <type_traits>
-
 #include "bench/byte_stream.hpp"
+#include "bench/draw_bytes.hpp"
 
 namespace mpm {
 namespace {
 
-template <class Stream, class Fault>
-void transfer_optional(Stream& stream, Fault& fault, const auto& members) {
-  bool present = fault.has_value();
-  transfer(stream, present);
-  if constexpr (!std::is_const_v<Fault>)
-    if (present)
-      fault.emplace();
-  if (present)
-    members(*fault);
-}
-
 template <class Stream, class Record>
 void transfer_record(Stream& stream, Record& record) {
   const auto all = [&stream](auto&... values) { transfer_all(stream, values...); };
-  all(record.draw.index, record.draw.kind, record.status, record.message);
-  transfer_optional(stream, record.draw.mismatch, [&](auto& m) { all(m.cv, m.mv, m.parameter, m.value); });
-  transfer_optional(stream, record.draw.disturbance, [&](auto& d) { all(d.cv, d.gain, d.time_constant); });
+  all(record.draw.index, record.status, record.message);
+  transfer_draw(stream, record.draw);
   auto& diagnosis = record.diagnosis;
   all(diagnosis.ivar, diagnosis.ivar_diag, diagnosis.ivar_basis, diagnosis.impactful, diagnosis.predicted_cv,
       diagnosis.predicted_source);
-  auto& indicator = diagnosis.indicator;
-  all(indicator.co_dkts, indicator.co_dskn, indicator.i_mpm, indicator.co_kts, indicator.co_skn,
-      indicator.scanned, indicator.used);
+  const auto indicators = [&](auto& i) {
+    all(i.co_dkts, i.co_dskn, i.i_mpm, i.co_kts, i.co_skn, i.scanned, i.used);
+  };
+  indicators(diagnosis.indicator);
+  transfer_list(stream, diagnosis.cvs, [&](auto& cv) {
+    all(cv.flagged, cv.source, cv.sse);
+    indicators(cv.indicator);
+  });
   all(record.ivar_diag_mpm_alone, record.ivar_diag_ud_alone, record.dominance_mpm);
   all(record.perturbed.time_constant, record.perturbed.damping);
   const auto statistics = [&](auto& s) { all(s.steps, s.iterations, s.fallbacks, s.largest_kkt_residual); };

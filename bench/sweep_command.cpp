@@ -39,7 +39,7 @@ Campaign run_variant(const SweepVariant& variant, const SweepCommand& command) {
   options.jobs = command.jobs;
   options.store = StorePolicy::none;
   options.allow_unhealthy_basis = true;
-  Progress progress(command.experiments.value_or(variant.study.experiments.total()),
+  Progress progress(command.experiments.value_or(variant.study.experiment_count()),
                     command.quiet ? Progress::Mode::quiet : Progress::Mode::automatic);
   options.on_done = [&](const ExperimentRecord& record) {
     progress.advance(record.status == ExperimentStatus::failed);

@@ -19,6 +19,7 @@ Campaign read_groups(const std::filesystem::path& path) {
   Campaign campaign = read_heading(root, file);
   const Study& study = campaign.study;
   campaign.records = read_experiments(root, study, file);
+  read_scenarios(root, study, campaign.records, file);
   read_trajectories(root, study, campaign.records, file);
   read_s0_sensitivity(root, study, campaign.records, file);
   campaign.audit = read_audit(root, file);
@@ -38,6 +39,7 @@ void write_archive(const std::filesystem::path& path, const Campaign& campaign) 
   Hdf5Group root = file.root();
   write_heading(root, campaign);
   write_experiments(root, campaign);
+  write_scenarios(root, campaign);
   write_basis(root, campaign.study, campaign.basis);
   write_nominal(root, campaign.study, campaign.basis.sensitivity);
   write_nominal_fixed(root, campaign.study, campaign.basis.sensitivity_fixed);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -47,15 +48,36 @@ void require_consistent(const ExperimentRecord& record, const std::string& file)
                                      variable, record.draw.index, allowed));
   };
   const ExperimentDraw& draw = record.draw;
-  require(draw.kind != ExperimentKind::none, "kind", "mpm, ud, mpm_ud");
-  require(draw.true_cv() >= 0, "true_cv", "the CV of the fault");
-  if (draw.mismatch) {
-    require(draw.mismatch->mv >= 0, "true_mv", "the MV of the mismatch");
-    require(draw.mismatch->parameter >= MismatchParameter::gain, "parameter",
-            "the parameter of the mismatch");
+  if (!draw.named) {
+    require(draw.kind != ExperimentKind::none, "kind", "mpm, ud, mpm_ud");
+    require(draw.true_cv() >= 0, "true_cv", "the CV of the fault");
+    for (const Mismatch& mismatch : draw.mismatches) {
+      require(mismatch.input >= 0, "true_mv", "the MV of the mismatch");
+      require(mismatch.parameter >= MismatchParameter::gain, "parameter", "the parameter of the mismatch");
+    }
   }
   if (record.status == ExperimentStatus::ok && record.diagnosis.impactful)
     require(record.diagnosis.predicted_cv >= 0, "predicted_cv", "a CV for an experiment with impact");
+}
+
+/// The scenario of a record, whose faults are in the study and in no column.
+void take_scenario(ExperimentRecord& record, const Study& study, const std::string& file) {
+  if (record.draw.index >= study.experiment_count())
+    throw ArchiveError(
+        fmt::format("{}: variable 'experiment': found {}; allowed: 0 to {}, the scenarios of "
+                    "the study",
+                    file, record.draw.index, study.experiment_count() - 1));
+  ExperimentDraw draw = draw_experiment(study, record.draw.index);
+  const auto require = [&](bool condition, const char* variable, const std::string& allowed) {
+    if (!condition)
+      throw ArchiveError(
+          fmt::format("{}: variable '{}': found another value in experiment {}; allowed: {}, "
+                      "as in the study",
+                      file, variable, record.draw.index, allowed));
+  };
+  require(record.draw.kind == draw.kind, "kind", std::string(to_string(draw.kind)));
+  require(record.draw.true_cv() == draw.true_cv(), "true_cv", fmt::format("{}", draw.true_cv()));
+  record.draw = std::move(draw);
 }
 
 /// In the order of their index, none twice.
@@ -111,8 +133,11 @@ std::vector<ExperimentRecord> read_experiments(const Hdf5Group& root, const Stud
       if (records[i].status == ExperimentStatus::ok)  // the others have no diagnosis
         records[i].diagnosis.*column.member = vectors[i];
   }
-  for (const ExperimentRecord& record : records)
+  for (ExperimentRecord& record : records) {
+    if (study.names_scenarios())
+      take_scenario(record, study, file);
     require_consistent(record, file);
+  }
   return records;
 }
 

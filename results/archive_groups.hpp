@@ -39,6 +39,12 @@ void write_s0_sensitivity(Hdf5Group& root, const Campaign& campaign);
 void read_s0_sensitivity(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
                          const std::string& file);
 
+/// /scenarios: every CV of the named scenarios on its own; no such group in a study of random experiments.
+/// Names, truth and totals follow from the rest and are not read back.
+void write_scenarios(Hdf5Group& root, const Campaign& campaign);
+void read_scenarios(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
+                    const std::string& file);
+
 /// /basis: the operating point and the run without mismatch and disturbance.
 void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis);
 /// `sensitivity` is what read_nominal() gave: the basis case has the same active limits.

@@ -15,11 +15,6 @@ Flags enum_flags(const std::array<Enum, n>& values) {
   return flags;
 }
 
-Flags kind_flags() {
-  return enum_flags(
-      std::array{ExperimentKind::none, ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud});
-}
-
 Flags parameter_flags() {
   Flags flags = enum_flags(
       std::array{MismatchParameter::gain, MismatchParameter::time_constant, MismatchParameter::dead_time});
@@ -44,52 +39,69 @@ void set_kind(Experiment& record, std::int8_t value) {
   ExperimentDraw& draw = record.draw;
   draw.kind = static_cast<ExperimentKind>(value);
   if (draw.kind == ExperimentKind::mpm || draw.kind == ExperimentKind::mpm_ud)
-    draw.mismatch.emplace();
+    draw.mismatches.emplace_back();
   if (draw.kind == ExperimentKind::ud || draw.kind == ExperimentKind::mpm_ud)
-    draw.disturbance.emplace();
+    draw.disturbances.emplace_back();
 }
 
-/// With two faults both are on the same CV.
+/// With two random faults both are on the same CV.
 void set_true_cv(Experiment& record, std::int32_t value) {
-  if (record.draw.mismatch)
-    record.draw.mismatch->cv = value;
-  if (record.draw.disturbance)
-    record.draw.disturbance->cv = value;
+  for (Mismatch& mismatch : record.draw.mismatches)
+    mismatch.cv = value;
+  for (Disturbance& disturbance : record.draw.disturbances)
+    disturbance.cv = value;
+}
+
+/// The fault of a random experiment. The faults of a named scenario are in the study, and in no column.
+const Mismatch* drawn_mismatch(const Experiment& record) {
+  return record.draw.named || record.draw.mismatches.empty() ? nullptr : &record.draw.mismatches.front();
+}
+
+const Disturbance* drawn_disturbance(const Experiment& record) {
+  return record.draw.named || record.draw.disturbances.empty() ? nullptr : &record.draw.disturbances.front();
 }
 
 std::int32_t get_true_mv(const Experiment& record) {
-  return record.draw.mismatch ? static_cast<std::int32_t>(record.draw.mismatch->mv) : -1;
+  const Mismatch* mismatch = drawn_mismatch(record);
+  return mismatch == nullptr ? -1 : static_cast<std::int32_t>(mismatch->input);
 }
 
 void set_true_mv(Experiment& record, std::int32_t value) {
-  if (record.draw.mismatch)
-    record.draw.mismatch->mv = value;
+  for (Mismatch& mismatch : record.draw.mismatches)
+    mismatch.input = value;
 }
 
 std::int8_t get_parameter(const Experiment& record) {
-  return record.draw.mismatch ? static_cast<std::int8_t>(record.draw.mismatch->parameter) : std::int8_t{-1};
+  const Mismatch* mismatch = drawn_mismatch(record);
+  return mismatch == nullptr ? std::int8_t{-1} : static_cast<std::int8_t>(mismatch->parameter);
 }
 
 void set_parameter(Experiment& record, std::int8_t value) {
-  if (record.draw.mismatch)
-    record.draw.mismatch->parameter = static_cast<MismatchParameter>(value);
+  for (Mismatch& mismatch : record.draw.mismatches)
+    mismatch.parameter = static_cast<MismatchParameter>(value);
 }
 
 template <double Mismatch::*member>
 ExperimentNumber of_mismatch() {
-  return {[](const Experiment& r) { return r.draw.mismatch ? *r.draw.mismatch.*member : kNaN; },
+  return {[](const Experiment& r) {
+            const Mismatch* mismatch = drawn_mismatch(r);
+            return mismatch == nullptr ? kNaN : mismatch->*member;
+          },
           [](Experiment& r, double value) {
-            if (r.draw.mismatch)
-              *r.draw.mismatch.*member = value;
+            for (Mismatch& mismatch : r.draw.mismatches)
+              mismatch.*member = value;
           }};
 }
 
 template <double Disturbance::*member>
 ExperimentNumber of_disturbance() {
-  return {[](const Experiment& r) { return r.draw.disturbance ? *r.draw.disturbance.*member : kNaN; },
+  return {[](const Experiment& r) {
+            const Disturbance* disturbance = drawn_disturbance(r);
+            return disturbance == nullptr ? kNaN : disturbance->*member;
+          },
           [](Experiment& r, double value) {
-            if (r.draw.disturbance)
-              *r.draw.disturbance.*member = value;
+            for (Disturbance& disturbance : r.draw.disturbances)
+              disturbance.*member = value;
           }};
 }
 
@@ -102,10 +114,10 @@ Access<Owner, T> plain() {
           }};
 }
 
-template <class T, auto member>
-Access<Diagnosis, T> of_indicator() {
-  return {[](const Diagnosis& d) { return static_cast<T>(d.indicator.*member); },
-          [](Diagnosis& d, T value) { d.indicator.*member = value; }};
+template <class T, auto member, class Owner = Diagnosis>
+Access<Owner, T> of_indicator() {
+  return {[](const Owner& owner) { return static_cast<T>(owner.indicator.*member); },
+          [](Owner& owner, T value) { owner.indicator.*member = value; }};
 }
 
 template <class T, auto problem, auto member>
@@ -119,6 +131,11 @@ Access<AuditedStep, T> of_difference() {
 
 }  // namespace
 
+Flags kind_flags() {
+  return enum_flags(
+      std::array{ExperimentKind::none, ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud});
+}
+
 std::vector<Column<ExperimentRecord>> draw_columns(const Study& study) {
   const std::string time = unit_text(study.plant.time_unit);
   return {
@@ -129,22 +146,25 @@ std::vector<Column<ExperimentRecord>> draw_columns(const Study& study) {
         "infeasible: an MPC problem had no solution, the experiment is left out; failed: see message",
         enum_flags(std::array{ExperimentStatus::ok, ExperimentStatus::infeasible, ExperimentStatus::failed})},
        plain<std::int8_t, &Experiment::status, Experiment>()},
-      {{"true_cv", "position of the affected CV in cv", "1", "-1: none", index_flags(study.plant.cvs)},
+      {{"true_cv", "position of the affected CV in cv", "1", "-1: none, or more than one",
+        index_flags(study.plant.cvs)},
        ExperimentIndex{[](const Experiment& r) { return static_cast<std::int32_t>(r.draw.true_cv()); },
                        set_true_cv}},
-      {{"true_mv", "position of the MV of the mismatched channel in mv", "1", "-1: no mismatch",
-        index_flags(study.plant.mvs)},
+      {{"true_mv", "position of the MV of the mismatched channel in mv", "1",
+        "-1: no mismatch, or a named scenario", index_flags(study.plant.mvs)},
        ExperimentIndex{get_true_mv, set_true_mv}},
-      {{"parameter", "parameter of the channel that differs from the model", "1", "-1: no mismatch",
-        parameter_flags()},
+      {{"parameter", "parameter of the channel that differs from the model", "1",
+        "-1: no mismatch, or a named scenario", parameter_flags()},
        ExperimentFlag{get_parameter, set_parameter}},
       {{"parameter_value", "size of the mismatch", "1",
-        "factor of gain or time constant; shift of the dead time in " + time + "; NaN: no mismatch"},
+        "factor of gain or time constant; shift of the dead time in " + time +
+            "; NaN: no mismatch, or a named scenario"},
        of_mismatch<&Mismatch::value>()},
       {{"ud_gain", "gain of the unmeasured disturbance model", common_unit(study.plant.cvs),
-        "in the unit of the affected CV; NaN: no disturbance"},
+        "in the unit of the affected CV; NaN: no disturbance, or a named scenario"},
        of_disturbance<&Disturbance::gain>()},
-      {{"ud_time_constant", "time constant of the unmeasured disturbance model", time, "NaN: no disturbance"},
+      {{"ud_time_constant", "time constant of the unmeasured disturbance model", time,
+        "NaN: no disturbance, or a named scenario"},
        of_disturbance<&Disturbance::time_constant>()},
   };
 }
@@ -177,6 +197,30 @@ std::vector<Column<Diagnosis>> verdict_columns(const Study& study) {
        of_indicator<std::int32_t, &MpmIndicator::scanned>()},
       {{"windows_used", "number of window lengths behind the weakest of the means"},
        of_indicator<std::int32_t, &MpmIndicator::used>()},
+  };
+}
+
+std::vector<Column<CvDiagnosis>> cv_columns() {
+  return {
+      {{"flagged", "Ivar_diag lies outside the band of impact", "1", "", yes_no_flags()},
+       plain<std::int8_t, &CvDiagnosis::flagged, CvDiagnosis>()},
+      {{"source", "source of a flagged CV that I_MPM points at", "1", "none: not flagged", kind_flags()},
+       plain<std::int8_t, &CvDiagnosis::source, CvDiagnosis>()},
+      {{"sse", "SSE = norm of y_sim - y", "1", "in the unit of the CV; NaN unless the status is ok"},
+       plain<double, &CvDiagnosis::sse, CvDiagnosis>()},
+      {{"co_dkts", "mean correlation of the differenced moving kurtosis"},
+       of_indicator<double, &MpmIndicator::co_dkts, CvDiagnosis>()},
+      {{"co_dskn", "mean correlation of the differenced moving skewness"},
+       of_indicator<double, &MpmIndicator::co_dskn, CvDiagnosis>()},
+      {{"i_mpm", "I_MPM = max(co_dkts, co_dskn)"}, of_indicator<double, &MpmIndicator::i_mpm, CvDiagnosis>()},
+      {{"co_kts", "mean correlation of the moving kurtosis"},
+       of_indicator<double, &MpmIndicator::co_kts, CvDiagnosis>()},
+      {{"co_skn", "mean correlation of the moving skewness"},
+       of_indicator<double, &MpmIndicator::co_skn, CvDiagnosis>()},
+      {{"windows_scanned", "number of moving-window lengths"},
+       of_indicator<std::int32_t, &MpmIndicator::scanned, CvDiagnosis>()},
+      {{"windows_used", "number of window lengths behind the weakest of the means"},
+       of_indicator<std::int32_t, &MpmIndicator::used, CvDiagnosis>()},
   };
 }
 

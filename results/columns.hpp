@@ -44,12 +44,17 @@ struct SignalColumn {
   Eigen::MatrixXd Trajectory::*member;
 };
 
+/// What is wrong: none, mpm, ud, mpm_ud.
+Flags kind_flags();
+
 /// What an experiment does to the loop, and how it ended. `kind` comes first: it says which faults there are.
 std::vector<Column<ExperimentRecord>> draw_columns(const Study& study);
 /// The variance indices of the CVs.
 std::vector<CvColumn<Diagnosis>> variance_columns();
 /// The verdict and the indicators behind it.
 std::vector<Column<Diagnosis>> verdict_columns(const Study& study);
+/// What the chain says of every CV of a named scenario. A later indicator is one more line in this list.
+std::vector<Column<CvDiagnosis>> cv_columns();
 /// What the loops with one of two faults say.
 std::vector<Column<ExperimentRecord>> dominance_columns();
 /// How hard the optimisation problems were, and how well they were solved.

@@ -1,15 +1,45 @@
 #include "results/experiment_text.hpp"
 
+#include <variant>
+
 #include <fmt/format.h>
 
+#include "results/scenario_text.hpp"
 #include "results/variable_text.hpp"
 
 namespace mpm {
 namespace {
 
+/// "0.3 s + 2" of [0.3, 2].
+std::string polynomial_text(const Eigen::VectorXd& coefficients) {
+  std::string text;
+  for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
+    const Eigen::Index power = coefficients.size() - 1 - i;
+    if (coefficients(i) == 0 && coefficients.size() > 1)
+      continue;
+    text += fmt::format("{}{:.4g}{}", text.empty() ? "" : " + ", coefficients(i),
+                        power == 0   ? ""
+                        : power == 1 ? " s"
+                                     : fmt::format(" s^{}", power));
+  }
+  return text;
+}
+
+std::string transfer_function_text(const TransferFunction& channel) {
+  return fmt::format("({}) / ({}){}", polynomial_text(channel.numerator()),
+                     polynomial_text(channel.denominator()),
+                     channel.dead_time() > 0 ? fmt::format(" e^(-{:g} s)", channel.dead_time()) : "");
+}
+
+std::string input_name(const Study& study, Eigen::Index input) {
+  const auto place = static_cast<std::size_t>(input);
+  const std::size_t mvs = study.plant.mvs.size();
+  return place < mvs ? study.plant.mvs[place].name : study.plant.mds[place - mvs].name;
+}
+
 std::string mismatch_text(const Study& study, const Mismatch& mismatch) {
-  const std::string channel = fmt::format("{}/{}", cv_name(study, mismatch.cv),
-                                          study.plant.mvs[static_cast<std::size_t>(mismatch.mv)].name);
+  const std::string channel =
+      fmt::format("{}/{}", cv_name(study, mismatch.cv), input_name(study, mismatch.input));
   switch (mismatch.parameter) {
     case MismatchParameter::gain:
       return fmt::format("gain of {} x {:.3g}", channel, mismatch.value);
@@ -18,6 +48,39 @@ std::string mismatch_text(const Study& study, const Mismatch& mismatch) {
     case MismatchParameter::dead_time:
       return fmt::format("dead time of {} {:+.3g} {}", channel, mismatch.value,
                          unit_text(study.plant.time_unit));
+    case MismatchParameter::channel:
+      return fmt::format("{} is {}", channel, transfer_function_text(*mismatch.channel));
+  }
+  return "unknown";
+}
+
+std::string signal_text(const Study& study, const DisturbanceSignal& signal) {
+  const std::string time = unit_text(study.plant.time_unit);
+  if (const auto* noise = std::get_if<WhiteNoise>(&signal)) {
+    const double deviation = noise->factor * study.disturbance.v_standard_deviation;
+    return fmt::format("white {:.3g}{}", deviation,
+                       noise->hold > 1 ? fmt::format(" held for {} samples", noise->hold) : "");
+  }
+  if (const auto* sine = std::get_if<Sine>(&signal))
+    return fmt::format("sine of amplitude {:.3g}, period {:.4g} {}", sine->amplitude, sine->period, time);
+  if (const auto* ramp = std::get_if<Ramp>(&signal))
+    return fmt::format("ramp of {:.3g} a {} from {:g} {}", ramp->slope, time, ramp->start, time);
+  const std::size_t steps = std::get<StepSequence>(signal).steps.size();
+  return fmt::format("{} step{}", steps, steps == 1 ? "" : "s");
+}
+
+/// A random disturbance has always the same signal, which is not worth a word.
+std::string disturbance_text(const Study& study, const Disturbance& disturbance, bool named) {
+  const std::string on = "disturbance on " + cv_name(study, disturbance.cv);
+  const std::string signal = named ? ", " + signal_text(study, disturbance.signal) : "";
+  switch (disturbance.model) {
+    case DisturbanceModel::first_order:
+      return fmt::format("{}: gain {:.3g}, time constant {:.3g} {}{}", on, disturbance.gain,
+                         disturbance.time_constant, unit_text(study.plant.time_unit), signal);
+    case DisturbanceModel::transfer_function:
+      return fmt::format("{}: {}{}", on, transfer_function_text(*disturbance.Gd), signal);
+    case DisturbanceModel::direct:
+      return fmt::format("{}: {}", on, signal_text(study, disturbance.signal));
   }
   return "unknown";
 }
@@ -44,22 +107,27 @@ std::string cv_name(const Study& study, Eigen::Index cv) {
 
 std::string fault_text(const Study& study, const ExperimentDraw& draw) {
   std::string text;
-  if (draw.mismatch)
-    text = mismatch_text(study, *draw.mismatch);
-  if (draw.disturbance)
-    text += fmt::format("{}disturbance on {}: gain {:.3g}, time constant {:.3g} {}", text.empty() ? "" : "; ",
-                        cv_name(study, draw.disturbance->cv), draw.disturbance->gain,
-                        draw.disturbance->time_constant, unit_text(study.plant.time_unit));
+  const auto add = [&text](const std::string& fault) { text += (text.empty() ? "" : "; ") + fault; };
+  for (const Mismatch& mismatch : draw.mismatches)
+    add(mismatch_text(study, mismatch));
+  for (const Disturbance& disturbance : draw.disturbances)
+    add(disturbance_text(study, disturbance, draw.named));
   return text.empty() ? "nothing" : text;
 }
 
 std::string experiment_title(const Study& study, const ExperimentDraw& draw) {
+  if (draw.named)
+    return fmt::format("{} ({}): {}", study.scenarios[static_cast<std::size_t>(draw.index)].name,
+                       kind_name(draw.kind), fault_text(study, draw));
   return fmt::format("experiment {} ({}): {}", draw.index, kind_name(draw.kind), fault_text(study, draw));
 }
 
 std::string verdict_text(const Study& study, const ExperimentRecord& record) {
   if (record.status != ExperimentStatus::ok)
     return std::string(to_string(record.status));
+  if (record.draw.named)
+    return fmt::format("flagged {}; {}", flagged_text(study, record.diagnosis),
+                       scenario_verdict_text(study, record));
   const Diagnosis& verdict = record.diagnosis;
   return fmt::format("{}located {}, I_MPM {:.3f}: {}", verdict.impactful ? "" : "no impact, ",
                      cv_name(study, verdict.predicted_cv), verdict.indicator.i_mpm,

@@ -19,11 +19,11 @@ std::string cv_name(const Study& study, Eigen::Index cv);
 /// min".
 std::string fault_text(const Study& study, const ExperimentDraw& draw);
 
-/// "experiment 12 (MPM): gain of y1/u2 x 0.45".
+/// "experiment 12 (MPM): gain of y1/u2 x 0.45"; a named scenario has its name in place of the number.
 std::string experiment_title(const Study& study, const ExperimentDraw& draw);
 
 /// What the chain says of it: "located y1, I_MPM 0.123: MPM", with "no impact, " before it where there is
-/// none; how it ended when there is no verdict.
+/// none; of a named scenario "flagged y1 (MPM); right"; how it ended when there is no verdict.
 std::string verdict_text(const Study& study, const ExperimentRecord& record);
 
 /// Title and verdict in one line.

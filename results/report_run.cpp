@@ -32,7 +32,7 @@ std::string controller_text(const Study& study) {
 
 std::string experiments_text(const ReportInput& input) {
   const StudyAggregate& total = input.parts.aggregate;
-  std::string kinds;
+  std::string kinds = input.campaign.study.names_scenarios() ? "named scenarios" : "";
   for (const KindAggregate& kind : total.kinds)
     kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind.experiments, kind_name(kind.kind));
   return fmt::format("{} of {} samples<br><small>{}; {} infeasible, {} failed</small>", total.experiments,

@@ -11,6 +11,10 @@ void ReportSection::leave_out(const std::string& why) {
 }
 
 std::vector<ReportSection> report_sections(const ReportInput& input) {
+  if (input.campaign.study.names_scenarios())
+    return {run_section(input),         scenarios_section(input),
+            sensitivity_section(input), s0_perturbation_section(input),
+            basis_section(input),       solver_section(input)};
   return {run_section(input),          rates_section(input),
           variance_section(input),     location_section(input),
           indicator_section(input),    dominance_section(input),

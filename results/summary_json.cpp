@@ -1,5 +1,7 @@
 #include <nlohmann/json.hpp>
 
+#include "results/experiment_text.hpp"
+#include "results/scenario_text.hpp"
 #include "results/summary.hpp"
 #include "results/summary_parts.hpp"
 #include "results/utf8.hpp"
@@ -114,6 +116,47 @@ Json s0_perturbation_json(const Study& study, const SummaryParts& parts) {
   return {{"fits", fits}, {"changes", curves}, {"fixed_mvs", structures}};
 }
 
+Json cv_json(const Study& study, const Diagnosis& diagnosis, std::size_t cv) {
+  const CvDiagnosis& found = diagnosis.cvs[cv];
+  const auto place = static_cast<Eigen::Index>(cv);
+  return {{"cv", study.plant.cvs[cv].name},
+          {"ivar", diagnosis.ivar(place)},
+          {"ivar_diag", diagnosis.ivar_diag(place)},
+          {"ivar_basis", diagnosis.ivar_basis(place)},
+          {"flagged", found.flagged},
+          {"source", to_string(found.source)},
+          {"i_mpm", found.indicator.i_mpm},
+          {"co_dkts", found.indicator.co_dkts},
+          {"co_dskn", found.indicator.co_dskn},
+          {"sse", found.sse}};
+}
+
+/// Named scenarios; an empty list in a study of random experiments.
+Json scenarios_json(const Campaign& campaign) {
+  const Study& study = campaign.study;
+  Json list = Json::array();
+  for (const ExperimentRecord& record : campaign.records) {
+    if (!record.draw.named)
+      continue;
+    Json affected = Json::object(), cvs = Json::array();
+    for (const AffectedCv& cv : record.draw.affected())
+      affected[study.plant.cvs[static_cast<std::size_t>(cv.cv)].name] = to_string(cv.by);
+    for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv)
+      cvs.push_back(cv_json(study, record.diagnosis, cv));
+    list.push_back({{"index", record.draw.index},
+                    {"name", scenario_name(study, record)},
+                    {"description", study.scenarios[static_cast<std::size_t>(record.draw.index)].description},
+                    {"kind", to_string(record.draw.kind)},
+                    {"fault", fault_text(study, record.draw)},
+                    {"status", to_string(record.status)},
+                    {"affected", affected},
+                    {"verdict", scenario_verdict_text(study, record)},
+                    {"tsse", total_simulation_error(record.diagnosis)},
+                    {"cvs", cvs}});
+  }
+  return list;
+}
+
 Json failures_json(const std::vector<const ExperimentRecord*>& failed) {
   Json list = Json::array();
   for (const ExperimentRecord* record : failed)
@@ -146,6 +189,7 @@ std::string summary_json(const Campaign& campaign) {
                      {"run", run_json(campaign.info)},
                      {"confidence", campaign.study.aggregate.confidence},
                      {"aggregates", aggregates_json(parts.values)},
+                     {"scenarios", scenarios_json(campaign)},
                      {"dominance", dominance_json(total.dominance)},
                      {"s0_perturbation", s0_perturbation_json(campaign.study, parts)},
                      {"audit", audit_json(parts, campaign.info)},

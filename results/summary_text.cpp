@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "results/scenario_text.hpp"
 #include "results/summary.hpp"
 #include "results/summary_parts.hpp"
 
@@ -88,7 +89,7 @@ void add_heading(Text& text, const Campaign& campaign, const SummaryParts& parts
              fmt::format("sample time {:g} {}, prediction horizon {}, control horizon {}",
                          study.controller.sample_time, plant.time_unit, study.controller.prediction_horizon,
                          study.controller.control_horizon));
-  std::string kinds;
+  std::string kinds = study.names_scenarios() ? "named scenarios" : "";
   for (const KindAggregate& kind : aggregate.kinds)
     kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind.experiments, to_string(kind.kind));
   text.entry("experiments",
@@ -242,12 +243,74 @@ void add_wrong(Text& text, const Study& study, const std::vector<const Experimen
   add_more(text, wrong.size());
 }
 
+/// An index of every CV, one line a scenario; a star marks what lies outside the band of impact.
+void add_scenario_indices(Text& text, const Campaign& campaign, const char* name,
+                          Eigen::VectorXd Diagnosis::*index) {
+  const Study& study = campaign.study;
+  const auto row = [&](const std::string& first, const std::vector<std::string>& cells) {
+    std::string line = fmt::format("{:<14}", first);
+    for (const std::string& cell : cells)
+      line += fmt::format("  {:>9}", cell);
+    text.line("{}", line);
+  };
+  text.line("");
+  std::vector<std::string> cells;
+  for (const PlantModel::Variable& cv : study.plant.cvs)
+    cells.push_back(cv.name + " ");
+  row(name, cells);
+  for (const ExperimentRecord& record : campaign.records) {
+    cells.clear();
+    for (const double value : record.diagnosis.*index)
+      cells.push_back(digits(value) + (study.diagnosis.has_impact(value) ? "*" : " "));
+    row(scenario_name(study, record), cells);
+  }
+}
+
+/// The indicators of the flagged CVs.
+void add_scenario_indicators(Text& text, const Campaign& campaign) {
+  const Study& study = campaign.study;
+  constexpr auto kRow = "{:<14}  {:<10}  {:>8}  {:>8}  {:>8}  {:>8}";
+  text.line("");
+  text.line(kRow, "flagged CVs", "CV", "I_MPM", "co_dkts", "co_dskn", "SSE");
+  for (const ExperimentRecord& record : campaign.records)
+    for (std::size_t i = 0; i < record.diagnosis.cvs.size(); ++i) {
+      const CvDiagnosis& cv = record.diagnosis.cvs[i];
+      if (cv.flagged)
+        text.line(kRow, scenario_name(study, record), study.plant.cvs[i].name, digits(cv.indicator.i_mpm),
+                  digits(cv.indicator.co_dkts), digits(cv.indicator.co_dskn), digits(cv.sse));
+    }
+  text.line("(* outside the band of impact)");
+}
+
+/// What the chain says of each scenario against what the study says.
+void add_scenarios(Text& text, const Campaign& campaign) {
+  const Study& study = campaign.study;
+  const DiagnosisOptions& options = study.diagnosis;
+  constexpr auto kRow = "{:<14}  {:<24}  {:<24}  {:>8}  {}";
+  text.line("");
+  text.line(kRow, "named scenarios", "affected", "flagged", "TSSE", "verdict");
+  for (const ExperimentRecord& record : campaign.records)
+    text.line(kRow, scenario_name(study, record), affected_text(study, record.draw),
+              flagged_text(study, record.diagnosis), digits(total_simulation_error(record.diagnosis)),
+              scenario_verdict_text(study, record));
+  text.line("(flagged: Ivar_diag outside {:g} to {:g}; source by I_MPM above or below {:g})",
+            options.impact_lower, options.impact_upper, options.mpm_threshold);
+  add_scenario_indices(text, campaign, "Ivar", &Diagnosis::ivar);
+  add_scenario_indices(text, campaign, "Ivar_diag", &Diagnosis::ivar_diag);
+  add_scenario_indicators(text, campaign);
+}
+
 }  // namespace
 
 std::string summary_text(const Campaign& campaign, const std::string& file) {
   const SummaryParts parts = summary_parts(campaign);
   Text text;
   add_heading(text, campaign, parts);
+  if (campaign.study.names_scenarios()) {
+    add_scenarios(text, campaign);
+    add_failed(text, parts.failed);
+    return text.take();
+  }
   add_compared(text, campaign.study, parts.values);
   add_others(text, campaign.study, parts.values);
   add_dominance(text, campaign.study, parts.aggregate.dominance);

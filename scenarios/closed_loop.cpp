@@ -111,8 +111,7 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
 
 Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
                                const StepObserver& observer) {
-  const TransferMatrix plant = draw.mismatch ? with_mismatch(study.plant.G, *draw.mismatch) : study.plant.G;
-  return run_closed_loop(study, plant,
+  return run_closed_loop(study, with_mismatches(study.plant.G, draw.mismatches),
                          {measured_disturbances(study), measurement_noise(study, draw.index),
                           unmeasured_disturbances(study, draw), setpoints(study)},
                          factory, observer);

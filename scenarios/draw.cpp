@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -66,6 +68,9 @@ Mismatch draw_mismatch(const Study& study, std::int64_t index) {
       value = possible_shift(ranges.dead_time_shift.sample(stream), ranges.dead_time_shift,
                              study.plant.G(cv, mv).dead_time());
       break;
+    case MismatchParameter::channel:
+      assert(false);  // is never drawn
+      break;
   }
   return {cv, mv, parameter, value};
 }
@@ -78,18 +83,54 @@ Disturbance draw_disturbance(const Study& study, std::int64_t index) {
   return {cv, gain, time_constant};
 }
 
+ExperimentDraw named_experiment(const Study& study, std::int64_t index) {
+  if (index >= study.experiment_count())
+    throw InputError("experiment index", fmt::format("{}", index),
+                     fmt::format("0 to {}, the named scenarios of the study", study.experiment_count() - 1));
+  const Scenario& scenario = study.scenarios[static_cast<std::size_t>(index)];
+  return {index,
+          kind_of(scenario.mismatches, scenario.disturbances),
+          scenario.mismatches,
+          scenario.disturbances,
+          true,
+          scenario.affected_cvs};
+}
+
 }  // namespace
 
+std::vector<AffectedCv> ExperimentDraw::affected() const {
+  std::map<Eigen::Index, std::pair<bool, bool>> faults;  // CV -> mismatch, disturbance
+  for (const Mismatch& mismatch : mismatches)
+    faults[mismatch.cv].first = true;
+  for (const Disturbance& disturbance : disturbances)
+    faults[disturbance.cv].second = true;
+  if (affected_cvs) {
+    const auto own = std::exchange(faults, {});
+    for (const Eigen::Index cv : *affected_cvs)
+      faults[cv] = own.contains(cv) ? own.at(cv) : std::pair(!mismatches.empty(), !disturbances.empty());
+  }
+  std::vector<AffectedCv> list;
+  for (const auto& [cv, fault] : faults)
+    list.push_back({cv, fault.first && fault.second ? ExperimentKind::mpm_ud
+                        : fault.first               ? ExperimentKind::mpm
+                                                    : ExperimentKind::ud});
+  return list;
+}
+
 Eigen::Index ExperimentDraw::true_cv() const {
-  return mismatch ? mismatch->cv : disturbance ? disturbance->cv : -1;
+  const std::vector<AffectedCv> list = affected();
+  return list.size() == 1 ? list.front().cv : -1;
 }
 
 ExperimentDraw ExperimentDraw::mismatch_alone() const {
-  return {index, ExperimentKind::mpm, mismatch, std::nullopt};
+  return {index,       mismatches.empty() ? ExperimentKind::none : ExperimentKind::mpm, mismatches, {}, named,
+          affected_cvs};
 }
 
 ExperimentDraw ExperimentDraw::disturbance_alone() const {
-  return {index, ExperimentKind::ud, std::nullopt, disturbance};
+  return {index, disturbances.empty() ? ExperimentKind::none : ExperimentKind::ud,
+          {},    disturbances,
+          named, affected_cvs};
 }
 
 KindSequence::KindSequence(const ExperimentCounts& counts) {
@@ -126,37 +167,24 @@ ExperimentKind KindSequence::operator[](std::int64_t index) const {
 ExperimentDraw draw_experiment(const Study& study, std::int64_t index) {
   if (index < 0)
     throw InputError("experiment index", fmt::format("{}", index), ">= 0");
+  if (study.names_scenarios())
+    return named_experiment(study, index);
   ExperimentDraw draw;
   draw.index = index;
   draw.kind = KindSequence(study.experiments)[index];
   if (draw.kind != ExperimentKind::ud)
-    draw.mismatch = draw_mismatch(study, index);
+    draw.mismatches = {draw_mismatch(study, index)};
   if (draw.kind != ExperimentKind::mpm)
-    draw.disturbance = draw_disturbance(study, index);
-  if (draw.mismatch && draw.disturbance)
-    draw.disturbance->cv = draw.mismatch->cv;
+    draw.disturbances = {draw_disturbance(study, index)};
+  if (draw.kind == ExperimentKind::mpm_ud)
+    draw.disturbances.front().cv = draw.mismatches.front().cv;
   return draw;
 }
 
 ExperimentDraw basis_draw() {
-  return {kBasisIndex, ExperimentKind::none, std::nullopt, std::nullopt};
-}
-
-TransferMatrix with_mismatch(const TransferMatrix& model, const Mismatch& mismatch) {
-  TransferMatrix plant = model;
-  TransferFunction& channel = plant(mismatch.cv, mismatch.mv);
-  switch (mismatch.parameter) {
-    case MismatchParameter::gain:
-      channel = channel.with_gain_scaled(mismatch.value);
-      break;
-    case MismatchParameter::time_constant:
-      channel = channel.with_time_scaled(mismatch.value);
-      break;
-    case MismatchParameter::dead_time:
-      channel = channel.with_dead_time_shifted(mismatch.value);
-      break;
-  }
-  return plant;
+  ExperimentDraw draw;
+  draw.index = kBasisIndex;
+  return draw;
 }
 
 }  // namespace mpm

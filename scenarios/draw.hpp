@@ -4,36 +4,34 @@
 #include <optional>
 #include <vector>
 
-#include "plants/transfer_matrix.hpp"
+#include "scenarios/fault.hpp"
 #include "scenarios/study.hpp"
 
 namespace mpm {
 
-/// A model-plant mismatch: one parameter of the channel (cv, mv) of the plant differs from the model.
-struct Mismatch {
+/// A CV that an experiment affects, and by what.
+struct AffectedCv {
   Eigen::Index cv;
-  Eigen::Index mv;
-  MismatchParameter parameter;
-  double value;  ///< factor of gain or time constant; shift of the dead time in the plant's time unit
+  ExperimentKind by;  ///< mpm, ud, or mpm_ud for both
 };
 
-/// An unmeasured disturbance y_d = gain / (time_constant s + 1) v added to one CV.
-struct Disturbance {
-  Eigen::Index cv;
-  double gain;           ///< CV unit per unit of v
-  double time_constant;  ///< time unit of the plant
-};
-
-/// What one experiment does to the loop.
+/// What one experiment does to the loop: drawn at random, with at most one fault of either sort, or a named
+/// scenario of the study.
 struct ExperimentDraw {
   std::int64_t index = 0;
   ExperimentKind kind = ExperimentKind::none;
-  std::optional<Mismatch> mismatch;
-  std::optional<Disturbance> disturbance;
+  std::vector<Mismatch> mismatches;
+  std::vector<Disturbance> disturbances;
+  bool named = false;  ///< the scenario number `index` of the study
+  /// The CVs that a diagnosis should find, when the study says it; otherwise those with a fault.
+  std::optional<std::vector<Eigen::Index>> affected_cvs = {};
 
-  /// The CV that is affected, -1 for the basis case.
+  /// The CVs that are affected, in their order. A CV that has no fault of its own is affected by what is
+  /// wrong in the experiment.
+  std::vector<AffectedCv> affected() const;
+  /// The CV that is affected; -1 when it is none, or more than one.
   Eigen::Index true_cv() const;
-  /// The same experiment with the mismatch alone, and with the disturbance alone.
+  /// The same experiment with the mismatches alone, and with the disturbances alone.
   ExperimentDraw mismatch_alone() const;
   ExperimentDraw disturbance_alone() const;
 };
@@ -56,14 +54,12 @@ class KindSequence {
   std::vector<ExperimentKind> period_;
 };
 
-/// Experiment `index` of the study: a pure function of (study, seed, index). In an experiment with mismatch
-/// and disturbance both are on the same CV, as (6.23) needs. Throws InputError for a negative index.
+/// Experiment `index` of the study: a pure function of (study, seed, index). In a random experiment with
+/// mismatch and disturbance both are on the same CV, as (6.23) needs. Throws InputError for a negative index,
+/// and for one that is no scenario of a study of named scenarios.
 ExperimentDraw draw_experiment(const Study& study, std::int64_t index);
 
 /// The basis case: nothing is wrong.
 ExperimentDraw basis_draw();
-
-/// The plant that has this mismatch where the model is `model`.
-TransferMatrix with_mismatch(const TransferMatrix& model, const Mismatch& mismatch);
 
 }  // namespace mpm

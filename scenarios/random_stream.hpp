@@ -16,6 +16,8 @@ enum class StreamId : std::uint32_t {
   kind = 5,                ///< the kind of the experiment: mismatch, disturbance or both
   bootstrap = 6,           ///< resampling in the aggregates
   audit = 7,               ///< which experiments are run again as a check
+  /// Of the second disturbance of a named scenario; the following numbers are those of the third and so on.
+  further_disturbance_signals = 0x1000,
 };
 
 /// One block of Philox4x32-10 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3",

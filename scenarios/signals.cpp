@@ -1,7 +1,10 @@
 #include "scenarios/signals.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <numbers>
+#include <variant>
 
 #include "plants/linear_plant.hpp"
 #include "scenarios/random_stream.hpp"
@@ -33,6 +36,60 @@ void add_random_steps(const Study& study, Eigen::MatrixXd& d) {
   }
 }
 
+/// What the value of a signal depends on.
+struct SignalSetting {
+  double standard_deviation, sample_time;
+  Eigen::Index samples;
+  RandomStream white;
+};
+
+Eigen::RowVectorXd values(const WhiteNoise& noise, SignalSetting at) {
+  Eigen::RowVectorXd v(at.samples);
+  for (Eigen::Index k = 0; k < v.size(); ++k)
+    v(k) = k % noise.hold == 0 ? noise.factor * at.standard_deviation * at.white.normal() : v(k - 1);
+  return v;
+}
+
+Eigen::RowVectorXd values(const Sine& sine, const SignalSetting& at) {
+  const double step = 2.0 * std::numbers::pi * at.sample_time / sine.period;
+  return sine.amplitude *
+         (step * Eigen::RowVectorXd::LinSpaced(at.samples, 0.0, static_cast<double>(at.samples - 1)))
+             .array()
+             .sin()
+             .matrix();
+}
+
+Eigen::RowVectorXd values(const Ramp& ramp, const SignalSetting& at) {
+  Eigen::RowVectorXd v(at.samples);
+  for (Eigen::Index k = 0; k < v.size(); ++k)
+    v(k) = ramp.slope * std::max(0.0, static_cast<double>(k) * at.sample_time - ramp.start);
+  return v;
+}
+
+Eigen::RowVectorXd values(const StepSequence& sequence, const SignalSetting& at) {
+  Eigen::RowVectorXd v = Eigen::RowVectorXd::Zero(at.samples);
+  for (const StepSequence::Step& step : sequence.steps)
+    v.tail(at.samples - step.sample).setConstant(step.level);
+  return v;
+}
+
+Eigen::RowVectorXd through_model(const Disturbance& disturbance, double Ts, const Eigen::RowVectorXd& v) {
+  if (disturbance.model == DisturbanceModel::direct)
+    return v;
+  assert(disturbance.model == DisturbanceModel::first_order || disturbance.Gd);
+  const TransferMatrix Gd{{disturbance.model == DisturbanceModel::first_order
+                               ? TransferFunction::first_order(disturbance.gain, disturbance.time_constant)
+                               : *disturbance.Gd}};
+  return simulate(Gd, Ts, v);
+}
+
+/// A stream of its own for each disturbance of a scenario, so that no signal depends on the others.
+StreamId disturbance_stream(std::size_t number) {
+  constexpr auto kFurther = static_cast<std::uint32_t>(StreamId::further_disturbance_signals);
+  return number == 0 ? StreamId::disturbance_signal
+                     : static_cast<StreamId>(kFurther + static_cast<std::uint32_t>(number - 1));
+}
+
 }  // namespace
 
 Eigen::MatrixXd measured_disturbances(const Study& study) {
@@ -60,18 +117,26 @@ Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index) {
   return noise;
 }
 
+Eigen::RowVectorXd disturbance_signal(const DisturbanceSignal& signal, double standard_deviation,
+                                      double sample_time, Eigen::Index samples, RandomStream white) {
+  return std::visit(
+      [&](const auto& form) -> Eigen::RowVectorXd {
+        return values(form, {standard_deviation, sample_time, samples, white});
+      },
+      signal);
+}
+
 Eigen::MatrixXd unmeasured_disturbances(const Study& study, const ExperimentDraw& draw) {
-  Eigen::MatrixXd signal = Eigen::MatrixXd::Zero(study.cv_count(), study.simulation.samples);
-  if (!draw.disturbance)
-    return signal;
-  RandomStream stream = stream_of(study, draw.index, StreamId::disturbance_signal);
-  Eigen::MatrixXd v(1, study.simulation.samples);
-  for (Eigen::Index k = 0; k < v.cols(); ++k)
-    v(0, k) = study.disturbance.v_standard_deviation * stream.normal();
-  const TransferMatrix filter{
-      {TransferFunction::first_order(draw.disturbance->gain, draw.disturbance->time_constant)}};
-  signal.row(draw.disturbance->cv) = simulate(filter, study.controller.sample_time, v);
-  return signal;
+  const double Ts = study.controller.sample_time;
+  Eigen::MatrixXd y_d = Eigen::MatrixXd::Zero(study.cv_count(), study.simulation.samples);
+  for (std::size_t i = 0; i < draw.disturbances.size(); ++i) {
+    const Disturbance& disturbance = draw.disturbances[i];
+    const Eigen::RowVectorXd v =
+        disturbance_signal(disturbance.signal, study.disturbance.v_standard_deviation, Ts, y_d.cols(),
+                           stream_of(study, draw.index, disturbance_stream(i)));
+    y_d.row(disturbance.cv) += through_model(disturbance, Ts, v);
+  }
+  return y_d;
 }
 
 }  // namespace mpm

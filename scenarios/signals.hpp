@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "scenarios/draw.hpp"
+#include "scenarios/random_stream.hpp"
 #include "scenarios/study.hpp"
 
 namespace mpm {
@@ -17,8 +18,14 @@ Eigen::MatrixXd setpoints(const Study& study);
 /// White normal measurement noise of the experiment, ny x samples.
 Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index);
 
-/// The unmeasured disturbances of the experiment on every CV, ny x samples: y_d = G_d v from rest, with v
-/// white, normal and held over a sample (figure 6.1c). Zero where the experiment has none.
+/// The signal v of a disturbance, one value a sample. `white` gives the normal numbers of a white one, and
+/// `standard_deviation` is theirs for a factor of 1.
+Eigen::RowVectorXd disturbance_signal(const DisturbanceSignal& signal, double standard_deviation,
+                                      double sample_time, Eigen::Index samples, RandomStream white);
+
+/// The unmeasured disturbances of the experiment on every CV, ny x samples: the sum of y_d = G_d v, each from
+/// rest with v held over a sample (figure 6.1c), or of y_d = v where nothing stands between. Zero where the
+/// experiment has none.
 Eigen::MatrixXd unmeasured_disturbances(const Study& study, const ExperimentDraw& draw);
 
 }  // namespace mpm

@@ -9,15 +9,10 @@
 
 #include "plants/plant_model.hpp"
 #include "scenarios/distribution.hpp"
+#include "scenarios/fault.hpp"
 #include "solvers/range_mpc_options.hpp"
 
 namespace mpm {
-
-/// What is wrong in an experiment. `none` is the basis case.
-enum class ExperimentKind : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3 };
-
-/// Which parameter of a channel a model-plant mismatch changes, as in table 6.4.
-enum class MismatchParameter : std::int8_t { gain = 0, time_constant = 1, dead_time = 2 };
 
 /// One step of a signal, of a measured disturbance or a setpoint: from `sample` on it has the value `level`.
 struct SignalStep {
@@ -107,6 +102,9 @@ struct DiagnosisOptions {
   SourcePopulation source_population = SourcePopulation::impactful;
   double self_check_lower = 0.8;  ///< Ivar of the basis case must lie in this band for every CV
   double self_check_upper = 1.2;
+
+  /// Does this Ivar lie outside the band of impact? False for NaN.
+  bool has_impact(double ivar) const { return ivar < impact_lower || ivar > impact_upper; }
 };
 
 /// How aggregates get their intervals.
@@ -129,7 +127,8 @@ struct Study {
   PlantModel plant;  ///< the nominal model G0
   RangeMpcOptions controller;
   SimulationOptions simulation;
-  ExperimentCounts experiments;
+  ExperimentCounts experiments;     ///< of random experiments; all 0 in a study of named scenarios
+  std::vector<Scenario> scenarios;  ///< the experiments of a study of named scenarios, in their order
   MismatchRanges mismatch;
   DisturbanceRanges disturbance;
   SensitivityOptions sensitivity;
@@ -139,6 +138,11 @@ struct Study {
   std::vector<ReferenceValue> reference;  ///< shown beside the results, never used to make them
   std::string source;                     ///< the full text of the file
 
+  bool names_scenarios() const { return !scenarios.empty(); }
+  /// Experiments of one full run.
+  int experiment_count() const {
+    return names_scenarios() ? static_cast<int>(scenarios.size()) : experiments.total();
+  }
   Eigen::Index cv_count() const { return static_cast<Eigen::Index>(plant.cvs.size()); }
   Eigen::Index mv_count() const { return static_cast<Eigen::Index>(plant.mvs.size()); }
   Eigen::Index md_count() const { return static_cast<Eigen::Index>(plant.mds.size()); }

@@ -59,6 +59,7 @@ Study parse_study(std::string_view text, const std::string& file_name) {
   study.plant = read_plant(document);
   study.controller = read_controller(document, study.plant);
   study.simulation = read_simulation(document, study.plant, study.controller);
+  study.scenarios = read_scenarios(document, study);
   study.experiments = read_experiments(document);
   study.mismatch = read_mismatch(document, study.plant);
   study.disturbance = read_disturbance(document);

@@ -11,7 +11,6 @@ namespace {
 
 // Bounds on the size of the matrices and of the history of inputs that a file can ask for.
 constexpr std::int64_t kMaxHorizon = 2000;
-constexpr double kMaxDeadTimeSamples = 10000;
 
 void set_limits(Limits& limits, Eigen::Index i, const NumberPair& range) {
   limits.lower(i) = range.first;

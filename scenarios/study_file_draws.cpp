@@ -56,6 +56,14 @@ void refuse_impossible_shift(const TomlTable& mismatch, const Distribution& shif
 }  // namespace
 
 ExperimentCounts read_experiments(const TomlTable& document) {
+  if (document.has("scenario")) {
+    for (const char* random : {"experiments", "mismatch"}) {
+      if (document.has(random)) {
+        document.refuse(random, "random experiments beside named scenarios", "one of the two");
+      }
+    }
+    return {};
+  }
   const TomlTable table = document.table("experiments", study_file_keys("experiments"));
   const auto count = [&table](const char* key) {
     return static_cast<int>(read_whole(table, key, 0, kMaxExperiments));

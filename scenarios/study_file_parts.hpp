@@ -27,7 +27,24 @@ Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantMod
 SimulationOptions read_simulation(const TomlTable& document, const PlantModel& plant,
                                   const RangeMpcOptions& controller);
 
-/// [experiments] (study_file_draws.cpp), as the next two.
+/// The transfer function in the keys gain, time_constant, numerator, denominator and dead_time of a table
+/// (study_file_plant.cpp), as the next two.
+TransferFunction read_transfer_function(const TomlTable& table);
+
+/// Refuses a channel of a plant that is not stable: the targets of (6.19) need static gains, y_sim = G0 u of
+/// (6.4) runs away for an unstable model, and a plant starts in a steady state.
+void refuse_unstable(const TomlTable& table, const TransferFunction& channel);
+
+/// Refuses a model of a disturbance that grows by itself: poles may lie at 0, but not to the right of it.
+void refuse_growing(const TomlTable& table, const TransferFunction& Gd);
+
+/// Longest dead time that a study may have, in samples: a bound on the memory that a mistake can cost.
+inline constexpr double kMaxDeadTimeSamples = 10000;
+
+/// [[scenario]] (study_file_scenarios.cpp); none when the study draws its experiments at random.
+std::vector<Scenario> read_scenarios(const TomlTable& document, const Study& study);
+
+/// [experiments] (study_file_draws.cpp), as the next two. None in a study of named scenarios.
 ExperimentCounts read_experiments(const TomlTable& document);
 
 /// [mismatch]

@@ -60,39 +60,6 @@ double largest_real_part_of_roots(const Eigen::VectorXd& p) {
   return mean_root * companion.eigenvalues().real().maxCoeff();
 }
 
-TransferFunction make_transfer_function(const TomlTable& table) {
-  const double dead_time = read_number_or(table, "dead_time", NumberRule::at_least(0), 0.0);
-  const bool first_order = table.has("gain") || table.has("time_constant");
-  if (first_order == (table.has("numerator") || table.has("denominator"))) {
-    table.refuse("", first_order ? "both ways to write a channel" : "no transfer function",
-                 "either gain and time_constant, or numerator and denominator");
-  }
-  if (first_order) {
-    return TransferFunction::first_order(read_number(table, "gain", NumberRule::finite()),
-                                         read_number(table, "time_constant", NumberRule::positive()),
-                                         dead_time);
-  }
-  Eigen::VectorXd numerator = read_numbers(table, "numerator", NumberRule::finite(), kMaxCoefficients);
-  Eigen::VectorXd denominator = read_numbers(table, "denominator", NumberRule::finite(), kMaxCoefficients);
-  return table.located(
-      "", [&] { return TransferFunction(std::move(numerator), std::move(denominator), dead_time); });
-}
-
-/// The targets of (6.19) need static gains, and y_sim = G0 u of (6.4) runs away for an unstable model.
-void refuse_unstable(const TomlTable& table, const TransferFunction& channel) {
-  if (channel.is_zero() || channel.order() == 0) {
-    return;
-  }
-  const double real_part = largest_real_part_of_roots(channel.denominator());
-  if (!std::isfinite(real_part)) {
-    table.refuse("denominator", "coefficients whose ratios overflow", "coefficients of similar size");
-  }
-  if (!(real_part < 0)) {
-    table.refuse("denominator", fmt::format("a pole with real part {:.3g}", real_part),
-                 "poles with negative real parts");
-  }
-}
-
 void read_channels(const TomlTable& plant, PlantModel& model) {
   const std::vector<std::string> cvs = variable_names(model.cvs);
   std::vector<std::string> inputs = variable_names(model.mvs);
@@ -104,7 +71,7 @@ void read_channels(const TomlTable& plant, PlantModel& model) {
   for (const TomlTable& table : plant.tables("channel", study_file_keys("plant.channel[]"))) {
     const auto row = static_cast<Eigen::Index>(read_one_of(table, "cv", cvs));
     const auto col = static_cast<Eigen::Index>(read_one_of(table, "input", inputs));
-    const TransferFunction channel = make_transfer_function(table);
+    const TransferFunction channel = read_transfer_function(table);
     refuse_unstable(table, channel);
     if (!listed.emplace(row, col).second) {
       table.refuse("", "a second channel from this input to this CV", "every channel once");
@@ -143,6 +110,57 @@ PlantModel read_inline_plant(const TomlTable& plant) {
 }
 
 }  // namespace
+
+TransferFunction read_transfer_function(const TomlTable& table) {
+  const double dead_time = read_number_or(table, "dead_time", NumberRule::at_least(0), 0.0);
+  const bool first_order = table.has("gain") || table.has("time_constant");
+  if (first_order == (table.has("numerator") || table.has("denominator"))) {
+    table.refuse("", first_order ? "both ways to write a channel" : "no transfer function",
+                 "either gain and time_constant, or numerator and denominator");
+  }
+  if (first_order) {
+    return TransferFunction::first_order(read_number(table, "gain", NumberRule::finite()),
+                                         read_number(table, "time_constant", NumberRule::positive()),
+                                         dead_time);
+  }
+  Eigen::VectorXd numerator = read_numbers(table, "numerator", NumberRule::finite(), kMaxCoefficients);
+  Eigen::VectorXd denominator = read_numbers(table, "denominator", NumberRule::finite(), kMaxCoefficients);
+  return table.located(
+      "", [&] { return TransferFunction(std::move(numerator), std::move(denominator), dead_time); });
+}
+
+void refuse_unstable(const TomlTable& table, const TransferFunction& channel) {
+  if (channel.is_zero() || channel.order() == 0) {
+    return;
+  }
+  const double real_part = largest_real_part_of_roots(channel.denominator());
+  if (!std::isfinite(real_part)) {
+    table.refuse("denominator", "coefficients whose ratios overflow", "coefficients of similar size");
+  }
+  if (!(real_part < 0)) {
+    table.refuse("denominator", fmt::format("a pole with real part {:.3g}", real_part),
+                 "poles with negative real parts");
+  }
+}
+
+void refuse_growing(const TomlTable& table, const TransferFunction& Gd) {
+  const Eigen::VectorXd& all = Gd.denominator();
+  Eigen::Index size = all.size();
+  while (size > 1 && all(size - 1) == 0) {
+    --size;  // an integrator
+  }
+  if (Gd.is_zero() || size == 1) {
+    return;
+  }
+  const double real_part = largest_real_part_of_roots(all.head(size));
+  if (!std::isfinite(real_part)) {
+    table.refuse("denominator", "coefficients whose ratios overflow", "coefficients of similar size");
+  }
+  if (real_part > 0) {
+    table.refuse("denominator", fmt::format("a pole with real part {:.3g}", real_part),
+                 "poles with negative real parts, or at 0");
+  }
+}
 
 std::vector<std::string> variable_names(const std::vector<PlantModel::Variable>& variables) {
   std::vector<std::string> names;

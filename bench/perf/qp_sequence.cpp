@@ -59,12 +59,16 @@ std::array<QpSequence, 2> record(const Study& study, const ExperimentDraw& draw)
 }
 
 std::string description(const ExperimentDraw& draw) {
-  if (draw.mismatch)
-    return fmt::format("{} of channel ({}, {}): {:.4g}", to_string(draw.mismatch->parameter),
-                       draw.mismatch->cv + 1, draw.mismatch->mv + 1, draw.mismatch->value);
-  if (draw.disturbance)
-    return fmt::format("disturbance of y{}: gain {:.4g}, time constant {:.4g}", draw.disturbance->cv + 1,
-                       draw.disturbance->gain, draw.disturbance->time_constant);
+  if (!draw.mismatches.empty()) {
+    const Mismatch& mismatch = draw.mismatches.front();
+    return fmt::format("{} of channel ({}, {}): {:.4g}", to_string(mismatch.parameter), mismatch.cv + 1,
+                       mismatch.input + 1, mismatch.value);
+  }
+  if (!draw.disturbances.empty()) {
+    const Disturbance& disturbance = draw.disturbances.front();
+    return fmt::format("disturbance of y{}: gain {:.4g}, time constant {:.4g}", disturbance.cv + 1,
+                       disturbance.gain, disturbance.time_constant);
+  }
   return "basis case";
 }
 

@@ -93,9 +93,9 @@ void add_study(const Study& study, std::int64_t experiments) {
 }  // namespace
 
 void register_study_benchmarks(const Study& study, std::int64_t experiments) {
-  if (experiments < 1 || experiments > study.experiments.total())
+  if (experiments < 1 || experiments > study.experiment_count())
     throw InputError("experiments", fmt::to_string(experiments),
-                     fmt::format("1 to {}", study.experiments.total()));
+                     fmt::format("1 to {}", study.experiment_count()));
   add_loops(study);
   add_sensitivity(study);
   add_diagnosis(study);

@@ -13,9 +13,9 @@ inline ExperimentRecord made_up_record(std::int64_t index, ExperimentKind kind, 
   record.draw.index = index;
   record.draw.kind = kind;
   if (kind != ExperimentKind::ud)
-    record.draw.mismatch = Mismatch{cv, 0, MismatchParameter::gain, 0.5};
+    record.draw.mismatches = {{cv, 0, MismatchParameter::gain, 0.5}};
   if (kind != ExperimentKind::mpm)
-    record.draw.disturbance = Disturbance{cv, 1.0, 50.0};
+    record.draw.disturbances = {{cv, 1.0, 50.0}};
   record.status = ExperimentStatus::ok;
   Diagnosis& d = record.diagnosis;
   d.ivar = d.ivar_diag = Eigen::VectorXd::Ones(7);

@@ -16,7 +16,7 @@ ExperimentRecord record(std::int64_t index, MismatchParameter parameter, double 
   ExperimentRecord made;
   made.draw.index = index;
   made.draw.kind = ExperimentKind::mpm;
-  made.draw.mismatch = Mismatch{0, 0, parameter, value};
+  made.draw.mismatches = {{0, 0, parameter, value}};
   made.status = ExperimentStatus::ok;
   made.diagnosis.impactful = impactful;
   made.diagnosis.predicted_cv = 0;

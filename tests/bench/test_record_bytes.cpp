@@ -11,8 +11,7 @@ using namespace mpm;
 
 TEST_CASE("record bytes: there and back, whatever is in the record") {
   ExperimentRecord record;
-  record.draw = {17, ExperimentKind::mpm_ud, Mismatch{1, 2, MismatchParameter::dead_time, -1.5},
-                 Disturbance{1, 3, 4}};
+  record.draw = {17, ExperimentKind::mpm_ud, {{1, 2, MismatchParameter::dead_time, -1.5}}, {{1, 3, 4}}};
   record.status = ExperimentStatus::ok;
   record.message = "text";
   record.diagnosis.ivar = Eigen::Vector3d(1.0, std::nan(""), INFINITY);
@@ -24,12 +23,45 @@ TEST_CASE("record bytes: there and back, whatever is in the record") {
   const std::string bytes = to_bytes(record);
   const ExperimentRecord again = record_from_bytes(bytes);
   CHECK(to_bytes(again) == bytes);
-  CHECK(again.draw.mismatch->value == -1.5);
+  CHECK(again.draw.mismatches.front().value == -1.5);
   CHECK(again.perturbed.damping == record.perturbed.damping);
   CHECK(again.loop->y_sim == record.loop->y_sim);
-  record.draw.disturbance.reset();
+  record.draw.disturbances.clear();
   record.loop.reset();
-  CHECK_FALSE(record_from_bytes(to_bytes(record)).draw.disturbance.has_value());
+  CHECK_FALSE(record_from_bytes(to_bytes(record)).draw.disturbances.size() == 1);
+}
+
+TEST_CASE("record bytes: everything of a named scenario") {
+  ExperimentRecord record;
+  const TransferFunction G(Eigen::Vector2d(2, 1), Eigen::Vector3d(30, 12, 1), 4);
+  record.draw = {1,
+                 ExperimentKind::mpm_ud,
+                 {{1, 2, MismatchParameter::gain, 1.5}, {0, 4, MismatchParameter::channel, 0.0, G}},
+                 {{1, 3, 4, DisturbanceModel::first_order, {}, Sine{0.5, 6}},
+                  {0, 0, 0, DisturbanceModel::transfer_function, G, Ramp{7, 8}},
+                  {0, 0, 0, DisturbanceModel::direct, {}, StepSequence{{{1, 2.0}, {3, 4.0}}}},
+                  {2, 1, 1, DisturbanceModel::first_order, {}, WhiteNoise{0.25, 3}}},
+                 true,
+                 {{0, 2}}};
+  record.diagnosis.cvs = {{true, ExperimentKind::ud, {}, 0.5}, {}};
+  record.diagnosis.cvs[1].indicator.co_dkts = 0.75;
+  const std::string bytes = to_bytes(record);
+  const ExperimentRecord again = record_from_bytes(bytes);
+  CHECK(to_bytes(again) == bytes);
+  CHECK(again.draw.named);
+  CHECK(again.draw.affected_cvs == std::vector<Eigen::Index>{0, 2});
+  REQUIRE(again.draw.mismatches[1].channel.has_value());
+  CHECK(again.draw.mismatches[1].channel->numerator() == Eigen::Vector2d(2, 1));
+  CHECK(again.draw.mismatches[1].channel->dead_time() == 4);
+  CHECK_FALSE(again.draw.disturbances[0].Gd.has_value());
+  CHECK(std::get<Sine>(again.draw.disturbances[0].signal).period == 6);
+  CHECK(std::get<Ramp>(again.draw.disturbances[1].signal).slope == 7);
+  CHECK(std::get<StepSequence>(again.draw.disturbances[2].signal).steps[1].level == 4.0);
+  CHECK(std::get<WhiteNoise>(again.draw.disturbances[3].signal).hold == 3);
+  CHECK(again.diagnosis.cvs[0].flagged);
+  CHECK(again.diagnosis.cvs[1].indicator.co_dkts == 0.75);
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    CHECK_THROWS_AS(record_from_bytes(std::string_view(bytes).substr(0, size)), std::runtime_error);
 }
 
 TEST_CASE("record bytes: cut or lengthened bytes are refused") {

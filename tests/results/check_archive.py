@@ -128,9 +128,31 @@ def check_ncdump(path, variables):
     subprocess.run(["ncdump", path], check=True, capture_output=True)  # the data too
 
 
+def check_scenarios(path, variables, attributes):
+    """The group that only studies of named scenarios have, beside groups that are as in any archive."""
+    group = "/scenarios"
+    with h5py.File(path) as file:
+        assert "/s0_sensitivity" not in file and group in file
+        found = {key: variable_form(item) for key, item in file[group].items()}
+        assert found == variables[group], found.items() ^ variables[group].items()
+        assert {key: attribute_form(value) for key, value in file[group].attrs.items()} == attributes[group]
+        for item in file[group].values():
+            check_variable(item)
+        assert list(file["kind"]) == [0, 1, 2, 3, 1] and list(file["true_cv"]) == [-1, -1, 1, -1, 1]
+    with xarray.open_dataset(path, group=group) as scenarios:
+        scenarios.load()
+        assert dict(scenarios.sizes) == {"experiment": 5, "cv": 2}, scenarios.sizes
+        assert list(scenarios.name.values)[:2] == ["healthy", "channels"]
+        assert scenarios.affected.values.tolist() == [[0, 0], [1, 1], [0, 2], [0, 0], [0, 1]]
+        assert numpy.isnan(scenarios.tsse.values[3:]).all()
+    with xarray.open_dataset(path) as root:
+        root.load()
+    subprocess.run(["ncdump", path], check=True, capture_output=True)
+
+
 def check_empty(path, variables):
     """A file whose dimensions have no length opens too."""
-    for group in variables.keys() - {"/audit", "/nominal_fixed", "/s0_sensitivity", "/trajectories"}:
+    for group in variables.keys() - {"/scenarios", "/audit", "/nominal_fixed", "/s0_sensitivity", "/trajectories"}:
         with xarray.open_dataset(path, group=None if group == "/" else group) as dataset:
             dataset.load()
     with xarray.open_dataset(path) as root:
@@ -144,9 +166,12 @@ def main(writer, file_format):
         path = str(pathlib.Path(folder) / "sample.h5")
         subprocess.run([writer, path], check=True)
         assert seal.is_sealed(path)
-        check_h5py(path, variables, attributes)
-        check_xarray(path, variables)
-        check_ncdump(path, variables)
+        random = {group: names for group, names in variables.items() if group != "/scenarios"}
+        check_h5py(path, random, attributes)
+        check_xarray(path, random)
+        check_ncdump(path, random)
+        subprocess.run([writer, path, "scenarios"], check=True)
+        check_scenarios(path, variables, attributes)
         subprocess.run([writer, path, "empty"], check=True)
         check_empty(path, variables)
 

@@ -20,6 +20,7 @@ FOR_PEOPLE = {"/cv", "/mv", "/md", "/basis/cv", "/basis/mv", "/basis/md", "/basi
               "/basis/acf_y0_diag", "/nominal/cv", "/nominal/time", "/nominal_fixed/cv", "/nominal_fixed/time", "/trajectories/cv", "/trajectories/mv",
               "/trajectories/md", "/trajectories/sample", "/trajectories/time"}
 READ_OF_S0_SENSITIVITY = {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"}
+FOR_PEOPLE |= {"/scenarios/" + name for name in ("experiment", "cv", "name", "description", "affected", "tsse")}
 FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/basis/title"}
 
 
@@ -89,7 +90,7 @@ class Damage:
             path = group.rstrip("/") + "/" + name
             message = self.after(lambda file: file[group].attrs.pop(name))
             if path in FOR_PEOPLE_ATTRIBUTES or group in (
-                    "/nominal", "/nominal_fixed", "/s0_sensitivity", "/audit", "/trajectories", "/aggregate"):
+                    "/nominal", "/nominal_fixed", "/s0_sensitivity", "/audit", "/trajectories", "/aggregate", "/scenarios"):
                 assert message is None, (path, message)
             else:
                 assert message and f"'{path}': missing" in message, (path, message)
@@ -119,6 +120,16 @@ class Damage:
         assert "'experiment': found -1; allowed" in self.after(lambda file: file["experiment"].__setitem__(0, -1))
         assert "'y9', which is no CV" in self.after(lambda file: file["nominal/active_cv"].__setitem__(0, "y9"))
         assert "found 77" in self.after(lambda file: file["trajectories/stored"].__setitem__(0, 77))
+
+    def wrong_scenarios(self):
+        """What a scenario does is in the study: a table that says something else is refused."""
+        assert "'kind': found another value in experiment 1; allowed: mpm" in self.after(
+            lambda file: file["kind"].__setitem__(1, 2))
+        assert "'true_cv': found another value in experiment 4; allowed: 1" in self.after(
+            lambda file: file["true_cv"].__setitem__(4, 0))
+        assert "'experiment': found 9; allowed: 0 to 4" in self.after(
+            lambda file: file["experiment"].__setitem__(4, 9))
+        assert "'flagged': found 7" in self.after(lambda file: file["scenarios/flagged"].__setitem__((0, 0), 7))
 
     def random_values(self, count):
         """Numbers that no campaign has: they are refused, or the summary can cope with them."""
@@ -152,6 +163,11 @@ def main(writer, reader):
         damage.missing_objects()
         damage.wrong_objects()
         damage.random_values(100)
+        subprocess.run([writer, whole, "scenarios"], check=True)
+        assert damage.after(lambda file: None) is None
+        damage.missing_objects()
+        damage.wrong_scenarios()
+        damage.random_values(50)
 
 
 if __name__ == "__main__":

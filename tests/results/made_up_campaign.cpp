@@ -57,6 +57,11 @@ SolverStatistics solver(Numbers& numbers) {
   return {numbers.whole(), numbers.whole(), numbers.whole(), numbers.next()};
 }
 
+MpmIndicator indicator(Numbers& numbers) {
+  return {numbers.next(), numbers.next(),     numbers.next(),    numbers.next(),
+          numbers.next(), numbers.index(100), numbers.index(100)};
+}
+
 Diagnosis diagnosis(Numbers& numbers, Eigen::Index ny) {
   Diagnosis made;
   made.ivar = numbers.vector(ny);
@@ -65,8 +70,7 @@ Diagnosis diagnosis(Numbers& numbers, Eigen::Index ny) {
   made.impactful = numbers.index(2) == 1;
   made.predicted_cv = numbers.index(ny);
   made.predicted_source = numbers.index(2) == 1 ? ExperimentKind::mpm : ExperimentKind::ud;
-  made.indicator = {numbers.next(), numbers.next(),     numbers.next(),    numbers.next(),
-                    numbers.next(), numbers.index(100), numbers.index(100)};
+  made.indicator = indicator(numbers);
   return made;
 }
 
@@ -88,16 +92,28 @@ Trajectory trajectory(Numbers& numbers, const Study& study, ControlStatus status
           solver(numbers)};
 }
 
+Mismatch made_up_mismatch(Numbers& numbers, const Study& study, Eigen::Index cv) {
+  Mismatch made{cv, numbers.index(study.mv_count()), MismatchParameter::gain, 0.0};
+  made.parameter = static_cast<MismatchParameter>(numbers.index(3));
+  made.value = numbers.next();
+  return made;
+}
+
+Disturbance made_up_disturbance(Numbers& numbers, Eigen::Index cv) {
+  Disturbance made{cv, numbers.next(), 0.0};
+  made.time_constant = numbers.next();
+  return made;
+}
+
 ExperimentRecord record(Numbers& numbers, const Study& study, std::int64_t index) {
   ExperimentRecord made;
   made.draw.index = index;
   made.draw.kind = static_cast<ExperimentKind>(1 + index % 3);
   const Eigen::Index cv = numbers.index(study.cv_count());
   if (made.draw.kind != ExperimentKind::ud)
-    made.draw.mismatch = {cv, numbers.index(study.mv_count()),
-                          static_cast<MismatchParameter>(numbers.index(3)), numbers.next()};
+    made.draw.mismatches = {made_up_mismatch(numbers, study, cv)};
   if (made.draw.kind != ExperimentKind::mpm)
-    made.draw.disturbance = {cv, numbers.next(), numbers.next()};
+    made.draw.disturbances = {made_up_disturbance(numbers, cv)};
   made.status = static_cast<ExperimentStatus>(index % 5 == 3 ? 1 : index % 7 == 4 ? 2 : 0);
   if (made.status == ExperimentStatus::ok)
     made.diagnosis = diagnosis(numbers, study.cv_count());
@@ -139,6 +155,34 @@ BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<Act
   return made;
 }
 
+/// In place of the counts of the small study.
+constexpr const char* kScenarios = R"(
+[[scenario]]
+name = "healthy"
+[[scenario]]
+name = "channels"
+description = "<b> 'all' & more"
+mismatch = [{cv = "level", input = "hot", gain_factor = 1.5, dead_time_shift = -1},
+            {cv = "level", input = "drain", time_constant_factor = 2},
+            {cv = "heat", input = "hot", numerator = [2, 1], denominator = [30, 12, 1], dead_time = 4}]
+[[scenario]]
+name = "signals"
+affected = ["heat"]
+disturbance = [{cv = "level", gain = 0.5, time_constant = 6},
+               {cv = "level", white = 2, hold = 3},
+               {cv = "heat", sine = {amplitude = 0.2, period = 30}},
+               {cv = "heat", ramp = {slope = 0.01, start = 7}, numerator = [0.3, 2], denominator = [100, 30, 0]},
+               {cv = "heat", steps = [{sample = 3, level = 1}, {sample = 9, level = -1}], gain = 1, time_constant = 8}]
+[[scenario]]
+name = "infeasible"
+affected = []
+mismatch = [{cv = "heat", input = "cold", gain_factor = 9}]
+disturbance = [{cv = "heat", white = 5}]
+[[scenario]]
+name = "failed"
+mismatch = [{cv = "heat", input = "cold", gain_factor = 0.1}]
+)";
+
 }  // namespace
 
 Campaign made_up_campaign() {
@@ -178,6 +222,34 @@ Campaign empty_campaign() {
   Campaign campaign;
   campaign.study = parse_study(text, "small");
   campaign.basis = basis_case(numbers, campaign.study, {});
+  return campaign;
+}
+
+Campaign scenario_campaign() {
+  Numbers numbers;
+  std::string text = small_study();
+  text.erase(text.find("[experiments]"));
+  Campaign campaign;
+  campaign.study = parse_study(text + kScenarios, "small");
+  campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
+  campaign.basis = basis_case(numbers, campaign.study, {{1, true}});
+  for (std::int64_t index = 0; index < campaign.study.experiment_count(); ++index) {
+    ExperimentRecord made = record(numbers, campaign.study, index);
+    made.draw = draw_experiment(campaign.study, index);
+    made.status = index == 3   ? ExperimentStatus::infeasible
+                  : index == 4 ? ExperimentStatus::failed
+                               : ExperimentStatus::ok;
+    made.message = index == 4 ? "died" : "";
+    made.diagnosis = {};
+    made.perturbed = {};
+    if (made.status == ExperimentStatus::ok) {
+      made.diagnosis = diagnosis(numbers, 2);
+      for (int cv = 0; cv < 2; ++cv)
+        made.diagnosis.cvs.push_back({numbers.index(2) == 1, static_cast<ExperimentKind>(numbers.index(3)),
+                                      indicator(numbers), numbers.next()});
+    }
+    campaign.records.push_back(std::move(made));
+  }
   return campaign;
 }
 

@@ -5,6 +5,7 @@
 #include "analysis/study_aggregate.hpp"
 #include "bench/record_bytes.hpp"
 #include "results/archive.hpp"
+#include "results/archive_error.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {
@@ -120,6 +121,33 @@ TEST_CASE("archive: a campaign without experiments, active limits and disturbanc
   const Campaign campaign = empty_campaign();
   REQUIRE(campaign.study.md_count() == 0);
   check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: named scenarios come back with every CV; their faults come from the study") {
+  const Campaign campaign = scenario_campaign();
+  check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: what contradicts the scenarios of its study is refused") {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const Campaign& campaign) -> std::string {
+    write_archive(folder / "a.h5", campaign);
+    try {
+      read_archive(folder / "a.h5");
+      return "accepted";
+    } catch (const ArchiveError& error) {
+      return error.what();
+    }
+  };
+  using Catch::Contains;
+  Campaign kind = scenario_campaign();
+  kind.records[1].draw.kind = ExperimentKind::ud;
+  CHECK_THAT(refusal(kind),
+             Contains("'kind': found another value in experiment 1; allowed: mpm, as in the study"));
+  Campaign truth = scenario_campaign();
+  truth.records[2].draw.affected_cvs = {{0}};
+  CHECK_THAT(refusal(truth),
+             Contains("'true_cv': found another value in experiment 2; allowed: 1, as in the study"));
 }
 
 TEST_CASE("archive: a basis case whose loop broke comes back without a diagnosis") {

@@ -51,20 +51,36 @@ TEST_CASE("plot text: numbers and intervals in tables") {
   CHECK(without_tags("I<sub>MPM</sub> by <b>x</b>") == "IMPM by x");
 }
 
+TEST_CASE("plot text: the text of a scenario names all its faults, and each CV in its verdict") {
+  const Campaign campaign = testing::scenario_campaign();
+  const Study& study = campaign.study;
+  CHECK(experiment_title(study, campaign.records[0].draw) == "healthy (none): nothing");
+  CHECK(fault_text(study, campaign.records[2].draw) ==
+        "disturbance on level: gain 0.5, time constant 6 s, white 1; "
+        "disturbance on level: white 2 held for 3 samples; "
+        "disturbance on heat: sine of amplitude 0.2, period 30 s; "
+        "disturbance on heat: (0.3 s + 2) / (100 s^2 + 30 s), ramp of 0.01 a s from 7 s; "
+        "disturbance on heat: gain 1, time constant 8 s, 2 steps");
+  ExperimentRecord record = campaign.records[2];
+  record.diagnosis.cvs[0] = {true, ExperimentKind::mpm, {}, 0.0};
+  record.diagnosis.cvs[1] = {true, ExperimentKind::mpm, {}, 0.0};
+  CHECK(verdict_text(study, record) == "flagged level (MPM), heat (MPM); false alarm level; source of heat");
+}
+
 TEST_CASE("plot text: the text of an experiment names its fault and its verdict") {
   const Study study = testing::made_up_campaign().study;
   ExperimentRecord record;
   record.draw.index = 12;
   record.draw.kind = ExperimentKind::mpm_ud;
-  record.draw.mismatch = Mismatch{0, 1, MismatchParameter::dead_time, -1.5};
-  record.draw.disturbance = Disturbance{0, 2.0, 40.0};
+  record.draw.mismatches = {{0, 1, MismatchParameter::dead_time, -1.5}};
+  record.draw.disturbances = {{0, 2.0, 40.0}};
   record.status = ExperimentStatus::infeasible;
   CHECK(experiment_line(study, record) ==
         "experiment 12 (MPM+UD): dead time of level/cold -1.5 s; disturbance on level: gain 2, time constant "
         "40 "
         "s; infeasible");
-  record.draw.disturbance.reset();
-  record.draw.mismatch->parameter = MismatchParameter::gain;
+  record.draw.disturbances.clear();
+  record.draw.mismatches.front().parameter = MismatchParameter::gain;
   record.status = ExperimentStatus::ok;
   record.diagnosis.predicted_cv = 1;
   record.diagnosis.predicted_source = ExperimentKind::ud;

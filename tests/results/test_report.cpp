@@ -93,6 +93,29 @@ TEST_CASE("report: a section without data says in one sentence why it is left ou
                       "there are 0 with an MPM and 0 with a UD."));
 }
 
+TEST_CASE("report: a study of named scenarios has their section in place of rates") {
+  const Campaign campaign = scenario_campaign();
+  const SummaryParts parts = summary_parts(campaign);
+  std::vector<std::string> ids;
+  for (const ReportSection& section : report_sections({campaign, parts, "f"}))
+    ids.push_back(section.id);
+  CHECK(ids ==
+        std::vector<std::string>{"run", "scenarios", "sensitivity", "s0-perturbation", "basis", "solver"});
+  const ReportSection section = scenarios_section({campaign, parts, "a b.h5"});
+  CHECK(has_figure(section));
+  const std::string html = html_of(section);
+  CHECK_THAT(html, Contains("mpmbench replay a b.h5 4") && Contains("&lt;b&gt; &#39;all&#39; &amp; more"));
+  CHECK_THAT(html, Contains("level (MPM), heat (MPM)") && Contains("infeasible") && Contains("died"));
+  CHECK_THAT(html, Contains("gain of level/hot x 1.5") && Contains("time constant of level/drain x 2") &&
+                       Contains("heat/hot is (2 s + 1) / (30 s^2 + 12 s + 1) e^(-4 s)"));
+  CHECK_THAT(report_html(campaign, "f.h5"), Contains("figure-scenario-ivar") && !Contains("Headline rates"));
+
+  Campaign none = campaign;
+  none.records.clear();
+  const SummaryParts of_none = summary_parts(none);
+  CHECK_THAT(html_of(scenarios_section({none, of_none, "f"})), Contains("Left out: "));
+}
+
 TEST_CASE("report: awkward numbers and foreign texts make no broken page") {
   Campaign campaign = made_up_campaign();
   campaign.study.title = "<script>alert(1)</script> `id` '\"&";

@@ -143,6 +143,36 @@ TEST_CASE("summary: the JSON form has the numbers of the aggregate and the repor
   CHECK(json["failures"][0]["message"] == "ended by signal 9: \xC3\xBC");
 }
 
+TEST_CASE("summary: a study of named scenarios shows each with its truth and its verdict") {
+  Campaign campaign = scenario_campaign();
+  std::vector<CvDiagnosis>& channels = campaign.records[1].diagnosis.cvs;
+  channels[0] = {true, ExperimentKind::mpm, {}, 1.5};
+  channels[1] = {false, ExperimentKind::none, {}, 0.25};
+  campaign.records[1].diagnosis.ivar_diag = Eigen::Vector2d(2.5, 1.0);
+  const std::string text = summary_text(campaign, "out.h5");
+  CHECK_THAT(line_of_text(text, "experiments"),
+             Contains("5 (named scenarios) of 60 samples; 1 infeasible, 1 failed"));
+  CHECK_THAT(line_of_text(text, "channels"), Contains("level (MPM), heat (MPM)") &&
+                                                 Contains("level (MPM) ") && Contains("1.75") &&
+                                                 Contains("missed heat"));
+  CHECK_THAT(line_of_text(text, "failed"), Contains("failed"));
+  CHECK_THAT(text, Contains("2.5*") && !Contains("measured against reported") && !Contains("other numbers"));
+
+  const nlohmann::json json = nlohmann::json::parse(summary_json(campaign));
+  REQUIRE(json["scenarios"].size() == 5);
+  const nlohmann::json& found = json["scenarios"][1];
+  CHECK(found["name"] == "channels");
+  CHECK(found["description"] == "<b> 'all' & more");
+  CHECK(found["affected"] == nlohmann::json{{"level", "mpm"}, {"heat", "mpm"}});
+  CHECK(found["verdict"] == "missed heat");
+  CHECK(found["tsse"] == 1.75);
+  CHECK(found["cvs"][0]["flagged"] == true);
+  CHECK(found["cvs"][0]["ivar_diag"] == 2.5);
+  CHECK(found["cvs"][1]["source"] == "none");
+  CHECK(json["scenarios"][3]["tsse"].is_null());
+  CHECK(nlohmann::json::parse(summary_json(sample()))["scenarios"].empty());
+}
+
 TEST_CASE("summary: infinite and missing numbers and broken texts still make valid JSON") {
   Campaign campaign = made_up_campaign();
   campaign.info.command = "\xFF";

@@ -1,7 +1,8 @@
-// usage: write_sample_archive FILE [empty]
+// usage: write_sample_archive FILE [empty|scenarios]
 
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "results/archive.hpp"
 #include "tests/results/campaign_sample.hpp"
@@ -11,7 +12,10 @@ int main(int argc, char** argv) {
   if (argc < 2)
     return 1;
   try {
-    mpm::write_archive(argv[1], argc == 2 ? campaign_sample() : mpm::testing::empty_campaign());
+    const std::string which = argc == 2 ? "" : argv[2];
+    mpm::write_archive(argv[1], which == "empty"       ? mpm::testing::empty_campaign()
+                                : which == "scenarios" ? mpm::testing::scenario_campaign()
+                                                       : campaign_sample());
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

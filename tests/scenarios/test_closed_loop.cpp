@@ -79,7 +79,7 @@ TEST_CASE("signals: disturbance steps, noise and G_d v are what the study says")
   ExperimentDraw draw;
   draw.index = 3;
   draw.kind = ExperimentKind::ud;
-  draw.disturbance = Disturbance{2, 1.5, 40.0};
+  draw.disturbances = {{2, 1.5, 40.0}};
   const Eigen::MatrixXd y_d = unmeasured_disturbances(study, draw);
   CHECK(y_d.row(1).isZero());
   // y_d(k+1) = a y_d(k) + g (1 - a) v(k): its innovations are white with deviation g (1 - a).

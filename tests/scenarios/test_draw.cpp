@@ -36,19 +36,21 @@ TEST_CASE("draw_experiment: values lie in the ranges of table 6.4 and cover the 
   std::map<std::pair<Eigen::Index, Eigen::Index>, int> channels;
   for (std::int64_t i = 0; i < 2000; ++i) {
     const ExperimentDraw draw = draw_experiment(study, i);
-    CHECK(draw.mismatch.has_value() == (draw.kind != ExperimentKind::ud));
-    CHECK(draw.disturbance.has_value() == (draw.kind != ExperimentKind::mpm));
-    if (draw.disturbance) {
-      CHECK((draw.disturbance->gain >= 0.1 && draw.disturbance->gain <= 3.0));
-      CHECK((draw.disturbance->time_constant >= 30 && draw.disturbance->time_constant <= 300));
+    CHECK(draw.mismatches.size() == (draw.kind != ExperimentKind::ud ? 1 : 0));
+    CHECK(draw.disturbances.size() == (draw.kind != ExperimentKind::mpm ? 1 : 0));
+    CHECK_FALSE(draw.named);
+    REQUIRE(draw.affected().size() == 1);
+    CHECK(draw.affected().front().cv == draw.true_cv());
+    CHECK(draw.affected().front().by == draw.kind);
+    for (const Disturbance& disturbance : draw.disturbances) {
+      CHECK((disturbance.gain >= 0.1 && disturbance.gain <= 3.0));
+      CHECK((disturbance.time_constant >= 30 && disturbance.time_constant <= 300));
     }
-    if (draw.mismatch && draw.disturbance)
-      CHECK(draw.mismatch->cv == draw.disturbance->cv);
-    if (!draw.mismatch)
+    if (draw.mismatches.empty())
       continue;
-    const Mismatch& m = *draw.mismatch;
-    ++channels[{m.cv, m.mv}];
-    const double dead_time = study.plant.G(m.cv, m.mv).dead_time();
+    const Mismatch& m = draw.mismatches.front();
+    ++channels[{m.cv, m.input}];
+    const double dead_time = study.plant.G(m.cv, m.input).dead_time();
     switch (m.parameter) {
       case MismatchParameter::gain:
         CHECK((m.value >= 0.3 && m.value <= 1.5));
@@ -59,8 +61,10 @@ TEST_CASE("draw_experiment: values lie in the ranges of table 6.4 and cover the 
       case MismatchParameter::dead_time:
         CHECK((m.value >= std::max(-2.0, -dead_time) && m.value <= 2.0));
         break;
+      case MismatchParameter::channel:
+        FAIL("a random draw never replaces a channel");
     }
-    const TransferFunction& changed = with_mismatch(study.plant.G, m)(m.cv, m.mv);
+    const TransferFunction changed = with_mismatches(study.plant.G, {m})(m.cv, m.input);
     CHECK(changed.dead_time() >= 0.0);
   }
   CHECK(channels.size() == 21);  // 7 CVs x 3 MVs; each is missed with probability (20/21)^1250
@@ -71,30 +75,30 @@ TEST_CASE("draw_experiment: a draw depends on seed and index only") {
   const ExperimentDraw late = draw_experiment(study, 7);
   (void)draw_experiment(study, 3);
   const ExperimentDraw again = draw_experiment(study, 7);
-  REQUIRE(late.mismatch.has_value() == again.mismatch.has_value());
-  if (late.mismatch)
-    CHECK(late.mismatch->value == again.mismatch->value);
+  REQUIRE(late.mismatches.size() == again.mismatches.size());
+  if (!late.mismatches.empty())
+    CHECK(late.mismatches.front().value == again.mismatches.front().value);
   study.seed += 1;
   const ExperimentDraw other = draw_experiment(study, 6);
   study.seed -= 1;
   const ExperimentDraw same = draw_experiment(study, 6);
   REQUIRE(other.kind == same.kind);
-  if (same.mismatch)
-    CHECK(other.mismatch->value != same.mismatch->value);
-  if (same.disturbance)
-    CHECK(other.disturbance->gain != same.disturbance->gain);
+  if (!same.mismatches.empty())
+    CHECK(other.mismatches.front().value != same.mismatches.front().value);
+  if (!same.disturbances.empty())
+    CHECK(other.disturbances.front().gain != same.disturbances.front().gain);
   CHECK_THROWS_AS(draw_experiment(study, -1), InputError);
 }
 
-TEST_CASE("with_mismatch changes the named parameter of the named channel alone") {
+TEST_CASE("with_mismatches changes the named parameter of the named channel alone") {
   const Study study = find_study("chapter6");
   const TransferMatrix& G = study.plant.G;
-  const TransferMatrix gain = with_mismatch(G, {1, 2, MismatchParameter::gain, 0.5});
+  const TransferMatrix gain = with_mismatches(G, {{1, 2, MismatchParameter::gain, 0.5}});
   CHECK(gain(1, 2).static_gain() == Approx(0.5 * G(1, 2).static_gain()));
-  const TransferMatrix time = with_mismatch(G, {1, 2, MismatchParameter::time_constant, 2.0});
+  const TransferMatrix time = with_mismatches(G, {{1, 2, MismatchParameter::time_constant, 2.0}});
   CHECK(time(1, 2).static_gain() == Approx(G(1, 2).static_gain()));
   CHECK(std::abs(time(1, 2)({0.0, 0.01})) == Approx(std::abs(G(1, 2)({0.0, 0.02}))));
-  const TransferMatrix delay = with_mismatch(G, {1, 2, MismatchParameter::dead_time, 1.5});
+  const TransferMatrix delay = with_mismatches(G, {{1, 2, MismatchParameter::dead_time, 1.5}});
   CHECK(delay(1, 2).dead_time() == Approx(G(1, 2).dead_time() + 1.5));
   for (const TransferMatrix* changed : {&gain, &time, &delay})
     for (Eigen::Index i = 0; i < G.rows(); ++i)

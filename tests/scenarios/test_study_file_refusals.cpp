@@ -45,7 +45,7 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
       {"[experiments]", "[experiment]", "[experiment]",
        "top level: found unknown key 'experiment' (nearest: 'experiments'); allowed: study, plant, "
        "controller, "
-       "simulation, experiments, mismatch, disturbance, sensitivity, s0_perturbation, "
+       "simulation, experiments, scenario, mismatch, disturbance, sensitivity, s0_perturbation, "
        "diagnosis, aggregate, reference"},
       {"seed = 7", "seed = 7\nsed = 8", "sed = 8",
        "study: found unknown key 'sed' (nearest: 'seed'); allowed: name, title, seed"},

@@ -1,0 +1,42 @@
+#include "scenarios/fault.hpp"
+
+#include <cassert>
+#include <utility>
+
+namespace mpm {
+namespace {
+
+TransferFunction changed(const TransferFunction& channel, const Mismatch& mismatch) {
+  switch (mismatch.parameter) {
+    case MismatchParameter::gain:
+      return channel.with_gain_scaled(mismatch.value);
+    case MismatchParameter::time_constant:
+      return channel.with_time_scaled(mismatch.value);
+    case MismatchParameter::dead_time:
+      return channel.with_dead_time_shifted(mismatch.value);
+    case MismatchParameter::channel:
+      assert(mismatch.channel);
+      return *mismatch.channel;
+  }
+  return channel;
+}
+
+}  // namespace
+
+TransferMatrix with_mismatches(TransferMatrix model, const std::vector<Mismatch>& mismatches) {
+  TransferMatrix plant = std::move(model);
+  for (const Mismatch& mismatch : mismatches) {
+    TransferFunction& channel = plant(mismatch.cv, mismatch.input);
+    channel = changed(channel, mismatch);
+  }
+  return plant;
+}
+
+ExperimentKind kind_of(const std::vector<Mismatch>& mismatches,
+                       const std::vector<Disturbance>& disturbances) {
+  if (mismatches.empty())
+    return disturbances.empty() ? ExperimentKind::none : ExperimentKind::ud;
+  return disturbances.empty() ? ExperimentKind::mpm : ExperimentKind::mpm_ud;
+}
+
+}  // namespace mpm

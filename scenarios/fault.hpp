@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plants/transfer_matrix.hpp"
+
+// What can be wrong in an experiment: mismatches of the plant, and disturbances that nobody measures.
+
+namespace mpm {
+
+/// What is wrong in an experiment. `none` is the basis case.
+enum class ExperimentKind : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3 };
+
+/// Which parameter of a channel a model-plant mismatch changes, as in table 6.4; `channel`: the plant has
+/// another transfer function in this place, as in (4.19) to (4.21).
+enum class MismatchParameter : std::int8_t { gain = 0, time_constant = 1, dead_time = 2, channel = 3 };
+
+/// A model-plant mismatch: the channel (cv, input) of the plant differs from the model.
+struct Mismatch {
+  Eigen::Index cv;
+  Eigen::Index input;  ///< column of G: an MV, or after them an MD (a mismatch of the feed-forward)
+  MismatchParameter parameter;
+  double value;  ///< factor of gain or time constant; shift of the dead time in the plant's time unit
+  std::optional<TransferFunction> channel = {};  ///< of the plant, when the parameter is `channel`
+};
+
+/// The plant that has these mismatches, one after the other, where the model is `model`. Errors: InputError
+/// for a channel outside of the matrix, or as the `with_` functions of TransferFunction.
+TransferMatrix with_mismatches(TransferMatrix model, const std::vector<Mismatch>& mismatches);
+
+/// White normal numbers, each held for `hold` samples, of the standard deviation factor *
+/// disturbance.v_standard_deviation of the study.
+struct WhiteNoise {
+  double factor = 1.0;
+  int hold = 1;
+};
+
+/// amplitude sin(2 pi t / period).
+struct Sine {
+  double amplitude;
+  double period;  ///< time unit of the plant
+};
+
+/// slope (t - start) from t = start on, 0 before it.
+struct Ramp {
+  double slope;  ///< per time unit of the plant
+  double start;  ///< time unit of the plant
+};
+
+/// 0 at first, and `level` from `sample` on.
+struct StepSequence {
+  struct Step {
+    int sample;
+    double level;
+  };
+  std::vector<Step> steps;  ///< in the order of their samples
+};
+
+using DisturbanceSignal = std::variant<WhiteNoise, Sine, Ramp, StepSequence>;
+
+/// What stands between the signal v of a disturbance and the CV.
+enum class DisturbanceModel : std::int8_t {
+  first_order = 0,        ///< G_d = gain / (time_constant s + 1)
+  transfer_function = 1,  ///< any G_d; it may integrate
+  direct = 2,             ///< nothing: y_d = v, without the hold of a sample
+};
+
+/// An unmeasured disturbance y_d = G_d v added to one CV.
+struct Disturbance {
+  Eigen::Index cv;
+  double gain;           ///< CV unit per unit of v; of a first-order G_d
+  double time_constant;  ///< time unit of the plant; of a first-order G_d
+  DisturbanceModel model = DisturbanceModel::first_order;
+  std::optional<TransferFunction> Gd = {};  ///< when the model is `transfer_function`
+  DisturbanceSignal signal = WhiteNoise{};
+};
+
+/// The kind of an experiment with these faults.
+ExperimentKind kind_of(const std::vector<Mismatch>& mismatches, const std::vector<Disturbance>& disturbances);
+
+/// An experiment that a study spells out, such as those of table 6.3.
+struct Scenario {
+  std::string name;
+  std::string description;  ///< for people; may be empty
+  std::vector<Mismatch> mismatches;
+  std::vector<Disturbance> disturbances;
+  /// The CVs that a diagnosis should find; none given: those with a fault.
+  std::optional<std::vector<Eigen::Index>> affected_cvs;
+};
+
+}  // namespace mpm
