@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/nominal_estimator.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
@@ -57,9 +58,8 @@ BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory) {
     basis.sensitivity_fixed = nominal_sensitivity(study, with_fixed_mvs(study, basis.point), factory);
   basis.trajectory = simulate_experiment(study, basis_draw(), factory);
   if (basis.trajectory.status == ControlStatus::ok) {
-    const Eigen::MatrixXd y_sim = simulated_output(study.plant.G, study.controller.sample_time, basis.point.u,
-                                                   basis.trajectory.u, basis.trajectory.d);
-    basis.nominal = nominal_outputs(basis.sensitivity, basis.trajectory.y, y_sim);
+    basis.nominal =
+        NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);
     basis.diagnosis = DiagnosisChain(study).diagnose(basis.trajectory.y, basis.nominal, basis.trajectory.y);
   }
   check_health(study, basis);

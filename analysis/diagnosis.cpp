@@ -4,8 +4,23 @@
 
 #include "analysis/simulation_error.hpp"
 #include "analysis/variance.hpp"
+#include "scenarios/signals.hpp"
 
 namespace mpm {
+namespace {
+
+SetpointTrajectories centres(const Study& study) {
+  const Eigen::MatrixXd y_set = setpoints(study);
+  if (y_set.size() == 0 || study.diagnosis.variance_centre == VarianceCentre::mean)
+    return {};
+  SetpointTrajectories trajectories(static_cast<std::size_t>(study.cv_count()));
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    if (study.controller.has_setpoint(cv))
+      trajectories[static_cast<std::size_t>(cv)] = y_set.row(cv).transpose();
+  return trajectories;
+}
+
+}  // namespace
 
 WindowScan window_scan(const Study& study) {
   const double hp = study.controller.prediction_horizon;
@@ -34,14 +49,17 @@ Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_dia
 }
 
 DiagnosisChain::DiagnosisChain(const Study& study)
-    : options_(study.diagnosis), windows_(window_scan(study)), scanner_(study.simulation.samples) {}
+    : options_(study.diagnosis),
+      y_set_(centres(study)),
+      windows_(window_scan(study)),
+      scanner_(study.simulation.samples) {}
 
 Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal,
                                    const Eigen::Ref<const Eigen::MatrixXd>& y_basis) {
   Diagnosis diagnosis;
-  diagnosis.ivar = variance_indices(y, nominal.y0);
-  diagnosis.ivar_diag = variance_indices(y, nominal.y0_diag);
-  diagnosis.ivar_basis = variance_indices(y, y_basis);
+  diagnosis.ivar = variance_indices(y, nominal.y0, y_set_);
+  diagnosis.ivar_diag = variance_indices(y, nominal.y0_diag, y_set_);
+  diagnosis.ivar_basis = variance_indices(y, y_basis, y_set_);
   diagnosis.impactful = (diagnosis.ivar.array() < options_.impact_lower).any() ||
                         (diagnosis.ivar.array() > options_.impact_upper).any();
   diagnosis.predicted_cv = farthest_from_one(diagnosis.ivar_diag, options_.location_distance);

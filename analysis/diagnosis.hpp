@@ -7,6 +7,7 @@
 
 #include "analysis/mpm_indicator.hpp"
 #include "analysis/nominal_output.hpp"
+#include "analysis/variance.hpp"
 #include "scenarios/study.hpp"
 
 namespace mpm {
@@ -23,9 +24,11 @@ struct CvDiagnosis {
 ///
 /// | symbol     | member     | shape | definition                                            |
 /// |------------|------------|-------|-------------------------------------------------------|
-/// | Ivar       | ivar       | ny    | var y / var y0                                 (6.7)  |
-/// | Ivar_diag  | ivar_diag  | ny    | var y / var y0_diag                            (6.8)  |
+/// | Ivar       | ivar       | ny    | var y / var y0                           (3.24, 6.7)  |
+/// | Ivar_diag  | ivar_diag  | ny    | var y / var y0_diag                      (4.14, 6.8)  |
 /// | Ivar_basis | ivar_basis | ny    | var y / var y of the basis case                (6.22) |
+///
+/// The variances of a CV with a setpoint are taken about it, unless the study wants them about the mean.
 struct Diagnosis {
   Eigen::VectorXd ivar, ivar_diag, ivar_basis;
   bool impactful = false;                                  ///< some Ivar lies outside the band of impact
@@ -63,6 +66,7 @@ class DiagnosisChain {
   ExperimentKind source_of(const MpmIndicator& indicator) const;
 
   DiagnosisOptions options_;
+  SetpointTrajectories y_set_;  ///< what the variances are taken about; empty: the means of all CVs
   WindowScan windows_;
   MpmScanner scanner_;
 };

@@ -69,6 +69,7 @@ ExperimentRunner::ExperimentRunner(const Study& study, const BasisCase& basis, Q
     : study_(study),
       basis_(basis),
       factory_(std::move(factory)),
+      estimator_(study, basis.point, basis.sensitivity, factory_),
       chain_(study),
       perturbation_(study, basis.sensitivity) {}
 
@@ -78,11 +79,12 @@ ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw&
   result.loop.trajectory = simulate_experiment(study_, draw, factory_, observer);
   const Trajectory& loop = result.loop.trajectory;
   result.status = experiment_status(loop.status);
-  result.loop.y_sim =
-      simulated_output(study_.plant.G, study_.controller.sample_time, basis_.point.u, loop.u, loop.d);
-  if (result.status != ExperimentStatus::ok)
+  if (result.status != ExperimentStatus::ok) {
+    result.loop.y_sim = estimator_.simulated(loop);
     return result;
-  const NominalOutputs nominal = nominal_outputs(basis_.sensitivity, loop.y, result.loop.y_sim);
+  }
+  const NominalOutputs nominal = estimator_.estimate(loop);
+  result.loop.y_sim = nominal.y_sim;
   result.diagnosis = chain_.diagnose(loop.y, nominal, basis_.trajectory.y);
   if (draw.named)
     result.diagnosis.cvs = chain_.diagnose_each(loop.y, nominal, result.diagnosis.ivar_diag);

@@ -9,6 +9,7 @@
 
 #include "analysis/basis_case.hpp"
 #include "analysis/diagnosis.hpp"
+#include "analysis/nominal_estimator.hpp"
 #include "analysis/s0_perturbation.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/draw.hpp"
@@ -81,6 +82,7 @@ class ExperimentRunner {
   const Study& study_;
   const BasisCase& basis_;
   QpSolverFactory factory_;
+  NominalEstimator estimator_;
   DiagnosisChain chain_;
   S0Perturbation perturbation_;
 };

@@ -179,7 +179,8 @@ OperatingPoint operating_point(const Study& study, const QpSolverFactory& factor
   point.active = references(study, named.empty() ? cvs_at_limit(study, point.y) : named, point.y);
   const Limits& hard = study.controller.mv_hard;
   for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
-    if (at(point.u(mv), hard.lower(mv)) || at(point.u(mv), hard.upper(mv)))
+    if (contains(study.sensitivity.fixed_mvs, mv) || at(point.u(mv), hard.lower(mv)) ||
+        at(point.u(mv), hard.upper(mv)))
       point.fixed_mvs.push_back(mv);
   return point;
 }

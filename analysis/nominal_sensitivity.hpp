@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -22,7 +23,7 @@ struct ActiveReference {
   Eigen::Index cv;
   ReferenceKind kind;
 
-  bool operator==(const ActiveReference&) const = default;
+  auto operator<=>(const ActiveReference&) const = default;
 };
 
 /// The operating point at which a study is assessed: what the target optimizer chooses for the nominal model
@@ -37,7 +38,8 @@ struct OperatingPoint {
 /// Where the loops of the study start (RangeMpc::nominal_target): the economic optimum at zero disturbances,
 /// or the operating point of the model when the MVs have no targets. Active are the CVs with a setpoint, and
 /// with `study.sensitivity.active_cvs` those, at the limit they are nearest to; without that list the CVs
-/// that are at a limit. Throws InputError when the target problem has no solution.
+/// that are at a limit. Fixed are the MVs at a hard limit and those of `study.sensitivity.fixed_mvs`. Throws
+/// InputError when the target problem has no solution.
 OperatingPoint operating_point(const Study& study, const QpSolverFactory& factory);
 
 /// The operating point `point` when the MVs of `study.s0_perturbation.fixed_mvs` are not available: they are

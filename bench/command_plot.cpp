@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/nominal_estimator.hpp"
 #include "bench/files.hpp"
 #include "plants/error.hpp"
 #include "results/atomic_file.hpp"
@@ -37,9 +38,12 @@ ExitCode plot(const PlotCommand& command) {
         "INDEX",
         fmt::format("{}, whose closed loop has no samples ({})", command.index, to_string(record.status)),
         "an experiment that ran");
-  Figure figure = trajectory_figure(
-      campaign.study, loop.trajectory,
-      nominal_outputs(campaign.basis.sensitivity, loop.trajectory.y, loop.y_sim), "experiment");
+  Figure figure =
+      trajectory_figure(campaign.study, loop.trajectory,
+                        NominalEstimator(campaign.study, campaign.basis.point, campaign.basis.sensitivity,
+                                         qp_solver_factory(campaign.info.solver))
+                            .estimate(loop.trajectory),
+                        "experiment");
   figure.heading = {as_label(experiment_title(campaign.study, record.draw)),
                     as_label(verdict_text(campaign.study, record))};
   const std::string drawing = draw_figure(figure, format);

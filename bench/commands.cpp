@@ -14,6 +14,7 @@
 #include "analysis/study_aggregate.hpp"
 #include "bench/command_plot.hpp"
 #include "bench/command_report.hpp"
+#include "bench/command_reproduce.hpp"
 #include "bench/command_run.hpp"
 #include "bench/files.hpp"
 #include "bench/record_bytes.hpp"
@@ -98,6 +99,7 @@ struct Executor {
   ExitCode operator()(const CheckCommand& command) const { return check(command); }
   ExitCode operator()(const ReportCommand& command) const { return report(command); }
   ExitCode operator()(const PlotCommand& command) const { return plot(command); }
+  ExitCode operator()(const ReproduceCommand& command) const { return reproduce_tables(command); }
   ExitCode operator()(const ListCommand&) const { return list(); }
   ExitCode operator()(const UsageText& usage) const {
     fmt::print(usage.exit_code == 0 ? stdout : stderr, "{}", usage.text);

@@ -95,6 +95,17 @@ void add_plot(CLI::App& app, PlotCommand& plot) {
   app.add_option("-o,--output", plot.output, "Figure to write: NAME.svg, NAME.pdf or NAME.png")->required();
 }
 
+void add_reproduce(CLI::App& app, ReproduceCommand& reproduce) {
+  app.add_option("TABLES", reproduce.tables,
+                 "all, chapter2 to chapter6, or the number of a table such as 4.5")
+      ->capture_default_str();
+  app.add_option("-o,--output", reproduce.output, "Page to write (HTML)");
+  app.add_option("--solver", reproduce.solver, "QP solver")
+      ->check(CLI::IsMember(qp_solver_names()))
+      ->capture_default_str();
+  app.add_flag("--json", reproduce.json, "As JSON");
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
@@ -134,6 +145,10 @@ Command parse_command_line(int argc, const char* const* argv) {
   PlotCommand plot;
   CLI::App* const plot_app = app.add_subcommand("plot", "Draw the closed loop of one experiment");
   add_plot(*plot_app, plot);
+  ReproduceCommand reproduce;
+  CLI::App* const reproduce_app =
+      app.add_subcommand("reproduce", "Run the studies behind the tables of the thesis, cell by cell");
+  add_reproduce(*reproduce_app, reproduce);
   CLI::App* const list_app = app.add_subcommand("list", "List the shipped studies");
 
   try {
@@ -157,6 +172,8 @@ Command parse_command_line(int argc, const char* const* argv) {
     return report;
   if (plot_app->parsed())
     return plot;
+  if (reproduce_app->parsed())
+    return reproduce;
   if (list_app->parsed())
     return ListCommand{};
   return UsageText{app.help(), kUsageError};

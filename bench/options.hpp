@@ -71,6 +71,14 @@ struct PlotCommand {
   std::string output;  ///< its extension names the format
 };
 
+/// `mpmbench reproduce [TABLES] [--json] [-o PAGE.html]`
+struct ReproduceCommand {
+  std::string tables = "all";
+  std::string output;  ///< no page when empty
+  std::string solver = "active-set";
+  bool json = false;
+};
+
 /// `mpmbench list`
 struct ListCommand {};
 
@@ -82,7 +90,7 @@ struct UsageText {
 };
 
 using Command = std::variant<RunCommand, ReplayCommand, SummaryCommand, CheckCommand, SweepCommand,
-                             ReportCommand, PlotCommand, ListCommand, UsageText>;
+                             ReportCommand, PlotCommand, ReproduceCommand, ListCommand, UsageText>;
 
 /// Reads the command line; wrong usage gives UsageText with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

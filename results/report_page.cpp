@@ -7,10 +7,10 @@
 #include "results/atomic_file.hpp"
 #include "results/experiment_text.hpp"
 #include "results/figure_drawing.hpp"
+#include "results/html_page.hpp"
 #include "results/plot_text.hpp"
 #include "results/report.hpp"
 #include "results/report_sections.hpp"
-#include "results/report_style.hpp"
 
 namespace mpm {
 namespace {
@@ -108,22 +108,20 @@ std::string report_html(const Campaign& campaign, const std::filesystem::path& f
   std::string body;
   for (std::size_t i = 0; i < sections.size(); ++i)
     body += section_html(sections[i], i + 1);
-  // The policy keeps the promise that nothing is loaded from anywhere and that no script runs.
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-      "'unsafe-inline'; img-src data:\">\n"
-      "<meta name=\"generator\" content=\"mpmbench {3}\">\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<title>mpmbench: {0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n"
-      "<p class=\"eyebrow\">mpmbench report</p>\n<h1>{2}</h1>\n"
-      "<p>Study <strong>{0}</strong>, archive <code>{4}</code>. <span class=\"hint\">Rest a mouse on a "
-      "point to see its experiment.</span></p>\n{5}</header>\n<main>\n{6}</main>\n"
-      "<footer>Made by <code>mpmbench report</code> from {4}; written by mpmbench {3}. Intervals have a "
-      "confidence level of {7:g}&nbsp;%.</footer>\n</body>\n</html>\n",
-      html_text(campaign.study.name), kReportStyle, html_text(campaign.study.title),
-      html_text(campaign.info.mpmbench_version), html_text(file.filename().string()), contents_html(sections),
-      body, 100.0 * campaign.study.aggregate.confidence);
+  const std::string file_name = html_text(file.filename().string());
+  const std::string study = html_text(campaign.study.name);
+  return html_page(
+      {campaign.study.name, html_text(campaign.study.title),
+       fmt::format(
+           "<p>Study <strong>{}</strong>, archive <code>{}</code>. <span class=\"hint\">Rest a mouse on "
+           "a point to see its experiment.</span></p>\n{}",
+           study, file_name, contents_html(sections)),
+       fmt::format("Made by <code>mpmbench report</code> from {}; written by mpmbench {}. Intervals have a "
+                   "confidence level of {:g}&nbsp;%.",
+                   file_name, html_text(campaign.info.mpmbench_version),
+                   100.0 * campaign.study.aggregate.confidence),
+       campaign.info.mpmbench_version},
+      body);
 }
 
 std::vector<std::filesystem::path> write_figures(const Campaign& campaign,

@@ -65,6 +65,15 @@ struct DisturbanceRanges {
 /// the CV follow its target only (docs/methods.md).
 enum class StepDirection { into_range, out_of_range, mean };
 
+/// Of which constraint set S0 is taken (3.3.3).
+enum class SensitivityStructure {
+  operating_point,  ///< that of the basis case throughout
+  by_instant,       ///< that which is active at each sample, from the data
+};
+
+/// What changes when the constraint set does (analysis/nominal_estimator).
+enum class SensitivitySwitching { output, input };
+
 /// How T0 is determined (appendix A3).
 struct SensitivityOptions {
   int samples = 150;       ///< length of the step responses; the static gain holds after it
@@ -72,6 +81,9 @@ struct SensitivityOptions {
   StepDirection step_direction = StepDirection::out_of_range;
   /// CVs whose soft limit is taken as active, by index; empty: those that the basis case holds at a limit.
   std::vector<Eigen::Index> active_cvs;
+  std::vector<Eigen::Index> fixed_mvs;  ///< MVs that are held while T0 is determined
+  SensitivityStructure structure = SensitivityStructure::operating_point;
+  SensitivitySwitching switching = SensitivitySwitching::output;
 };
 
 /// How S0 is made wrong on purpose, to see what an error in it costs ("Sensitivity of S0" in section 6.5.2).
@@ -87,6 +99,9 @@ struct S0PerturbationOptions {
 /// How the distance of Ivar_diag from 1 is measured when the CV is located.
 enum class LocationDistance { linear, logarithmic };
 
+/// What the variances of a CV with a setpoint are taken about. A CV in a range has no choice: its mean.
+enum class VarianceCentre { setpoint, mean };
+
 /// Which experiments the rates of I_MPM are counted over.
 enum class SourcePopulation { impactful, feasible };
 
@@ -94,6 +109,7 @@ enum class SourcePopulation { impactful, feasible };
 struct DiagnosisOptions {
   double impact_lower = 0.8;  ///< Ivar outside [impact_lower, impact_upper] is impactful
   double impact_upper = 1.2;
+  VarianceCentre variance_centre = VarianceCentre::setpoint;  ///< (3.24), (4.14); mean: (2.20)
   LocationDistance location_distance = LocationDistance::linear;
   double mpm_threshold = 0.1;    ///< I_MPM above it: model-plant mismatch
   double shortest_window = 0.5;  ///< of the moving windows, in prediction horizons

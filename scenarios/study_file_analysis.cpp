@@ -68,6 +68,19 @@ SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel&
                                                           {"out-of-range", StepDirection::out_of_range},
                                                           {"mean", StepDirection::mean}},
                                                          options.step_direction);
+  if (table.has("fixed_mvs")) {
+    for (const std::size_t mv : read_some_of(table, "fixed_mvs", variable_names(plant.mvs))) {
+      options.fixed_mvs.push_back(static_cast<Eigen::Index>(mv));
+    }
+  }
+  options.structure =
+      read_choice_or<SensitivityStructure>(table, "structure",
+                                           {{"operating-point", SensitivityStructure::operating_point},
+                                            {"by-instant", SensitivityStructure::by_instant}},
+                                           options.structure);
+  options.switching = read_choice_or<SensitivitySwitching>(
+      table, "switching", {{"output", SensitivitySwitching::output}, {"input", SensitivitySwitching::input}},
+      options.switching);
   const double narrowest = narrowest_range(controller, options.active_cvs);
   if (options.step_size > narrowest) {
     table.refuse("step_size", fmt::format("{}", options.step_size),
@@ -82,6 +95,9 @@ DiagnosisOptions read_diagnosis(const TomlTable& document) {
   const NumberRule positive = NumberRule::positive();
   std::tie(options.impact_lower, options.impact_upper) =
       read_band_or(table, "impact_band", positive, {options.impact_lower, options.impact_upper});
+  options.variance_centre = read_choice_or<VarianceCentre>(
+      table, "variance_centre", {{"setpoint", VarianceCentre::setpoint}, {"mean", VarianceCentre::mean}},
+      options.variance_centre);
   options.location_distance = read_choice_or<LocationDistance>(
       table, "location_distance",
       {{"linear", LocationDistance::linear}, {"logarithmic", LocationDistance::logarithmic}},

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/table_file.hpp"
+#include "solvers/qp_solver.hpp"
+
+// The tables of the thesis, cell by cell: our number, the thesis's, and whether the same is concluded.
+
+namespace mpm {
+
+/// A cell of a table beside ours.
+struct ReproducedCell {
+  TableCell cell;
+  double ours;  ///< NaN when the loop did not run to its end, or the quantity is not determined
+  std::optional<std::string> our_verdict, thesis_verdict;  ///< none without a rule, or without a number
+
+  /// Ours over the thesis's; none when one of them is missing or the thesis's is zero.
+  std::optional<double> ratio() const;
+  /// Both are judged, and alike; none when the thesis's cell is not judged. A number that we cannot determine
+  /// does not agree.
+  std::optional<bool> agrees() const;
+};
+
+struct ReproducedRow {
+  std::string label;
+  std::string remark;  ///< why there are no numbers; empty when there are
+  std::vector<ReproducedCell> cells;
+};
+
+/// How many of the judged cells agree.
+struct Agreement {
+  int agreeing = 0;
+  int judged = 0;
+
+  void add(const Agreement& other);
+};
+
+struct ReproducedTable {
+  ThesisTable table;
+  std::vector<ReproducedRow> rows;
+
+  Agreement agreement() const;
+};
+
+/// Runs every loop of the table, and judges every cell by the rules of the table, ours and the thesis's by
+/// the same. Each study is run with its own basis case and S0. Throws InputError as run_basis_case(), and for
+/// a quantity that is none of ScenarioQuantities::names().
+ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& factory);
+
+/// The verdicts on the numbers of one column or row: judge(numbers)[i] for `i` of them. For any_above and
+/// any_within `numbers` are those of the row that the rule is for; for rank those of the column. Entries are
+/// none where there is no number.
+std::vector<std::optional<std::string>> judge(const VerdictRule& rule,
+                                              const std::vector<std::optional<double>>& numbers);
+
+}  // namespace mpm

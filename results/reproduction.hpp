@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/table_reproduction.hpp"
+
+// The tables of the thesis beside ours, for people and for programs.
+
+namespace mpm {
+
+/// A table a paragraph: in each cell ours, the thesis's in brackets, and "x" where the verdicts differ; then
+/// the agreement of each table and in total.
+std::string reproduction_text(const std::vector<ReproducedTable>& tables);
+
+/// {"tables": [{"number", "title", "note", "agreeing", "judged", "rows": [{"label", "remark", "cells":
+/// [{"head", "cv", "quantity", "ours", "thesis", "ratio", "our_verdict", "thesis_verdict", "agrees"}]}]}],
+/// "agreeing", "judged"}; null where there is no number or verdict.
+std::string reproduction_json(const std::vector<ReproducedTable>& tables);
+
+/// The same as one HTML page in the style of the report, with the rules of each table.
+std::string reproduction_html(const std::vector<ReproducedTable>& tables, const std::string& version);
+
+}  // namespace mpm

@@ -1,0 +1,98 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "results/html_page.hpp"
+#include "results/html_table.hpp"
+#include "results/plot_text.hpp"
+#include "results/reproduction.hpp"
+
+namespace mpm {
+namespace {
+
+std::string number_html(double value) {
+  return std::isnan(value) ? "&ndash;" : fmt::format("{:.3g}", value);
+}
+
+std::string cell_html(const ReproducedCell& cell) {
+  std::string html = number_html(cell.ours);
+  if (cell.cell.thesis)
+    html += fmt::format(" <small>({:g})</small>", *cell.cell.thesis);
+  if (cell.agrees() == false)
+    html = fmt::format("<strong>{} &#10007;</strong><br><small>{}, thesis: {}</small>", html,
+                       html_text(cell.our_verdict.value_or("no verdict")), html_text(*cell.thesis_verdict));
+  return html;
+}
+
+std::string rule_text(const VerdictRule& rule) {
+  std::string quantities;
+  for (const std::string& quantity : rule.quantities)
+    quantities += (quantities.empty() ? "" : ", ") + quantity;
+  switch (rule.kind) {
+    case RuleKind::any_above:
+      return fmt::format("{}: {} when some number of the row is above {:g}, else {}; {}", quantities,
+                         rule.yes, rule.lower, rule.no, rule.source);
+    case RuleKind::any_within:
+      return fmt::format("{}: {} when some number of the row lies within {:g} to {:g}, else {}; {}",
+                         quantities, rule.yes, rule.lower, rule.upper, rule.no, rule.source);
+    case RuleKind::rank:
+      return fmt::format("{}: the place in the column, from the smallest on; {}", quantities, rule.source);
+    case RuleKind::outside:
+      break;
+  }
+  return fmt::format("{}: {} outside of {:g} to {:g}, else {}; {}", quantities, rule.yes, rule.lower,
+                     rule.upper, rule.no, rule.source);
+}
+
+std::string table_html(const ReproducedTable& table, std::size_t index) {
+  std::vector<HtmlTable::Column> columns{{"", HtmlTable::Align::left}};
+  for (const std::string& head : table.table.heads)
+    columns.push_back({html_text(head), HtmlTable::Align::right});
+  const auto [agreeing, judged] = table.agreement();
+  HtmlTable html(fmt::format("{} of {} verdicts agree; ours, the thesis's in brackets", agreeing, judged),
+                 columns);
+  for (const ReproducedRow& row : table.rows) {
+    std::vector<std::string> cells{html_text(row.label + (row.remark.empty() ? "" : ": " + row.remark))};
+    for (const ReproducedCell& cell : row.cells)
+      cells.push_back(cell_html(cell));
+    html.row(cells);
+  }
+  std::string text;
+  for (const VerdictRule& rule : table.table.rules)
+    text += "<p>Verdict from " + html_text(rule_text(rule)) + ".</p>\n";
+  if (!table.table.note.empty())
+    text += "<p>" + html_text(table.table.note) + "</p>\n";
+  return fmt::format(
+      "<section id=\"table-{0}\" aria-labelledby=\"table-{0}-title\">\n<h2 id=\"table-{0}-title\"><span "
+      "class=\"index\">{1}</span>Table {0}: {2}</h2>\n{3}{4}</section>\n",
+      table.table.number, index, html_text(table.table.title), html.html(), text);
+}
+
+std::string agreement_html(const std::vector<ReproducedTable>& tables) {
+  HtmlTable html("Verdicts of the thesis that ours agree with",
+                 {{"table", HtmlTable::Align::left}, {"agree"}, {"of"}});
+  Agreement total;
+  for (const ReproducedTable& table : tables) {
+    const auto [agreeing, judged] = table.agreement();
+    total.add({agreeing, judged});
+    html.row(
+        {fmt::format("<a href=\"#table-{0}\">{0}</a> {1}", table.table.number, html_text(table.table.title)),
+         fmt::to_string(agreeing), fmt::to_string(judged)});
+  }
+  html.row({"total", fmt::to_string(total.agreeing), fmt::to_string(total.judged)});
+  return html.html();
+}
+
+}  // namespace
+
+std::string reproduction_html(const std::vector<ReproducedTable>& tables, const std::string& version) {
+  std::string body = agreement_html(tables);
+  for (std::size_t i = 0; i < tables.size(); ++i)
+    body += table_html(tables[i], i + 1);
+  return html_page({"the tables of the thesis", "The tables of the thesis, cell by cell",
+                    "<p>Botelho (UFRGS, 2015): ours beside the thesis's.</p>\n",
+                    "Made by <code>mpmbench reproduce</code>.", version},
+                   body);
+}
+
+}  // namespace mpm

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "results/reproduction.hpp"
+
+namespace mpm {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string number_text(double value) {
+  return std::isnan(value) ? "-" : fmt::format("{:.3g}", value);
+}
+
+std::string cell_text(const ReproducedCell& cell) {
+  return fmt::format("{} ({}){}", number_text(cell.ours),
+                     cell.cell.thesis ? fmt::format("{:g}", *cell.cell.thesis) : "",
+                     cell.agrees() == false ? " x" : "  ");
+}
+
+std::string table_text(const ReproducedTable& table) {
+  std::size_t label_width = 0;
+  for (const ReproducedRow& row : table.rows)
+    label_width = std::max(label_width, row.label.size());
+  std::vector<std::size_t> widths;
+  for (const std::string& head : table.table.heads)
+    widths.push_back(head.size());
+  for (const ReproducedRow& row : table.rows)
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      widths[i] = std::max(widths[i], cell_text(row.cells[i]).size());
+
+  std::string text =
+      fmt::format("Table {}: {}\n{:<{}}", table.table.number, table.table.title, "", label_width);
+  for (std::size_t i = 0; i < widths.size(); ++i)
+    text += fmt::format("  {:>{}}", table.table.heads[i], widths[i]);
+  text += '\n';
+  for (const ReproducedRow& row : table.rows) {
+    text += fmt::format("{:<{}}", row.label, label_width);
+    for (std::size_t i = 0; i < widths.size(); ++i)
+      text += fmt::format("  {:>{}}", cell_text(row.cells[i]), widths[i]);
+    text += row.remark.empty() ? "\n" : "  " + row.remark + "\n";
+  }
+  const auto [agreeing, judged] = table.agreement();
+  return text + fmt::format("{} of {} verdicts agree\n\n", agreeing, judged);
+}
+
+template <class Value>
+ordered_json or_null(const std::optional<Value>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json cell_json(const ReproducedCell& cell, const std::string& head) {
+  return {{"head", head},
+          {"cv", cell.cell.cv},
+          {"quantity", cell.cell.quantity},
+          {"ours", std::isfinite(cell.ours) ? ordered_json(cell.ours) : ordered_json(nullptr)},
+          {"thesis", or_null(cell.cell.thesis)},
+          {"ratio", or_null(cell.ratio())},
+          {"our_verdict", or_null(cell.our_verdict)},
+          {"thesis_verdict", or_null(cell.thesis_verdict)},
+          {"agrees", or_null(cell.agrees())}};
+}
+
+ordered_json table_json(const ReproducedTable& table) {
+  ordered_json rows = ordered_json::array();
+  for (const ReproducedRow& row : table.rows) {
+    ordered_json cells = ordered_json::array();
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      cells.push_back(cell_json(row.cells[i], table.table.heads[i]));
+    rows.push_back({{"label", row.label}, {"remark", row.remark}, {"cells", cells}});
+  }
+  const auto [agreeing, judged] = table.agreement();
+  return {{"number", table.table.number}, {"title", table.table.title}, {"note", table.table.note},
+          {"agreeing", agreeing},         {"judged", judged},           {"rows", rows}};
+}
+
+}  // namespace
+
+std::string reproduction_text(const std::vector<ReproducedTable>& tables) {
+  std::string text = "In each cell ours, the thesis's in brackets, x where another verdict follows.\n\n";
+  Agreement total;
+  for (const ReproducedTable& table : tables) {
+    text += table_text(table);
+    total.add(table.agreement());
+  }
+  for (const ReproducedTable& table : tables) {
+    const auto [agreeing, judged] = table.agreement();
+    text += fmt::format("{:<12} {:>3} of {:>3}\n", "table " + table.table.number, agreeing, judged);
+  }
+  return text + fmt::format("{:<12} {:>3} of {:>3} verdicts agree\n", "total", total.agreeing, total.judged);
+}
+
+std::string reproduction_json(const std::vector<ReproducedTable>& tables) {
+  ordered_json list = ordered_json::array();
+  Agreement total;
+  for (const ReproducedTable& table : tables) {
+    list.push_back(table_json(table));
+    total.add(table.agreement());
+  }
+  return ordered_json{{"tables", list}, {"agreeing", total.agreeing}, {"judged", total.judged}}.dump(2) +
+         "\n";
+}
+
+}  // namespace mpm
