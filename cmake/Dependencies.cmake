@@ -10,6 +10,8 @@ find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto) # SHA-256 of archives
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(Threads REQUIRED)
 
+find_package(Ceres 2.1 REQUIRED) # analysis/prediction_error_solver.cpp
+
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 

@@ -1,8 +1,8 @@
 """Checks the direction of includes between the rooms, and where third-party headers stand.
 
 Rooms are named from left to right; a file includes only its own room and rooms to its left, by the path from
-the root of the repository. Files in tests/ may include everything. The headers of Ipopt, HDF5 and SUNDIALS
-stand in one .cpp each at most, and never in a header.
+the root of the repository. Files in tests/ may include everything. The headers of Ceres, Ipopt, HDF5 and
+SUNDIALS stand in one .cpp each at most, and never in a header.
 """
 
 import re
@@ -12,6 +12,7 @@ import tree
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
 
 CONFINED = {
+    "Ceres": re.compile(r"^ceres/"),
     "Ipopt": re.compile(r"^(coin/|Ip[A-Z]\w*\.h)"),
     "HDF5": re.compile(r"^(hdf5(_hl)?\.h$|H5\w*\.h)"),
     "SUNDIALS": re.compile(r"^(sundials|cvodes?|arkode|idas?|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol)/"),
