@@ -54,8 +54,9 @@ struct IdentifiedSensitivity {
 /// | y      | outputs of the simulation, deviations; y(k) from r up to k - 1 | ny x N    | of the CV   |
 ///
 /// The orders of each CV are those of the grid with the best criterion on the end of the record; the model is
-/// then identified again on the whole of it. All references may move at once, where the steps of
-/// `nominal_sensitivity` come one at a time.
+/// then identified again on the whole of it; its end must therefore be excited as well. All references may
+/// move at once when the loop is linear. A range MPC is not: move one limit at a time, in one direction
+/// (docs/methods.md, Identification), with one call each.
 /// @throws InputError for different lengths, values that are not finite, no reference, too short a record, or
 ///   invalid options
 IdentifiedSensitivity identified_sensitivity(const Eigen::Ref<const Eigen::MatrixXd>& r,

@@ -54,7 +54,7 @@ class Reader {
   explicit Reader(const Eigen::Ref<const Eigen::VectorXd>& values) : values_(values) {}
 
   Eigen::VectorXd take(Eigen::Index count) {
-    const Eigen::VectorXd taken = values_.segment(next_, count);
+    Eigen::VectorXd taken = values_.segment(next_, count);
     next_ += count;
     return taken;
   }
