@@ -80,6 +80,7 @@ TEST_CASE("ARX: the residuals are orthogonal to the regressors") {
   const Eigen::VectorXd e = prediction_errors(fit.model, y, u).tail(fit.samples);
   CHECK((Phi.transpose() * e).norm() < 1e-12 * Phi.norm() * e.norm());
   CHECK(fit.loss == Approx(e.squaredNorm() / static_cast<double>(fit.samples)));
+  CHECK(fit.model.noise_variance == Approx(e.squaredNorm() / static_cast<double>(fit.samples - 7)));
 }
 
 TEST_CASE("ARX: a high-order model of many inputs has the step response of the loop it describes") {

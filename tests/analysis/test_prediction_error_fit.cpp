@@ -1,10 +1,12 @@
 #include <cmath>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/prediction_error.hpp"
 #include "analysis/prediction_error_fit.hpp"
 #include "analysis/prediction_error_search.hpp"
+#include "analysis/prediction_error_start.hpp"
 #include "plants/error.hpp"
 #include "tests/analysis/identification_samples.hpp"
 
@@ -74,6 +76,28 @@ TEST_CASE("a fit ends at a minimum of the loss, in both families") {
       CHECK(prediction_errors(other, y, u).squaredNorm() > 600.0 * fit.loss);
     }
   CHECK(fit.loss <= prediction_errors(truth, y, u).squaredNorm() / 600.0);
+}
+
+TEST_CASE("starts are stable, the best one comes first, and it is near the minimum already") {
+  const PolynomialModel truth = GENERATE(output_error_sample(), box_jenkins_sample());
+  const auto nu = static_cast<Eigen::Index>(truth.inputs.size());
+  const Eigen::MatrixXd u = random_steps(nu, 600, 47);
+  const Eigen::VectorXd y = noisy_output(truth, u, 48);
+  const PredictionErrorOptions options;
+  const std::vector<PolynomialModel> starts = prediction_error_starts(y, u, truth.order(), options);
+  REQUIRE(starts.size() > 1);
+  double before = 0.0;
+  for (const PolynomialModel& start : starts) {
+    CHECK(start.order() == truth.order());
+    CHECK(mpm::search_radius(start) < options.largest_radius);
+    const double sum = prediction_errors(start, y, u).squaredNorm();
+    CHECK(sum >= before);
+    before = sum;
+  }
+  // An estimate that is consistent, if not efficient: some standard errors, p/N = 1 % of the loss each
+  // squared.
+  CHECK(prediction_errors(starts.front(), y, u).squaredNorm() <
+        1.1 * prediction_errors(truth, y, u).squaredNorm());
 }
 
 TEST_CASE("a fit is the same, bit for bit, when it is made again") {
