@@ -19,6 +19,8 @@ SECTIONS = ["run", "rates", "variance", "location", "indicator", "dominance", "r
             "s0-perturbation", "basis", "solver", "wrong-verdicts"]
 FIGURES = ["headline-rates", "ivar", "i-mpm", "dominance", "roc", "fault-size", "t0", "s0-perturbation", "s0-structure",
            "basis-case"]
+SCENARIO_SECTIONS = ["run", "scenarios", "sensitivity", "s0-perturbation", "basis", "solver"]
+SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "t0", "basis-case"]
 PHONE, DESKTOP = 390, 1280  # pixels
 
 # The page in a frame of either width, which a script can look into because it has the same origin.
@@ -78,7 +80,7 @@ class Page(html.parser.HTMLParser):
         self.open.pop()
 
 
-def check_text(text):
+def check_text(text, sections, figures):
     """The page needs nothing else, and says to everybody what its pictures show."""
     page = Page(text)
     duplicates = {name for name in page.ids if page.ids.count(name) > 1}
@@ -88,13 +90,11 @@ def check_text(text):
     assert not page.loads, page.loads
     assert "<script" not in text and "@import" not in text and "url(" not in text
     assert 'name="viewport"' in text and "@media print" in text
-    assert [a["id"] for tag, a in page.elements if tag == "section"] == SECTIONS
-    assert [a["id"] for tag, a in page.elements if tag == "figure"] == ["figure-" + name for name in FIGURES]
+    assert [a["id"] for tag, a in page.elements if tag == "section"] == sections
+    assert [a["id"] for tag, a in page.elements if tag == "figure"] == ["figure-" + name for name in figures]
     for tag, attributes in page.elements:
         if tag == "svg" and attributes.get("aria-hidden") != "true":
             assert attributes.get("role") == "img" and attributes.get("aria-label"), attributes
-    assert re.search(r"<title>experiment \d+ \(UD\): disturbance on y", text)
-    assert re.search(r"<title>experiment \d+ \(MPM\): \w+", text)
 
 
 def run_chromium(chromium, folder, *options):
@@ -109,7 +109,7 @@ def run_chromium(chromium, folder, *options):
     return result.stdout
 
 
-def check_in_browser(chromium, folder, file):
+def check_in_browser(chromium, folder, file, figures):
     text = file.read_text(encoding="utf-8")
     run_chromium(chromium, folder, f"--window-size={DESKTOP},3000", f"--screenshot={folder / 'page.png'}",
                  file.as_uri())
@@ -129,8 +129,8 @@ def check_in_browser(chromium, folder, file):
         words = line.split()
         values = dict(zip(words[::2], words[1::2]))
         assert int(values["overflow"]) <= 0, line  # nothing sticks out of the screen
-        assert values["figures"] == ",".join("figure-" + name for name in FIGURES), line
-        assert int(values["drawn"]) == len(FIGURES), line
+        assert values["figures"] == ",".join("figure-" + name for name in figures), line
+        assert int(values["drawn"]) == len(figures), line
         assert float(values["smallest-text"]) >= 7, line  # subscripts on a phone
 
 
@@ -146,7 +146,16 @@ def main(program, write_sample_archive, chromium=""):
         archive, page = folder / "a.h5", folder / "a.html"
         subprocess.run([write_sample_archive, archive], check=True, timeout=300)
         assert run("report", archive, "-o", page).strip() == str(page)
-        check_text(page.read_text(encoding="utf-8"))
+        text = page.read_text(encoding="utf-8")
+        check_text(text, SECTIONS, FIGURES)
+        assert re.search(r"<title>experiment \d+ \(UD\): disturbance on y", text)
+        assert re.search(r"<title>experiment \d+ \(MPM\): \w+", text)
+
+        # A study of named scenarios.
+        named = folder / "named.html"
+        subprocess.run([write_sample_archive, folder / "named.h5", "scenarios"], check=True, timeout=300)
+        run("report", folder / "named.h5", "-o", named)
+        check_text(named.read_text(encoding="utf-8"), SCENARIO_SECTIONS, SCENARIO_FIGURES)
 
         # The same archive gives the same bytes, from wherever it is read and whenever.
         other = folder / "other"
@@ -186,7 +195,8 @@ def main(program, write_sample_archive, chromium=""):
         if not chromium:
             print("skipped: chromium is not installed (.ci/packages.txt), so the page was not opened in a browser")
             return SKIPPED
-        check_in_browser(chromium, folder, page)
+        check_in_browser(chromium, folder, page, FIGURES)
+        check_in_browser(chromium, folder, named, SCENARIO_FIGURES)
     return 0
 
 

@@ -88,7 +88,7 @@ def check_h5py(path, variables, attributes):
             for item in data.values():
                 check_variable(item)
         assert file.attrs["filetype"] == "mpmbench archive"
-        assert list(file.attrs["format_version"]) == [1, 1]
+        assert list(file.attrs["format_version"]) == [1, 2]
         assert file.attrs["master_seed"] == 12345678901234567890
         assert file["message"].asstr()[4] == "ended by signal 9: \u00fc"
         assert file["message"].asstr()[0] == ""

@@ -33,6 +33,7 @@ TEST_CASE("thousands of damaged studies are read or refused", "[study_file]") {
   try_mutations(project_file("scenarios/studies/chapter6.toml"), 1, 3000);
   try_mutations(project_file("scenarios/studies/wood-berry.toml"), 2, 2000);
   try_mutations(small_study(), 3, 2000);
+  try_mutations(project_file("scenarios/studies/chapter6-scenarios.toml"), 5, 2000);
 }
 
 TEST_CASE("studies that are cut off anywhere are refused", "[study_file]") {
