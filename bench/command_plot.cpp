@@ -44,8 +44,8 @@ ExitCode plot(const PlotCommand& command) {
                                          qp_solver_factory(campaign.info.solver))
                             .estimate(loop.trajectory),
                         "experiment");
-  figure.heading = {as_label(experiment_title(campaign.study, record.draw)),
-                    as_label(verdict_text(campaign.study, record))};
+  for (const std::string& line : experiment_heading(campaign.study, record))
+    figure.heading.push_back(as_label(line));
   const std::string drawing = draw_figure(figure, format);
   write_file_atomically(command.output, std::as_bytes(std::span(drawing)));
   return ExitCode::done;

@@ -134,6 +134,22 @@ std::string verdict_text(const Study& study, const ExperimentRecord& record) {
                      kind_name(verdict.predicted_source));
 }
 
+std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record) {
+  constexpr std::size_t kLongest = 100;
+  std::vector<std::string> lines;
+  std::string rest = experiment_title(study, record.draw);
+  while (rest.size() > kLongest) {
+    const std::size_t blank = rest.rfind("; ", kLongest - 1);
+    if (blank == std::string::npos)
+      break;
+    lines.push_back(rest.substr(0, blank + 1));
+    rest.erase(0, blank + 2);
+  }
+  lines.push_back(rest);
+  lines.push_back(verdict_text(study, record));
+  return lines;
+}
+
 std::string experiment_line(const Study& study, const ExperimentRecord& record) {
   return experiment_title(study, record.draw) + "; " + verdict_text(study, record);
 }

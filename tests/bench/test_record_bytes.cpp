@@ -50,15 +50,27 @@ TEST_CASE("record bytes: everything of a named scenario") {
   CHECK(to_bytes(again) == bytes);
   CHECK(again.draw.named);
   CHECK(again.draw.affected_cvs == std::vector<Eigen::Index>{0, 2});
+  CHECK(again.draw.mismatches[0].input == 2);
+  CHECK(again.draw.mismatches[0].value == 1.5);
   REQUIRE(again.draw.mismatches[1].channel.has_value());
   CHECK(again.draw.mismatches[1].channel->numerator() == Eigen::Vector2d(2, 1));
   CHECK(again.draw.mismatches[1].channel->dead_time() == 4);
   CHECK_FALSE(again.draw.disturbances[0].Gd.has_value());
-  CHECK(std::get<Sine>(again.draw.disturbances[0].signal).period == 6);
-  CHECK(std::get<Ramp>(again.draw.disturbances[1].signal).slope == 7);
-  CHECK(std::get<StepSequence>(again.draw.disturbances[2].signal).steps[1].level == 4.0);
-  CHECK(std::get<WhiteNoise>(again.draw.disturbances[3].signal).hold == 3);
+  // Member by member: a member that is forgotten in both directions would leave the bytes the same.
+  const std::vector<Disturbance>& disturbances = again.draw.disturbances;
+  CHECK(disturbances[0].time_constant == 4);
+  CHECK(disturbances[2].model == DisturbanceModel::direct);
+  const auto sine = std::get<Sine>(disturbances[0].signal);
+  CHECK((sine.amplitude == 0.5 && sine.period == 6));
+  const auto ramp = std::get<Ramp>(disturbances[1].signal);
+  CHECK((ramp.slope == 7 && ramp.start == 8));
+  const auto step = std::get<StepSequence>(disturbances[2].signal).steps.at(1);
+  CHECK((step.sample == 3 && step.level == 4.0));
+  const auto noise = std::get<WhiteNoise>(disturbances[3].signal);
+  CHECK((noise.factor == 0.25 && noise.hold == 3));
   CHECK(again.diagnosis.cvs[0].flagged);
+  CHECK(again.diagnosis.cvs[0].source == ExperimentKind::ud);
+  CHECK(again.diagnosis.cvs[0].sse == 0.5);
   CHECK(again.diagnosis.cvs[1].indicator.co_dkts == 0.75);
   for (std::size_t size = 0; size < bytes.size(); ++size)
     CHECK_THROWS_AS(record_from_bytes(std::string_view(bytes).substr(0, size)), std::runtime_error);

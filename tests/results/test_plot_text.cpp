@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -61,6 +62,10 @@ TEST_CASE("plot text: the text of a scenario names all its faults, and each CV i
         "disturbance on heat: sine of amplitude 0.2, period 30 s; "
         "disturbance on heat: (0.3 s + 2) / (100 s^2 + 30 s), ramp of 0.01 a s from 7 s; "
         "disturbance on heat: gain 1, time constant 8 s, 2 steps");
+  const std::vector<std::string> heading = experiment_heading(study, campaign.records[2]);
+  REQUIRE(heading.size() == 6);  // no two of the five faults fit on a line
+  CHECK(heading[0] == "signals (UD): disturbance on level: gain 0.5, time constant 6 s, white 1;");
+  CHECK(std::all_of(heading.begin(), heading.end(), [](const auto& line) { return line.size() <= 100; }));
   ExperimentRecord record = campaign.records[2];
   record.diagnosis.cvs[0] = {true, ExperimentKind::mpm, {}, 0.0};
   record.diagnosis.cvs[1] = {true, ExperimentKind::mpm, {}, 0.0};

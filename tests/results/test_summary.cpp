@@ -156,6 +156,9 @@ TEST_CASE("summary: a study of named scenarios shows each with its truth and its
                                                  Contains("level (MPM) ") && Contains("1.75") &&
                                                  Contains("missed heat"));
   CHECK_THAT(line_of_text(text, "failed"), Contains("failed"));
+  const std::string indicators = text.substr(text.find("flagged CVs"));
+  CHECK_THAT(line_of_text(indicators, "channels"), Contains("level") && Contains("1.5"));
+  CHECK_THAT(indicators.substr(indicators.find("channels")), !Contains("channels        heat"));
   CHECK_THAT(text, Contains("2.5*") && !Contains("measured against reported") && !Contains("other numbers"));
 
   const nlohmann::json json = nlohmann::json::parse(summary_json(campaign));
