@@ -22,6 +22,7 @@ ScenarioQuantities::ScenarioQuantities(const Study& study, const BasisCase& basi
   by_cv_["ivar_diag"] = diagnosis.ivar_diag;
   by_cv_["ivar_basis"] = diagnosis.ivar_basis;
   by_cv_["sse"] = simulation_errors(loop_.y, nominal_.y_sim);
+  by_cv_["squared_error"] = by_cv_["sse"].cwiseAbs2();
   by_cv_["sqr"] = (basis.trajectory.y - nominal_.y0).cwiseAbs().rowwise().sum();
 }
 
@@ -40,7 +41,7 @@ double ScenarioQuantities::value(const std::string& name, Eigen::Index cv) {
 }
 
 std::vector<std::string> ScenarioQuantities::names() {
-  std::vector<std::string> names{"ivar", "ivar_diag", "ivar_basis", "sse", "sqr"};
+  std::vector<std::string> names{"ivar", "ivar_diag", "ivar_basis", "sse", "squared_error", "sqr"};
   for (const NumberColumn<DistributionIndicators>& column : distribution_columns())
     names.push_back(column.name);
   return names;

@@ -16,6 +16,7 @@ namespace mpm {
 /// | ivar, ivar_diag | (3.24), (4.14) or (6.7), (6.8), see Diagnosis |
 /// | ivar_basis | variance of y over that of the basis case (6.22) |
 /// | sse | square root of the sum of the squared simulation errors (4.17) |
+/// | squared_error | that sum itself, which tables 4.3 and 4.5 to 4.12 have (docs/reproduction.md) |
 /// | sqr | sum over the samples of |y_basis - y0| (3.31) |
 /// | i_mpm, co_dkts, inclination_skn, ... | those of distribution_columns() |
 class ScenarioQuantities {
