@@ -100,6 +100,14 @@ std::vector<std::optional<double>> read_values(const TomlTable& table, std::size
   return values;
 }
 
+/// The quantity of a cell: that of its row, with '*' replaced by that of its column, or the only one given.
+std::string joined_quantity(const std::string& of_row, const std::string& of_column) {
+  const std::size_t star = of_row.find('*');
+  if (star != std::string::npos)
+    return std::string(of_row).replace(star, 1, of_column);
+  return of_column.empty() ? of_row : of_column;
+}
+
 TableRow read_row(const TomlTable& table, const std::vector<Column>& columns,
                   const std::map<std::string, Study>& studies) {
   TableRow row;
@@ -117,7 +125,7 @@ TableRow read_row(const TomlTable& table, const std::vector<Column>& columns,
   const std::vector<std::optional<double>> values = read_values(table, columns.size());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const TableCell cell{columns[i].cv.empty() ? cv : columns[i].cv,
-                         columns[i].quantity.empty() ? quantity : columns[i].quantity, values[i]};
+                         joined_quantity(quantity, columns[i].quantity), values[i]};
     if (cell.cv.empty() || cell.quantity.empty())
       table.refuse("",
                    fmt::format("no {} for column '{}'", cell.cv.empty() ? "cv" : "quantity", columns[i].head),
