@@ -8,7 +8,7 @@
 #include "analysis/nominal_sensitivity.hpp"
 #include "plants/linear_plant.hpp"
 #include "scenarios/study_library.hpp"
-#include "solvers/range_mpc.hpp"
+#include "solvers/mpc.hpp"
 #include "tests/analysis/identification_samples.hpp"
 
 namespace {
@@ -25,16 +25,20 @@ Eigen::RowVectorXd staircase(bool upper, Eigen::Index samples) {
   return moves;
 }
 
+bool is_upper(const mpm::ActiveReference& active) {
+  return active.kind == mpm::ReferenceKind::upper_limit;
+}
+
 /// Outputs of the relaxed controller on its own model while one limit moves, ny x N, deviations from rest.
 Eigen::MatrixXd record(const mpm::Study& study, const mpm::OperatingPoint& point,
-                       const mpm::ActiveLimit& moving, const Eigen::RowVectorXd& moves) {
-  mpm::RangeMpcOptions options = study.controller;
+                       const mpm::ActiveReference& moving, const Eigen::RowVectorXd& moves) {
+  mpm::MpcOptions options = study.controller;
   options.mv_hard = mpm::Limits::none(study.mv_count());
   options.cv_hard = options.cv_soft = mpm::Limits::none(study.cv_count());
-  for (const auto [cv, upper] : point.active)
-    (upper ? options.cv_soft.upper : options.cv_soft.lower)(cv) =
-        (upper ? study.controller.cv_soft.upper : study.controller.cv_soft.lower)(cv);
-  mpm::RangeMpc controller(study.plant.G, study.mv_count(), options, mpm::qp_solver_factory("active-set"));
+  for (const mpm::ActiveReference& active : point.active)
+    (is_upper(active) ? options.cv_soft.upper : options.cv_soft.lower)(active.cv) =
+        (is_upper(active) ? study.controller.cv_soft.upper : study.controller.cv_soft.lower)(active.cv);
+  mpm::Mpc controller(study.plant.G, study.mv_count(), options, mpm::qp_solver_factory("active-set"));
   const Eigen::VectorXd d = Eigen::VectorXd::Zero(study.md_count());
   const Eigen::VectorXd u = controller.nominal_target(d);
   Eigen::VectorXd input(u.size() + d.size());
@@ -47,7 +51,7 @@ Eigen::MatrixXd record(const mpm::Study& study, const mpm::OperatingPoint& point
   for (Eigen::Index k = 0; k < moves.size(); ++k) {
     y.col(k) = plant.output() - rest;
     mpm::Limits moved = options.cv_soft;
-    (moving.upper ? moved.upper : moved.lower)(moving.cv) += moves(k);
+    (is_upper(moving) ? moved.upper : moved.lower)(moving.cv) += moves(k);
     controller.set_cv_soft(moved);
     input.head(u.size()) = controller.step(plant.output(), d).u;
     plant.advance(input);
@@ -64,7 +68,7 @@ TEST_CASE("T0 of the chapter 6 controller, identified in a record, is the one of
   REQUIRE_FALSE(point.active.empty());
   const Eigen::MatrixXd direct = nominal_sensitivity(study, point, factory).step_response[0];
 
-  const Eigen::RowVectorXd moves = staircase(point.active[0].upper, 600);
+  const Eigen::RowVectorXd moves = staircase(is_upper(point.active[0]), 600);
   mpm::IdentifiedSensitivityOptions options;
   options.samples = direct.cols();
   options.orders = {{0}, {8}, {4, 6}, {1}, {1}, {1}};
