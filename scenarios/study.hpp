@@ -12,7 +12,7 @@
 #include "plants/plant_model.hpp"
 #include "scenarios/distribution.hpp"
 #include "scenarios/fault.hpp"
-#include "solvers/range_mpc_options.hpp"
+#include "solvers/mpc_options.hpp"
 
 namespace mpm {
 
@@ -135,7 +135,7 @@ struct Study {
   std::uint64_t seed = 0;
   PlantModel plant;                              ///< the nominal model G0
   std::optional<NonlinearSimulation> nonlinear;  ///< none: the plant is linear as well
-  RangeMpcOptions controller;
+  MpcOptions controller;
   SimulationOptions simulation;
   ExperimentCounts experiments;     ///< of random experiments; all 0 in a study of named scenarios
   std::vector<Scenario> scenarios;  ///< the experiments of a study of named scenarios, in their order
