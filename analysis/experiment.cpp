@@ -121,7 +121,8 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
                                   Eigen::RowVectorXd(main.loop.y_sim.row(true_cv)));
   }
   if (record.status == ExperimentStatus::failed)
-    record.message = "the solver gave no answer";
+    record.message = study_.nonlinear ? "the solver gave no answer, or the plant could not be integrated"
+                                      : "the solver gave no answer";
   if (store == StorePolicy::all || (store == StorePolicy::flagged && record.wrong()))
     record.loop = std::move(main.loop);
   return record;

@@ -70,10 +70,13 @@ void transfer_draw(Stream& stream, Draw& draw) {
     transfer_all(stream, mismatch.cv, mismatch.input, mismatch.parameter, mismatch.value);
     transfer_function(stream, mismatch.channel);
   });
+  transfer_list(stream, draw.parameters,
+                [&](auto& parameter) { transfer_all(stream, parameter.name, parameter.value); });
   transfer_list(stream, draw.disturbances, [&](auto& disturbance) {
     transfer_all(stream, disturbance.cv, disturbance.gain, disturbance.time_constant, disturbance.model);
     transfer_function(stream, disturbance.Gd);
     transfer_signal(stream, disturbance.signal);
+    transfer_optional(stream, disturbance.inner_input, [&](auto& input) { transfer(stream, input); });
   });
   transfer_optional(stream, draw.affected_cvs,
                     [&](auto& cvs) { transfer_list(stream, cvs, [&](auto& cv) { transfer(stream, cv); }); });

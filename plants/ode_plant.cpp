@@ -9,8 +9,16 @@
 
 namespace mpm {
 
-OdePlant::OdePlant(std::shared_ptr<const OdeSystem> system, double sample_time, const OdeOptions& options)
-    : system_(std::move(system)), sample_time_(sample_time), integrator_(system_, options) {
+OdePlant::OdePlant(std::shared_ptr<const OdeSystem> system, double sample_time, const OdeOptions& options,
+                   std::shared_ptr<const OdeSystem> at_rest)
+    : system_(std::move(system)),
+      at_rest_(at_rest ? std::move(at_rest) : system_),
+      sample_time_(sample_time),
+      integrator_(system_, options) {
+  if (at_rest_->state_count() != system_->state_count() || at_rest_->input_count() != system_->input_count())
+    throw InputError("system at rest",
+                     fmt::format("{} states and {} inputs", at_rest_->state_count(), at_rest_->input_count()),
+                     fmt::format("{} and {}, as the plant", system_->state_count(), system_->input_count()));
   if (!(sample_time_ > 0 && std::isfinite(sample_time_)))
     throw InputError("sample time", fmt::to_string(sample_time_), "> 0");
   input_.setZero(system_->input_count());
@@ -25,7 +33,7 @@ void OdePlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) {
   if (!steady_input.allFinite())
     throw InputError("steady plant input", "a number that is not finite", "finite numbers");
   input_ = steady_input;
-  set_state(system_->steady_state(input_));
+  set_state(at_rest_->steady_state(input_));
 }
 
 PlantStatus OdePlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {

@@ -11,9 +11,12 @@ namespace mpm {
 /// A nonlinear plant: an OdeSystem, integrated by CVODE from sample to sample.
 class OdePlant final : public Plant {
  public:
-  /// At the state zero, with the input zero. Errors: InputError when there is no system, the sample time is
-  /// not positive or an option is out of range.
-  OdePlant(std::shared_ptr<const OdeSystem> system, double sample_time, const OdeOptions& options = {});
+  /// At the state zero, with the input zero. `at_rest` is the system whose steady states reset() takes, for a
+  /// plant that becomes another one at the first sample; none: `system`. Errors: InputError when there is no
+  /// system, the two have not the same numbers of states and inputs, the sample time is not positive or an
+  /// option is out of range.
+  OdePlant(std::shared_ptr<const OdeSystem> system, double sample_time, const OdeOptions& options = {},
+           std::shared_ptr<const OdeSystem> at_rest = nullptr);
 
   Eigen::Index output_count() const override { return system_->output_count(); }
   Eigen::Index input_count() const override { return system_->input_count(); }
@@ -32,7 +35,7 @@ class OdePlant final : public Plant {
   OdeStatistics statistics() const { return integrator_.statistics(); }
 
  private:
-  std::shared_ptr<const OdeSystem> system_;
+  std::shared_ptr<const OdeSystem> system_, at_rest_;
   double sample_time_;
   OdeIntegrator integrator_;
   Eigen::VectorXd input_, output_;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
+#include "plants/nonlinear_model.hpp"
 #include "plants/ode_system.hpp"
 #include "plants/plant_model.hpp"
 #include "plants/quadruple_tank_parameters.hpp"
@@ -85,5 +87,12 @@ Eigen::VectorXd quadruple_tank_operating_point();
 PlantModel quadruple_tank_table_2_6();
 /// The same with the parameters of tables 3.1 and 5.9.
 PlantModel quadruple_tank_table_3_1();
+/// The same two with the external flows F_1 and F_2 of (3.25), (3.26) as measured disturbances (3.3.5).
+PlantModel quadruple_tank_flows_table_2_6();
+PlantModel quadruple_tank_flows_table_3_1();
+
+/// The nonlinear plant with the parameter set `set`, when the first `flows` external flows are MDs: the inner
+/// inputs are the other flows and D1 ... D4. Errors: InputError for an unknown set.
+NonlinearModel quadruple_tank_nonlinear(const std::string& set, std::size_t flows);
 
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -45,13 +46,17 @@ Eigen::VectorXd differentiated(double gain) {
   return Eigen::Vector2d(gain, 0);
 }
 
-PlantModel linear_model(const char* name, const char* set, const char* title) {
+/// With the first `flows` of the external flows as MDs.
+PlantModel linear_model(const char* name, const char* set, std::size_t flows, const char* title) {
   const QuadrupleTank process(quadruple_tank_parameters(set));
   const TransferMatrix all = process.linearised(quadruple_tank_operating_point());
-  TransferMatrix G(4, QuadrupleTank::kMvs);
+  TransferMatrix G(4, QuadrupleTank::kMvs + static_cast<Eigen::Index>(flows));
   for (Eigen::Index i = 0; i < G.rows(); ++i)
     for (Eigen::Index j = 0; j < G.cols(); ++j)
       G(i, j) = all(i, j);
+  std::vector<PlantModel::Variable> mds;
+  for (std::size_t i = 1; i <= flows; ++i)
+    mds.push_back({fmt::format("F{}", i), "cm^3/s", fmt::format("External flow into tank {}", i)});
   return {.name = name,
           .title = title,
           .time_unit = "s",
@@ -63,7 +68,7 @@ PlantModel linear_model(const char* name, const char* set, const char* title) {
                   {"v2", "V", "Voltage of pump 2"},
                   {"x1", "1", "Opening of the valve from pump 1 to tank 1"},
                   {"x2", "1", "Opening of the valve from pump 2 to tank 2"}},
-          .mds = {},
+          .mds = mds,
           .G = G};
 }
 
@@ -111,14 +116,24 @@ TransferMatrix QuadrupleTank::linearised(const Eigen::Ref<const Eigen::VectorXd>
 }
 
 PlantModel quadruple_tank_table_2_6() {
-  return linear_model("quadruple-tank", "table-2.6",
+  return linear_model("quadruple-tank", "table-2.6", 0,
                       "Quadruple tank, linearised with the parameters of table 2.6, 4 levels, 4 MVs");
 }
 
 PlantModel quadruple_tank_table_3_1() {
   return linear_model(
-      "quadruple-tank-table-3.1", "table-3.1",
+      "quadruple-tank-table-3.1", "table-3.1", 0,
       "Quadruple tank, linearised with the parameters of tables 3.1 and 5.9, 4 levels, 4 MVs");
+}
+
+PlantModel quadruple_tank_flows_table_2_6() {
+  return linear_model("quadruple-tank-flows", "table-2.6", 2,
+                      "Quadruple tank, parameters of table 2.6, 4 levels, 4 MVs, 2 external flows");
+}
+
+PlantModel quadruple_tank_flows_table_3_1() {
+  return linear_model("quadruple-tank-flows-table-3.1", "table-3.1", 2,
+                      "Quadruple tank, parameters of table 3.1, 4 levels, 4 MVs, 2 external flows");
 }
 
 }  // namespace mpm

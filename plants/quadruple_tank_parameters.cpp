@@ -74,6 +74,15 @@ std::vector<std::string> quadruple_tank_parameter_sets() {
   return names;
 }
 
+std::vector<std::pair<std::string, double>> named_parameters(const QuadrupleTankParameters& parameters) {
+  QuadrupleTankParameters copy = parameters;
+  std::vector<std::pair<std::string, double>> named;
+  for (const Group& group : groups(copy))
+    for (std::size_t i = 0; i < group.values.size(); ++i)
+      named.emplace_back(fmt::format("{}{}", group.prefix, i + 1), group.values[i]);
+  return named;
+}
+
 QuadrupleTankParameters with_parameter(const QuadrupleTankParameters& parameters, const std::string& name,
                                        double value) {
   QuadrupleTankParameters result = parameters;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace mpm {
@@ -31,6 +32,9 @@ QuadrupleTankParameters quadruple_tank_parameters(const std::string& name);
 
 /// The names that quadruple_tank_parameters() knows.
 std::vector<std::string> quadruple_tank_parameter_sets();
+
+/// The parameters by name, "A1" ... "k2".
+std::vector<std::pair<std::string, double>> named_parameters(const QuadrupleTankParameters& parameters);
 
 /// A copy with another value of one parameter: a model-plant mismatch as in tables 2.8, 3.9 and 5.11 (M1 is
 /// with_parameter(p, "cd2", 6.47)). Errors: InputError for an unknown name or a value out of range.

@@ -54,6 +54,20 @@ std::string mismatch_text(const Study& study, const Mismatch& mismatch) {
   return "unknown";
 }
 
+/// "cd1 7.86 (model 3.145)"
+std::string parameter_text(const Study& study, const ParameterChange& change) {
+  for (const NonlinearModel::Parameter& parameter : study.nonlinear->model.parameters)
+    if (parameter.name == change.name)
+      return fmt::format("{} {:.4g} (model {:.4g})", change.name, change.value, parameter.nominal);
+  return fmt::format("{} {:.4g}", change.name, change.value);
+}
+
+std::string place_text(const Study& study, const Disturbance& disturbance) {
+  return disturbance.inner_input
+             ? study.nonlinear->model.inner_inputs[static_cast<std::size_t>(*disturbance.inner_input)]
+             : cv_name(study, disturbance.cv);
+}
+
 std::string signal_text(const Study& study, const DisturbanceSignal& signal) {
   const std::string time = unit_text(study.plant.time_unit);
   if (const auto* noise = std::get_if<WhiteNoise>(&signal)) {
@@ -71,7 +85,7 @@ std::string signal_text(const Study& study, const DisturbanceSignal& signal) {
 
 /// A random disturbance has always the same signal, which is not worth a word.
 std::string disturbance_text(const Study& study, const Disturbance& disturbance, bool named) {
-  const std::string on = "disturbance on " + cv_name(study, disturbance.cv);
+  const std::string on = "disturbance on " + place_text(study, disturbance);
   const std::string signal = named ? ", " + signal_text(study, disturbance.signal) : "";
   switch (disturbance.model) {
     case DisturbanceModel::first_order:
@@ -110,6 +124,8 @@ std::string fault_text(const Study& study, const ExperimentDraw& draw) {
   const auto add = [&text](const std::string& fault) { text += (text.empty() ? "" : "; ") + fault; };
   for (const Mismatch& mismatch : draw.mismatches)
     add(mismatch_text(study, mismatch));
+  for (const ParameterChange& change : draw.parameters)
+    add(parameter_text(study, change));
   for (const Disturbance& disturbance : draw.disturbances)
     add(disturbance_text(study, disturbance, draw.named));
   return text.empty() ? "nothing" : text;

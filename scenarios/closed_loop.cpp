@@ -1,6 +1,7 @@
 #include "scenarios/closed_loop.hpp"
 
 #include <algorithm>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -111,10 +112,15 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
 
 Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
                                const StepObserver& observer) {
-  return run_closed_loop(study, with_mismatches(study.plant.G, draw.mismatches),
-                         {measured_disturbances(study), measurement_noise(study, draw.index),
-                          unmeasured_disturbances(study, draw), setpoints(study)},
-                         factory, observer);
+  const LoopSignals signals{measured_disturbances(study), measurement_noise(study, draw.index),
+                            unmeasured_disturbances(study, draw), setpoints(study),
+                            disturbances_within_plant(study, draw)};
+  if (!study.nonlinear)
+    return run_closed_loop(study, with_mismatches(study.plant.G, draw.mismatches), signals, factory,
+                           observer);
+  const std::unique_ptr<Plant> plant = nonlinear_plant(study.nonlinear->model, study.controller.sample_time,
+                                                       study.nonlinear->integration, draw.parameters);
+  return run_closed_loop(study, *plant, signals, factory, observer);
 }
 
 }  // namespace mpm

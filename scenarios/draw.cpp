@@ -89,11 +89,12 @@ ExperimentDraw named_experiment(const Study& study, std::int64_t index) {
                      fmt::format("0 to {}, the named scenarios of the study", study.experiment_count() - 1));
   const Scenario& scenario = study.scenarios[static_cast<std::size_t>(index)];
   return {index,
-          kind_of(scenario.mismatches, scenario.disturbances),
+          kind_of(scenario.mismatches, scenario.parameters, scenario.disturbances),
           scenario.mismatches,
           scenario.disturbances,
           true,
-          scenario.affected_cvs};
+          scenario.affected_cvs,
+          scenario.parameters};
 }
 
 }  // namespace
@@ -103,11 +104,14 @@ std::vector<AffectedCv> ExperimentDraw::affected() const {
   for (const Mismatch& mismatch : mismatches)
     faults[mismatch.cv].first = true;
   for (const Disturbance& disturbance : disturbances)
-    faults[disturbance.cv].second = true;
+    if (!disturbance.inner_input)
+      faults[disturbance.cv].second = true;
   if (affected_cvs) {
     const auto own = std::exchange(faults, {});
     for (const Eigen::Index cv : *affected_cvs)
-      faults[cv] = own.contains(cv) ? own.at(cv) : std::pair(!mismatches.empty(), !disturbances.empty());
+      faults[cv] = own.contains(cv)
+                       ? own.at(cv)
+                       : std::pair(!mismatches.empty() || !parameters.empty(), !disturbances.empty());
   }
   std::vector<AffectedCv> list;
   for (const auto& [cv, fault] : faults)
@@ -123,14 +127,18 @@ Eigen::Index ExperimentDraw::true_cv() const {
 }
 
 ExperimentDraw ExperimentDraw::mismatch_alone() const {
-  return {index,       mismatches.empty() ? ExperimentKind::none : ExperimentKind::mpm, mismatches, {}, named,
-          affected_cvs};
+  ExperimentDraw alone = *this;
+  alone.disturbances.clear();
+  alone.kind = kind_of(alone.mismatches, alone.parameters, alone.disturbances);
+  return alone;
 }
 
 ExperimentDraw ExperimentDraw::disturbance_alone() const {
-  return {index, disturbances.empty() ? ExperimentKind::none : ExperimentKind::ud,
-          {},    disturbances,
-          named, affected_cvs};
+  ExperimentDraw alone = *this;
+  alone.mismatches.clear();
+  alone.parameters.clear();
+  alone.kind = kind_of(alone.mismatches, alone.parameters, alone.disturbances);
+  return alone;
 }
 
 KindSequence::KindSequence(const ExperimentCounts& counts) {

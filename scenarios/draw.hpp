@@ -25,6 +25,7 @@ struct ExperimentDraw {
   bool named = false;  ///< the scenario number `index` of the study
   /// The CVs that a diagnosis should find, when the study says it; otherwise those with a fault.
   std::optional<std::vector<Eigen::Index>> affected_cvs = {};
+  std::vector<ParameterChange> parameters = {};  ///< of a nonlinear plant; a mismatch, too
 
   /// The CVs that are affected, in their order. A CV that has no fault of its own is affected by what is
   /// wrong in the experiment.

@@ -33,8 +33,9 @@ TransferMatrix with_mismatches(TransferMatrix model, const std::vector<Mismatch>
 }
 
 ExperimentKind kind_of(const std::vector<Mismatch>& mismatches,
+                       const std::vector<ParameterChange>& parameters,
                        const std::vector<Disturbance>& disturbances) {
-  if (mismatches.empty())
+  if (mismatches.empty() && parameters.empty())
     return disturbances.empty() ? ExperimentKind::none : ExperimentKind::ud;
   return disturbances.empty() ? ExperimentKind::mpm : ExperimentKind::mpm_ud;
 }

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "plants/nonlinear_model.hpp"
 #include "plants/transfer_matrix.hpp"
 
 // What can be wrong in an experiment: mismatches of the plant, and disturbances that nobody measures.
@@ -71,18 +72,21 @@ enum class DisturbanceModel : std::int8_t {
   direct = 2,             ///< nothing: y_d = v, without the hold of a sample
 };
 
-/// An unmeasured disturbance y_d = G_d v added to one CV.
+/// An unmeasured disturbance y_d = G_d v added to one CV, or to an inner input of a nonlinear plant.
 struct Disturbance {
-  Eigen::Index cv;
+  Eigen::Index cv;       ///< -1 for one of an inner input
   double gain;           ///< CV unit per unit of v; of a first-order G_d
   double time_constant;  ///< time unit of the plant; of a first-order G_d
   DisturbanceModel model = DisturbanceModel::first_order;
   std::optional<TransferFunction> Gd = {};  ///< when the model is `transfer_function`
   DisturbanceSignal signal = WhiteNoise{};
+  std::optional<Eigen::Index> inner_input = {};  ///< place in NonlinearModel::inner_inputs
 };
 
-/// The kind of an experiment with these faults.
-ExperimentKind kind_of(const std::vector<Mismatch>& mismatches, const std::vector<Disturbance>& disturbances);
+/// The kind of an experiment with these faults; changed parameters are a mismatch.
+ExperimentKind kind_of(const std::vector<Mismatch>& mismatches,
+                       const std::vector<ParameterChange>& parameters,
+                       const std::vector<Disturbance>& disturbances);
 
 /// An experiment that a study spells out, such as those of table 6.3.
 struct Scenario {
@@ -92,6 +96,7 @@ struct Scenario {
   std::vector<Disturbance> disturbances;
   /// The CVs that a diagnosis should find; none given: those with a fault.
   std::optional<std::vector<Eigen::Index>> affected_cvs;
+  std::vector<ParameterChange> parameters = {};  ///< mismatches of a nonlinear plant
 };
 
 }  // namespace mpm

@@ -90,6 +90,16 @@ StreamId disturbance_stream(std::size_t number) {
                      : static_cast<StreamId>(kFurther + static_cast<std::uint32_t>(number - 1));
 }
 
+/// y_d of disturbance `number` of the experiment.
+Eigen::RowVectorXd values(const Study& study, const ExperimentDraw& draw, std::size_t number) {
+  const Disturbance& disturbance = draw.disturbances[number];
+  const double Ts = study.controller.sample_time;
+  return through_model(
+      disturbance, Ts,
+      disturbance_signal(disturbance.signal, study.disturbance.v_standard_deviation, Ts,
+                         study.simulation.samples, stream_of(study, draw.index, disturbance_stream(number))));
+}
+
 }  // namespace
 
 Eigen::MatrixXd measured_disturbances(const Study& study) {
@@ -127,16 +137,22 @@ Eigen::RowVectorXd disturbance_signal(const DisturbanceSignal& signal, double st
 }
 
 Eigen::MatrixXd unmeasured_disturbances(const Study& study, const ExperimentDraw& draw) {
-  const double Ts = study.controller.sample_time;
   Eigen::MatrixXd y_d = Eigen::MatrixXd::Zero(study.cv_count(), study.simulation.samples);
-  for (std::size_t i = 0; i < draw.disturbances.size(); ++i) {
-    const Disturbance& disturbance = draw.disturbances[i];
-    const Eigen::RowVectorXd v =
-        disturbance_signal(disturbance.signal, study.disturbance.v_standard_deviation, Ts, y_d.cols(),
-                           stream_of(study, draw.index, disturbance_stream(i)));
-    y_d.row(disturbance.cv) += through_model(disturbance, Ts, v);
-  }
+  for (std::size_t i = 0; i < draw.disturbances.size(); ++i)
+    if (!draw.disturbances[i].inner_input)
+      y_d.row(draw.disturbances[i].cv) += values(study, draw, i);
   return y_d;
+}
+
+Eigen::MatrixXd disturbances_within_plant(const Study& study, const ExperimentDraw& draw) {
+  if (!study.nonlinear)
+    return {};
+  const auto inner_inputs = static_cast<Eigen::Index>(study.nonlinear->model.inner_inputs.size());
+  Eigen::MatrixXd within = Eigen::MatrixXd::Zero(inner_inputs, study.simulation.samples);
+  for (std::size_t i = 0; i < draw.disturbances.size(); ++i)
+    if (draw.disturbances[i].inner_input)
+      within.row(*draw.disturbances[i].inner_input) += values(study, draw, i);
+  return within;
 }
 
 }  // namespace mpm

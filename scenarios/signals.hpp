@@ -28,4 +28,8 @@ Eigen::RowVectorXd disturbance_signal(const DisturbanceSignal& signal, double st
 /// experiment has none.
 Eigen::MatrixXd unmeasured_disturbances(const Study& study, const ExperimentDraw& draw);
 
+/// The unmeasured disturbances on the inner inputs of the nonlinear plant, one row an inner input, each held
+/// over a sample. Empty (0 x 0) where the plant is linear.
+Eigen::MatrixXd disturbances_within_plant(const Study& study, const ExperimentDraw& draw);
+
 }  // namespace mpm

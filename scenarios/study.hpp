@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "plants/nonlinear_model.hpp"
 #include "plants/plant_model.hpp"
 #include "scenarios/distribution.hpp"
 #include "scenarios/fault.hpp"
@@ -135,12 +137,20 @@ struct ReferenceValue {
   double value;
 };
 
+/// The nonlinear plant that is simulated in place of the linear model; the controller and y_sim keep the
+/// model.
+struct NonlinearSimulation {
+  NonlinearModel model;
+  OdeOptions integration;
+};
+
 /// A whole study as read from its file: every number that decides its result.
 struct Study {
   std::string name;
   std::string title;
   std::uint64_t seed = 0;
-  PlantModel plant;  ///< the nominal model G0
+  PlantModel plant;                              ///< the nominal model G0
+  std::optional<NonlinearSimulation> nonlinear;  ///< none: the plant is linear as well
   MpcOptions controller;
   SimulationOptions simulation;
   ExperimentCounts experiments;     ///< of random experiments; all 0 in a study of named scenarios

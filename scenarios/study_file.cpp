@@ -57,10 +57,11 @@ Study parse_study(std::string_view text, const std::string& file_name) {
   Study study;
   read_heading(document, study);
   study.plant = read_plant(document);
+  study.nonlinear = read_nonlinear_simulation(document);
   study.controller = read_controller(document, study.plant);
   study.simulation = read_simulation(document, study.plant, study.controller);
   study.scenarios = read_scenarios(document, study);
-  study.experiments = read_experiments(document);
+  study.experiments = read_experiments(document, study);
   study.mismatch = read_mismatch(document, study.plant);
   study.disturbance = read_disturbance(document);
   study.sensitivity = read_sensitivity(document, study.plant, study.controller);

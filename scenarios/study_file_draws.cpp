@@ -55,7 +55,7 @@ void refuse_impossible_shift(const TomlTable& mismatch, const Distribution& shif
 
 }  // namespace
 
-ExperimentCounts read_experiments(const TomlTable& document) {
+ExperimentCounts read_experiments(const TomlTable& document, const Study& study) {
   if (document.has("scenario")) {
     for (const char* random : {"experiments", "mismatch"}) {
       if (document.has(random)) {
@@ -71,6 +71,11 @@ ExperimentCounts read_experiments(const TomlTable& document) {
   const ExperimentCounts counts{.mpm = count("mpm"), .ud = count("ud"), .mpm_ud = count("mpm_ud")};
   if (counts.total() == 0) {
     table.refuse("", "no experiment", "at least one of any kind");
+  }
+  if (study.nonlinear && counts.mpm + counts.mpm_ud > 0) {
+    table.refuse(counts.mpm > 0 ? "mpm" : "mpm_ud",
+                 "random mismatches of a plant that is simulated as nonlinear",
+                 "0; its mismatches are named scenarios");
   }
   return counts;
 }

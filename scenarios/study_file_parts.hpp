@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,17 @@ namespace mpm {
 
 /// [plant]: a plant of the catalogue, or one that the file defines (study_file_plant.cpp).
 PlantModel read_plant(const TomlTable& document);
+
+/// How the plant of [plant] is simulated; none: by its linear model (study_file_nonlinear.cpp, as the next
+/// two).
+std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& document);
+
+/// The list `parameter` of a scenario: parameters of the nonlinear plant of `study` that differ.
+std::vector<ParameterChange> read_parameter_changes(const TomlTable& scenario, const Study& study);
+
+/// The place of the inner input of the nonlinear plant of `study` that the key `input` of a disturbance
+/// names.
+Eigen::Index read_inner_input(const TomlTable& disturbance, const Study& study);
 
 /// [controller] (study_file_controller.cpp).
 MpcOptions read_controller(const TomlTable& document, const PlantModel& plant);
@@ -45,7 +57,7 @@ inline constexpr double kMaxDeadTimeSamples = 10000;
 std::vector<Scenario> read_scenarios(const TomlTable& document, const Study& study);
 
 /// [experiments] (study_file_draws.cpp), as the next two. None in a study of named scenarios.
-ExperimentCounts read_experiments(const TomlTable& document);
+ExperimentCounts read_experiments(const TomlTable& document, const Study& study);
 
 /// [mismatch]
 MismatchRanges read_mismatch(const TomlTable& document, const PlantModel& plant);

@@ -174,9 +174,10 @@ PlantModel read_plant(const TomlTable& document) {
   if (!plant.has("catalogue")) {
     return read_inline_plant(plant);
   }
-  const std::vector<std::string> keys = plant.present_keys();
-  if (keys.size() > 1) {
-    plant.refuse(keys[1], "a key beside catalogue", "catalogue alone, or an own plant without it");
+  for (const char* key : {"name", "title", "time_unit", "cv", "mv", "md", "channel"}) {
+    if (plant.has(key)) {
+      plant.refuse(key, "a key beside catalogue", "catalogue alone, or an own plant without it");
+    }
   }
   const std::vector<std::string> names = benchmark_plant_names();
   return benchmark_plant(names[read_one_of(plant, "catalogue", names)]);

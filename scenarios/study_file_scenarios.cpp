@@ -93,6 +93,9 @@ void refuse_impossible_plant(const TomlTable& table, const Study& study,
 }
 
 std::vector<Mismatch> read_mismatches(const TomlTable& scenario, const Study& study) {
+  if (study.nonlinear && scenario.has("mismatch")) {
+    scenario.refuse("mismatch", "channels of a plant that is simulated as nonlinear", "parameter");
+  }
   std::vector<Mismatch> mismatches;
   std::set<std::pair<Eigen::Index, Eigen::Index>> listed;
   for (const TomlTable& table : read_faults(scenario, "mismatch")) {
@@ -164,12 +167,16 @@ void read_model(const TomlTable& table, double sample_time, Disturbance& disturb
   }
 }
 
-Disturbance read_disturbance_of_cv(const TomlTable& table, const Study& study) {
-  Disturbance disturbance{
-      .cv = static_cast<Eigen::Index>(read_one_of(table, "cv", variable_names(study.plant.cvs))),
-      .gain = kNaN,
-      .time_constant = kNaN,
-      .model = DisturbanceModel::direct};
+Disturbance read_one_disturbance(const TomlTable& table, const Study& study) {
+  Disturbance disturbance{.cv = -1, .gain = kNaN, .time_constant = kNaN, .model = DisturbanceModel::direct};
+  if (table.has("cv") && table.has("input")) {
+    table.refuse("", "both cv and input", "exactly one of the two");
+  }
+  if (table.has("input")) {
+    disturbance.inner_input = read_inner_input(table, study);
+  } else {
+    disturbance.cv = static_cast<Eigen::Index>(read_one_of(table, "cv", variable_names(study.plant.cvs)));
+  }
   disturbance.signal = read_signal(table, study.simulation.samples);
   if (has_any(table, {"gain", "time_constant", "numerator", "denominator", "dead_time"})) {
     read_model(table, study.controller.sample_time, disturbance);
@@ -182,22 +189,33 @@ Disturbance read_disturbance_of_cv(const TomlTable& table, const Study& study) {
 std::vector<Disturbance> read_disturbances(const TomlTable& scenario, const Study& study) {
   std::vector<Disturbance> disturbances;
   for (const TomlTable& table : read_faults(scenario, "disturbance")) {
-    disturbances.push_back(read_disturbance_of_cv(table, study));
+    disturbances.push_back(read_one_disturbance(table, study));
   }
   return disturbances;
+}
+
+/// A parameter and an inner input name no CV.
+void refuse_unknown_truth(const TomlTable& table, const Scenario& scenario) {
+  const bool inner =
+      std::any_of(scenario.disturbances.begin(), scenario.disturbances.end(),
+                  [](const Disturbance& disturbance) { return disturbance.inner_input.has_value(); });
+  if (!scenario.parameters.empty() || inner) {
+    table.refuse("affected", "nothing", "the CVs that the fault of the nonlinear plant affects");
+  }
 }
 
 std::optional<std::vector<Eigen::Index>> read_affected(const TomlTable& table, const Scenario& scenario,
                                                        const Study& study) {
   const toml::node* node = table.find("affected");
   if (node == nullptr) {
+    refuse_unknown_truth(table, scenario);
     return std::nullopt;
   }
   if (const toml::array* list = node->as_array(); list != nullptr && list->empty()) {
     return std::vector<Eigen::Index>{};
   }
   const std::vector<std::size_t> places = read_some_of(table, "affected", variable_names(study.plant.cvs));
-  if (kind_of(scenario.mismatches, scenario.disturbances) == ExperimentKind::none) {
+  if (kind_of(scenario.mismatches, scenario.parameters, scenario.disturbances) == ExperimentKind::none) {
     table.refuse("affected", fmt::format("a list of {} in a scenario without fault", places.size()),
                  "an empty list");
   }
@@ -225,6 +243,7 @@ std::vector<Scenario> read_scenarios(const TomlTable& document, const Study& stu
       table.refuse("name", fmt::format("'{}' for a second scenario", scenario.name), "every name once");
     }
     scenario.mismatches = read_mismatches(table, study);
+    scenario.parameters = read_parameter_changes(table, study);
     scenario.disturbances = read_disturbances(table, study);
     scenario.affected_cvs = read_affected(table, scenario, study);
     scenarios.push_back(std::move(scenario));
