@@ -232,7 +232,7 @@ Campaign scenario_campaign() {
   Campaign campaign;
   campaign.study = parse_study(text + kScenarios, "small");
   campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
-  campaign.basis = basis_case(numbers, campaign.study, {{1, true}});
+  campaign.basis = basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}});
   for (std::int64_t index = 0; index < campaign.study.experiment_count(); ++index) {
     ExperimentRecord made = record(numbers, campaign.study, index);
     made.draw = draw_experiment(campaign.study, index);
