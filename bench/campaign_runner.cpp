@@ -58,7 +58,7 @@ std::vector<std::int64_t> all_of(std::int64_t count) {
 /// The basis case; with Ipopt it takes as long as an experiment, so that a stop must not wait for it.
 BasisCase stoppable_basis_case(const Study& study, const QpSolverFactory& factory, const StopRequest& stop,
                                std::int64_t done, std::int64_t count) {
-  return run_basis_case(study, factory, [&](const RangeMpc&) {
+  return run_basis_case(study, factory, [&](const Mpc&) {
     if (stop && stop())
       throw Interrupted(done, count);
   });
