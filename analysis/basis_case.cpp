@@ -49,14 +49,15 @@ void require_active(const Study& study, const NominalSensitivity& sensitivity) {
 
 }  // namespace
 
-BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory) {
+BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, const StepObserver& observer) {
   BasisCase basis;
   basis.point = operating_point(study, factory);
-  basis.sensitivity = nominal_sensitivity(study, basis.point, factory);
+  basis.sensitivity = nominal_sensitivity(study, basis.point, factory, observer);
   require_active(study, basis.sensitivity);
   if (!study.s0_perturbation.fixed_mvs.empty())
-    basis.sensitivity_fixed = nominal_sensitivity(study, with_fixed_mvs(study, basis.point), factory);
-  basis.trajectory = simulate_experiment(study, basis_draw(), factory);
+    basis.sensitivity_fixed =
+        nominal_sensitivity(study, with_fixed_mvs(study, basis.point), factory, observer);
+  basis.trajectory = simulate_experiment(study, basis_draw(), factory, observer);
   if (basis.trajectory.status == ControlStatus::ok) {
     basis.nominal =
         NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);

@@ -27,7 +27,10 @@ struct BasisCase {
   std::string explanation;  ///< one sentence for people, also when healthy
 };
 
-/// Runs the basis case of the study. Throws InputError when the sensitivity cannot be determined.
-BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory);
+/// Runs the basis case of the study. `observer` sees each step of its loops, those that give T0 among them;
+/// an exception from it ends the basis case and is passed on. Throws InputError when the sensitivity cannot
+/// be determined.
+BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory,
+                         const StepObserver& observer = {});
 
 }  // namespace mpm

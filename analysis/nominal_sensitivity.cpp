@@ -93,7 +93,7 @@ Eigen::VectorXd setpoints_at_rest(const Study& study, const OperatingPoint& poin
 /// Response of the outputs per unit of a step of the reference, `step` in CV units.
 Eigen::MatrixXd reference_response(const Study& study, const OperatingPoint& point,
                                    const ActiveReference& reference, double step,
-                                   const QpSolverFactory& factory) {
+                                   const QpSolverFactory& factory, const StepObserver& observer) {
   const MpcOptions options = relaxed_options(study, point);
   Mpc controller(study.plant.G, study.mv_count(), options, factory);
   Eigen::VectorXd y_set = setpoints_at_rest(study, point);
@@ -119,6 +119,8 @@ Eigen::MatrixXd reference_response(const Study& study, const OperatingPoint& poi
   Eigen::MatrixXd response(study.cv_count(), study.sensitivity.samples);
   for (Eigen::Index l = 0; l < response.cols(); ++l) {
     const ControlMove& move = controller.step(plant.output(), d);
+    if (observer)
+      observer(controller);
     if (move.status != ControlStatus::ok)
       throw InputError("nominal sensitivity",
                        fmt::format("a controller that is {} after a step in the {} of {}",
@@ -133,9 +135,10 @@ Eigen::MatrixXd reference_response(const Study& study, const OperatingPoint& poi
 }
 
 Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& point,
-                                  const ActiveReference& reference, const QpSolverFactory& factory) {
+                                  const ActiveReference& reference, const QpSolverFactory& factory,
+                                  const StepObserver& observer) {
   const auto response = [&](double step) {
-    return reference_response(study, point, reference, step, factory);
+    return reference_response(study, point, reference, step, factory, observer);
   };
   const double size = study.sensitivity.step_size;
   if (reference.kind == ReferenceKind::setpoint)  // the same either way
@@ -212,10 +215,10 @@ double NominalSensitivity::unsettled() const {
 }
 
 NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint& point,
-                                       const QpSolverFactory& factory) {
+                                       const QpSolverFactory& factory, const StepObserver& observer) {
   NominalSensitivity sensitivity{study.cv_count(), point.active, {}};
   for (const ActiveReference& reference : point.active)
-    sensitivity.step_response.push_back(directed_response(study, point, reference, factory));
+    sensitivity.step_response.push_back(directed_response(study, point, reference, factory, observer));
   return sensitivity;
 }
 

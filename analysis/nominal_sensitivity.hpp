@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "scenarios/closed_loop.hpp"
 #include "scenarios/study.hpp"
 #include "solvers/qp_solver.hpp"
 
@@ -72,9 +73,9 @@ struct NominalSensitivity {
 /// disturbance, then for each setpoint and each active soft limit in turn a step of
 /// `study.sensitivity.step_size`. A controller without targets has nothing that draws a CV to its limit: its
 /// active limits are taken to lie where the CVs are. The thesis fits Box-Jenkins models to these data; with
-/// noise-free data of the controller itself the step response is the model. Throws InputError when the
-/// relaxed controller has no solution.
+/// noise-free data of the controller itself the step response is the model. `observer` sees each step of the
+/// relaxed controller. Throws InputError when that has no solution.
 NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint& point,
-                                       const QpSolverFactory& factory);
+                                       const QpSolverFactory& factory, const StepObserver& observer = {});
 
 }  // namespace mpm

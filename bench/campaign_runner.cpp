@@ -55,6 +55,15 @@ std::vector<std::int64_t> all_of(std::int64_t count) {
   return indices;
 }
 
+/// The basis case; with Ipopt it takes as long as an experiment, so that a stop must not wait for it.
+BasisCase stoppable_basis_case(const Study& study, const QpSolverFactory& factory, const StopRequest& stop,
+                               std::int64_t done, std::int64_t count) {
+  return run_basis_case(study, factory, [&](const Mpc&) {
+    if (stop && stop())
+      throw Interrupted(done, count);
+  });
+}
+
 /// Runs what no shard has yet, and brings everything into order. Without shards, outcomes wait in memory;
 /// with shards, on the disk, so that a campaign without kept loops needs no more memory the longer it is.
 OutcomeCollection run_experiments(ExecutionPlan plan, bool threads, std::int64_t count, ShardStore* shards,
@@ -103,7 +112,9 @@ Campaign run_campaign(Study study, const CampaignOptions& options) {
 
   Campaign campaign;
   campaign.study = std::move(study);
-  campaign.basis = run_basis_case(campaign.study, factory);
+  const std::int64_t done =
+      shards ? count - static_cast<std::int64_t>(shards->missing().size()) : std::int64_t{0};
+  campaign.basis = stoppable_basis_case(campaign.study, factory, options.stop, done, count);
   require_health(campaign.basis, options);
   const ExecutionPlan plan{campaign.study, campaign.basis, solver, options.store, {},
                            options.jobs,   options.stop};

@@ -29,7 +29,8 @@ struct CampaignOptions {
   StorePolicy store = StorePolicy::flagged;
   bool allow_unhealthy_basis = false;  ///< run although the basis case fails its self-check
   std::optional<ShardOptions> shards;  ///< where finished experiments are kept; in memory only without
-  StopRequest stop;                    ///< asked before each experiment; may be empty
+  /// Asked at each step of the basis case, and before each experiment; may be empty.
+  StopRequest stop;
   /// Called after each experiment that is done, in the order of completion; may be empty.
   std::function<void(const ExperimentRecord&)> on_done;
   /// Called once before the first experiment, with the number of those that an earlier run has left in

@@ -28,6 +28,7 @@ class CertifiedSolver final : public QpSolver {
 
  private:
   void do_solve(const QpData& data, QpResult& result) override;
+  void certify(const QpData&, QpResult&) override {}  // each of the two solvers has done it
   void do_reset() override;
 
   std::shared_ptr<const QpStructure> shared_structure_;

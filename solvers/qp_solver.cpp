@@ -50,11 +50,15 @@ QpSolver::QpSolver(std::shared_ptr<const QpStructure> structure) : structure_(st
 const QpResult& QpSolver::solve(const QpData& data) {
   data.validate(*structure_);
   do_solve(data, result_);
-  result_.objective = objective(*structure_, data, result_);
-  result_.kkt_residual = result_.status == QpStatus::solved
-                             ? kkt_residual(*structure_, data, result_, *workspace_)
-                             : std::numeric_limits<double>::infinity();
+  certify(data, result_);
   return result_;
+}
+
+void QpSolver::certify(const QpData& data, QpResult& result) {
+  result.objective = objective(*structure_, data, result);
+  result.kkt_residual = result.status == QpStatus::solved
+                            ? kkt_residual(*structure_, data, result, *workspace_)
+                            : std::numeric_limits<double>::infinity();
 }
 
 const QpResult& QpSolver::solve_from(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& x) {

@@ -40,6 +40,9 @@ class QpSolver {
  private:
   /// Fills status, x, slack, multipliers and iterations of `result`, which holds the previous answer.
   virtual void do_solve(const QpData& data, QpResult& result) = 0;
+  /// Fills objective and KKT residual of `result` from its x, slack and multipliers. A back end that passes
+  /// on the answers of other solvers, which have filled these, leaves them as they are.
+  virtual void certify(const QpData& data, QpResult& result);
   virtual void do_reset() = 0;
 
   std::shared_ptr<const QpStructure> structure_;

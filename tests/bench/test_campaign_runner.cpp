@@ -133,6 +133,30 @@ TEST_CASE("campaign: stopped and resumed until it is done, it is the campaign of
   }
 }
 
+TEST_CASE("campaign: a stop does not wait for the basis case, and keeps what is in shards") {
+  const TemporaryFolder folder;
+  const Study study = find_study("wood-berry");
+  CampaignOptions options = fourteen();
+  options.shards = ShardOptions{folder / "s", Leftovers::resume};
+  int asked = 0;
+  bool started = false;
+  const auto stop_early = [&] {
+    CampaignOptions stopped = options;
+    asked = 0;
+    stopped.stop = [&] { return ++asked == 5; };  // once only: nobody after the basis case would see it
+    stopped.on_start = [&](std::int64_t) { started = true; };
+    return run_campaign(study, stopped);
+  };
+  CHECK_THROWS_WITH(stop_early(), Contains("0 of 14 experiments"));
+  CHECK(asked == 5);
+  CHECK_FALSE(std::filesystem::exists(folder / "s"));
+
+  CHECK_THROWS_AS(interrupted(study, options, 3), Interrupted);
+  CHECK_THROWS_WITH(stop_early(), !Contains("stopped when 0 of") && Contains("of 14 experiments"));
+  CHECK_FALSE(started);
+  CHECK(run_campaign(study, options).records.size() == 14);
+}
+
 TEST_CASE("campaign: shards of another seed, solver, audit, store policy or study are refused") {
   const TemporaryFolder folder;
   const Study study = find_study("wood-berry");

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <catch2/catch.hpp>
 
 #include "solvers/certified_solver.hpp"
@@ -38,6 +40,12 @@ TEST_CASE("certified answers are the active-set method's, bit for bit, and the o
     const QpResult result = CertifiedSolver(qp.structure).solve(qp.data);
     CHECK(result.from_reference == !is_certified(alone));
     CHECK(to_string(result.status) == to_string(qp.expected));
+    KktWorkspace workspace(*qp.structure);
+    CHECK(result.objective == objective(*qp.structure, qp.data, result));
+    if (result.status == QpStatus::solved)
+      CHECK(result.kkt_residual == kkt_residual(*qp.structure, qp.data, result, workspace));
+    else
+      CHECK(std::isinf(result.kkt_residual));
     if (result.from_reference)
       ++references;
     else
