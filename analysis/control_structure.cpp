@@ -9,12 +9,20 @@ namespace {
 /// Targets and MVs are exact to the tolerance of the solver; a limit is met well above that.
 constexpr double kLimitTolerance = 1e-5;
 
-bool at_or_beyond(double value, double lower, double upper) {
-  const auto tolerance = [](double limit) { return kLimitTolerance * std::max(1.0, std::abs(limit)); };
-  return value <= lower + tolerance(lower) || value >= upper - tolerance(upper);
+double tolerance_of(double limit) {
+  return kLimitTolerance * std::max(1.0, std::abs(limit));
 }
 
-/// What decides whether a CV is active, ny x N.
+/// False for a limit that is none (infinite).
+bool at_or_below(double value, double lower) {
+  return std::isfinite(lower) && value <= lower + tolerance_of(lower);
+}
+
+bool at_or_above(double value, double upper) {
+  return std::isfinite(upper) && value >= upper - tolerance_of(upper);
+}
+
+/// What decides whether a CV in a range is active, ny x N.
 Eigen::MatrixXd deciding_outputs(const Study& study, const Trajectory& loop,
                                  const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
   if (!study.controller.has_targets())
@@ -38,12 +46,14 @@ std::vector<ControlStructure> control_structures(const Study& study, const Traje
       const double lower = options.cv_soft.lower(cv), upper = options.cv_soft.upper(cv);
       if (options.has_setpoint(cv))
         structure.active.push_back({cv, ReferenceKind::setpoint});
-      else if (at_or_beyond(y(cv, k), lower, upper))
-        structure.active.push_back({cv, y(cv, k) - lower > upper - y(cv, k) ? ReferenceKind::upper_limit
-                                                                            : ReferenceKind::lower_limit});
+      else if (at_or_above(y(cv, k), upper))
+        structure.active.push_back({cv, ReferenceKind::upper_limit});
+      else if (at_or_below(y(cv, k), lower))
+        structure.active.push_back({cv, ReferenceKind::lower_limit});
     }
     for (Eigen::Index mv = 0; mv < u.rows(); ++mv)
-      if (at_or_beyond(u(mv, k), options.mv_hard.lower(mv), options.mv_hard.upper(mv)))
+      if (at_or_below(u(mv, k), options.mv_hard.lower(mv)) ||
+          at_or_above(u(mv, k), options.mv_hard.upper(mv)))
         structure.fixed_mvs.push_back(mv);
   }
   return structures;

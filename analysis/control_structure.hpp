@@ -19,15 +19,17 @@ struct ControlStructure {
   auto operator<=>(const ControlStructure&) const = default;
 };
 
-/// The structure at each sample of a loop, from its data alone:
+/// The structure at each sample of a loop, from its data alone. A CV with a setpoint is always active; a CV
+/// in a range is active where a deciding output is at or over a limit, and an MV is fixed where a deciding
+/// input is at a limit:
 ///
-/// | controller      | an MV is fixed when        | a CV in a range is active when |
-/// |-----------------|----------------------------|-----------------------------------------------------------|
-/// | with targets    | its target is at a limit   | K u_target + K_d d + (y - y_sim) is at or over a limit:
-/// the | |                 |                            | steady state that the optimizer (6.19) aims at | |
-/// without targets | it is at a limit           | y is over a limit (3.3.5)                                 |
+/// | controller      | deciding inputs | deciding outputs                                  |
+/// |-----------------|-----------------|---------------------------------------------------|
+/// | with targets    | u_target        | K u_target + K_d d + (y - y_sim), which (6.19)    |
+/// |                 |                 | aims at; K, K_d: static gains of MVs and MDs      |
+/// | without targets | u               | y (3.3.5)                                         |
 ///
-/// A CV with a setpoint is always active. `y_sim` (ny x N) is that of the loop.
+/// `y_sim` (ny x N) is that of the loop.
 std::vector<ControlStructure> control_structures(const Study& study, const Trajectory& loop,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& y_sim);
 

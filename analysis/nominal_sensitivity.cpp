@@ -141,9 +141,11 @@ Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& poin
     return reference_response(study, point, reference, step, factory, observer);
   };
   const double size = study.sensitivity.step_size;
-  if (reference.kind == ReferenceKind::setpoint)  // the same either way
+  if (reference.kind == ReferenceKind::setpoint)
     return response(size);
   const double into_range = reference.kind == ReferenceKind::upper_limit ? -size : size;
+  if (!study.controller.has_targets())  // nothing draws a CV after a limit that leaves it
+    return response(into_range);
   switch (study.sensitivity.step_direction) {
     case StepDirection::into_range:
       return response(into_range);
