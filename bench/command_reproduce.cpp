@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/scenario_quantities.hpp"
 #include "bench/files.hpp"
 #include "bench/version.hpp"
 #include "results/atomic_file.hpp"
@@ -16,7 +17,7 @@ ExitCode reproduce_tables(const ReproduceCommand& command) {
     require_output_folder(command.output, "page");
   const QpSolverFactory factory = qp_solver_factory(command.solver);
   std::vector<ReproducedTable> tables;
-  for (const ThesisTable& table : find_tables(command.tables))
+  for (const ThesisTable& table : find_tables(command.tables, ScenarioQuantities::names()))
     tables.push_back(reproduce(table, factory));
   if (!command.output.empty()) {
     const std::string page = reproduction_html(tables, mpmbench_version());

@@ -16,8 +16,8 @@ std::string number_text(double value) {
 }
 
 std::string cell_text(const ReproducedCell& cell) {
-  return fmt::format("{} ({}){}", number_text(cell.ours),
-                     cell.cell.thesis ? fmt::format("{:g}", *cell.cell.thesis) : "",
+  return fmt::format("{}{}{}", number_text(cell.ours),
+                     cell.cell.thesis ? fmt::format(" ({:g})", *cell.cell.thesis) : "",
                      cell.agrees() == false ? " x" : "  ");
 }
 

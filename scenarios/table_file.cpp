@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -51,37 +56,56 @@ std::vector<Column> read_columns(const TomlTable& document, const Study& study) 
   return columns;
 }
 
-std::vector<std::string> read_texts(const TomlTable& table, const char* key) {
-  const toml::node& node = table.require(key, "a list of texts");
-  std::vector<std::string> texts;
-  if (const toml::array* const list = node.as_array())
-    for (const toml::node& text : *list)
-      if (text.is_string())
-        texts.push_back(**text.as_string());
-  if (texts.empty() || texts.size() != node.as_array()->size())
-    table.refuse(key, describe(node), "a list of texts");
-  return texts;
+/// Keys that mean something for this kind of rule; others would be read over in silence.
+void refuse_idle_keys(const TomlTable& table, RuleKind kind) {
+  const bool banded = kind == RuleKind::outside || kind == RuleKind::any_within;
+  for (const char* key : {"threshold", "band", "yes", "no"}) {
+    const bool idle = key == std::string_view("threshold") ? kind != RuleKind::any_above
+                      : key == std::string_view("band")    ? !banded
+                                                           : kind == RuleKind::rank;
+    if (idle && table.has(key))
+      table.refuse(key, "a key that this kind of rule does not use", "none");
+  }
 }
 
-VerdictRule read_rule(const TomlTable& table) {
+VerdictRule read_rule(const TomlTable& table, const std::vector<std::string>& quantities) {
   VerdictRule rule;
-  rule.quantities = read_texts(table, "quantities");
+  for (const std::size_t quantity : read_some_of(table, "quantities", quantities))
+    rule.quantities.push_back(quantities[quantity]);
   rule.kind = read_choice_or<RuleKind>(table, "kind",
                                        {{"outside", RuleKind::outside},
                                         {"any-above", RuleKind::any_above},
                                         {"any-within", RuleKind::any_within},
                                         {"rank", RuleKind::rank}},
                                        RuleKind::outside);
+  refuse_idle_keys(table, rule.kind);
   if (rule.kind == RuleKind::any_above)
     rule.lower = read_number(table, "threshold", NumberRule::finite());
-  if (rule.kind == RuleKind::outside || rule.kind == RuleKind::any_within)
-    std::tie(rule.lower, rule.upper) = read_pair(table, "band", "[low, high]");
+  if (rule.kind == RuleKind::outside || rule.kind == RuleKind::any_within) {
+    table.require("band", "[low, high] with low < high");
+    std::tie(rule.lower, rule.upper) = read_band_or(table, "band", NumberRule::finite(), {});
+  }
   if (rule.kind != RuleKind::rank) {
     rule.yes = read_text(table, "yes");
     rule.no = read_text(table, "no");
   }
   rule.source = read_text(table, "source");
   return rule;
+}
+
+std::vector<VerdictRule> read_rules(const TomlTable& document, const std::vector<std::string>& quantities) {
+  std::vector<VerdictRule> rules;
+  std::set<std::string> ruled;
+  if (!document.has("rule"))
+    return rules;
+  for (const TomlTable& table :
+       document.tables("rule", {"quantities", "kind", "threshold", "band", "yes", "no", "source"})) {
+    rules.push_back(read_rule(table, quantities));
+    for (const std::string& quantity : rules.back().quantities)
+      if (!ruled.insert(quantity).second)
+        table.refuse("quantities", in_quotes(quantity) + ", which has a rule already", "one rule a quantity");
+  }
+  return rules;
 }
 
 /// The numbers of a row; "" stands for a cell that the thesis leaves empty.
@@ -92,9 +116,10 @@ std::vector<std::optional<double>> read_values(const TomlTable& table, std::size
     table.refuse("values", describe(node), fmt::format("a list of {} numbers", count));
   std::vector<std::optional<double>> values;
   for (const toml::node& value : *list) {
-    const std::optional<double> number = value.value<double>();
-    if (!number && !(value.is_string() && (**value.as_string()).empty()))
-      table.refuse("values", describe(value), "numbers, or \"\" for an empty cell");
+    const std::optional<double> number = value.is_number() ? value.value<double>() : std::nullopt;
+    const bool empty = value.is_string() && (**value.as_string()).empty();
+    if (!empty && !(number && std::isfinite(*number)))
+      table.refuse("values", describe(value), "finite numbers, or \"\" for an empty cell");
     values.push_back(number);
   }
   return values;
@@ -108,29 +133,58 @@ std::string joined_quantity(const std::string& of_row, const std::string& of_col
   return of_column.empty() ? of_row : of_column;
 }
 
+/// Which cell it is that all its row and column say.
+TableCell read_cell(const TomlTable& table, const Column& column, const Study& study,
+                    const std::vector<std::string>& quantities) {
+  const TableCell cell{column.cv.empty() ? read_text_or(table, "cv", "") : column.cv,
+                       joined_quantity(read_text_or(table, "quantity", ""), column.quantity), std::nullopt};
+  const auto check = [&](const char* key, const std::string& name, const std::vector<std::string>& known) {
+    if (name.empty())
+      table.refuse("", fmt::format("no {} for column '{}'", key, column.head),
+                   "one in the row or in the column");
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      table.refuse(table.has(key) ? key : "",
+                   fmt::format("{} {} in column '{}'", key, with_nearest(name, known), column.head),
+                   fmt::format("{}", fmt::join(known, ", ")));
+  };
+  check("cv", cell.cv, cv_names(study));
+  check("quantity", cell.quantity, quantities);
+  return cell;
+}
+
+/// The study of this row. `variant` names one of those that the file defines.
+std::string read_variant_name(const TomlTable& table, const std::map<std::string, Study>& studies) {
+  if (!table.has("variant"))
+    return "";
+  std::vector<std::string> names;
+  for (const auto& [name, study] : studies)
+    if (!name.empty())
+      names.push_back(name);
+  if (names.empty())
+    table.refuse("variant", "a variant", "none: the table defines no [[variant]]");
+  return names[read_one_of(table, "variant", names)];
+}
+
+std::string read_scenario_name(const TomlTable& table, const Study& study) {
+  if (!table.has("scenario"))
+    return "";
+  if (!study.names_scenarios())
+    table.refuse("scenario", "a scenario",
+                 fmt::format("none: the study '{}' names no scenarios", study.name));
+  return scenario_names(study)[read_one_of(table, "scenario", scenario_names(study))];
+}
+
 TableRow read_row(const TomlTable& table, const std::vector<Column>& columns,
-                  const std::map<std::string, Study>& studies) {
+                  const std::map<std::string, Study>& studies, const std::vector<std::string>& quantities) {
   TableRow row;
   row.label = read_text(table, "label");
-  std::vector<std::string> variants;
-  for (const auto& [name, study] : studies)
-    variants.push_back(name);
-  if (table.has("variant"))
-    row.variant = variants[read_one_of(table, "variant", variants)];
+  row.variant = read_variant_name(table, studies);
   const Study& study = studies.at(row.variant);
-  if (table.has("scenario"))
-    row.scenario = scenario_names(study)[read_one_of(table, "scenario", scenario_names(study))];
-  const std::string cv = table.has("cv") ? cv_names(study)[read_one_of(table, "cv", cv_names(study))] : "";
-  const std::string quantity = read_text_or(table, "quantity", "");
+  row.scenario = read_scenario_name(table, study);
   const std::vector<std::optional<double>> values = read_values(table, columns.size());
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const TableCell cell{columns[i].cv.empty() ? cv : columns[i].cv,
-                         joined_quantity(quantity, columns[i].quantity), values[i]};
-    if (cell.cv.empty() || cell.quantity.empty())
-      table.refuse("",
-                   fmt::format("no {} for column '{}'", cell.cv.empty() ? "cv" : "quantity", columns[i].head),
-                   "one in the row or in the column");
-    row.cells.push_back(cell);
+    row.cells.push_back(read_cell(table, columns[i], study, quantities));
+    row.cells.back().thesis = values[i];
   }
   return row;
 }
@@ -151,13 +205,23 @@ std::map<std::string, Study> read_studies(const TomlTable& document, const TomlT
   return studies;
 }
 
-fs::path table_directory() {
-  return study_directory().parent_path() / "tables";
-}
-
-/// "table-3.10.toml" after "table-3.4.toml".
+/// Table 3.10 comes after table 3.4.
 std::pair<int, int> numbers_of(const ThesisTable& table) {
   return {table.chapter, std::stoi(table.number.substr(table.number.find('.') + 1))};
+}
+
+std::vector<ThesisTable> all_tables(const std::vector<std::string>& quantities, const fs::path& directory) {
+  std::vector<ThesisTable> all;
+  std::error_code error;
+  for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".toml")
+      all.push_back(load_table(entry->path(), quantities));
+  if (error)
+    throw InputError("folder of the tables", fmt::format("'{}' ({})", directory.string(), error.message()),
+                     "a folder that can be read, beside that of the studies (MPMBENCH_STUDIES)");
+  std::sort(all.begin(), all.end(),
+            [](const ThesisTable& a, const ThesisTable& b) { return numbers_of(a) < numbers_of(b); });
+  return all;
 }
 
 }  // namespace
@@ -169,7 +233,7 @@ const VerdictRule* ThesisTable::rule_for(const std::string& quantity) const {
   return nullptr;
 }
 
-ThesisTable load_table(const fs::path& path) {
+ThesisTable load_table(const fs::path& path, const std::vector<std::string>& quantities) {
   const std::string file_name = path.string();
   const toml::table toml = parse_toml(read_toml_file(path, "a table file"), file_name);
   const TomlTable document(toml, file_name, {"table", "variant", "column", "rule", "row"});
@@ -183,36 +247,34 @@ ThesisTable load_table(const fs::path& path) {
   const std::vector<Column> columns = read_columns(document, table.studies.at(""));
   for (const Column& column : columns)
     table.heads.push_back(column.head);
-  if (document.has("rule"))
-    for (const TomlTable& rule :
-         document.tables("rule", {"quantities", "kind", "threshold", "band", "yes", "no", "source"}))
-      table.rules.push_back(read_rule(rule));
+  table.rules = read_rules(document, quantities);
   for (const TomlTable& row :
        document.tables("row", {"label", "variant", "scenario", "cv", "quantity", "values"}))
-    table.rows.push_back(read_row(row, columns, table.studies));
+    table.rows.push_back(read_row(row, columns, table.studies, quantities));
   return table;
 }
 
-std::vector<ThesisTable> find_tables(const std::string& which) {
-  std::vector<ThesisTable> all;
-  for (const fs::directory_entry& entry : fs::directory_iterator(table_directory()))
-    if (entry.path().extension() == ".toml")
-      all.push_back(load_table(entry.path()));
-  std::sort(all.begin(), all.end(),
-            [](const ThesisTable& a, const ThesisTable& b) { return numbers_of(a) < numbers_of(b); });
+fs::path table_directory() {
+  return study_directory().parent_path() / "tables";
+}
+
+std::vector<ThesisTable> find_tables(const std::string& which, const std::vector<std::string>& quantities,
+                                     const fs::path& directory) {
   std::vector<ThesisTable> found;
-  std::vector<std::string> known{"all"};
-  for (const ThesisTable& table : all) {
+  std::vector<std::string> known{"all"}, numbers;
+  for (ThesisTable& table : all_tables(quantities, directory)) {
     const std::string chapter = fmt::format("chapter{}", table.chapter);
-    if (which == "all" || which == chapter || which == table.number)
-      found.push_back(table);
-    if (std::find(known.begin(), known.end(), chapter) == known.end())
+    if (known.back() != chapter)
       known.push_back(chapter);
+    if (!numbers.empty() && numbers.back() == table.number)
+      throw InputError(directory.string(), fmt::format("two files for table {}", table.number), "one");
+    numbers.push_back(table.number);
+    if (which == "all" || which == chapter || which == table.number)
+      found.push_back(std::move(table));
   }
-  for (const ThesisTable& table : all)
-    known.push_back(table.number);
+  known.insert(known.end(), numbers.begin(), numbers.end());
   if (found.empty())
-    throw InputError("tables", fmt::format("'{}'", which), fmt::format("{}", fmt::join(known, ", ")));
+    throw InputError("tables", with_nearest(which, known), fmt::format("{}", fmt::join(known, ", ")));
   return found;
 }
 

@@ -1,0 +1,207 @@
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <unistd.h>
+
+#include "plants/error.hpp"
+#include "scenarios/table_file.hpp"
+#include "tests/scenarios/study_texts.hpp"
+
+namespace mpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::line_of;
+using testing::replaced;
+
+const std::vector<std::string> kQuantities{"ivar", "ivar_diag", "sse"};
+
+/// Two studies, two columns (one of them with its own CV), three rules, three rows.
+const std::string kTable = R"([table]
+chapter = 4
+number = 5
+title = "A table"
+study = "chapter4-shell"
+
+[[variant]]
+name = "slow"
+set.controller.mv.u1.move_suppression = 10
+
+[[column]]
+head = "first"
+cv = "y1"
+
+[[column]]
+head = "second"
+
+[[rule]]
+quantities = ["ivar"]
+band = [0.8, 1.2]
+yes = "flagged"
+no = "not flagged"
+source = "somewhere"
+
+[[row]]
+label = "Ivar"
+scenario = "Scen1"
+cv = "y3"
+quantity = "ivar"
+values = [4.54, 1]
+
+[[row]]
+label = "slow"
+variant = "slow"
+cv = "y2"
+quantity = "sse"
+values = [1.5, ""]
+)";
+
+/// A folder of tables that is gone afterwards.
+class TableFolder {
+ public:
+  TableFolder() : folder_(fs::temp_directory_path() / ("mpmbench-tables-" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~TableFolder() { fs::remove_all(folder_); }
+  TableFolder(const TableFolder&) = delete;
+  TableFolder& operator=(const TableFolder&) = delete;
+
+  fs::path put(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  const fs::path& path() const { return folder_; }
+
+ private:
+  fs::path folder_;
+};
+
+/// The message without the folder; "accepted" without one.
+template <class Read>
+std::string message_of(const fs::path& folder, Read read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    std::string text = error.what();
+    if (text.rfind(folder.string() + "/", 0) == 0)
+      text.erase(0, folder.string().size() + 1);
+    return text;
+  }
+  return "accepted";
+}
+
+/// How the table is refused with the first `from` replaced by `to`.
+std::string refusal(const std::string& from, const std::string& to) {
+  const TableFolder folder;
+  const fs::path file = folder.put("t.toml", replaced(kTable, from, to));
+  return message_of(folder.path(), [&] { load_table(file, kQuantities); });
+}
+
+std::string number(int chapter, int table) {
+  return replaced(replaced(kTable, "chapter = 4", "chapter = " + std::to_string(chapter)), "number = 5",
+                  "number = " + std::to_string(table));
+}
+
+}  // namespace
+
+TEST_CASE("a cell has what its row and its column say", "[table_file]") {
+  const TableFolder folder;
+  const ThesisTable table = load_table(folder.put("t.toml", kTable), kQuantities);
+  CHECK(table.number == "4.5");
+  CHECK(table.chapter == 4);
+  CHECK(table.title == "A table");
+  CHECK(table.note.empty());
+  CHECK(table.heads == std::vector<std::string>{"first", "second"});
+  REQUIRE(table.studies.size() == 2);
+  CHECK(table.studies.at("").controller.move_suppression(0) !=
+        table.studies.at("slow").controller.move_suppression(0));
+  REQUIRE(table.rows.size() == 2);
+  CHECK(table.rows[0].scenario == "Scen1");
+  CHECK(table.rows[0].variant.empty());
+  CHECK(table.rows[0].cells[0].cv == "y1");  // of the column, although the row has one
+  CHECK(table.rows[0].cells[1].cv == "y3");
+  CHECK(table.rows[0].cells[1].quantity == "ivar");
+  CHECK(table.rows[0].cells[0].thesis == 4.54);
+  CHECK(table.rows[0].cells[1].thesis == 1.0);
+  CHECK(table.rows[1].variant == "slow");
+  CHECK(table.rows[1].scenario.empty());
+  CHECK_FALSE(table.rows[1].cells[1].thesis);
+  REQUIRE(table.rule_for("ivar") != nullptr);
+  CHECK(table.rule_for("ivar")->lower == 0.8);
+  CHECK(table.rule_for("sse") == nullptr);
+}
+
+TEST_CASE("a * in the quantity of a row stands for that of the column", "[table_file]") {
+  const TableFolder folder;
+  std::string text = replaced(kTable, "cv = \"y1\"\n", "cv = \"y1\"\nquantity = \"_diag\"\n");
+  text = replaced(text, "head = \"second\"\n", "head = \"second\"\nquantity = \"ivar\"\n");
+  text =
+      replaced(text, "quantity = \"ivar\"\nvalues = [4.54, 1]", "quantity = \"ivar*\"\nvalues = [4.54, 1]");
+  const auto message =
+      message_of(folder.path(), [&] { load_table(folder.put("t.toml", text), kQuantities); });
+  CHECK_THAT(message, Catch::Contains("row[0].quantity: found quantity 'ivarivar'"));
+}
+
+TEST_CASE("what a table file cannot mean is refused by file, line and key", "[table_file]") {
+  CHECK_THAT(refusal("cv = \"y1\"", "cv = \"y9\""), Catch::StartsWith("t.toml:13: column[0].cv: found 'y9'"));
+  CHECK_THAT(refusal("cv = \"y3\"", "cv = \"y9\""), Catch::Contains("row[0].cv: found cv 'y9'"));
+  CHECK_THAT(refusal("cv = \"y3\"\n", ""), Catch::Contains("row[0]: found no cv for column 'second'"));
+  CHECK_THAT(refusal("quantity = \"ivar\"\n", ""), Catch::Contains("found no quantity for column 'first'"));
+  CHECK_THAT(refusal("quantity = \"ivar\"", "quantity = \"ivarr\""),
+             Catch::Contains("row[0].quantity: found quantity 'ivarr' (nearest: 'ivar')") &&
+                 Catch::Contains("allowed: ivar, ivar_diag, sse"));
+  CHECK_THAT(refusal("\"Scen1\"", "\"Scen99\""), Catch::Contains("row[0].scenario: found 'Scen99'"));
+  CHECK_THAT(refusal("variant = \"slow\"", "variant = \"slo\""),
+             Catch::Contains("row[1].variant: found 'slo' (nearest: 'slow'); allowed: slow"));
+  CHECK_THAT(refusal("[4.54, 1]", "[4.54]"), Catch::Contains("row[0].values"));
+  CHECK_THAT(refusal("[4.54, 1]", "[4.54, nan]"), Catch::Contains("row[0].values: found nan"));
+  CHECK_THAT(refusal("[4.54, 1]", "[4.54, \"-\"]"), Catch::Contains("\"\" for an empty cell"));
+  CHECK_THAT(refusal("[4.54, 1]", "[4.54, true]"), Catch::Contains("row[0].values: found true"));
+  CHECK_THAT(refusal("[0.8, 1.2]", "[1.2, 0.8]"), Catch::Contains("rule[0].band"));
+  CHECK_THAT(refusal("band = [0.8, 1.2]\n", ""), Catch::Contains("rule[0].band: found nothing"));
+  CHECK_THAT(refusal("[\"ivar\"]", "[\"ivr\"]"), Catch::Contains("rule[0].quantities"));
+  CHECK_THAT(refusal("band = [0.8, 1.2]", "kind = \"any-above\"\nband = [0.8, 1.2]"),
+             Catch::Contains("rule[0].band: found a key that this kind of rule does not use"));
+  CHECK_THAT(refusal("band = [0.8, 1.2]", "kind = \"rank\""),
+             Catch::Contains("rule[0].yes: found a key that this kind of rule does not use"));
+  CHECK_THAT(refusal("band = [0.8, 1.2]", "kind = \"above\""),
+             Catch::Contains("rule[0].kind: found 'above'"));
+  CHECK_THAT(
+      refusal("[[row]]", "[[rule]]\nquantities = [\"ivar\"]\nkind = \"rank\"\nsource = \"s\"\n\n[[row]]"),
+      Catch::Contains("rule[1].quantities: found 'ivar', which has a rule already"));
+  CHECK_THAT(refusal("[[column]]", "[[variant]]\nname = \"slow\"\nset.study.seed = 1\n\n[[column]]"),
+             Catch::Contains("variant[1].name: found 'slow'; allowed: each name once"));
+  CHECK_THAT(refusal("set.controller.mv.u1", "set.controller.mv.u9"), Catch::Contains("(slow)"));
+  CHECK_THAT(refusal("\"chapter4-shell\"", "\"chapter6\""), Catch::Contains("names no scenarios"));
+  CHECK_THAT(refusal("\"chapter4-shell\"", "\"nowhere\""), Catch::Contains("table.study"));
+  CHECK_THAT(refusal("chapter = 4", "chapter = 7"), Catch::Contains("table.chapter: found 7"));
+  CHECK_THAT(refusal("title", "titel"), Catch::Contains("nearest: 'title'"));
+}
+
+TEST_CASE("tables are found by chapter and number, in the order of the numbers", "[table_file]") {
+  const TableFolder folder;
+  folder.put("a.toml", number(4, 10));
+  folder.put("b.toml", number(4, 5));
+  folder.put("c.toml", number(3, 1));
+  folder.put("notes.txt", "no table");
+  const auto numbers = [&](const std::string& which) {
+    std::string text;
+    for (const ThesisTable& table : find_tables(which, kQuantities, folder.path()))
+      text += table.number + " ";
+    return text;
+  };
+  CHECK(numbers("all") == "3.1 4.5 4.10 ");
+  CHECK(numbers("chapter4") == "4.5 4.10 ");
+  CHECK(numbers("4.10") == "4.10 ");
+  CHECK_THAT(message_of(folder.path(), [&] { numbers("4.1"); }),
+             Catch::Contains("tables: found '4.1'") &&
+                 Catch::Contains("allowed: all, chapter3, chapter4, 3.1, 4.5, 4.10"));
+  folder.put("d.toml", number(4, 5));
+  CHECK_THAT(message_of(folder.path(), [&] { numbers("all"); }), Catch::Contains("two files for table 4.5"));
+  CHECK_THROWS_WITH(find_tables("all", kQuantities, folder.path() / "none"),
+                    Catch::Contains("folder of the tables"));
+}
+
+}  // namespace mpm
