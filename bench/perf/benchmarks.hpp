@@ -16,6 +16,7 @@ void register_qp_benchmarks(const std::vector<QpSequence>& sequences);
 
 /// Registers the benchmarks of what a study is made of,
 ///     loop/<loop>/<back end>     one closed loop
+///     loop/setpoint/active-set   one closed loop of chapter4-shell: setpoint MPC, 900 samples
 ///     sensitivity/<back end>     T0 (appendix A3)
 ///     diagnosis                  the chain of one loop, nominal outputs included
 ///     study/<experiments>        basis case and the first experiments, one process, back end active-set

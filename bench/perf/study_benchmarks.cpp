@@ -8,6 +8,7 @@
 #include "bench/campaign_runner.hpp"
 #include "bench/perf/benchmarks.hpp"
 #include "plants/error.hpp"
+#include "scenarios/study_library.hpp"
 
 namespace mpm {
 namespace {
@@ -40,6 +41,20 @@ void add_loops(const Study& study) {
       if (std::string_view(back_end) == "ipopt")
         entry->Iterations(1);
     }
+}
+
+/// Setpoint MPC: 900 samples of a scenario with a mismatch.
+void add_setpoint_loop() {
+  const auto run = [study = find_study("chapter4-shell"),
+                    factory = qp_solver_factory("active-set")](benchmark::State& state) {
+    const ExperimentDraw draw = draw_experiment(study, 1);
+    Trajectory trajectory;
+    for ([[maybe_unused]] const auto pass : state)
+      trajectory = simulate_experiment(study, draw, factory);
+    state.counters["samples"] = static_cast<double>(trajectory.samples_done);
+    state.counters["kkt"] = trajectory.solver.largest_kkt_residual;
+  };
+  benchmark::RegisterBenchmark("loop/setpoint/active-set", run)->Unit(benchmark::kMillisecond);
 }
 
 void add_sensitivity(const Study& study) {
@@ -97,6 +112,7 @@ void register_study_benchmarks(const Study& study, std::int64_t experiments) {
     throw InputError("experiments", fmt::to_string(experiments),
                      fmt::format("1 to {}", study.experiment_count()));
   add_loops(study);
+  add_setpoint_loop();
   add_sensitivity(study);
   add_diagnosis(study);
   add_study(study, experiments);
