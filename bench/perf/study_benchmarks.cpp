@@ -8,6 +8,7 @@
 #include "bench/campaign_runner.hpp"
 #include "bench/perf/benchmarks.hpp"
 #include "plants/error.hpp"
+#include "scenarios/study_library.hpp"
 
 namespace mpm {
 namespace {
@@ -40,6 +41,22 @@ void add_loops(const Study& study) {
       if (std::string_view(back_end) == "ipopt")
         entry->Iterations(1);
     }
+}
+
+/// The basis loop of the quadruple tank on CVODE and on its linear model: the difference is what CVODE takes.
+void add_tank_loops() {
+  for (const bool nonlinear : {true, false}) {
+    const auto run = [nonlinear](benchmark::State& state) {
+      Study study = find_study("chapter5-tank");
+      if (!nonlinear)
+        study.nonlinear.reset();
+      const QpSolverFactory factory = qp_solver_factory("active-set");
+      for ([[maybe_unused]] const auto pass : state)
+        benchmark::DoNotOptimize(simulate_experiment(study, basis_draw(), factory));
+    };
+    benchmark::RegisterBenchmark(nonlinear ? "tank/nonlinear" : "tank/linear", run)
+        ->Unit(benchmark::kMillisecond);
+  }
 }
 
 void add_sensitivity(const Study& study) {
@@ -97,6 +114,7 @@ void register_study_benchmarks(const Study& study, std::int64_t experiments) {
     throw InputError("experiments", fmt::to_string(experiments),
                      fmt::format("1 to {}", study.experiment_count()));
   add_loops(study);
+  add_tank_loops();
   add_sensitivity(study);
   add_diagnosis(study);
   add_study(study, experiments);
