@@ -57,6 +57,22 @@ void add_setpoint_loop() {
   benchmark::RegisterBenchmark("loop/setpoint/active-set", run)->Unit(benchmark::kMillisecond);
 }
 
+/// The basis loop of the quadruple tank on CVODE and on its linear model: the difference is what CVODE takes.
+void add_tank_loops() {
+  for (const bool nonlinear : {true, false}) {
+    const auto run = [nonlinear](benchmark::State& state) {
+      Study study = find_study("chapter5-tank");
+      if (!nonlinear)
+        study.nonlinear.reset();
+      const QpSolverFactory factory = qp_solver_factory("active-set");
+      for ([[maybe_unused]] const auto pass : state)
+        benchmark::DoNotOptimize(simulate_experiment(study, basis_draw(), factory));
+    };
+    benchmark::RegisterBenchmark(nonlinear ? "tank/nonlinear" : "tank/linear", run)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
 void add_sensitivity(const Study& study) {
   for (const char* back_end : {"active-set", "ipopt"}) {
     const auto run = [&study, factory = qp_solver_factory(back_end)](benchmark::State& state) {
@@ -113,6 +129,7 @@ void register_study_benchmarks(const Study& study, std::int64_t experiments) {
                      fmt::format("1 to {}", study.experiment_count()));
   add_loops(study);
   add_setpoint_loop();
+  add_tank_loops();
   add_sensitivity(study);
   add_diagnosis(study);
   add_study(study, experiments);

@@ -49,6 +49,18 @@ TEST_CASE("campaign: one, two and three threads and processes give the same reco
   }
 }
 
+TEST_CASE("campaign: loops on a nonlinear plant are the same in threads and processes") {
+  const Study study = find_study("chapter5-tank");
+  CampaignOptions options;
+  options.experiments = 6;
+  options.store = StorePolicy::all;
+  options.jobs = 1;
+  const Campaign serial = run_campaign(study, options);
+  options.jobs = 3;
+  options.parallel = GENERATE(Parallel::threads, Parallel::processes);
+  check_same(run_campaign(study, options), serial, 6);
+}
+
 TEST_CASE("campaign: a longer one goes on where a shorter one ended") {
   const Study study = find_study("wood-berry");
   CampaignOptions options = fourteen();

@@ -42,7 +42,9 @@ TEST_CASE("record bytes: everything of a named scenario") {
                   {0, 0, 0, DisturbanceModel::direct, {}, StepSequence{{{1, 2.0}, {3, 4.0}}}},
                   {2, 1, 1, DisturbanceModel::first_order, {}, WhiteNoise{0.25, 3}}},
                  true,
-                 {{0, 2}}};
+                 {{0, 2}},
+                 {{"cd1", 7.86}}};
+  record.draw.disturbances[2].inner_input = 7;
   record.diagnosis.cvs = {{true, ExperimentKind::ud, {}, 0.5}, {}};
   record.diagnosis.cvs[1].indicator.co_dkts = 0.75;
   const std::string bytes = to_bytes(record);
@@ -50,6 +52,11 @@ TEST_CASE("record bytes: everything of a named scenario") {
   CHECK(to_bytes(again) == bytes);
   CHECK(again.draw.named);
   CHECK(again.draw.affected_cvs == std::vector<Eigen::Index>{0, 2});
+  REQUIRE(again.draw.parameters.size() == 1);
+  CHECK(again.draw.parameters[0].name == "cd1");
+  CHECK(again.draw.parameters[0].value == 7.86);
+  CHECK(again.draw.disturbances[2].inner_input == 7);
+  CHECK_FALSE(again.draw.disturbances[1].inner_input.has_value());
   CHECK(again.draw.mismatches[0].input == 2);
   CHECK(again.draw.mismatches[0].value == 1.5);
   REQUIRE(again.draw.mismatches[1].channel.has_value());
