@@ -60,7 +60,10 @@ BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory) {
   if (basis.trajectory.status == ControlStatus::ok) {
     basis.nominal =
         NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);
-    basis.diagnosis = DiagnosisChain(study).diagnose(basis.trajectory.y, basis.nominal, basis.trajectory.y);
+    DiagnosisChain chain(study);
+    basis.diagnosis = chain.diagnose(basis.trajectory.y, basis.nominal, basis.trajectory.y);
+    if (study.names_scenarios())
+      basis.acf = chain.compare_each(basis.trajectory.y, basis.nominal);
   }
   check_health(study, basis);
   return basis;

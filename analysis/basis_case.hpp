@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/diagnosis.hpp"
 #include "analysis/nominal_sensitivity.hpp"
@@ -23,6 +24,8 @@ struct BasisCase {
   Trajectory trajectory;
   NominalOutputs nominal;
   Diagnosis diagnosis;
+  /// One a CV; empty unless the study names scenarios and the loop ran to its end.
+  std::vector<AcfComparison> acf = {};
   bool healthy = false;
   std::string explanation;  ///< one sentence for people, also when healthy
 };

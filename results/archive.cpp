@@ -24,6 +24,7 @@ Campaign read_groups(const std::filesystem::path& path) {
   read_s0_sensitivity(root, study, campaign.records, file);
   campaign.audit = read_audit(root, file);
   campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
+  read_basis_acf(root, study, campaign.basis, file);
   campaign.basis.sensitivity_fixed = read_nominal_fixed(root, study, file);
   return campaign;
 }

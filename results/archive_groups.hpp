@@ -44,6 +44,8 @@ void read_s0_sensitivity(const Hdf5Group& root, const Study& study, std::vector<
 void write_scenarios(Hdf5Group& root, const Campaign& campaign);
 void read_scenarios(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
                     const std::string& file);
+/// The autocorrelations of the basis case, which stand in /scenarios.
+void read_basis_acf(const Hdf5Group& root, const Study& study, BasisCase& basis, const std::string& file);
 
 /// /basis: the operating point and the run without mismatch and disturbance.
 void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis);

@@ -141,7 +141,7 @@ def check_scenarios(path, variables, attributes):
         assert list(file["kind"]) == [0, 1, 2, 3, 1] and list(file["true_cv"]) == [-1, -1, 1, -1, 1]
     with xarray.open_dataset(path, group=group) as scenarios:
         scenarios.load()
-        assert dict(scenarios.sizes) == {"experiment": 5, "cv": 2}, scenarios.sizes
+        assert dict(scenarios.sizes) == {"experiment": 5, "cv": 2, "lag": 16}, scenarios.sizes
         assert list(scenarios.name.values)[:2] == ["healthy", "channels"]
         assert scenarios.affected.values.tolist() == [[0, 0], [1, 1], [0, 2], [0, 0], [0, 1]]
         assert numpy.isnan(scenarios.tsse.values[3:]).all()

@@ -20,7 +20,7 @@ FOR_PEOPLE = {"/cv", "/mv", "/md", "/basis/cv", "/basis/mv", "/basis/md", "/basi
               "/basis/acf_y0_diag", "/nominal/cv", "/nominal/time", "/nominal_fixed/cv", "/nominal_fixed/time", "/trajectories/cv", "/trajectories/mv",
               "/trajectories/md", "/trajectories/sample", "/trajectories/time"}
 READ_OF_S0_SENSITIVITY = {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"}
-FOR_PEOPLE |= {"/scenarios/" + name for name in ("experiment", "cv", "name", "description", "affected", "tsse")}
+FOR_PEOPLE |= {"/scenarios/" + name for name in ("experiment", "cv", "name", "description", "affected", "tsse", "lag", "lag_time")}
 FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/basis/title"}
 
 

@@ -28,6 +28,8 @@ bool same_bits(const Matrix& a, const Matrix& b) {
 std::string basis_bytes(const BasisCase& basis) {
   ExperimentRecord record;
   record.diagnosis = basis.diagnosis;
+  for (const AcfComparison& acf : basis.acf)
+    record.diagnosis.cvs.push_back({false, ExperimentKind::none, {}, acf, 0.0});
   record.loop = {basis.trajectory, basis.nominal.y_sim};
   return to_bytes(record);
 }
