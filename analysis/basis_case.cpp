@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/box_jenkins_sensitivity.hpp"
 #include "analysis/nominal_estimator.hpp"
 #include "plants/error.hpp"
 
@@ -52,10 +53,14 @@ void require_active(const Study& study, const NominalSensitivity& sensitivity) {
 BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory) {
   BasisCase basis;
   basis.point = operating_point(study, factory);
-  basis.sensitivity = nominal_sensitivity(study, basis.point, factory);
+  const bool identified = study.sensitivity.form == SensitivityForm::box_jenkins;
+  const auto sensitivity = identified ? box_jenkins_sensitivity : nominal_sensitivity;
+  basis.sensitivity = sensitivity(study, basis.point, factory);
+  if (identified)
+    basis.sensitivity_direct = nominal_sensitivity(study, basis.point, factory);
   require_active(study, basis.sensitivity);
   if (!study.s0_perturbation.fixed_mvs.empty())
-    basis.sensitivity_fixed = nominal_sensitivity(study, with_fixed_mvs(study, basis.point), factory);
+    basis.sensitivity_fixed = sensitivity(study, with_fixed_mvs(study, basis.point), factory);
   basis.trajectory = simulate_experiment(study, basis_draw(), factory);
   if (basis.trajectory.status == ControlStatus::ok) {
     basis.nominal =

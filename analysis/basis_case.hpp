@@ -19,6 +19,8 @@ namespace mpm {
 struct BasisCase {
   OperatingPoint point;
   NominalSensitivity sensitivity;
+  /// The direct step responses beside an identified `sensitivity`; none unless the study wants it identified.
+  std::optional<NominalSensitivity> sensitivity_direct;
   /// T0 with the MVs of `study.s0_perturbation.fixed_mvs` held; none when the study names none.
   std::optional<NominalSensitivity> sensitivity_fixed;
   Trajectory trajectory;

@@ -33,6 +33,13 @@ void write_nominal_fixed(Hdf5Group& root, const Study& study,
 std::optional<NominalSensitivity> read_nominal_fixed(const Hdf5Group& root, const Study& study,
                                                      const std::string& file);
 
+/// /nominal_direct: the direct step responses beside an identified T0, and how far they are from it; no such
+/// group unless the study wants T0 identified.
+void write_nominal_direct(Hdf5Group& root, const Study& study, const BasisCase& basis);
+std::optional<NominalSensitivity> read_nominal_direct(const Hdf5Group& root, const Study& study,
+                                                      const NominalSensitivity& identified,
+                                                      const std::string& file);
+
 /// /s0_sensitivity: Ivar_diag with a modified S0; no such group when the study asks for none. What follows
 /// from the rest (fits, ratios) is not read back.
 void write_s0_sensitivity(Hdf5Group& root, const Campaign& campaign);

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "analysis/box_jenkins_sensitivity.hpp"
 #include "results/experiment_text.hpp"
 #include "results/scenario_text.hpp"
 #include "results/summary.hpp"
@@ -55,10 +56,22 @@ Json basis_json(const Study& study, const BasisCase& basis) {
   Json ivar = Json::object();
   for (Eigen::Index cv = 0; cv < basis.diagnosis.ivar.size(); ++cv)
     ivar[study.plant.cvs[static_cast<std::size_t>(cv)].name] = basis.diagnosis.ivar(cv);
+  Json differences = Json::object();
+  if (basis.sensitivity_direct) {
+    const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
+    for (Eigen::Index a = 0; a < largest.size(); ++a)
+      differences[study.plant
+                      .cvs[static_cast<std::size_t>(basis.sensitivity.active[static_cast<std::size_t>(a)].cv)]
+                      .name] = largest(a);
+  }
   Json acf = Json::object();
   for (std::size_t cv = 0; cv < basis.acf.size(); ++cv)
     acf[study.plant.cvs[cv].name] = numbers_json(basis.acf[cv], acf_columns());
-  return {{"healthy", basis.healthy}, {"explanation", basis.explanation}, {"ivar", ivar}, {"acf", acf}};
+  return {{"healthy", basis.healthy},
+          {"explanation", basis.explanation},
+          {"ivar", ivar},
+          {"acf", acf},
+          {"t0_difference", differences}};
 }
 
 Json kinds_json(const StudyAggregate& aggregate) {

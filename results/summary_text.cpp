@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/box_jenkins_sensitivity.hpp"
 #include "results/scenario_text.hpp"
 #include "results/summary.hpp"
 #include "results/summary_parts.hpp"
@@ -77,6 +78,16 @@ std::string audit_sentence(const SummaryParts& parts, const CampaignInfo& info) 
       audit.largest_move, audit.largest_target, audit.largest_objective, info.audit_seconds);
 }
 
+std::string identification_sentence(const Study& study, const BasisCase& basis) {
+  const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
+  std::string sentence = "Box-Jenkins models; largest difference from the direct step responses:";
+  for (Eigen::Index a = 0; a < largest.size(); ++a) {
+    const auto cv = static_cast<std::size_t>(basis.sensitivity.active[static_cast<std::size_t>(a)].cv);
+    sentence += fmt::format("{} {} {:.2g}", a == 0 ? "" : ",", study.plant.cvs[cv].name, largest(a));
+  }
+  return sentence;
+}
+
 void add_heading(Text& text, const Campaign& campaign, const SummaryParts& parts) {
   const StudyAggregate& aggregate = parts.aggregate;
   const Study& study = campaign.study;
@@ -102,6 +113,8 @@ void add_heading(Text& text, const Campaign& campaign, const SummaryParts& parts
                                 plural(static_cast<std::size_t>(std::max(info.jobs, 0)), "job")));
   if (info.solver == "auto")
     text.entry("audit", audit_sentence(parts, info));
+  if (campaign.basis.sensitivity_direct)
+    text.entry("T0", identification_sentence(study, campaign.basis));
   text.entry("self-check",
              fmt::format("{}: {}", campaign.basis.healthy ? "passed" : "FAILED", campaign.basis.explanation));
 }

@@ -256,9 +256,11 @@ Campaign scenario_campaign() {
   std::string text = small_study();
   text.erase(text.find("[experiments]"));
   Campaign campaign;
-  campaign.study = parse_study(text + kScenarios, "small");
+  campaign.study = parse_study(text + "[sensitivity]\nform = 'box-jenkins'\n" + kScenarios, "small");
   campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
   campaign.basis = basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}});
+  campaign.basis.sensitivity_direct = campaign.basis.sensitivity;
+  campaign.basis.sensitivity_direct->step_response[0](1, 2) += 0.5;
   for (int cv = 0; cv < 2; ++cv)
     campaign.basis.acf.push_back(acf(numbers, campaign.study.simulation.samples));
   for (std::int64_t index = 0; index < campaign.study.experiment_count(); ++index) {

@@ -52,6 +52,11 @@ void check_same(const BasisCase& a, const BasisCase& b) {
   REQUIRE(a.sensitivity.step_response.size() == b.sensitivity.step_response.size());
   for (std::size_t i = 0; i < a.sensitivity.step_response.size(); ++i)
     CHECK(same_bits(a.sensitivity.step_response[i], b.sensitivity.step_response[i]));
+  REQUIRE(a.sensitivity_direct.has_value() == b.sensitivity_direct.has_value());
+  if (a.sensitivity_direct) {
+    check_same_limits(a.sensitivity_direct->active, b.sensitivity_direct->active);
+    CHECK(same_bits(a.sensitivity_direct->step_response[0], b.sensitivity_direct->step_response[0]));
+  }
   REQUIRE(a.sensitivity_fixed.has_value() == b.sensitivity_fixed.has_value());
   if (a.sensitivity_fixed) {
     check_same_limits(a.sensitivity_fixed->active, b.sensitivity_fixed->active);
