@@ -28,7 +28,7 @@ Eigen::MatrixXd deciding_outputs(const Study& study, const Trajectory& loop,
 
 std::vector<ControlStructure> control_structures(const Study& study, const Trajectory& loop,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
-  const RangeMpcOptions& options = study.controller;
+  const MpcOptions& options = study.controller;
   const Eigen::MatrixXd y = deciding_outputs(study, loop, y_sim);
   const Eigen::MatrixXd& u = options.has_targets() ? loop.u_target : loop.u;
   std::vector<ControlStructure> structures(static_cast<std::size_t>(y.cols()));

@@ -8,7 +8,7 @@
 
 #include "plants/error.hpp"
 #include "plants/linear_plant.hpp"
-#include "solvers/range_mpc.hpp"
+#include "solvers/mpc.hpp"
 
 namespace mpm {
 namespace {
@@ -69,8 +69,8 @@ double& limit_of(Limits& soft, const ActiveReference& reference) {
 }
 
 /// The controller of A3 b and d: only the setpoints and the active limits are left.
-RangeMpcOptions relaxed_options(const Study& study, const OperatingPoint& point) {
-  RangeMpcOptions options = study.controller;
+MpcOptions relaxed_options(const Study& study, const OperatingPoint& point) {
+  MpcOptions options = study.controller;
   options.mv_hard = Limits::none(study.mv_count());
   for (const Eigen::Index mv : point.fixed_mvs)
     options.mv_hard.lower(mv) = options.mv_hard.upper(mv) = point.u(mv);
@@ -134,7 +134,7 @@ std::string_view to_string(ReferenceKind kind) {
 }
 
 OperatingPoint operating_point(const Study& study, const QpSolverFactory& factory) {
-  RangeMpc controller(study.plant.G, study.mv_count(), study.controller, factory);
+  Mpc controller(study.plant.G, study.mv_count(), study.controller, factory);
   controller.set_setpoints(study.simulation.initial_setpoint);
   const Eigen::VectorXd d = Eigen::VectorXd::Zero(study.md_count());
   OperatingPoint point;
@@ -182,8 +182,8 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
                                  const ActiveReference& reference,
                                  const Eigen::Ref<const Eigen::RowVectorXd>& moves,
                                  const QpSolverFactory& factory) {
-  const RangeMpcOptions options = relaxed_options(study, point);
-  RangeMpc controller(study.plant.G, study.mv_count(), options, factory);
+  const MpcOptions options = relaxed_options(study, point);
+  Mpc controller(study.plant.G, study.mv_count(), options, factory);
   const Eigen::VectorXd y_set = setpoints_at_rest(study, point);
   controller.set_setpoints(y_set);
   const Eigen::VectorXd d = Eigen::VectorXd::Zero(study.md_count());

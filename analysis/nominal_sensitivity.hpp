@@ -35,7 +35,7 @@ struct OperatingPoint {
   std::vector<Eigen::Index> fixed_mvs;  ///< MVs at a hard limit: not available for control
 };
 
-/// Where the loops of the study start (RangeMpc::nominal_target): the economic optimum at zero disturbances,
+/// Where the loops of the study start (Mpc::nominal_target): the economic optimum at zero disturbances,
 /// or the operating point of the model when the MVs have no targets. Active are the CVs with a setpoint, and
 /// with `study.sensitivity.active_cvs` those, at the limit they are nearest to; without that list the CVs
 /// that are at a limit. Fixed are the MVs at a hard limit and those of `study.sensitivity.fixed_mvs`. Throws

@@ -21,8 +21,7 @@ ExperimentOutcome ExperimentWork::run(std::int64_t index) {
   ExperimentOutcome outcome;
   try {
     AuditSampler sampler(study_.seed, index, plan_.audit_share);
-    outcome.record =
-        runner_.run(index, store_, [&](const RangeMpc& controller) { sampler.observe(controller); });
+    outcome.record = runner_.run(index, store_, [&](const Mpc& controller) { sampler.observe(controller); });
     outcome.samples = sampler.take();
   } catch (const std::exception& error) {
     outcome = {};

@@ -44,7 +44,7 @@ AuditSampler::AuditSampler(std::uint64_t seed, std::int64_t experiment, double s
       share_(share),
       experiment_(experiment) {}
 
-void AuditSampler::observe(const RangeMpc& controller) {
+void AuditSampler::observe(const Mpc& controller) {
   const std::int64_t step = step_++;
   if (!(stream_.uniform() < share_))
     return;
@@ -58,7 +58,7 @@ void AuditSampler::observe(const RangeMpc& controller) {
 
 Auditor::Auditor(const Study& study, const QpSolverFactory& reference) {
   // The controller makes the structures; its own solvers are never asked.
-  const RangeMpc controller(study.plant.G, study.mv_count(), study.controller, reference);
+  const Mpc controller(study.plant.G, study.mv_count(), study.controller, reference);
   if (const std::optional<SolvedQp> targets = controller.target_problem())
     targets_ = reference(std::make_shared<QpStructure>(targets->structure));
   moves_ = reference(std::make_shared<QpStructure>(controller.move_problem().structure));

@@ -10,8 +10,8 @@
 
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study.hpp"
+#include "solvers/mpc.hpp"
 #include "solvers/qp_solver.hpp"
-#include "solvers/range_mpc.hpp"
 
 namespace mpm {
 
@@ -67,7 +67,7 @@ class AuditSampler {
   AuditSampler(std::uint64_t seed, std::int64_t experiment, double share);
 
   /// To be called after each step (a StepObserver).
-  void observe(const RangeMpc& controller);
+  void observe(const Mpc& controller);
 
   std::vector<AuditSample> take() { return std::move(samples_); }
 

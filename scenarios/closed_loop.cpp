@@ -64,7 +64,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   if (signals.within_plant.size() > 0)
     require_shape("disturbances within the plant", signals.within_plant, within, samples);
 
-  RangeMpc controller(study.plant.G, study.mv_count(), study.controller, factory);
+  Mpc controller(study.plant.G, study.mv_count(), study.controller, factory);
   const Eigen::VectorXd d_rest = Eigen::VectorXd::Zero(study.md_count());
   controller.set_setpoints(study.simulation.initial_setpoint);
   Eigen::VectorXd input = Eigen::VectorXd::Zero(plant.input_count());

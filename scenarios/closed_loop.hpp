@@ -9,7 +9,7 @@
 #include "plants/transfer_matrix.hpp"
 #include "scenarios/draw.hpp"
 #include "scenarios/study.hpp"
-#include "solvers/range_mpc.hpp"
+#include "solvers/mpc.hpp"
 
 namespace mpm {
 
@@ -51,10 +51,10 @@ struct LoopSignals {
 };
 
 /// Called after each step with the controller, whose two problems and answers it may look at.
-using StepObserver = std::function<void(const RangeMpc& controller)>;
+using StepObserver = std::function<void(const Mpc& controller)>;
 
 /// Runs the controller of the study on `plant`, whose inputs are the MVs and then the MDs of the study, from
-/// the steady state of the nominal model at zero disturbances that RangeMpc::nominal_target() gives for the
+/// the steady state of the nominal model at zero disturbances that Mpc::nominal_target() gives for the
 /// first setpoints.
 /// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant
 /// cannot be integrated (status `failed`). Throws InputError when a signal has not the shape that the study

@@ -10,7 +10,7 @@
 #include "plants/plant_model.hpp"
 #include "scenarios/distribution.hpp"
 #include "scenarios/fault.hpp"
-#include "solvers/range_mpc_options.hpp"
+#include "solvers/mpc_options.hpp"
 
 namespace mpm {
 
@@ -146,7 +146,7 @@ struct Study {
   std::string title;
   std::uint64_t seed = 0;
   PlantModel plant;  ///< the nominal model G0
-  RangeMpcOptions controller;
+  MpcOptions controller;
   SimulationOptions simulation;
   ExperimentCounts experiments;     ///< of random experiments; all 0 in a study of named scenarios
   std::vector<Scenario> scenarios;  ///< the experiments of a study of named scenarios, in their order

@@ -20,7 +20,7 @@ constexpr double kMaxWindow = 1000;  // in prediction horizons
 /// Section 6.3: at most as many soft limits are active as there are MVs, and a limit must be there to be
 /// active.
 std::vector<Eigen::Index> read_active_cvs(const TomlTable& table, const PlantModel& plant,
-                                          const RangeMpcOptions& controller) {
+                                          const MpcOptions& controller) {
   std::vector<Eigen::Index> active;
   if (!table.has("active_cvs")) {
     return active;
@@ -42,7 +42,7 @@ std::vector<Eigen::Index> read_active_cvs(const TomlTable& table, const PlantMod
 
 /// A step of a soft limit into the range must not cross the opposite one. CVs without a range (equal limits)
 /// have no opposite one.
-double narrowest_range(const RangeMpcOptions& controller, const std::vector<Eigen::Index>& active) {
+double narrowest_range(const MpcOptions& controller, const std::vector<Eigen::Index>& active) {
   double narrowest = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < controller.cv_soft.lower.size(); ++i) {
     const double width = controller.cv_soft.upper(i) - controller.cv_soft.lower(i);
@@ -57,7 +57,7 @@ double narrowest_range(const RangeMpcOptions& controller, const std::vector<Eige
 }  // namespace
 
 SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel& plant,
-                                    const RangeMpcOptions& controller) {
+                                    const MpcOptions& controller) {
   const TomlTable table = document.table_or_empty("sensitivity", study_file_keys("sensitivity"));
   SensitivityOptions options;
   options.form = read_choice_or<SensitivityForm>(

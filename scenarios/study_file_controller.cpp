@@ -17,7 +17,7 @@ void set_limits(Limits& limits, Eigen::Index i, const NumberPair& range) {
   limits.upper(i) = range.second;
 }
 
-void read_mv(const TomlTable& table, Eigen::Index i, RangeMpcOptions& options) {
+void read_mv(const TomlTable& table, Eigen::Index i, MpcOptions& options) {
   options.move_suppression(i) = read_number(table, "move_suppression", NumberRule::at_least(0));
   options.target_weight(i) = read_number_or(table, "target_weight", NumberRule::at_least(0), 0.0);
   // A cost decides where the target lies: an MV with a target has to say it.
@@ -39,7 +39,7 @@ void refuse_soft_outside_hard(const TomlTable& table, const NumberPair& soft, co
 }
 
 /// A CV has a setpoint, a soft range, or both.
-void read_cv(const TomlTable& table, Eigen::Index i, RangeMpcOptions& options) {
+void read_cv(const TomlTable& table, Eigen::Index i, MpcOptions& options) {
   const NumberPair hard = read_limits(table, "hard");
   set_limits(options.cv_hard, i, hard);
   const bool has_setpoint = table.has("setpoint_weight");
@@ -53,11 +53,11 @@ void read_cv(const TomlTable& table, Eigen::Index i, RangeMpcOptions& options) {
   set_limits(options.cv_soft, i, soft);
 }
 
-using ReadVariable = void (*)(const TomlTable&, Eigen::Index, RangeMpcOptions&);
+using ReadVariable = void (*)(const TomlTable&, Eigen::Index, MpcOptions&);
 
 /// One table for each of `names`, none more.
 void read_group(const TomlTable& controller, const std::string& group, const std::vector<std::string>& names,
-                ReadVariable read, RangeMpcOptions& options) {
+                ReadVariable read, MpcOptions& options) {
   const TomlTable tables = controller.table(group, names);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const TomlTable table = tables.table(names[i], study_file_keys("controller." + group + ".NAME"));
@@ -65,8 +65,8 @@ void read_group(const TomlTable& controller, const std::string& group, const std
   }
 }
 
-RangeMpcOptions sized_options(Eigen::Index cv_count, Eigen::Index mv_count) {
-  RangeMpcOptions options;
+MpcOptions sized_options(Eigen::Index cv_count, Eigen::Index mv_count) {
+  MpcOptions options;
   options.move_suppression.setZero(mv_count);
   options.target_weight.setZero(mv_count);
   options.setpoint_weight.setZero(cv_count);
@@ -94,12 +94,12 @@ void refuse_long_dead_time(const TomlTable& controller, const PlantModel& plant,
 
 }  // namespace
 
-RangeMpcOptions read_controller(const TomlTable& document, const PlantModel& plant) {
+MpcOptions read_controller(const TomlTable& document, const PlantModel& plant) {
   const TomlTable table = document.table("controller", study_file_keys("controller"));
   const auto cv_count = static_cast<Eigen::Index>(plant.cvs.size());
   const auto mv_count = static_cast<Eigen::Index>(plant.mvs.size());
 
-  RangeMpcOptions options = sized_options(cv_count, mv_count);
+  MpcOptions options = sized_options(cv_count, mv_count);
   options.sample_time = read_number(table, "sample_time", NumberRule::positive());
   refuse_long_dead_time(table, plant, options.sample_time);
   options.prediction_horizon = static_cast<int>(read_whole(table, "prediction_horizon", 1, kMaxHorizon));
@@ -121,7 +121,7 @@ RangeMpcOptions read_controller(const TomlTable& document, const PlantModel& pla
 }
 
 Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantModel& plant,
-                                       const RangeMpcOptions& controller) {
+                                       const MpcOptions& controller) {
   const std::vector<std::string> names = variable_names(plant.cvs);
   const TomlTable tables = document.table("controller", study_file_keys("controller")).table("cv", names);
   Eigen::VectorXd setpoint = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));

@@ -17,15 +17,15 @@ namespace mpm {
 PlantModel read_plant(const TomlTable& document);
 
 /// [controller] (study_file_controller.cpp).
-RangeMpcOptions read_controller(const TomlTable& document, const PlantModel& plant);
+MpcOptions read_controller(const TomlTable& document, const PlantModel& plant);
 
 /// The setpoints at the start, of [controller.cv.NAME]; ny numbers, 0 for a CV without a setpoint.
 Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantModel& plant,
-                                       const RangeMpcOptions& controller);
+                                       const MpcOptions& controller);
 
 /// [simulation] (study_file_simulation.cpp). The steps are returned in the order of their samples.
 SimulationOptions read_simulation(const TomlTable& document, const PlantModel& plant,
-                                  const RangeMpcOptions& controller);
+                                  const MpcOptions& controller);
 
 /// The transfer function in the keys gain, time_constant, numerator, denominator and dead_time of a table
 /// (study_file_plant.cpp), as the next two.
@@ -55,11 +55,11 @@ DisturbanceRanges read_disturbance(const TomlTable& document);
 
 /// [sensitivity] (study_file_analysis.cpp), as the next two.
 SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel& plant,
-                                    const RangeMpcOptions& controller);
+                                    const MpcOptions& controller);
 
 /// [s0_perturbation] (study_file_s0_perturbation.cpp)
 S0PerturbationOptions read_s0_perturbation(const TomlTable& document, const PlantModel& plant,
-                                           const RangeMpcOptions& controller);
+                                           const MpcOptions& controller);
 
 /// [diagnosis]
 DiagnosisOptions read_diagnosis(const TomlTable& document);

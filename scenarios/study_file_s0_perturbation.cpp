@@ -33,7 +33,7 @@ std::vector<Eigen::Index> read_variables(const TomlTable& table, std::string_vie
 }
 
 /// Section 6.3: no more active limits than MVs that are left to keep them.
-void read_fixed_structure(const TomlTable& table, const PlantModel& plant, const RangeMpcOptions& controller,
+void read_fixed_structure(const TomlTable& table, const PlantModel& plant, const MpcOptions& controller,
                           S0PerturbationOptions& options) {
   if (!table.has("fixed_mvs")) {
     if (table.has("fixed_active_cvs"))
@@ -56,7 +56,7 @@ void read_fixed_structure(const TomlTable& table, const PlantModel& plant, const
 }  // namespace
 
 S0PerturbationOptions read_s0_perturbation(const TomlTable& document, const PlantModel& plant,
-                                           const RangeMpcOptions& controller) {
+                                           const MpcOptions& controller) {
   S0PerturbationOptions options;
   if (!document.has("s0_perturbation"))
     return options;

@@ -84,7 +84,7 @@ void refuse_wrong_excitation(const TomlTable& simulation, const std::vector<std:
 }  // namespace
 
 SimulationOptions read_simulation(const TomlTable& document, const PlantModel& plant,
-                                  const RangeMpcOptions& controller) {
+                                  const MpcOptions& controller) {
   const TomlTable table = document.table("simulation", study_file_keys("simulation"));
   const std::vector<std::string> mds = variable_names(plant.mds);
   SimulationOptions options;

@@ -9,7 +9,7 @@ Eigen::VectorXd effective_weight(const Eigen::VectorXd& weight, WeightConvention
 
 }  // namespace
 
-MoveSuppression::MoveSuppression(const RangeMpcOptions& options)
+MoveSuppression::MoveSuppression(const MpcOptions& options)
     : control_horizon_(options.control_horizon),
       weight_(effective_weight(options.move_suppression, options.weight_convention)) {}
 
@@ -28,7 +28,7 @@ void MoveSuppression::add_hessian(Eigen::MatrixXd& hessian) const {
     }
 }
 
-TargetTracking::TargetTracking(const RangeMpcOptions& options)
+TargetTracking::TargetTracking(const MpcOptions& options)
     : prediction_horizon_(options.prediction_horizon),
       control_horizon_(options.control_horizon),
       weight_(effective_weight(options.target_weight, options.weight_convention)) {}
@@ -52,7 +52,7 @@ void TargetTracking::add_gradient(const MpcSample& sample, Eigen::VectorXd& grad
       gradient(i * nu + j) += -2.0 * samples_held(i) * weight_(j) * (sample.target(j) - sample.previous(j));
 }
 
-SetpointTracking::SetpointTracking(const RangeMpcOptions& options, const RowMajorMatrix& forced) {
+SetpointTracking::SetpointTracking(const MpcOptions& options, const RowMajorMatrix& forced) {
   const Eigen::Index hp = options.prediction_horizon;
   const Eigen::VectorXd weight = effective_weight(options.setpoint_weight, options.weight_convention);
   for (Eigen::Index cv = 0; cv < weight.size(); ++cv)

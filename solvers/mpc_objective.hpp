@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "solvers/mpc_options.hpp"
 #include "solvers/qp.hpp"
-#include "solvers/range_mpc_options.hpp"
 
 // The terms of the objective of a model predictive controller. Each is a sum of squares over the horizon in
 // the planned MV positions relative to the last one, x = (v(0), ..., v(Hc-1)), v(i) = u(k+i) - u(k-1), and
@@ -32,7 +32,7 @@ struct MpcSample {
 /// gradient.
 class MoveSuppression {
  public:
-  explicit MoveSuppression(const RangeMpcOptions& options);
+  explicit MoveSuppression(const MpcOptions& options);
   void add_hessian(Eigen::MatrixXd& hessian) const;
 
  private:
@@ -43,7 +43,7 @@ class MoveSuppression {
 /// sum_{i=0}^{Hp-1} sum_j Q_u,j |u_j(k+i) - u_target,j|^2,  u held after the control horizon.
 class TargetTracking {
  public:
-  explicit TargetTracking(const RangeMpcOptions& options);
+  explicit TargetTracking(const MpcOptions& options);
   void add_hessian(Eigen::MatrixXd& hessian) const;
   void add_gradient(const MpcSample& sample, Eigen::VectorXd& gradient) const;
 
@@ -59,7 +59,7 @@ class TargetTracking {
 class SetpointTracking {
  public:
   /// `forced` are the rows of forced_response(): cv * Hp + l - 1.
-  SetpointTracking(const RangeMpcOptions& options, const RowMajorMatrix& forced);
+  SetpointTracking(const MpcOptions& options, const RowMajorMatrix& forced);
   void add_hessian(Eigen::MatrixXd& hessian) const;
   void add_gradient(const MpcSample& sample, Eigen::VectorXd& gradient) const;
 

@@ -4,7 +4,7 @@ namespace mpm {
 namespace {
 
 std::shared_ptr<const QpStructure> target_structure(const Eigen::MatrixXd& static_gain,
-                                                    const RangeMpcOptions& options) {
+                                                    const MpcOptions& options) {
   const Eigen::Index ny = static_gain.rows();
   const Eigen::Index nu = static_gain.cols();
   const double largest_cost = options.mv_cost.lpNorm<Eigen::Infinity>();
@@ -20,7 +20,7 @@ std::shared_ptr<const QpStructure> target_structure(const Eigen::MatrixXd& stati
 
 }  // namespace
 
-TargetOptimizer::TargetOptimizer(const Eigen::MatrixXd& static_gain, const RangeMpcOptions& options,
+TargetOptimizer::TargetOptimizer(const Eigen::MatrixXd& static_gain, const MpcOptions& options,
                                  const QpSolverFactory& factory)
     : cv_soft_(options.cv_soft) {
   const auto structure = target_structure(static_gain, options);

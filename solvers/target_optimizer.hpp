@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "solvers/mpc_options.hpp"
 #include "solvers/qp_solver.hpp"
-#include "solvers/range_mpc_options.hpp"
 
 namespace mpm {
 
@@ -28,7 +28,7 @@ namespace mpm {
 class TargetOptimizer {
  public:
   /// Uses mv_hard, cv_soft, mv_cost and target_violation_cost of `options`, which must be valid.
-  TargetOptimizer(const Eigen::MatrixXd& static_gain, const RangeMpcOptions& options,
+  TargetOptimizer(const Eigen::MatrixXd& static_gain, const MpcOptions& options,
                   const QpSolverFactory& factory);
 
   /// The targets for the steady state `y_at_zero` (ny) of the CVs at zero MVs. The reference stays valid

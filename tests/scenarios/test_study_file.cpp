@@ -30,7 +30,7 @@ TEST_CASE("every value of the small study lands in its place", "[study_file]") {
   CHECK(study.seed == 7);
   CHECK(study.source == text);
 
-  const RangeMpcOptions& controller = study.controller;
+  const MpcOptions& controller = study.controller;
   CHECK(controller.sample_time == 1);
   CHECK(controller.prediction_horizon == 20);
   CHECK(controller.control_horizon == 5);

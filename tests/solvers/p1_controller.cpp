@@ -2,8 +2,8 @@
 
 namespace mpm::samples {
 
-RangeMpcOptions p1_options() {
-  RangeMpcOptions options;
+MpcOptions p1_options() {
+  MpcOptions options;
   options.sample_time = 4;
   options.prediction_horizon = 75;
   options.control_horizon = 15;

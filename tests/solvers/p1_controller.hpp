@@ -1,11 +1,11 @@
 #pragma once
 
-#include "solvers/range_mpc_options.hpp"
+#include "solvers/mpc_options.hpp"
 
 namespace mpm::samples {
 
 /// Tuning and constraints of the range MPC of P1 ("shell-7x3"): thesis, table 6.2. Q_du = 25 and Q_u = 1
 /// count as the weights themselves.
-RangeMpcOptions p1_options();
+MpcOptions p1_options();
 
 }  // namespace mpm::samples

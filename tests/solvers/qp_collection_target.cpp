@@ -8,7 +8,7 @@
 namespace mpm::samples {
 
 std::vector<NamedQp> target_qps() {
-  const RangeMpcOptions options = p1_options();
+  const MpcOptions options = p1_options();
   auto structure = std::make_shared<QpStructure>();
   structure->hessian.setZero(3, 3);
   structure->rows = benchmark_plant("shell-7x3").G.static_gain().leftCols(3);

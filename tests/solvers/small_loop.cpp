@@ -10,8 +10,8 @@ TransferMatrix small_model() {
           {channel(-0.6, 12, 0), channel(1.5, 20, 3), channel(0.5, 10, 2)}};
 }
 
-RangeMpcOptions small_options() {
-  RangeMpcOptions options;
+MpcOptions small_options() {
+  MpcOptions options;
   options.sample_time = 2;
   options.prediction_horizon = 20;
   options.control_horizon = 4;
@@ -34,7 +34,7 @@ std::vector<std::string> loop_back_ends() {
   return names;
 }
 
-LoopRun run_small_loop(RangeMpc& controller, const LoopInputs& inputs, int samples) {
+LoopRun run_small_loop(Mpc& controller, const LoopInputs& inputs, int samples) {
   LinearPlant plant(small_model(), small_options().sample_time);
   Eigen::VectorXd input(3);
   Eigen::VectorXd d(1);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "plants/transfer_matrix.hpp"
-#include "solvers/range_mpc.hpp"
+#include "solvers/mpc.hpp"
 
 namespace mpm::samples {
 
@@ -13,7 +13,7 @@ namespace mpm::samples {
 /// soft limit of -0.5 and both MVs free.
 TransferMatrix small_model();
 
-RangeMpcOptions small_options();
+MpcOptions small_options();
 
 /// The back ends worth a closed loop: all but `ipopt-full`, which is `ipopt` without its working set and
 /// slow.
@@ -32,6 +32,6 @@ struct LoopRun {
 };
 
 /// `controller` on small_model() without mismatch from the steady state of its nominal targets on.
-LoopRun run_small_loop(RangeMpc& controller, const LoopInputs& inputs, int samples);
+LoopRun run_small_loop(Mpc& controller, const LoopInputs& inputs, int samples);
 
 }  // namespace mpm::samples

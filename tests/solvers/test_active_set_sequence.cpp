@@ -3,7 +3,7 @@
 #include "plants/catalogue.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/ipopt_solver.hpp"
-#include "solvers/range_qp.hpp"
+#include "solvers/mpc_qp.hpp"
 #include "tests/plants/allocation_counter.hpp"
 #include "tests/solvers/p1_controller.hpp"
 
@@ -38,15 +38,15 @@ class P1Sequence {
   }
 
  private:
-  static RangeMpcOptions options(SlackForm form) {
-    RangeMpcOptions result = samples::p1_options();
+  static MpcOptions options(SlackForm form) {
+    MpcOptions result = samples::p1_options();
     result.slack_form = form;
     return result;
   }
 
   PlantModel plant_ = benchmark_plant("shell-7x3");
-  RangeMpcOptions options_;
-  RangeQp qp_;
+  MpcOptions options_;
+  MpcQp qp_;
   Eigen::MatrixXd free_;
   Eigen::VectorXd no_setpoint_ = Eigen::VectorXd::Zero(7);
   Eigen::VectorXd previous_, target_;

@@ -20,8 +20,8 @@ using samples::small_model;
 using samples::small_options;
 
 /// (2.26): both CVs at setpoints, no targets, no soft limits.
-RangeMpcOptions setpoint_options() {
-  RangeMpcOptions options = small_options();
+MpcOptions setpoint_options() {
+  MpcOptions options = small_options();
   options.setpoint_weight = Eigen::Vector2d(4, 2);
   options.target_weight.setZero();
   options.slack_weight.setZero();
@@ -30,8 +30,8 @@ RangeMpcOptions setpoint_options() {
 }
 
 /// The first CV at a setpoint, the second one in its range; targets for both MVs.
-RangeMpcOptions mixed_options() {
-  RangeMpcOptions options = small_options();
+MpcOptions mixed_options() {
+  MpcOptions options = small_options();
   options.setpoint_weight = Eigen::Vector2d(4, 0);
   options.slack_weight(0) = 0;
   options.cv_soft.lower(0) = -std::numeric_limits<double>::infinity();
@@ -39,12 +39,12 @@ RangeMpcOptions mixed_options() {
   return options;
 }
 
-RangeMpc controller_of(const std::string& back_end, const RangeMpcOptions& options) {
+Mpc controller_of(const std::string& back_end, const MpcOptions& options) {
   return {small_model(), 2, options, qp_solver_factory(back_end)};
 }
 
 /// Objective of (2.26) for planned MV positions v, relative to rest, from its definition: a simulation.
-double simulated_objective(const RangeMpcOptions& options, const Eigen::VectorXd& v,
+double simulated_objective(const MpcOptions& options, const Eigen::VectorXd& v,
                            const Eigen::Vector2d& y_set) {
   LinearPlant plant(small_model(), options.sample_time);
   Eigen::VectorXd input = Eigen::VectorXd::Zero(3);
@@ -68,8 +68,8 @@ double simulated_objective(const RangeMpcOptions& options, const Eigen::VectorXd
 TEST_CASE("setpoint MPC: its first plan minimises (2.26), evaluated by simulation", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  const RangeMpcOptions options = setpoint_options();
-  RangeMpc controller = controller_of(back_end, options);
+  const MpcOptions options = setpoint_options();
+  Mpc controller = controller_of(back_end, options);
   const Eigen::Vector2d y_set(0.3, -0.2);
   controller.set_setpoints(y_set);
   controller.reset(Eigen::Vector2d::Zero(), Eigen::VectorXd::Zero(1));
@@ -93,7 +93,7 @@ TEST_CASE("setpoint MPC: its first plan minimises (2.26), evaluated by simulatio
 TEST_CASE("setpoint MPC reaches its setpoints, whatever acts on the outputs", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  RangeMpc controller = controller_of(back_end, setpoint_options());
+  Mpc controller = controller_of(back_end, setpoint_options());
   const Eigen::Vector2d y_set(0.4, -0.3);
   controller.set_setpoints(y_set);
   const LoopInputs inputs{.md = [](int k) { return k < 40 ? 0.0 : 0.3; },
@@ -110,7 +110,7 @@ TEST_CASE("mixed control: one CV at its setpoint, the other at the edge of its r
           "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  RangeMpc controller = controller_of(back_end, mixed_options());
+  Mpc controller = controller_of(back_end, mixed_options());
   controller.set_setpoints(Eigen::Vector2d(0.25, 0));
   const LoopRun run = run_small_loop(controller, {.md = [](int k) { return k < 5 ? 0.0 : 0.2; }}, 200);
   REQUIRE(run.ok);
@@ -122,9 +122,9 @@ TEST_CASE("soft limits without targets: nothing moves inside the ranges, and wha
           "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  RangeMpcOptions options = small_options();
+  MpcOptions options = small_options();
   options.target_weight.setZero();
-  RangeMpc controller = controller_of(back_end, options);
+  Mpc controller = controller_of(back_end, options);
   const LoopInputs pushed{.output_disturbance = [](int k) { return Eigen::Vector2d(k < 30 ? 0.4 : 0.9, 0); }};
   const LoopRun run = run_small_loop(controller, pushed, 250);
   REQUIRE(run.ok);
@@ -136,12 +136,12 @@ TEST_CASE("soft limits without targets: nothing moves inside the ranges, and wha
 }
 
 TEST_CASE("a range of no width and a heavy slack weight are a setpoint", "[mpc]") {
-  RangeMpcOptions range = setpoint_options();
+  MpcOptions range = setpoint_options();
   range.setpoint_weight.setZero();
   range.slack_weight = Eigen::Vector2d(4, 2);
   range.cv_soft = {Eigen::Vector2d(0.4, -0.3), Eigen::Vector2d(0.4, -0.3)};
-  RangeMpc by_range = controller_of("active-set", range);
-  RangeMpc by_setpoint = controller_of("active-set", setpoint_options());
+  Mpc by_range = controller_of("active-set", range);
+  Mpc by_setpoint = controller_of("active-set", setpoint_options());
   by_setpoint.set_setpoints(Eigen::Vector2d(0.4, -0.3));
   const LoopRun a = run_small_loop(by_range, {}, 60);
   const LoopRun b = run_small_loop(by_setpoint, {}, 60);
@@ -151,7 +151,7 @@ TEST_CASE("a range of no width and a heavy slack weight are a setpoint", "[mpc]"
 }
 
 TEST_CASE("weights that do not determine the moves are refused", "[mpc]") {
-  RangeMpcOptions options = small_options();
+  MpcOptions options = small_options();
   options.move_suppression(0) = options.target_weight(0) = 0;
   CHECK_THROWS_WITH(controller_of("active-set", options), Catch::Contains("move_suppression[0]"));
 
@@ -168,7 +168,7 @@ TEST_CASE("weights that do not determine the moves are refused", "[mpc]") {
   options = setpoint_options();
   options.setpoint_weight(1) = -1;
   CHECK_THROWS_WITH(controller_of("active-set", options), Catch::Contains("setpoint_weight[1]"));
-  RangeMpc controller = controller_of("active-set", setpoint_options());
+  Mpc controller = controller_of("active-set", setpoint_options());
   CHECK_THROWS_WITH(controller.set_setpoints(Eigen::Vector3d::Zero()), Catch::Contains("setpoints"));
 }
 

@@ -2,7 +2,7 @@
 
 #include "plants/catalogue.hpp"
 #include "scenarios/random_stream.hpp"
-#include "solvers/range_mpc.hpp"
+#include "solvers/mpc.hpp"
 #include "tests/solvers/p1_controller.hpp"
 
 // The problems of a closed loop of P1 through every back end: full size, as they occur.
@@ -44,10 +44,10 @@ Recording p1_loop(SlackForm form, int steps) {
     auto inner = qp_solver_factory("ipopt")(structure);
     return std::make_unique<RecordingSolver>(std::move(inner), structure, recording);
   };
-  RangeMpcOptions options = samples::p1_options();
+  MpcOptions options = samples::p1_options();
   options.slack_form = form;
   const TransferMatrix model = benchmark_plant("shell-7x3").G;
-  RangeMpc controller(model, 3, options, factory);
+  Mpc controller(model, 3, options, factory);
   LinearPlant plant(model, options.sample_time);
   RandomStream random(2015, 0, StreamId::measurement_noise);
 

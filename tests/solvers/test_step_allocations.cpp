@@ -4,7 +4,7 @@
 
 #include "plants/catalogue.hpp"
 #include "plants/linear_plant.hpp"
-#include "solvers/range_mpc.hpp"
+#include "solvers/mpc.hpp"
 #include "tests/plants/allocation_counter.hpp"
 #include "tests/solvers/p1_controller.hpp"
 
@@ -12,18 +12,17 @@
 
 namespace mpm {
 
-TEST_CASE("a step of the closed loop of P1 allocates nothing, whatever disturbs it",
-          "[range_mpc][allocation]") {
+TEST_CASE("a step of the closed loop of P1 allocates nothing, whatever disturbs it", "[mpc][allocation]") {
   const auto back_end = GENERATE(as<std::string>(), "active-set", "auto");
   const auto slack = GENERATE(SlackForm::per_sample, SlackForm::per_cv);
-  RangeMpcOptions options = samples::p1_options();
+  MpcOptions options = samples::p1_options();
   options.slack_form = slack;
   const bool setpoints = GENERATE(false, true);
   if (setpoints)
     options.setpoint_weight.head(2).setConstant(2.0);
   const PlantModel p1 = benchmark_plant("shell-7x3");
   const auto mv_count = static_cast<Eigen::Index>(p1.mvs.size());
-  RangeMpc controller(p1.G, mv_count, options, qp_solver_factory(back_end));
+  Mpc controller(p1.G, mv_count, options, qp_solver_factory(back_end));
   LinearPlant plant(p1.G, options.sample_time);
 
   Eigen::VectorXd d = Eigen::VectorXd::Zero(p1.G.cols() - mv_count);

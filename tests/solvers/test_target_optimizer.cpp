@@ -23,7 +23,7 @@ Eigen::MatrixXd p1_gain() {
   return benchmark_plant("shell-7x3").G.static_gain();
 }
 
-TargetOptimizer p1_targets(const std::string& back_end, const RangeMpcOptions& options = p1_options()) {
+TargetOptimizer p1_targets(const std::string& back_end, const MpcOptions& options = p1_options()) {
   return {p1_gain().leftCols(3), options, qp_solver_factory(back_end)};
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("the targets are those of a search over all vertices", "[target]") {
 TEST_CASE("without MV costs the violations are as small as they can be", "[target]") {
   const auto back_end = GENERATE(from_range(qp_solver_names()));
   INFO(back_end);
-  RangeMpcOptions options = p1_options();
+  MpcOptions options = p1_options();
   options.mv_cost.setZero();
   TargetOptimizer targets = p1_targets(back_end, options);
   for (std::uint64_t draw = 0; draw < 20; ++draw) {

@@ -36,7 +36,7 @@ std::optional<Eigen::Vector3d> meeting_point(const Plane& a, const Plane& b, con
 
 }  // namespace
 
-VertexSearch::VertexSearch(const Eigen::MatrixXd& static_gain, const RangeMpcOptions& options,
+VertexSearch::VertexSearch(const Eigen::MatrixXd& static_gain, const MpcOptions& options,
                            const Eigen::VectorXd& y_at_zero)
     : gain_(static_gain),
       cost_(options.mv_cost),

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "solvers/range_mpc_options.hpp"
+#include "solvers/mpc_options.hpp"
 
 namespace mpm::samples {
 
@@ -12,7 +12,7 @@ namespace mpm::samples {
 /// three planes meet.
 class VertexSearch {
  public:
-  VertexSearch(const Eigen::MatrixXd& static_gain, const RangeMpcOptions& options,
+  VertexSearch(const Eigen::MatrixXd& static_gain, const MpcOptions& options,
                const Eigen::VectorXd& y_at_zero);
 
   /// The cheapest vertex that keeps every soft limit; none when no vertex does.

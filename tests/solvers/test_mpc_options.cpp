@@ -16,7 +16,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 template <typename Spoil>
 std::string refusal(Spoil spoil) {
-  RangeMpcOptions options = samples::p1_options();
+  MpcOptions options = samples::p1_options();
   spoil(options);
   try {
     options.validate(7, 3);
@@ -27,7 +27,7 @@ std::string refusal(Spoil spoil) {
 }
 
 using Catch::StartsWith;
-using Options = RangeMpcOptions;
+using Options = MpcOptions;
 
 }  // namespace
 

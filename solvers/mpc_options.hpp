@@ -54,7 +54,7 @@ struct Limits {
 /// | Q_y      | setpoint_weight    | ny    | 1 / CV^2                    |
 /// | tau_y    | slack_weight       | ny    | 1 / CV^2                    |
 /// | phi_u    | mv_cost            | nu    | 1 / MV                      |
-struct RangeMpcOptions {
+struct MpcOptions {
   double sample_time = 1.0;
   int prediction_horizon = 1;
   int control_horizon = 1;

@@ -6,8 +6,8 @@
 
 #include "plants/transfer_matrix.hpp"
 #include "solvers/mpc_objective.hpp"
+#include "solvers/mpc_options.hpp"
 #include "solvers/qp.hpp"
-#include "solvers/range_mpc_options.hpp"
 
 namespace mpm {
 
@@ -21,11 +21,11 @@ namespace mpm {
 /// as the sum over the horizon in (6.20) says.
 ///
 /// Hessian and rows are constant; gradient and limits are affine in (free response, u(k-1), u_target, y_set).
-class RangeQp {
+class MpcQp {
  public:
-  /// `options` must be valid for the model (see RangeMpcOptions::validate). Throws InputError when they do
+  /// `options` must be valid for the model (see MpcOptions::validate). Throws InputError when they do
   /// not determine the moves: a Hessian that is singular to rounding.
-  RangeQp(const TransferMatrix& model, Eigen::Index mv_count, const RangeMpcOptions& options);
+  MpcQp(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& options);
 
   std::shared_ptr<const QpStructure> structure() const { return structure_; }
 
@@ -39,7 +39,7 @@ class RangeQp {
   void set_cv_soft(const Limits& limits) { cv_soft_ = limits; }
 
  private:
-  RangeQp(RowMajorMatrix forced, Eigen::Index mv_count, const RangeMpcOptions& options);
+  MpcQp(RowMajorMatrix forced, Eigen::Index mv_count, const MpcOptions& options);
 
   Eigen::Index mv_count_;
   int prediction_horizon_;

@@ -1,4 +1,4 @@
-#include "solvers/range_qp.hpp"
+#include "solvers/mpc_qp.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ void require_determined(const Eigen::MatrixXd& hessian) {
 }
 
 /// Slack weights count once a sample; a CV without soft limits has no slack that could become positive.
-void set_slacks(const RangeMpcOptions& options, Eigen::Index cv_count, QpStructure& structure) {
+void set_slacks(const MpcOptions& options, Eigen::Index cv_count, QpStructure& structure) {
   const int hp = options.prediction_horizon;
   const bool per_sample = options.slack_form == SlackForm::per_sample;
   structure.slack_of_row.resize(cv_count * hp);
@@ -39,7 +39,7 @@ void set_slacks(const RangeMpcOptions& options, Eigen::Index cv_count, QpStructu
   structure.slack_linear.setZero(structure.slack_quadratic.size());
 }
 
-std::shared_ptr<const QpStructure> make_structure(const RangeMpcOptions& options, RowMajorMatrix forced,
+std::shared_ptr<const QpStructure> make_structure(const MpcOptions& options, RowMajorMatrix forced,
                                                   const TargetTracking& targets,
                                                   const SetpointTracking& setpoints) {
   auto structure = std::make_shared<QpStructure>();
@@ -53,17 +53,17 @@ std::shared_ptr<const QpStructure> make_structure(const RangeMpcOptions& options
   return structure;
 }
 
-RowMajorMatrix forced(const TransferMatrix& model, Eigen::Index mv_count, const RangeMpcOptions& options) {
+RowMajorMatrix forced(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& options) {
   return forced_response(model, mv_count, options.sample_time, options.prediction_horizon,
                          options.control_horizon);
 }
 
 }  // namespace
 
-RangeQp::RangeQp(const TransferMatrix& model, Eigen::Index mv_count, const RangeMpcOptions& options)
-    : RangeQp(forced(model, mv_count, options), mv_count, options) {}
+MpcQp::MpcQp(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& options)
+    : MpcQp(forced(model, mv_count, options), mv_count, options) {}
 
-RangeQp::RangeQp(RowMajorMatrix forced, Eigen::Index mv_count, const RangeMpcOptions& options)
+MpcQp::MpcQp(RowMajorMatrix forced, Eigen::Index mv_count, const MpcOptions& options)
     : mv_count_(mv_count),
       prediction_horizon_(options.prediction_horizon),
       control_horizon_(options.control_horizon),
@@ -75,7 +75,7 @@ RangeQp::RangeQp(RowMajorMatrix forced, Eigen::Index mv_count, const RangeMpcOpt
       structure_(make_structure(options, std::move(forced), targets_, setpoints_)),
       data_(QpData::unconstrained(*structure_)) {}
 
-const QpData& RangeQp::update(const MpcSample& sample) {
+const QpData& MpcQp::update(const MpcSample& sample) {
   data_.gradient.setZero();
   targets_.add_gradient(sample, data_.gradient);
   setpoints_.add_gradient(sample, data_.gradient);

@@ -18,7 +18,7 @@ using samples::run_small_loop;
 using samples::small_model;
 using samples::small_options;
 
-RangeMpc small_controller(const std::string& back_end, const RangeMpcOptions& options = small_options()) {
+Mpc small_controller(const std::string& back_end, const MpcOptions& options = small_options()) {
   return {small_model(), 2, options, qp_solver_factory(back_end)};
 }
 
@@ -38,10 +38,10 @@ Eigen::VectorXd md(double value) {
 
 }  // namespace
 
-TEST_CASE("a loop at its targets stays there", "[range_mpc]") {
+TEST_CASE("a loop at its targets stays there", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  RangeMpc controller = small_controller(back_end);
+  Mpc controller = small_controller(back_end);
   const LoopRun run = run_small_loop(controller, {}, 20);
   REQUIRE(run.ok);
   // Both CVs are at limits that touch: an interior-point complementarity of 1e-10 counts as 1e-5 there.
@@ -49,11 +49,11 @@ TEST_CASE("a loop at its targets stays there", "[range_mpc]") {
   CHECK((run.u.colwise() - run.u.col(0)).cwiseAbs().maxCoeff() < 1e-4);
 }
 
-TEST_CASE("a constant output disturbance leaves no offset", "[range_mpc]") {
+TEST_CASE("a constant output disturbance leaves no offset", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   const double size = GENERATE(0.4, -0.4);
   INFO(back_end << ", " << size);
-  RangeMpc controller = small_controller(back_end);
+  Mpc controller = small_controller(back_end);
   const LoopInputs inputs{.output_disturbance = [=](int k) { return Eigen::Vector2d(k < 5 ? 0 : size, 0); }};
   const LoopRun run = run_small_loop(controller, inputs, 150);
   REQUIRE(run.ok);
@@ -63,10 +63,10 @@ TEST_CASE("a constant output disturbance leaves no offset", "[range_mpc]") {
   CHECK((run.y.col(149).array() + 0.5).abs().maxCoeff() < 1e-4);
 }
 
-TEST_CASE("an MD acts through its measured value alone, from its sample on", "[range_mpc]") {
+TEST_CASE("an MD acts through its measured value alone, from its sample on", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  RangeMpc controller = small_controller(back_end);
+  Mpc controller = small_controller(back_end);
   const LoopRun quiet = run_small_loop(controller, {}, 12);
   const LoopInputs step{.md = [](int k) { return k < 6 ? 0.0 : 0.5; }};
   const LoopRun stepped = run_small_loop(controller, step, 12);
@@ -75,40 +75,40 @@ TEST_CASE("an MD acts through its measured value alone, from its sample on", "[r
   CHECK((stepped.u.col(6) - quiet.u.col(6)).norm() > 0.01);  // and the move of sample 6 answers it
 }
 
-TEST_CASE("an MD that the model knows leaves no offset", "[range_mpc]") {
+TEST_CASE("an MD that the model knows leaves no offset", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  RangeMpc controller = small_controller(back_end);
+  Mpc controller = small_controller(back_end);
   const LoopRun run = run_small_loop(controller, {.md = [](int k) { return k < 6 ? 0.0 : 0.3; }}, 150);
   REQUIRE(run.ok);
   CHECK((run.y.col(149).array() + 0.5).abs().maxCoeff() < 1e-4);  // as for an output disturbance
 }
 
-TEST_CASE("reset makes two runs bit-identical", "[range_mpc]") {
+TEST_CASE("reset makes two runs bit-identical", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
   const LoopInputs inputs{
       .md = [](int k) { return 0.3 * std::sin(0.7 * k); },
       .output_disturbance =
           [](int k) { return Eigen::Vector2d(0.2 * std::cos(1.1 * k), 0.1 * std::sin(k)); }};
-  RangeMpc controller = small_controller(back_end);
+  Mpc controller = small_controller(back_end);
   const LoopRun first = run_small_loop(controller, inputs, 25);
   const LoopRun again = run_small_loop(controller, inputs, 25);
-  RangeMpc other = small_controller(back_end);
+  Mpc other = small_controller(back_end);
   const LoopRun fresh = run_small_loop(other, inputs, 25);
   CHECK(again.u == first.u);
   CHECK(fresh.u == first.u);
 }
 
-TEST_CASE("the MVs keep their hard limits", "[range_mpc]") {
+TEST_CASE("the MVs keep their hard limits", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  RangeMpcOptions options = small_options();
+  MpcOptions options = small_options();
   options.mv_hard.lower = Eigen::Vector2d(-0.6, -0.7);
   options.mv_hard.upper = Eigen::Vector2d(0.4, 0.3);
   const LoopInputs inputs{
       .output_disturbance = [](int k) { return Eigen::Vector2d(k / 8 % 2 == 0 ? 3 : -3, 0); }};
-  RangeMpc controller = small_controller(back_end, options);
+  Mpc controller = small_controller(back_end, options);
   const LoopRun run = run_small_loop(controller, inputs, 48);
   REQUIRE(run.ok);
   // Bounds are kept by every back end to 1e-10 (Ipopt: exactly, as its bounds are not relaxed); the sum of
@@ -119,12 +119,12 @@ TEST_CASE("the MVs keep their hard limits", "[range_mpc]") {
   CHECK(run.u.row(0).minCoeff() < -0.6 + 1e-3);
 }
 
-TEST_CASE("an MV out of service stays where it is", "[range_mpc]") {
+TEST_CASE("an MV out of service stays where it is", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  RangeMpcOptions options = small_options();
+  MpcOptions options = small_options();
   options.mv_hard.lower(1) = options.mv_hard.upper(1) = -0.1;
-  RangeMpc controller = small_controller(back_end, options);
+  Mpc controller = small_controller(back_end, options);
   const LoopRun run = run_small_loop(controller, {.md = [](int k) { return k < 3 ? 0.0 : 0.5; }}, 15);
   REQUIRE(run.ok);
   // Kept to 1e-8: Ipopt takes fixed variables out of the problem.
@@ -132,10 +132,10 @@ TEST_CASE("an MV out of service stays where it is", "[range_mpc]") {
   CHECK((run.u.row(0).array() - run.u(0, 0)).abs().maxCoeff() > 0.01);
 }
 
-TEST_CASE("soft limits that are replaced count from then on", "[range_mpc]") {
+TEST_CASE("soft limits that are replaced count from then on", "[mpc]") {
   const auto back_end = GENERATE(from_range(loop_back_ends()));
   INFO(back_end);
-  RangeMpc controller = small_controller(back_end);
+  Mpc controller = small_controller(back_end);
   Limits limits = small_options().cv_soft;
   limits.lower(0) = -0.2;
   controller.set_cv_soft(limits);
@@ -145,12 +145,12 @@ TEST_CASE("soft limits that are replaced count from then on", "[range_mpc]") {
   CHECK_THROWS_AS(controller.set_cv_soft(Limits::none(3)), InputError);
 }
 
-TEST_CASE("a hard limit that is lost inside the dead time is infeasible", "[range_mpc]") {
+TEST_CASE("a hard limit that is lost inside the dead time is infeasible", "[mpc]") {
   const auto back_end = GENERATE(from_range(qp_solver_names()));
   INFO(back_end);
-  RangeMpcOptions options = small_options();
+  MpcOptions options = small_options();
   options.cv_hard = {Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, 1)};
-  RangeMpc controller = small_controller(back_end, options);
+  Mpc controller = small_controller(back_end, options);
   const Eigen::Vector2d u(0.1, 0.2);
   controller.reset(u, md(0));
   // CV 0 answers to no MV within a sample; the output bias carries the measured 1.2 into the prediction.
@@ -161,11 +161,11 @@ TEST_CASE("a hard limit that is lost inside the dead time is infeasible", "[rang
   CHECK(controller.step(Eigen::Vector2d(0.3, 0.2), md(0)).status == ControlStatus::ok);
 }
 
-TEST_CASE("a solver that fails is reported and the MVs stay", "[range_mpc]") {
+TEST_CASE("a solver that fails is reported and the MVs stay", "[mpc]") {
   const QpSolverFactory failing = [](std::shared_ptr<const QpStructure> structure) {
     return std::make_unique<FailingSolver>(std::move(structure));
   };
-  RangeMpc controller(small_model(), 2, small_options(), failing);
+  Mpc controller(small_model(), 2, small_options(), failing);
   const Eigen::Vector2d u(0.1, 0.2);
   controller.reset(u, md(0));
   const ControlMove& move = controller.step(Eigen::Vector2d(0, 0), md(0));
@@ -173,8 +173,8 @@ TEST_CASE("a solver that fails is reported and the MVs stay", "[range_mpc]") {
   CHECK(move.u == u);
 }
 
-TEST_CASE("the model runs along with the moves", "[range_mpc]") {
-  RangeMpc controller = small_controller("ipopt");
+TEST_CASE("the model runs along with the moves", "[mpc]") {
+  Mpc controller = small_controller("ipopt");
   LinearPlant model(small_model(), small_options().sample_time);
   controller.reset(Eigen::Vector2d(0.1, 0.2), md(0.3));
   Eigen::VectorXd input(3);
@@ -187,19 +187,19 @@ TEST_CASE("the model runs along with the moves", "[range_mpc]") {
   }
 }
 
-TEST_CASE("controller statuses have names", "[range_mpc]") {
+TEST_CASE("controller statuses have names", "[mpc]") {
   CHECK(to_string(ControlStatus::ok) == "ok");
   CHECK(to_string(ControlStatus::infeasible) == "infeasible");
   CHECK(to_string(ControlStatus::failed) == "failed");
 }
 
-TEST_CASE("a controller refuses a wrong size and a number that is not finite", "[range_mpc]") {
+TEST_CASE("a controller refuses a wrong size and a number that is not finite", "[mpc]") {
   const auto factory = qp_solver_factory("ipopt");
-  CHECK_THROWS_AS(RangeMpc(small_model(), 0, small_options(), factory), InputError);
-  CHECK_THROWS_AS(RangeMpc(small_model(), 4, small_options(), factory), InputError);
-  CHECK_THROWS_AS(RangeMpc(small_model(), 3, small_options(), factory), InputError);  // options for two MVs
+  CHECK_THROWS_AS(Mpc(small_model(), 0, small_options(), factory), InputError);
+  CHECK_THROWS_AS(Mpc(small_model(), 4, small_options(), factory), InputError);
+  CHECK_THROWS_AS(Mpc(small_model(), 3, small_options(), factory), InputError);  // options for two MVs
 
-  RangeMpc controller = small_controller("ipopt");
+  Mpc controller = small_controller("ipopt");
   const Eigen::Vector2d two(0, 0);
   const Eigen::Vector3d three(0, 0, 0);
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -24,7 +24,7 @@ struct PlanCost {
   Eigen::VectorXd gradient;
 };
 
-PlanCost plan_cost(const RangeMpcOptions& options, const Eigen::VectorXd& t) {
+PlanCost plan_cost(const MpcOptions& options, const Eigen::VectorXd& t) {
   const Eigen::Index nu = t.size();
   const Eigen::Index hp = options.prediction_horizon;
   const Eigen::Index hc = options.control_horizon;
@@ -41,7 +41,7 @@ PlanCost plan_cost(const RangeMpcOptions& options, const Eigen::VectorXd& t) {
 }
 
 /// Column e: the response of CV `cv` over the horizon to a plan that is 1 in element e.
-Eigen::MatrixXd plan_response(const RangeMpcOptions& options, Eigen::Index cv) {
+Eigen::MatrixXd plan_response(const MpcOptions& options, Eigen::Index cv) {
   const Eigen::Index nu = 2;
   const Eigen::Index hp = options.prediction_horizon;
   const Eigen::Index hc = options.control_horizon;
@@ -57,11 +57,11 @@ Eigen::MatrixXd plan_response(const RangeMpcOptions& options, Eigen::Index cv) {
 
 /// A controller that has made three moves from a steady state, and a copy of its model beside it.
 struct Situation {
-  RangeMpc controller;
+  Mpc controller;
   LinearPlant model;
   Eigen::VectorXd u, d;
 
-  Situation(const RangeMpcOptions& options, const std::string& back_end)
+  Situation(const MpcOptions& options, const std::string& back_end)
       : controller(small_model(), 2, options, qp_solver_factory(back_end)),
         model(small_model(), options.sample_time),
         u(Eigen::Vector2d(0.3, -0.2)),
@@ -99,8 +99,8 @@ struct Situation {
   }
 };
 
-RangeMpcOptions without_limits() {
-  RangeMpcOptions options = small_options();
+MpcOptions without_limits() {
+  MpcOptions options = small_options();
   options.cv_soft = {Eigen::Vector2d(-1e3, -1e3), Eigen::Vector2d(1e3, 1e3)};
   options.mv_hard.upper.setConstant(5);
   options.mv_hard.lower.setConstant(-5);
@@ -110,10 +110,10 @@ RangeMpcOptions without_limits() {
 
 }  // namespace
 
-TEST_CASE("far from all limits the move is the linear gain", "[range_mpc]") {
+TEST_CASE("far from all limits the move is the linear gain", "[mpc]") {
   const auto back_end = GENERATE(from_range(qp_solver_names()));
   INFO(back_end);
-  const RangeMpcOptions options = without_limits();
+  const MpcOptions options = without_limits();
   Situation loop(options, back_end);
   const Eigen::VectorXd before = loop.u;
   const ControlMove move = loop.step(Eigen::Vector2d(0.1, 0.2));
@@ -124,10 +124,10 @@ TEST_CASE("far from all limits the move is the linear gain", "[range_mpc]") {
   CHECK(plan.head(2).norm() > 0.01);  // and there was something to compare
 }
 
-TEST_CASE("with one soft limit violated all along the move is the ridge solution", "[range_mpc]") {
+TEST_CASE("with one soft limit violated all along the move is the ridge solution", "[mpc]") {
   const auto back_end = GENERATE(from_range(qp_solver_names()));
   INFO(back_end);
-  RangeMpcOptions options = without_limits();
+  MpcOptions options = without_limits();
   options.cv_soft.lower(0) = -0.5;
   options.slack_weight(0) = 0.05;  // weak, so that the limit stays violated over the horizon
   Situation loop(options, back_end);
@@ -152,12 +152,12 @@ TEST_CASE("with one soft limit violated all along the move is the ridge solution
 // One MV that acts on one CV by a gain K alone, Hc = 1: y(k+l) = K u + b for all l, and
 //     w_du x^2 + Hp w_u (x - t)^2 + Hp tau (lower - y)^2
 // is the cost for either slack form: the weight of a slack per CV counts once a sample.
-TEST_CASE("the weight of a slack per CV counts once a sample", "[range_mpc]") {
+TEST_CASE("the weight of a slack per CV counts once a sample", "[mpc]") {
   const auto back_end = GENERATE(from_range(qp_solver_names()));
   const auto form = GENERATE(SlackForm::per_sample, SlackForm::per_cv);
   INFO(back_end << ", " << to_string(form));
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
-  RangeMpcOptions options;
+  MpcOptions options;
   options.prediction_horizon = 7;
   options.move_suppression = 2 * one;
   options.target_weight = 0.5 * one;
@@ -170,7 +170,7 @@ TEST_CASE("the weight of a slack per CV counts once a sample", "[range_mpc]") {
   options.mv_cost = one;
   const double K = 1.5;
   const TransferMatrix model{{TransferFunction(K * one, one)}};
-  RangeMpc controller(model, 1, options, qp_solver_factory(back_end));
+  Mpc controller(model, 1, options, qp_solver_factory(back_end));
   controller.reset(0 * one, Eigen::VectorXd(0));
 
   const double b = -2;  // y measured, with the model at 0
@@ -184,12 +184,12 @@ TEST_CASE("the weight of a slack per CV counts once a sample", "[range_mpc]") {
   CHECK(move.u(0) == Approx(x).margin(kMove));
 }
 
-TEST_CASE("a squared weight Q is the direct weight Q^2", "[range_mpc]") {
+TEST_CASE("a squared weight Q is the direct weight Q^2", "[mpc]") {
   const auto back_end = GENERATE(from_range(samples::loop_back_ends()));
   INFO(back_end);
-  RangeMpcOptions squared = small_options();
+  MpcOptions squared = small_options();
   squared.weight_convention = WeightConvention::squared;
-  RangeMpcOptions direct = small_options();
+  MpcOptions direct = small_options();
   direct.move_suppression = direct.move_suppression.cwiseAbs2();
   direct.target_weight = direct.target_weight.cwiseAbs2();
   Situation one(squared, back_end);

@@ -8,9 +8,9 @@
 
 #include "plants/linear_plant.hpp"
 #include "plants/transfer_matrix.hpp"
+#include "solvers/mpc_options.hpp"
+#include "solvers/mpc_qp.hpp"
 #include "solvers/qp_solver.hpp"
-#include "solvers/range_mpc_options.hpp"
-#include "solvers/range_qp.hpp"
 #include "solvers/target_optimizer.hpp"
 
 namespace mpm {
@@ -48,11 +48,11 @@ struct ControlMove {
 /// |--------|-----------------------------|-------|
 /// | y, d   | measured CVs and MDs        | ny, nd|
 /// | G0     | nominal model, MVs then MDs | ny x (nu + nd) |
-class RangeMpc {
+class Mpc {
  public:
   /// Throws InputError when the options do not fit the model.
-  RangeMpc(const TransferMatrix& model, Eigen::Index mv_count, const RangeMpcOptions& options,
-           const QpSolverFactory& factory);
+  Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& options,
+      const QpSolverFactory& factory);
 
   /// Starts from the steady state of MVs `u` (nu) and MDs `d` (nd), with no warm start. Throws InputError for
   /// a wrong size or a number that is not finite.
@@ -92,7 +92,7 @@ class RangeMpc {
   Eigen::Index nu_;
   Eigen::MatrixXd md_gain_;
   LinearPlant model_, scratch_;
-  RangeQp qp_;
+  MpcQp qp_;
   std::optional<TargetOptimizer> targets_;
   std::unique_ptr<QpSolver> solver_;
   Eigen::VectorXd input_;  ///< (u(k-1), d(k)), then (u(k), d(k))

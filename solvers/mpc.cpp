@@ -1,4 +1,4 @@
-#include "solvers/range_mpc.hpp"
+#include "solvers/mpc.hpp"
 
 #include <algorithm>
 
@@ -10,8 +10,7 @@
 namespace mpm {
 namespace {
 
-const RangeMpcOptions& checked(const RangeMpcOptions& options, const TransferMatrix& model,
-                               Eigen::Index mv_count) {
+const MpcOptions& checked(const MpcOptions& options, const TransferMatrix& model, Eigen::Index mv_count) {
   if (mv_count < 1 || mv_count > model.cols())
     throw InputError("mv_count", fmt::format("{}", mv_count),
                      fmt::format("1 to {} (model columns)", model.cols()));
@@ -46,8 +45,8 @@ std::string_view to_string(ControlStatus status) {
   return "unknown";
 }
 
-RangeMpc::RangeMpc(const TransferMatrix& model, Eigen::Index mv_count, const RangeMpcOptions& options,
-                   const QpSolverFactory& factory)
+Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& options,
+         const QpSolverFactory& factory)
     : nu_(mv_count),
       model_(model, checked(options, model, mv_count).sample_time),
       scratch_(model_),
@@ -69,7 +68,7 @@ RangeMpc::RangeMpc(const TransferMatrix& model, Eigen::Index mv_count, const Ran
   move_.u_target.setZero(nu_);
 }
 
-void RangeMpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<const Eigen::VectorXd>& d) {
+void Mpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<const Eigen::VectorXd>& d) {
   require_signal("MVs", u, nu_);
   require_signal("measured disturbances", d, md_gain_.cols());
   input_ << u, d;
@@ -82,21 +81,21 @@ void RangeMpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Re
   move_.u_target = u;
 }
 
-void RangeMpc::set_cv_soft(const Limits& limits) {
+void Mpc::set_cv_soft(const Limits& limits) {
   limits.validate("cv_soft", model_.output_count());
   qp_.set_cv_soft(limits);
   cv_soft_ = limits;
   pass_on_limits();
 }
 
-void RangeMpc::set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) {
+void Mpc::set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) {
   require_signal("setpoints", y_set, setpoint_.size());
   setpoint_ = y_set;
   pass_on_limits();
 }
 
 /// The target optimizer sees a setpoint as a range without width.
-void RangeMpc::pass_on_limits() {
+void Mpc::pass_on_limits() {
   if (!targets_)
     return;
   target_range_ = cv_soft_;
@@ -106,13 +105,13 @@ void RangeMpc::pass_on_limits() {
   targets_->set_cv_soft(target_range_);
 }
 
-std::optional<SolvedQp> RangeMpc::target_problem() const {
+std::optional<SolvedQp> Mpc::target_problem() const {
   if (!targets_)
     return std::nullopt;
   return targets_->problem();
 }
 
-Eigen::VectorXd RangeMpc::nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) {
+Eigen::VectorXd Mpc::nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) {
   require_signal("measured disturbances", d, md_gain_.cols());
   if (!targets_)
     return Eigen::VectorXd::Zero(nu_);
@@ -120,8 +119,8 @@ Eigen::VectorXd RangeMpc::nominal_target(const Eigen::Ref<const Eigen::VectorXd>
   return targets_->solve(md_gain_ * d).x;
 }
 
-const ControlMove& RangeMpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
-                                  const Eigen::Ref<const Eigen::VectorXd>& d) {
+const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
+                             const Eigen::Ref<const Eigen::VectorXd>& d) {
   require_signal("measured CVs", y, bias_.size());
   require_signal("measured disturbances", d, md_gain_.cols());
   bias_ = y - model_.output();
@@ -137,7 +136,7 @@ const ControlMove& RangeMpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   return move_;
 }
 
-bool RangeMpc::solve_targets() {
+bool Mpc::solve_targets() {
   y_at_zero_.noalias() = md_gain_ * input_.tail(md_gain_.cols());
   y_at_zero_ += bias_;
   const QpResult& target = targets_->solve(y_at_zero_);
@@ -151,7 +150,7 @@ bool RangeMpc::solve_targets() {
   return true;
 }
 
-void RangeMpc::solve_moves() {
+void Mpc::solve_moves() {
   free_response(model_, input_, scratch_, free_);
   free_.colwise() += bias_;
   const QpResult& plan = solver_->solve(qp_.update({free_, input_.head(nu_), move_.u_target, setpoint_}));

@@ -1,4 +1,4 @@
-#include "solvers/range_mpc_options.hpp"
+#include "solvers/mpc_options.hpp"
 
 #include <cmath>
 #include <limits>
@@ -46,15 +46,15 @@ void Limits::validate(std::string_view what, Eigen::Index size) const {
                        "lower <= upper, no NaN, an absent limit is -inf below and inf above");
 }
 
-bool RangeMpcOptions::has_soft_limit(Eigen::Index cv) const {
+bool MpcOptions::has_soft_limit(Eigen::Index cv) const {
   return std::isfinite(cv_soft.lower(cv)) || std::isfinite(cv_soft.upper(cv));
 }
 
-bool RangeMpcOptions::has_soft_limits() const {
+bool MpcOptions::has_soft_limits() const {
   return cv_soft.lower.array().isFinite().any() || cv_soft.upper.array().isFinite().any();
 }
 
-void RangeMpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) const {
+void MpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) const {
   if (!(std::isfinite(sample_time) && sample_time > 0))
     throw InputError("sample_time", fmt::format("{}", sample_time), "a number > 0");
   if (prediction_horizon < 1)
