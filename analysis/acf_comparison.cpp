@@ -40,7 +40,8 @@ Deviation deviation(const Signal& signal, const std::optional<Eigen::VectorXd>& 
 }
 
 AcfFeatures features(const Autocorrelation& acf, const AcfComparisonOptions& options) {
-  return {decay_lag(acf, options.decay_level), acf_oscillation(acf, options.oscillation_threshold)};
+  return {decay_lag(acf, options.decay_level), acf_oscillation(acf, options.oscillation_threshold),
+          acf.values};
 }
 
 /// Bartlett's half band at the decay lag, at the last lag when it lies beyond.
@@ -108,7 +109,8 @@ struct Number {
   double AcfComparison::*member;
 };
 
-constexpr std::array<Number, 6> kNumbers{{
+constexpr std::array<Number, 7> kNumbers{{
+    {"white_band", "1", "half width of the band of white noise", &AcfComparison::white_band},
     {"decay_lag_ratio", "1", "decay lag of y over that of y0", &AcfComparison::decay_lag_ratio},
     {"decay_margin", "1", "ratio up to which decay lags are alike", &AcfComparison::decay_margin},
     {"y_from_y0", "1", "distance of ACF(y) from ACF(y0)", &AcfComparison::y_from_y0},
@@ -127,19 +129,37 @@ constexpr std::array<Record, 3> kRecords{
 
 using Columns = std::vector<NumberColumn<AcfComparison>>;
 
+/// The words of enumerators that count from 0.
+template <class Enum, std::size_t n>
+std::vector<std::string> words(const std::array<Enum, n>& enumerators) {
+  std::vector<std::string> list;
+  for (const Enum enumerator : enumerators) {
+    list.emplace_back(to_string(enumerator));
+  }
+  return list;
+}
+
 void append_features(Columns& columns, const Record& record) {
   const std::string of = std::string(" of ") + record.name;
   const auto name = [&record](const char* quantity) { return std::string(quantity) + "_" + record.name; };
   const auto member = record.member;
   columns.push_back({name("decay_lag"), "samples", "lag from which on |ACF| stays below its level," + of,
-                     [member](const AcfComparison& c) { return (c.*member).decay_lag; }});
+                     [member](const AcfComparison& c) { return (c.*member).decay_lag; },
+                     [member](AcfComparison& c, double value) { (c.*member).decay_lag = value; }});
   columns.push_back(
-      {name("oscillation"), "1", "0 undetermined, 1 absent, 2 present," + of,
-       [member](const AcfComparison& c) { return static_cast<double>((c.*member).oscillation.verdict); }});
-  columns.push_back({name("decay_ratio"), "1", "decay ratio of the ACF over half a period," + of,
-                     [member](const AcfComparison& c) { return (c.*member).oscillation.decay_ratio; }});
+      {name("oscillation"), "1", "whether the ACF oscillates," + of,
+       [member](const AcfComparison& c) { return static_cast<double>((c.*member).oscillation.verdict); },
+       [member](AcfComparison& c, double value) {
+         (c.*member).oscillation.verdict = static_cast<Oscillation>(value);
+       },
+       words(std::array{Oscillation::undetermined, Oscillation::absent, Oscillation::present})});
+  columns.push_back(
+      {name("decay_ratio"), "1", "decay ratio of the ACF over half a period," + of,
+       [member](const AcfComparison& c) { return (c.*member).oscillation.decay_ratio; },
+       [member](AcfComparison& c, double value) { (c.*member).oscillation.decay_ratio = value; }});
   columns.push_back({name("period"), "samples", "period of the ACF," + of,
-                     [member](const AcfComparison& c) { return (c.*member).oscillation.period; }});
+                     [member](const AcfComparison& c) { return (c.*member).oscillation.period; },
+                     [member](AcfComparison& c, double value) { (c.*member).oscillation.period = value; }});
 }
 
 }  // namespace
@@ -227,6 +247,7 @@ AcfComparison compare_autocorrelations(const Signal& y, const Signal& y0, const 
   result.y = features(of_y.acf, options);
   result.y0 = features(of_y0.acf, options);
   result.y0_diag = features(of_y0_diag.acf, options);
+  result.white_band = of_y.acf.white_band;
   result.decay_lag_ratio = result.y.decay_lag / result.y0.decay_lag;
   result.decay_margin = margin(of_y, of_y0, result, options);
   result.speed = speed_verdict(result, static_cast<double>(max_lag));
@@ -245,12 +266,19 @@ std::vector<NumberColumn<AcfComparison>> acf_columns() {
   }
   for (const Number& number : kNumbers) {
     columns.push_back({number.name, number.unit, number.meaning,
-                       [member = number.member](const AcfComparison& c) { return c.*member; }});
+                       [member = number.member](const AcfComparison& c) { return c.*member; },
+                       [member = number.member](AcfComparison& c, double value) { c.*member = value; }});
   }
-  columns.push_back({"loop_speed", "1", "0 undetermined, 1 alike, 2 slower, 3 faster than y0",
-                     [](const AcfComparison& c) { return static_cast<double>(c.speed); }});
-  columns.push_back({"error_origin", "1", "0 none, 1 own, 2 others, 3 both",
-                     [](const AcfComparison& c) { return static_cast<double>(c.origin); }});
+  columns.push_back(
+      {"loop_speed", "1", "speed of y against that of y0",
+       [](const AcfComparison& c) { return static_cast<double>(c.speed); },
+       [](AcfComparison& c, double value) { c.speed = static_cast<LoopSpeed>(value); },
+       words(std::array{LoopSpeed::undetermined, LoopSpeed::alike, LoopSpeed::slower, LoopSpeed::faster})});
+  columns.push_back(
+      {"error_origin", "1", "whose model the error that shows in the ACF comes from",
+       [](const AcfComparison& c) { return static_cast<double>(c.origin); },
+       [](AcfComparison& c, double value) { c.origin = static_cast<ErrorOrigin>(value); },
+       words(std::array{ErrorOrigin::none, ErrorOrigin::own, ErrorOrigin::others, ErrorOrigin::both})});
   return columns;
 }
 

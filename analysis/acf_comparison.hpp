@@ -62,11 +62,14 @@ struct AcfFeatures {
   /// when it does not within the lags, NaN without a function. Unit: samples.
   double decay_lag = std::numeric_limits<double>::quiet_NaN();
   AcfOscillation oscillation;
+  Eigen::VectorXd values = {};  ///< the function at the lags 0 ... max_lag; NaN without one
 };
 
 /// What the autocorrelation functions of y, y0 and y0_diag of one CV say (sections 3.2, 4.2; figure A2.1).
 struct AcfComparison {
   AcfFeatures y, y0, y0_diag;
+  /// Half width of the band that the function of white noise stays in, `Autocorrelation::white_band`.
+  double white_band = std::numeric_limits<double>::quiet_NaN();
   /// Decay lag of y over that of y0; above 1 for a loop slower than designed. Infinite or 0 when one of them
   /// does not decay within the lags.
   double decay_lag_ratio = std::numeric_limits<double>::quiet_NaN();
@@ -119,7 +122,8 @@ AcfComparison compare_autocorrelations(const Eigen::Ref<const Eigen::VectorXd>& 
 /// The first lag from which on |r| stays below `level`, as in `AcfFeatures`.
 double decay_lag(const Autocorrelation& acf, double level);
 
-/// Every number of a comparison, the verdicts as the numbers of their enumerators.
+/// Every number of a comparison, the verdicts as the numbers of their enumerators. The functions themselves
+/// (`AcfFeatures::values`) are none of them.
 std::vector<NumberColumn<AcfComparison>> acf_columns();
 
 }  // namespace mpm

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/box_jenkins_sensitivity.hpp"
 #include "analysis/nominal_estimator.hpp"
 #include "plants/error.hpp"
 
@@ -52,16 +53,22 @@ void require_active(const Study& study, const NominalSensitivity& sensitivity) {
 BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, const StepObserver& observer) {
   BasisCase basis;
   basis.point = operating_point(study, factory);
-  basis.sensitivity = nominal_sensitivity(study, basis.point, factory, observer);
+  const bool identified = study.sensitivity.form == SensitivityForm::box_jenkins;
+  const auto sensitivity = identified ? box_jenkins_sensitivity : nominal_sensitivity;
+  basis.sensitivity = sensitivity(study, basis.point, factory, observer);
+  if (identified)
+    basis.sensitivity_direct = nominal_sensitivity(study, basis.point, factory, observer);
   require_active(study, basis.sensitivity);
   if (!study.s0_perturbation.fixed_mvs.empty())
-    basis.sensitivity_fixed =
-        nominal_sensitivity(study, with_fixed_mvs(study, basis.point), factory, observer);
+    basis.sensitivity_fixed = sensitivity(study, with_fixed_mvs(study, basis.point), factory, observer);
   basis.trajectory = simulate_experiment(study, basis_draw(), factory, observer);
   if (basis.trajectory.status == ControlStatus::ok) {
     basis.nominal =
         NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);
-    basis.diagnosis = DiagnosisChain(study).diagnose(basis.trajectory.y, basis.nominal, basis.trajectory.y);
+    DiagnosisChain chain(study);
+    basis.diagnosis = chain.diagnose(basis.trajectory.y, basis.nominal, basis.trajectory.y);
+    if (study.names_scenarios())
+      basis.acf = chain.compare_each(basis.trajectory.y, basis.nominal);
   }
   check_health(study, basis);
   return basis;

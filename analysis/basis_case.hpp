@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/diagnosis.hpp"
 #include "analysis/nominal_sensitivity.hpp"
@@ -18,11 +19,15 @@ namespace mpm {
 struct BasisCase {
   OperatingPoint point;
   NominalSensitivity sensitivity;
+  /// The direct step responses beside an identified `sensitivity`; none unless the study wants it identified.
+  std::optional<NominalSensitivity> sensitivity_direct;
   /// T0 with the MVs of `study.s0_perturbation.fixed_mvs` held; none when the study names none.
   std::optional<NominalSensitivity> sensitivity_fixed;
   Trajectory trajectory;
   NominalOutputs nominal;
   Diagnosis diagnosis;
+  /// One a CV; empty unless the study names scenarios and the loop ran to its end.
+  std::vector<AcfComparison> acf = {};
   bool healthy = false;
   std::string explanation;  ///< one sentence for people, also when healthy
 };

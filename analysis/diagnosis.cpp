@@ -1,5 +1,6 @@
 #include "analysis/diagnosis.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/simulation_error.hpp"
@@ -18,6 +19,13 @@ SetpointTrajectories centres(const Study& study) {
     if (study.controller.has_setpoint(cv))
       trajectories[static_cast<std::size_t>(cv)] = y_set.row(cv).transpose();
   return trajectories;
+}
+
+/// The window length of the ellipses (5.3.1): the prediction horizon, or the nearest that the record has room
+/// for.
+int one_window(const Study& study) {
+  const auto longest = static_cast<int>(study.simulation.samples - kFewestCorrelatedPairs);
+  return std::clamp(static_cast<int>(study.controller.prediction_horizon), 3, std::max(3, longest));
 }
 
 }  // namespace
@@ -52,7 +60,9 @@ DiagnosisChain::DiagnosisChain(const Study& study)
     : options_(study.diagnosis),
       y_set_(centres(study)),
       windows_(window_scan(study)),
-      scanner_(study.simulation.samples) {}
+      scanner_(study.simulation.samples),
+      window_(one_window(study)),
+      distribution_scanner_(study.simulation.samples) {}
 
 Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal,
                                    const Eigen::Ref<const Eigen::MatrixXd>& y_basis) {
@@ -70,16 +80,33 @@ Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, c
   return diagnosis;
 }
 
+std::vector<AcfComparison> DiagnosisChain::compare_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                                        const NominalOutputs& nominal) const {
+  std::vector<AcfComparison> cvs;
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+    std::optional<Eigen::VectorXd> y_set;
+    if (!y_set_.empty())
+      y_set = y_set_[static_cast<std::size_t>(cv)];
+    cvs.push_back(compare_autocorrelations(y.row(cv).transpose(), nominal.y0.row(cv).transpose(),
+                                           nominal.y0_diag.row(cv).transpose(), y_set));
+  }
+  return cvs;
+}
+
 std::vector<CvDiagnosis> DiagnosisChain::diagnose_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
                                                        const NominalOutputs& nominal,
                                                        const Eigen::Ref<const Eigen::VectorXd>& ivar_diag) {
   const Eigen::VectorXd sse = simulation_errors(y, nominal.y_sim);
+  const std::vector<AcfComparison> acf = compare_each(y, nominal);
   std::vector<CvDiagnosis> cvs;
   for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
     CvDiagnosis of_cv;
     of_cv.flagged = options_.has_impact(ivar_diag(cv));
-    of_cv.indicator = indicator_of(cv, y, nominal);
-    of_cv.source = of_cv.flagged ? source_of(of_cv.indicator) : ExperimentKind::none;
+    of_cv.distribution =
+        distribution_scanner_.compute(y.row(cv).transpose(), nominal.y0.row(cv).transpose(),
+                                      nominal.y0_diag.row(cv).transpose(), windows_, window_);
+    of_cv.acf = acf[static_cast<std::size_t>(cv)];
+    of_cv.source = of_cv.flagged ? source_of(of_cv.distribution.mpm) : ExperimentKind::none;
     of_cv.sse = sse(cv);
     cvs.push_back(of_cv);
   }

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "analysis/acf_comparison.hpp"
+#include "analysis/distribution_indicators.hpp"
 #include "analysis/mpm_indicator.hpp"
 #include "analysis/nominal_output.hpp"
 #include "analysis/variance.hpp"
@@ -16,7 +18,9 @@ namespace mpm {
 struct CvDiagnosis {
   bool flagged = false;                          ///< Ivar_diag lies outside the band of impact
   ExperimentKind source = ExperimentKind::none;  ///< of a flagged CV: mpm when I_MPM exceeds its threshold
-  MpmIndicator indicator;                        ///< (6.13) to (6.15)
+  /// Chapters 2, 5 and 6; `mpm` of it is (6.13) to (6.15). One window length is the prediction horizon.
+  DistributionIndicators distribution;
+  AcfComparison acf;  ///< M2 and M3: about the setpoint where the CV has one
   double sse = std::numeric_limits<double>::quiet_NaN();  ///< (4.17), CV unit
 };
 
@@ -55,6 +59,10 @@ class DiagnosisChain {
   Diagnosis diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal,
                      const Eigen::Ref<const Eigen::MatrixXd>& y_basis);
 
+  /// The autocorrelation functions of every CV of the record y, about the centres of the variances.
+  std::vector<AcfComparison> compare_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                          const NominalOutputs& nominal) const;
+
   /// Every CV of the record y on its own; `ivar_diag` is that of diagnose().
   std::vector<CvDiagnosis> diagnose_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
                                          const NominalOutputs& nominal,
@@ -69,6 +77,9 @@ class DiagnosisChain {
   SetpointTrajectories y_set_;  ///< what the variances are taken about; empty: the means of all CVs
   WindowScan windows_;
   MpmScanner scanner_;
+  int window_;  ///< of the ellipses, samples
+  /// For named scenarios, which look at more than the two correlations.
+  DistributionScanner distribution_scanner_;
 };
 
 }  // namespace mpm

@@ -94,7 +94,25 @@ constexpr std::array<Quantity<ScatterShape>, 4> kShapes{{
     {"log_r_squared", "1", "|ln R^2| of that line", &ScatterShape::log_r_squared},
 }};
 
+constexpr std::array<Quantity<CentredSums>, 5> kSums{{
+    {"scatter_mean_y0", "1", "mean over the nominal output", &CentredSums::mean_x},
+    {"scatter_mean_e0", "1", "mean over the nominal error", &CentredSums::mean_y},
+    {"scatter_y0_y0", "1", "sum of squares over the nominal output", &CentredSums::xx},
+    {"scatter_y0_e0", "1", "sum of products of nominal output and error", &CentredSums::xy},
+    {"scatter_e0_e0", "1", "sum of squares over the nominal error", &CentredSums::yy},
+}};
+
+constexpr double kMostPairs = 1e15;  // exact as a double
+
 using Columns = std::vector<NumberColumn<DistributionIndicators>>;
+
+/// The means of the correlations stand twice: `MpmMeans` and `ScatterSum` add up the same numbers.
+void copy_correlations(DistributionIndicators& indicators) {
+  indicators.mpm.co_kts = indicators.means.kts.co;
+  indicators.mpm.co_skn = indicators.means.skn.co;
+  indicators.mpm.co_dkts = indicators.means.dkts.co;
+  indicators.mpm.co_dskn = indicators.means.dskn.co;
+}
 
 /// A column for each quantity of each statistic of one part of the indicators.
 template <class Part, std::size_t n>
@@ -107,6 +125,11 @@ void append(Columns& columns, PerStatistic<Part> DistributionIndicators::*part,
            std::string(quantity.meaning) + ", of " + statistic.meaning,
            [part, z = statistic.member, number = quantity.member](const DistributionIndicators& indicators) {
              return indicators.*part.*z.*number;
+           },
+           [part, z = statistic.member, number = quantity.member](DistributionIndicators& indicators,
+                                                                  double value) {
+             indicators.*part.*z.*number = value;
+             copy_correlations(indicators);
            }});
     }
   }
@@ -157,7 +180,26 @@ std::vector<NumberColumn<DistributionIndicators>> distribution_columns() {
   append(columns, &DistributionIndicators::means, kMeans);
   append(columns, &DistributionIndicators::shape, kShapes);
   columns.push_back({"i_mpm", "1", "I_MPM = max(co_dkts, co_dskn) (6.15)",
-                     [](const DistributionIndicators& indicators) { return indicators.mpm.i_mpm; }});
+                     [](const DistributionIndicators& indicators) { return indicators.mpm.i_mpm; },
+                     [](DistributionIndicators& indicators, double value) { indicators.mpm.i_mpm = value; }});
+  return columns;
+}
+
+std::vector<NumberColumn<DistributionIndicators>> scatter_columns() {
+  Columns columns;
+  for (const Statistic<CentredSums>& statistic : kStatistics<CentredSums>) {
+    columns.push_back({std::string("scatter_pairs_") + statistic.name, "1",
+                       std::string("number of windows behind the ellipse, of ") + statistic.meaning,
+                       [z = statistic.member](const DistributionIndicators& indicators) {
+                         return static_cast<double>((indicators.scatter_diag.*z).pairs);
+                       },
+                       [z = statistic.member](DistributionIndicators& indicators, double value) {
+                         // What no count can be (a damaged file) is no windows.
+                         const bool count = value >= 0.0 && value <= kMostPairs;
+                         (indicators.scatter_diag.*z).pairs = count ? static_cast<Eigen::Index>(value) : 0;
+                       }});
+  }
+  append(columns, &DistributionIndicators::scatter_diag, kSums);
   return columns;
 }
 

@@ -109,4 +109,7 @@ class DistributionScanner {
 /// Every indicator, named quantity_statistic: co_dkts, angle_kts, regression_angle_skn, ..., and i_mpm.
 std::vector<NumberColumn<DistributionIndicators>> distribution_columns();
 
+/// `scatter_diag`, named scatter_quantity_statistic: what a confidence ellipse is made of.
+std::vector<NumberColumn<DistributionIndicators>> scatter_columns();
+
 }  // namespace mpm

@@ -94,44 +94,9 @@ Eigen::VectorXd setpoints_at_rest(const Study& study, const OperatingPoint& poin
 Eigen::MatrixXd reference_response(const Study& study, const OperatingPoint& point,
                                    const ActiveReference& reference, double step,
                                    const QpSolverFactory& factory, const StepObserver& observer) {
-  const MpcOptions options = relaxed_options(study, point);
-  Mpc controller(study.plant.G, study.mv_count(), options, factory);
-  Eigen::VectorXd y_set = setpoints_at_rest(study, point);
-  controller.set_setpoints(y_set);
-  const Eigen::VectorXd d = Eigen::VectorXd::Zero(study.md_count());
-  const Eigen::VectorXd u = controller.nominal_target(d);
-  Eigen::VectorXd input(u.size() + d.size());
-  input << u, d;
-  LinearPlant plant(study.plant.G, study.controller.sample_time);
-  plant.reset(input);
-  controller.reset(u, d);
-  const Eigen::VectorXd rest = plant.output();
-
-  if (reference.kind == ReferenceKind::setpoint) {
-    y_set(reference.cv) += step;
-    controller.set_setpoints(y_set);
-  } else {
-    Limits stepped = options.cv_soft;
-    limit_of(stepped, reference) += step;
-    controller.set_cv_soft(stepped);
-  }
-
-  Eigen::MatrixXd response(study.cv_count(), study.sensitivity.samples);
-  for (Eigen::Index l = 0; l < response.cols(); ++l) {
-    const ControlMove& move = controller.step(plant.output(), d);
-    if (observer)
-      observer(controller);
-    if (move.status != ControlStatus::ok)
-      throw InputError("nominal sensitivity",
-                       fmt::format("a controller that is {} after a step in the {} of {}",
-                                   to_string(move.status), to_string(reference.kind),
-                                   study.plant.cvs[static_cast<std::size_t>(reference.cv)].name),
-                       "a relaxed controller with a solution (are the active CVs right?)");
-    input.head(u.size()) = move.u;
-    plant.advance(input);
-    response.col(l) = (plant.output() - rest) / step;
-  }
-  return response;
+  const Eigen::Index samples = study.sensitivity.samples;
+  const Eigen::RowVectorXd moves = Eigen::RowVectorXd::Constant(samples + 1, step);
+  return reference_record(study, point, reference, moves, factory, observer).rightCols(samples) / step;
 }
 
 Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& point,
@@ -214,6 +179,54 @@ double NominalSensitivity::unsettled() const {
     largest = std::max(largest, change.cwiseAbs().maxCoeff());
   }
   return largest;
+}
+
+Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point,
+                                 const ActiveReference& reference,
+                                 const Eigen::Ref<const Eigen::RowVectorXd>& moves,
+                                 const QpSolverFactory& factory, const StepObserver& observer) {
+  const MpcOptions options = relaxed_options(study, point);
+  Mpc controller(study.plant.G, study.mv_count(), options, factory);
+  const Eigen::VectorXd y_set = setpoints_at_rest(study, point);
+  controller.set_setpoints(y_set);
+  const Eigen::VectorXd d = Eigen::VectorXd::Zero(study.md_count());
+  const Eigen::VectorXd u = controller.nominal_target(d);
+  Eigen::VectorXd input(u.size() + d.size());
+  input << u, d;
+  LinearPlant plant(study.plant.G, study.controller.sample_time);
+  plant.reset(input);
+  controller.reset(u, d);
+  const Eigen::VectorXd rest = plant.output();
+
+  const auto move_reference = [&](double by) {
+    if (reference.kind == ReferenceKind::setpoint) {
+      Eigen::VectorXd moved = y_set;
+      moved(reference.cv) += by;
+      controller.set_setpoints(moved);
+    } else {
+      Limits moved = options.cv_soft;
+      limit_of(moved, reference) += by;
+      controller.set_cv_soft(moved);
+    }
+  };
+  Eigen::MatrixXd y = Eigen::MatrixXd::Zero(study.cv_count(), moves.size());
+  for (Eigen::Index k = 0; k + 1 < moves.size(); ++k) {
+    if (k == 0 || moves(k) != moves(k - 1))
+      move_reference(moves(k));
+    const ControlMove& move = controller.step(plant.output(), d);
+    if (observer)
+      observer(controller);
+    if (move.status != ControlStatus::ok)
+      throw InputError("nominal sensitivity",
+                       fmt::format("a controller that is {} after a step in the {} of {}",
+                                   to_string(move.status), to_string(reference.kind),
+                                   study.plant.cvs[static_cast<std::size_t>(reference.cv)].name),
+                       "a relaxed controller with a solution (are the active CVs right?)");
+    input.head(u.size()) = move.u;
+    plant.advance(input);
+    y.col(k + 1) = plant.output() - rest;
+  }
+  return y;
 }
 
 NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint& point,

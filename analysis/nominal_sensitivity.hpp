@@ -68,6 +68,21 @@ struct NominalSensitivity {
   double unsettled() const;
 };
 
+/// Outputs of the controller on its own model while one reference moves, as deviations from rest (appendix
+/// A3, steps a to l): limits of the CVs inside their range and of the available MVs relaxed, MVs at a limit
+/// held there, no noise and no disturbance. `observer` sees each step of the controller.
+///
+/// | symbol | meaning                                                  | shape  | unit        |
+/// |--------|----------------------------------------------------------|--------|-------------|
+/// | moves  | deviation of the reference from where it lies            | N      | of its CV   |
+/// | result | column k: outputs at sample k, from moves up to k - 1    | ny x N | of the CVs  |
+///
+/// @throws InputError when the relaxed controller has no solution
+Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point,
+                                 const ActiveReference& reference,
+                                 const Eigen::Ref<const Eigen::RowVectorXd>& moves,
+                                 const QpSolverFactory& factory, const StepObserver& observer = {});
+
 /// T0 by simulation of the controller on its own model, appendix A3 of the thesis (steps a to p): limits of
 /// the CVs inside their range and of the available MVs relaxed, MVs at a limit held there, no noise and no
 /// disturbance, then for each setpoint and each active soft limit in turn a step of

@@ -1,10 +1,34 @@
 #include "bench/record_bytes.hpp"
 
+#include <type_traits>
+#include <vector>
+
 #include "bench/byte_stream.hpp"
 #include "bench/draw_bytes.hpp"
 
 namespace mpm {
 namespace {
+
+/// Every number of a table of columns.
+template <class Stream, class Owner>
+void transfer_numbers(Stream& stream, Owner& owner,
+                      const std::vector<NumberColumn<std::remove_const_t<Owner>>>& columns) {
+  for (const auto& column : columns) {
+    double value = column.value(owner);
+    transfer(stream, value);
+    if constexpr (!std::is_const_v<Owner>)
+      column.set(owner, value);
+  }
+}
+
+template <class Stream, class Cv>
+void transfer_cv(Stream& stream, Cv& cv) {
+  transfer_all(stream, cv.flagged, cv.source, cv.sse, cv.distribution.mpm.scanned, cv.distribution.mpm.used);
+  transfer_numbers(stream, cv.distribution, distribution_columns());
+  transfer_numbers(stream, cv.distribution, scatter_columns());
+  transfer_numbers(stream, cv.acf, acf_columns());
+  transfer_all(stream, cv.acf.y.values, cv.acf.y0.values, cv.acf.y0_diag.values);
+}
 
 template <class Stream, class Record>
 void transfer_record(Stream& stream, Record& record) {
@@ -18,10 +42,7 @@ void transfer_record(Stream& stream, Record& record) {
     all(i.co_dkts, i.co_dskn, i.i_mpm, i.co_kts, i.co_skn, i.scanned, i.used);
   };
   indicators(diagnosis.indicator);
-  transfer_list(stream, diagnosis.cvs, [&](auto& cv) {
-    all(cv.flagged, cv.source, cv.sse);
-    indicators(cv.indicator);
-  });
+  transfer_list(stream, diagnosis.cvs, [&](auto& cv) { transfer_cv(stream, cv); });
   all(record.ivar_diag_mpm_alone, record.ivar_diag_ud_alone, record.dominance_mpm);
   all(record.perturbed.time_constant, record.perturbed.damping);
   const auto statistics = [&](auto& s) { all(s.steps, s.iterations, s.fallbacks, s.largest_kkt_residual); };

@@ -24,6 +24,8 @@ Campaign read_groups(const std::filesystem::path& path) {
   read_s0_sensitivity(root, study, campaign.records, file);
   campaign.audit = read_audit(root, file);
   campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
+  read_basis_acf(root, study, campaign.basis, file);
+  campaign.basis.sensitivity_direct = read_nominal_direct(root, study, campaign.basis.sensitivity, file);
   campaign.basis.sensitivity_fixed = read_nominal_fixed(root, study, file);
   return campaign;
 }
@@ -42,6 +44,7 @@ void write_archive(const std::filesystem::path& path, const Campaign& campaign) 
   write_scenarios(root, campaign);
   write_basis(root, campaign.study, campaign.basis);
   write_nominal(root, campaign.study, campaign.basis.sensitivity);
+  write_nominal_direct(root, campaign.study, campaign.basis);
   write_nominal_fixed(root, campaign.study, campaign.basis.sensitivity_fixed);
   write_trajectories(root, campaign);
   write_s0_sensitivity(root, campaign);

@@ -33,6 +33,13 @@ void write_nominal_fixed(Hdf5Group& root, const Study& study,
 std::optional<NominalSensitivity> read_nominal_fixed(const Hdf5Group& root, const Study& study,
                                                      const std::string& file);
 
+/// /nominal_direct: the direct step responses beside an identified T0, and how far they are from it; no such
+/// group unless the study wants T0 identified.
+void write_nominal_direct(Hdf5Group& root, const Study& study, const BasisCase& basis);
+std::optional<NominalSensitivity> read_nominal_direct(const Hdf5Group& root, const Study& study,
+                                                      const NominalSensitivity& identified,
+                                                      const std::string& file);
+
 /// /s0_sensitivity: Ivar_diag with a modified S0; no such group when the study asks for none. What follows
 /// from the rest (fits, ratios) is not read back.
 void write_s0_sensitivity(Hdf5Group& root, const Campaign& campaign);
@@ -44,6 +51,8 @@ void read_s0_sensitivity(const Hdf5Group& root, const Study& study, std::vector<
 void write_scenarios(Hdf5Group& root, const Campaign& campaign);
 void read_scenarios(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
                     const std::string& file);
+/// The autocorrelations of the basis case, which stand in /scenarios.
+void read_basis_acf(const Hdf5Group& root, const Study& study, BasisCase& basis, const std::string& file);
 
 /// /basis: the operating point and the run without mismatch and disturbance.
 void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis);

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "analysis/box_jenkins_sensitivity.hpp"
 #include "results/archive_error.hpp"
 #include "results/archive_groups.hpp"
 #include "results/dimensions.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 constexpr const char* kGroup = "nominal";
 constexpr const char* kFixedGroup = "nominal_fixed";
+constexpr const char* kDirectGroup = "nominal_direct";
 constexpr const char* kResponse = "t0_step_response";
 
 VariableText side_text() {
@@ -40,7 +43,7 @@ ReferenceKind reference_kind(std::int8_t side, const char* group, const std::str
   return static_cast<ReferenceKind>(side);
 }
 
-void write_sensitivity(Hdf5Group group, const std::string& title, const Study& study,
+void write_sensitivity(Hdf5Group& group, const std::string& title, const Study& study,
                        const NominalSensitivity& sensitivity) {
   group.write_attribute("title", title);
   std::vector<PlantModel::Variable> active;
@@ -88,9 +91,9 @@ NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, con
 }  // namespace
 
 void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity) {
-  write_sensitivity(root.create_group(kGroup),
-                    "Nominal complementary sensitivity T0; S0 = I - T0, and T0 = 0 from other CVs", study,
-                    sensitivity);
+  Hdf5Group group = root.create_group(kGroup);
+  write_sensitivity(group, "Nominal complementary sensitivity T0; S0 = I - T0, and T0 = 0 from other CVs",
+                    study, sensitivity);
 }
 
 NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file) {
@@ -99,9 +102,39 @@ NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const
 
 void write_nominal_fixed(Hdf5Group& root, const Study& study,
                          const std::optional<NominalSensitivity>& sensitivity) {
-  if (sensitivity)
-    write_sensitivity(root.create_group(kFixedGroup), "T0 with the fixed MVs of s0_perturbation held", study,
-                      *sensitivity);
+  if (!sensitivity)
+    return;
+  Hdf5Group group = root.create_group(kFixedGroup);
+  write_sensitivity(group, "T0 with the fixed MVs of s0_perturbation held", study, *sensitivity);
+}
+
+void write_nominal_direct(Hdf5Group& root, const Study& study, const BasisCase& basis) {
+  if (!basis.sensitivity_direct)
+    return;
+  Hdf5Group group = root.create_group(kDirectGroup);
+  write_sensitivity(group, "T0 as direct step responses, beside the identified one of /nominal", study,
+                    *basis.sensitivity_direct);
+  const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
+  write_vectors(group, {"active_cv"},
+                {"largest_difference", "largest difference of identified and direct step responses", "1",
+                 "in the units of t0_step_response"},
+                {&largest}, largest.size());
+}
+
+std::optional<NominalSensitivity> read_nominal_direct(const Hdf5Group& root, const Study& study,
+                                                      const NominalSensitivity& identified,
+                                                      const std::string& file) {
+  if (study.sensitivity.form != SensitivityForm::box_jenkins)
+    return std::nullopt;
+  NominalSensitivity direct = read_sensitivity(root, kDirectGroup, study, file);
+  const auto shape = [](const NominalSensitivity& sensitivity) {
+    const auto& responses = sensitivity.step_response;
+    return std::pair(sensitivity.active, responses.empty() ? 0 : responses.front().cols());
+  };
+  if (shape(direct) != shape(identified))
+    throw ArchiveError(fmt::format("{}: '/{}': found other references or lags; allowed: those of '/{}'", file,
+                                   kDirectGroup, kGroup));
+  return direct;
 }
 
 std::optional<NominalSensitivity> read_nominal_fixed(const Hdf5Group& root, const Study& study,

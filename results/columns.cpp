@@ -114,10 +114,38 @@ Access<Owner, T> plain() {
           }};
 }
 
-template <class T, auto member, class Owner = Diagnosis>
-Access<Owner, T> of_indicator() {
-  return {[](const Owner& owner) { return static_cast<T>(owner.indicator.*member); },
-          [](Owner& owner, T value) { owner.indicator.*member = value; }};
+template <class T, auto member>
+Access<Diagnosis, T> of_indicator() {
+  return {[](const Diagnosis& owner) { return static_cast<T>(owner.indicator.*member); },
+          [](Diagnosis& owner, T value) { owner.indicator.*member = value; }};
+}
+
+/// A count of the scan behind I_MPM.
+template <auto member>
+Access<CvDiagnosis, std::int32_t> of_distribution() {
+  return {[](const CvDiagnosis& cv) { return std::int32_t{cv.distribution.mpm.*member}; },
+          [](CvDiagnosis& cv, std::int32_t value) { cv.distribution.mpm.*member = value; }};
+}
+
+/// The numbers of a part of an owner; `of` gives that part. A verdict becomes a flag.
+template <class Owner, class Part, class Of>
+void append_numbers(std::vector<Column<Owner>>& columns, const std::vector<NumberColumn<Part>>& numbers,
+                    const std::string& prefix, Of of) {
+  for (const NumberColumn<Part>& number : numbers) {
+    VariableText text{prefix + number.name, number.meaning, number.unit};
+    for (const std::string& word : number.words) {
+      text.flags.values.push_back(static_cast<int>(text.flags.values.size()));
+      text.flags.meanings.push_back(word);
+    }
+    const auto get = [value = number.value, of](const Owner& owner) { return value(of(owner)); };
+    const auto set = [put = number.set, of](Owner& owner, double value) { put(of(owner), value); };
+    if (number.words.empty())
+      columns.push_back({text, Access<Owner, double>{get, set}});
+    else
+      columns.push_back(
+          {text, Access<Owner, std::int8_t>{
+                     [get](const Owner& owner) { return static_cast<std::int8_t>(get(owner)); }, set}});
+  }
 }
 
 template <class T, auto problem, auto member>
@@ -201,27 +229,32 @@ std::vector<Column<Diagnosis>> verdict_columns(const Study& study) {
 }
 
 std::vector<Column<CvDiagnosis>> cv_columns() {
-  return {
+  std::vector<Column<CvDiagnosis>> columns{
       {{"flagged", "Ivar_diag lies outside the band of impact", "1", "", yes_no_flags()},
        plain<std::int8_t, &CvDiagnosis::flagged, CvDiagnosis>()},
       {{"source", "source of a flagged CV that I_MPM points at", "1", "none: not flagged", kind_flags()},
        plain<std::int8_t, &CvDiagnosis::source, CvDiagnosis>()},
       {{"sse", "SSE = norm of y_sim - y", "1", "in the unit of the CV; NaN unless the status is ok"},
        plain<double, &CvDiagnosis::sse, CvDiagnosis>()},
-      {{"co_dkts", "mean correlation of the differenced moving kurtosis"},
-       of_indicator<double, &MpmIndicator::co_dkts, CvDiagnosis>()},
-      {{"co_dskn", "mean correlation of the differenced moving skewness"},
-       of_indicator<double, &MpmIndicator::co_dskn, CvDiagnosis>()},
-      {{"i_mpm", "I_MPM = max(co_dkts, co_dskn)"}, of_indicator<double, &MpmIndicator::i_mpm, CvDiagnosis>()},
-      {{"co_kts", "mean correlation of the moving kurtosis"},
-       of_indicator<double, &MpmIndicator::co_kts, CvDiagnosis>()},
-      {{"co_skn", "mean correlation of the moving skewness"},
-       of_indicator<double, &MpmIndicator::co_skn, CvDiagnosis>()},
-      {{"windows_scanned", "number of moving-window lengths"},
-       of_indicator<std::int32_t, &MpmIndicator::scanned, CvDiagnosis>()},
+      {{"windows_scanned", "number of moving-window lengths"}, of_distribution<&MpmIndicator::scanned>()},
       {{"windows_used", "number of window lengths behind the weakest of the means"},
-       of_indicator<std::int32_t, &MpmIndicator::used, CvDiagnosis>()},
+       of_distribution<&MpmIndicator::used>()},
   };
+  const auto distribution = [](auto& cv) -> auto& {
+    return cv.distribution;
+  };
+  append_numbers(columns, distribution_columns(), "", distribution);
+  append_numbers(columns, scatter_columns(), "", distribution);
+  append_numbers(
+      columns, acf_columns(), "", [](auto& cv) -> auto& { return cv.acf; });
+  return columns;
+}
+
+std::vector<Column<AcfComparison>> basis_acf_columns() {
+  std::vector<Column<AcfComparison>> columns;
+  append_numbers(
+      columns, acf_columns(), "basis_", [](auto& acf) -> auto& { return acf; });
+  return columns;
 }
 
 std::vector<Column<ExperimentRecord>> dominance_columns() {

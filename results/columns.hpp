@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -16,8 +17,8 @@ namespace mpm {
 /// How one number of an `Owner` is taken out and put back.
 template <class Owner, class T>
 struct Access {
-  T (*get)(const Owner&);
-  void (*set)(Owner&, T);
+  std::function<T(const Owner&)> get;
+  std::function<void(Owner&, T)> set;
 };
 
 /// One number of an `Owner` as a variable of the archive: the one place that says what it is called, what it
@@ -55,6 +56,8 @@ std::vector<CvColumn<Diagnosis>> variance_columns();
 std::vector<Column<Diagnosis>> verdict_columns(const Study& study);
 /// What the chain says of every CV of a named scenario. A later indicator is one more line in this list.
 std::vector<Column<CvDiagnosis>> cv_columns();
+/// What the autocorrelation functions of a CV of the basis case say.
+std::vector<Column<AcfComparison>> basis_acf_columns();
 /// What the loops with one of two faults say.
 std::vector<Column<ExperimentRecord>> dominance_columns();
 /// How hard the optimisation problems were, and how well they were solved.

@@ -1,8 +1,11 @@
 #include <array>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "analysis/box_jenkins_sensitivity.hpp"
 #include "results/experiment_text.hpp"
+#include "results/html_table.hpp"
 #include "results/panel_script.hpp"
 #include "results/plot_text.hpp"
 #include "results/report_sections.hpp"
@@ -24,7 +27,25 @@ Pen cv_pen(Eigen::Index cv, bool stepped) {
           stepped ? 3.0 : 1.5};
 }
 
-Panel step_panel(const Study& study, const NominalSensitivity& sensitivity, std::size_t a) {
+/// The direct step responses under the identified ones.
+const Pen kDirect{colour::kLightGrey, Dash::solid, Mark::none, 4.0};
+
+/// How far the identified T0 is from the direct one.
+std::string difference_text(const Study& study, const BasisCase& basis) {
+  const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
+  std::string html;
+  for (Eigen::Index a = 0; a < largest.size(); ++a)
+    html += fmt::format("{}{}: {}", html.empty() ? "" : ", ",
+                        html_text(cv_name(study, basis.sensitivity.active[static_cast<std::size_t>(a)].cv)),
+                        html_number(largest(a)));
+  return "<p>T<sub>0</sub> is identified as Box-Jenkins models (appendix A3). Largest difference from the "
+         "direct "
+         "step responses, by reference: " +
+         html + ".</p>\n";
+}
+
+Panel step_panel(const Study& study, const NominalSensitivity& sensitivity,
+                 const std::optional<NominalSensitivity>& direct, std::size_t a) {
   const ActiveReference& reference = sensitivity.active[a];
   const Eigen::MatrixXd& response = sensitivity.step_response[a];
   std::vector<double> time{0.0};
@@ -37,11 +58,16 @@ Panel step_panel(const Study& study, const NominalSensitivity& sensitivity, std:
                      .lower = 0.0,
                      .upper = time.back()},
                     {.label = "response per unit step"});
-  for (Eigen::Index i = 0; i < response.rows(); ++i) {
+  const auto draw = [&](const Eigen::MatrixXd& of, Eigen::Index row, const Pen& pen) {
     std::vector<double> y{0.0};
-    y.insert(y.end(), response.row(i).begin(), response.row(i).end());
-    panel.line(time, y, cv_pen(i, i == reference.cv));
-  }
+    y.insert(y.end(), of.row(row).begin(), of.row(row).end());
+    panel.line(time, y, pen);
+  };
+  if (direct)
+    for (Eigen::Index i = 0; i < response.rows(); ++i)
+      draw(direct->step_response[a], i, kDirect);
+  for (Eigen::Index i = 0; i < response.rows(); ++i)
+    draw(response, i, cv_pen(i, i == reference.cv));
   return panel.finish(
       fmt::format("Responses of all CVs to a unit step of the {} of {}.", to_string(reference.kind), cv));
 }
@@ -51,6 +77,7 @@ Panel step_panel(const Study& study, const NominalSensitivity& sensitivity, std:
 ReportSection sensitivity_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
   const NominalSensitivity& sensitivity = input.campaign.basis.sensitivity;
+  const std::optional<NominalSensitivity>& direct = input.campaign.basis.sensitivity_direct;
   ReportSection section{"sensitivity", "Nominal sensitivity T_{0}", {}};
   Figure figure;
   figure.name = "t0";
@@ -59,13 +86,17 @@ ReportSection sensitivity_section(const ReportInput& input) {
       "thesis figure 6.10. T_{0} from the other CVs is zero.";
   for (Eigen::Index i = 0; i < study.cv_count(); ++i)
     figure.legend.push_back({as_label(cv_name(study, i)), cv_pen(i, false)});
+  if (direct)
+    figure.legend.push_back({"direct step response", kDirect});
   for (std::size_t a = 0; a < sensitivity.active.size() && a < sensitivity.step_response.size(); ++a)
     if (sensitivity.step_response[a].size() > 0)
-      figure.panels.push_back(step_panel(study, sensitivity, a));
+      figure.panels.push_back(step_panel(study, sensitivity, direct, a));
   if (figure.panels.empty())
     section.leave_out("no CV is at a setpoint or a soft limit, so T_0 is zero.");
   else
     section.add(std::move(figure));
+  if (direct)
+    section.add(difference_text(study, input.campaign.basis));
   return section;
 }
 

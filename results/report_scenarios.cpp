@@ -8,6 +8,7 @@
 #include "results/panel_script.hpp"
 #include "results/plot_text.hpp"
 #include "results/report_sections.hpp"
+#include "results/scenario_sections.hpp"
 #include "results/scenario_text.hpp"
 
 namespace mpm {
@@ -133,7 +134,7 @@ struct IndicatorRows {
     const std::string name =
         fmt::format("{} {} ({})", scenario_name(study, record), study.plant.cvs[cv].name, truth);
     const auto row = static_cast<double>(words.size());
-    const MpmIndicator& indicator = found.indicator;
+    const MpmIndicator& indicator = found.distribution.mpm;
     kurtosis.push_back({indicator.co_dkts, row, fmt::format("{}: co_dkts {:.3f}", name, indicator.co_dkts)});
     skewness.push_back({indicator.co_dskn, row, fmt::format("{}: co_dskn {:.3f}", name, indicator.co_dskn)});
     words.push_back(as_label(name));
@@ -191,7 +192,7 @@ std::string flagged_cell(const Study& study, const Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < diagnosis.cvs.size(); ++i)
     if (const CvDiagnosis& cv = diagnosis.cvs[i]; cv.flagged)
       html += fmt::format("{}{}: {} ({})", html.empty() ? "" : "<br>", html_text(study.plant.cvs[i].name),
-                          html_number(cv.indicator.i_mpm), kind_name(cv.source));
+                          html_number(cv.distribution.mpm.i_mpm), kind_name(cv.source));
   return html.empty() ? "none" : html;
 }
 
@@ -284,6 +285,8 @@ ReportSection scenarios_section(const ReportInput& input) {
     section.add(index_figure(campaign));
     section.add(indicator_figure(campaign, IndicatorRows(campaign)));
     section.add(index_table(campaign));
+    add_distributions(section, campaign);
+    add_autocorrelations(section, campaign);
   }
   section.add(failures(input));
   return section;

@@ -54,4 +54,30 @@ std::string scenario_verdict_text(const Study& study, const ExperimentRecord& re
   return text.empty() ? "right" : text;
 }
 
+std::string acf_text(const AcfComparison& acf) {
+  std::string text(to_string(acf.speed));
+  if (acf.speed == LoopSpeed::slower || acf.speed == LoopSpeed::faster)
+    text += " than designed";
+  if (acf.oscillates_by_error())
+    text += ", oscillates";
+  if (acf.calmed_by_error())
+    text += ", calmed";
+  switch (acf.origin) {
+    case ErrorOrigin::none:
+      break;
+    case ErrorOrigin::own:
+      return text + "; own model";
+    case ErrorOrigin::others:
+      return text + "; models of other CVs";
+    case ErrorOrigin::both:
+      return text + "; own model and those of other CVs";
+  }
+  return text;
+}
+
+bool acf_differs(const AcfComparison& acf) {
+  return acf.speed == LoopSpeed::slower || acf.speed == LoopSpeed::faster || acf.oscillates_by_error() ||
+         acf.calmed_by_error();
+}
+
 }  // namespace mpm

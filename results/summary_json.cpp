@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "analysis/box_jenkins_sensitivity.hpp"
 #include "results/experiment_text.hpp"
 #include "results/scenario_text.hpp"
 #include "results/summary.hpp"
@@ -39,11 +40,38 @@ Json run_json(const CampaignInfo& info) {
           {"jobs", info.jobs}};
 }
 
+/// Every number of a table of columns; a verdict as its word.
+template <class Owner>
+Json numbers_json(const Owner& owner, const std::vector<NumberColumn<Owner>>& columns) {
+  Json numbers = Json::object();
+  for (const NumberColumn<Owner>& column : columns)
+    if (column.words.empty())
+      numbers[column.name] = column.value(owner);
+    else
+      numbers[column.name] = column.words.at(static_cast<std::size_t>(column.value(owner)));
+  return numbers;
+}
+
 Json basis_json(const Study& study, const BasisCase& basis) {
   Json ivar = Json::object();
   for (Eigen::Index cv = 0; cv < basis.diagnosis.ivar.size(); ++cv)
     ivar[study.plant.cvs[static_cast<std::size_t>(cv)].name] = basis.diagnosis.ivar(cv);
-  return {{"healthy", basis.healthy}, {"explanation", basis.explanation}, {"ivar", ivar}};
+  Json differences = Json::object();
+  if (basis.sensitivity_direct) {
+    const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
+    for (Eigen::Index a = 0; a < largest.size(); ++a)
+      differences[study.plant
+                      .cvs[static_cast<std::size_t>(basis.sensitivity.active[static_cast<std::size_t>(a)].cv)]
+                      .name] = largest(a);
+  }
+  Json acf = Json::object();
+  for (std::size_t cv = 0; cv < basis.acf.size(); ++cv)
+    acf[study.plant.cvs[cv].name] = numbers_json(basis.acf[cv], acf_columns());
+  return {{"healthy", basis.healthy},
+          {"explanation", basis.explanation},
+          {"ivar", ivar},
+          {"acf", acf},
+          {"t0_difference", differences}};
 }
 
 Json kinds_json(const StudyAggregate& aggregate) {
@@ -125,10 +153,12 @@ Json cv_json(const Study& study, const Diagnosis& diagnosis, std::size_t cv) {
           {"ivar_basis", diagnosis.ivar_basis(place)},
           {"flagged", found.flagged},
           {"source", to_string(found.source)},
-          {"i_mpm", found.indicator.i_mpm},
-          {"co_dkts", found.indicator.co_dkts},
-          {"co_dskn", found.indicator.co_dskn},
-          {"sse", found.sse}};
+          {"i_mpm", found.distribution.mpm.i_mpm},
+          {"co_dkts", found.distribution.mpm.co_dkts},
+          {"co_dskn", found.distribution.mpm.co_dskn},
+          {"sse", found.sse},
+          {"distribution", numbers_json(found.distribution, distribution_columns())},
+          {"acf", numbers_json(found.acf, acf_columns())}};
 }
 
 /// Named scenarios; an empty list in a study of random experiments.

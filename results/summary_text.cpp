@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/box_jenkins_sensitivity.hpp"
 #include "results/scenario_text.hpp"
 #include "results/summary.hpp"
 #include "results/summary_parts.hpp"
@@ -77,6 +78,16 @@ std::string audit_sentence(const SummaryParts& parts, const CampaignInfo& info) 
       audit.largest_move, audit.largest_target, audit.largest_objective, info.audit_seconds);
 }
 
+std::string identification_sentence(const Study& study, const BasisCase& basis) {
+  const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
+  std::string sentence = "Box-Jenkins models; largest difference from the direct step responses:";
+  for (Eigen::Index a = 0; a < largest.size(); ++a) {
+    const auto cv = static_cast<std::size_t>(basis.sensitivity.active[static_cast<std::size_t>(a)].cv);
+    sentence += fmt::format("{} {} {:.2g}", a == 0 ? "" : ",", study.plant.cvs[cv].name, largest(a));
+  }
+  return sentence;
+}
+
 void add_heading(Text& text, const Campaign& campaign, const SummaryParts& parts) {
   const StudyAggregate& aggregate = parts.aggregate;
   const Study& study = campaign.study;
@@ -102,6 +113,8 @@ void add_heading(Text& text, const Campaign& campaign, const SummaryParts& parts
                                 plural(static_cast<std::size_t>(std::max(info.jobs, 0)), "job")));
   if (info.solver == "auto")
     text.entry("audit", audit_sentence(parts, info));
+  if (campaign.basis.sensitivity_direct)
+    text.entry("T0", identification_sentence(study, campaign.basis));
   text.entry("self-check",
              fmt::format("{}: {}", campaign.basis.healthy ? "passed" : "FAILED", campaign.basis.explanation));
 }
@@ -276,10 +289,34 @@ void add_scenario_indicators(Text& text, const Campaign& campaign) {
     for (std::size_t i = 0; i < record.diagnosis.cvs.size(); ++i) {
       const CvDiagnosis& cv = record.diagnosis.cvs[i];
       if (cv.flagged)
-        text.line(kRow, scenario_name(study, record), study.plant.cvs[i].name, digits(cv.indicator.i_mpm),
-                  digits(cv.indicator.co_dkts), digits(cv.indicator.co_dskn), digits(cv.sse));
+        text.line(kRow, scenario_name(study, record), study.plant.cvs[i].name,
+                  digits(cv.distribution.mpm.i_mpm), digits(cv.distribution.mpm.co_dkts),
+                  digits(cv.distribution.mpm.co_dskn), digits(cv.sse));
     }
   text.line("(* outside the band of impact)");
+}
+
+/// The CVs whose autocorrelation functions differ from those of their nominal outputs.
+void add_autocorrelations(Text& text, const Campaign& campaign) {
+  const Study& study = campaign.study;
+  constexpr auto kRow = "{:<14}  {:<10}  {:>8}  {:>8}  {:>8}  {}";
+  text.line("");
+  text.line(kRow, "ACF", "CV", "lag y", "lag y0", "own", "verdict");
+  bool any = false;
+  const auto row = [&](const std::string& name, std::size_t cv, const AcfComparison& acf) {
+    if (!acf_differs(acf))
+      return;
+    any = true;
+    text.line(kRow, name, study.plant.cvs[cv].name, digits(acf.y.decay_lag), digits(acf.y0.decay_lag),
+              digits(acf.own_share), acf_text(acf));
+  };
+  for (std::size_t cv = 0; cv < campaign.basis.acf.size(); ++cv)
+    row("basis case", cv, campaign.basis.acf[cv]);
+  for (const ExperimentRecord& record : campaign.records)
+    for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv)
+      row(scenario_name(study, record), cv, record.diagnosis.cvs[cv].acf);
+  text.line("({}; lags in samples; own: 1 when y0_diag is like y0, 0 when it is like y)",
+            any ? "CVs that differ from their nominal output" : "no CV differs from its nominal output");
 }
 
 /// What the chain says of each scenario against what the study says.
@@ -298,6 +335,7 @@ void add_scenarios(Text& text, const Campaign& campaign) {
   add_scenario_indices(text, campaign, "Ivar", &Diagnosis::ivar);
   add_scenario_indices(text, campaign, "Ivar_diag", &Diagnosis::ivar_diag);
   add_scenario_indicators(text, campaign);
+  add_autocorrelations(text, campaign);
 }
 
 }  // namespace

@@ -76,8 +76,13 @@ enum class SensitivityStructure {
 /// What changes when the constraint set does (analysis/nominal_estimator).
 enum class SensitivitySwitching { output, input };
 
+/// What T0 is: the step responses of the controller on its own model, or Box-Jenkins models identified in a
+/// record of it (A3.1, A3.2).
+enum class SensitivityForm { step_response, box_jenkins };
+
 /// How T0 is determined (appendix A3).
 struct SensitivityOptions {
+  SensitivityForm form = SensitivityForm::step_response;
   int samples = 150;       ///< length of the step responses; the static gain holds after it
   double step_size = 0.1;  ///< of the active soft limit, in CV units
   StepDirection step_direction = StepDirection::out_of_range;

@@ -60,6 +60,10 @@ SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel&
                                     const MpcOptions& controller) {
   const TomlTable table = document.table_or_empty("sensitivity", study_file_keys("sensitivity"));
   SensitivityOptions options;
+  options.form = read_choice_or<SensitivityForm>(
+      table, "form",
+      {{"step-response", SensitivityForm::step_response}, {"box-jenkins", SensitivityForm::box_jenkins}},
+      options.form);
   options.samples = static_cast<int>(read_whole_or(table, "samples", 2, kMaxResponse, options.samples));
   options.active_cvs = read_active_cvs(table, plant, controller);
   options.step_size = read_number_or(table, "step_size", NumberRule::positive(), options.step_size);
@@ -81,6 +85,10 @@ SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel&
   options.switching = read_choice_or<SensitivitySwitching>(
       table, "switching", {{"output", SensitivitySwitching::output}, {"input", SensitivitySwitching::input}},
       options.switching);
+  // A structure for every set of constraints, identified in the middle of an experiment, would take minutes.
+  if (options.form == SensitivityForm::box_jenkins && options.structure == SensitivityStructure::by_instant)
+    table.refuse("form", "'box-jenkins' with the structure 'by-instant'",
+                 "'step-response' with it, or 'box-jenkins' with 'operating-point'");
   const double narrowest = narrowest_range(controller, options.active_cvs);
   if (options.step_size > narrowest) {
     table.refuse("step_size", fmt::format("{}", options.step_size),

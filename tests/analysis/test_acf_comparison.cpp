@@ -191,7 +191,16 @@ TEST_CASE("every number of a comparison has one column") {
     CHECK_FALSE(column.meaning.empty());
   }
   CHECK(names.size() == columns.size());
-  CHECK(columns.size() == 3 * 4 + 6 + 2);
+  CHECK(columns.size() == 3 * 4 + 7 + 2);
+  for (const auto& column : columns) {
+    AcfComparison one;
+    column.set(one, 2.0);
+    for (const auto& other : columns) {
+      INFO(column.name << " " << other.name);
+      CHECK((other.value(one) == 2.0) == (other.name == column.name));
+    }
+    CHECK((column.words.empty() || column.words.size() >= 3));
+  }
   AcfComparison marked;
   marked.y0_diag.oscillation.period = 12.0;
   marked.speed = LoopSpeed::faster;

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/distribution_indicators.hpp"
+#include "analysis/scatter_ellipse.hpp"
 #include "plants/error.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/plants/allocation_counter.hpp"
@@ -301,6 +302,14 @@ TEST_CASE("every indicator has one column") {
   CHECK(names.size() == columns.size());
   CHECK(columns.size() == 4 * 5 + 4 * 4 + 1);
   DistributionIndicators marked;
+  for (const auto& column : columns) {
+    DistributionIndicators one;
+    column.set(one, 0.5);
+    for (const auto& other : columns) {
+      INFO(column.name << " " << other.name);
+      CHECK((other.name == column.name ? other.value(one) == 0.5 : std::isnan(other.value(one))));
+    }
+  }
   marked.means.dskn.ce = 0.25;
   marked.shape.kts.regression_angle = 12.5;
   for (const auto& column : columns) {
@@ -312,6 +321,29 @@ TEST_CASE("every indicator has one column") {
       CHECK(std::isnan(column.value(marked)));
     }
   }
+}
+
+TEST_CASE("the columns of a result put back are that result, its ellipses and I_MPM included") {
+  const VectorXd y0 = autoregression(300, 0.9, 21);
+  const VectorXd y = y0 + autoregression(300, 0.5, 22);
+  const auto result = DistributionScanner(300).compute(y, y0, y0 + 0.1 * y, {20, 60, 1}, 40);
+  DistributionIndicators again;
+  for (const auto& columns : {mpm::distribution_columns(), mpm::scatter_columns()}) {
+    for (const auto& column : columns) {
+      column.set(again, column.value(result));
+    }
+  }
+  CHECK(again.mpm.i_mpm == result.mpm.i_mpm);
+  CHECK(again.mpm.co_kts == result.mpm.co_kts);
+  CHECK(again.mpm.co_skn == result.mpm.co_skn);
+  CHECK(again.mpm.co_dkts == result.mpm.co_dkts);
+  CHECK(again.mpm.co_dskn == result.mpm.co_dskn);
+  const auto ellipse = mpm::confidence_ellipse(result.scatter_diag.dskn, 0.95);
+  const auto ellipse_again = mpm::confidence_ellipse(again.scatter_diag.dskn, 0.95);
+  CHECK(again.scatter_diag.dskn.pairs == result.scatter_diag.dskn.pairs);
+  CHECK(ellipse_again.angle == ellipse.angle);
+  CHECK(ellipse_again.centre_y == ellipse.centre_y);
+  CHECK(ellipse_again.semi_major == ellipse.semi_major);
 }
 
 TEST_CASE("a distribution scanner allocates nothing, and may be used again") {

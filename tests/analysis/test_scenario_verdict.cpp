@@ -120,7 +120,7 @@ TEST_CASE("a scenario has the diagnosis of the same experiment drawn at random, 
   CHECK(random.diagnosis.cvs.empty());
   REQUIRE(same.diagnosis.cvs.size() == 7);
   const auto located = static_cast<std::size_t>(random.diagnosis.predicted_cv);
-  CHECK(same.diagnosis.cvs[located].indicator.i_mpm == random.diagnosis.indicator.i_mpm);
+  CHECK(same.diagnosis.cvs[located].distribution.mpm.i_mpm == random.diagnosis.indicator.i_mpm);
   for (Eigen::Index cv = 0; cv < 7; ++cv) {
     const CvDiagnosis& found = same.diagnosis.cvs[static_cast<std::size_t>(cv)];
     CHECK(found.flagged == study.diagnosis.has_impact(random.diagnosis.ivar_diag(cv)));

@@ -20,7 +20,8 @@ SECTIONS = ["run", "rates", "variance", "location", "indicator", "dominance", "r
 FIGURES = ["headline-rates", "ivar", "i-mpm", "dominance", "roc", "fault-size", "t0", "s0-perturbation", "s0-structure",
            "basis-case"]
 SCENARIO_SECTIONS = ["run", "scenarios", "sensitivity", "s0-perturbation", "basis", "solver"]
-SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "t0", "basis-case"]
+SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "scenario-ellipses", "scenario-acf-basis", "scenario-acf-0",
+                    "scenario-acf-1", "scenario-acf-2", "t0", "basis-case"]
 PHONE, DESKTOP = 390, 1280  # pixels
 
 # The page in a frame of either width, which a script can look into because it has the same origin.

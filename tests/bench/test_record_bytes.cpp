@@ -45,8 +45,11 @@ TEST_CASE("record bytes: everything of a named scenario") {
                  {{0, 2}},
                  {{"cd1", 7.86}}};
   record.draw.disturbances[2].inner_input = 7;
-  record.diagnosis.cvs = {{true, ExperimentKind::ud, {}, 0.5}, {}};
-  record.diagnosis.cvs[1].indicator.co_dkts = 0.75;
+  record.diagnosis.cvs = {{true, ExperimentKind::ud, {}, {}, 0.5}, {}};
+  record.diagnosis.cvs[1].distribution.means.dkts.co = 0.75;
+  record.diagnosis.cvs[1].distribution.scatter_diag.skn.pairs = 7;
+  record.diagnosis.cvs[1].acf.origin = ErrorOrigin::both;
+  record.diagnosis.cvs[1].acf.y0.values = Eigen::Vector2d(1.0, 0.5);
   const std::string bytes = to_bytes(record);
   const ExperimentRecord again = record_from_bytes(bytes);
   CHECK(to_bytes(again) == bytes);
@@ -78,7 +81,10 @@ TEST_CASE("record bytes: everything of a named scenario") {
   CHECK(again.diagnosis.cvs[0].flagged);
   CHECK(again.diagnosis.cvs[0].source == ExperimentKind::ud);
   CHECK(again.diagnosis.cvs[0].sse == 0.5);
-  CHECK(again.diagnosis.cvs[1].indicator.co_dkts == 0.75);
+  CHECK(again.diagnosis.cvs[1].distribution.mpm.co_dkts == 0.75);
+  CHECK(again.diagnosis.cvs[1].distribution.scatter_diag.skn.pairs == 7);
+  CHECK(again.diagnosis.cvs[1].acf.origin == ErrorOrigin::both);
+  CHECK(again.diagnosis.cvs[1].acf.y0.values == Eigen::Vector2d(1.0, 0.5));
   for (std::size_t size = 0; size < bytes.size(); ++size)
     CHECK_THROWS_AS(record_from_bytes(std::string_view(bytes).substr(0, size)), std::runtime_error);
 }

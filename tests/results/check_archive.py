@@ -133,15 +133,16 @@ def check_scenarios(path, variables, attributes):
     group = "/scenarios"
     with h5py.File(path) as file:
         assert "/s0_sensitivity" not in file and group in file
-        found = {key: variable_form(item) for key, item in file[group].items()}
-        assert found == variables[group], found.items() ^ variables[group].items()
-        assert {key: attribute_form(value) for key, value in file[group].attrs.items()} == attributes[group]
-        for item in file[group].values():
-            check_variable(item)
+        for name in group, "/nominal_direct":
+            found = {key: variable_form(item) for key, item in file[name].items()}
+            assert found == variables[name], (name, found.items() ^ variables[name].items())
+            assert {key: attribute_form(value) for key, value in file[name].attrs.items()} == attributes[name]
+            for item in file[name].values():
+                check_variable(item)
         assert list(file["kind"]) == [0, 1, 2, 3, 1] and list(file["true_cv"]) == [-1, -1, 1, -1, 1]
     with xarray.open_dataset(path, group=group) as scenarios:
         scenarios.load()
-        assert dict(scenarios.sizes) == {"experiment": 5, "cv": 2}, scenarios.sizes
+        assert dict(scenarios.sizes) == {"experiment": 5, "cv": 2, "lag": 16}, scenarios.sizes
         assert list(scenarios.name.values)[:2] == ["healthy", "channels"]
         assert scenarios.affected.values.tolist() == [[0, 0], [1, 1], [0, 2], [0, 0], [0, 1]]
         assert numpy.isnan(scenarios.tsse.values[3:]).all()
@@ -152,7 +153,7 @@ def check_scenarios(path, variables, attributes):
 
 def check_empty(path, variables):
     """A file whose dimensions have no length opens too."""
-    for group in variables.keys() - {"/scenarios", "/audit", "/nominal_fixed", "/s0_sensitivity", "/trajectories"}:
+    for group in variables.keys() - {"/scenarios", "/audit", "/nominal_fixed", "/nominal_direct", "/s0_sensitivity", "/trajectories"}:
         with xarray.open_dataset(path, group=None if group == "/" else group) as dataset:
             dataset.load()
     with xarray.open_dataset(path) as root:
@@ -166,7 +167,7 @@ def main(writer, file_format):
         path = str(pathlib.Path(folder) / "sample.h5")
         subprocess.run([writer, path], check=True)
         assert seal.is_sealed(path)
-        random = {group: names for group, names in variables.items() if group != "/scenarios"}
+        random = {group: names for group, names in variables.items() if group not in ("/scenarios", "/nominal_direct")}
         check_h5py(path, random, attributes)
         check_xarray(path, random)
         check_ncdump(path, random)

@@ -20,7 +20,8 @@ FOR_PEOPLE = {"/cv", "/mv", "/md", "/basis/cv", "/basis/mv", "/basis/md", "/basi
               "/basis/acf_y0_diag", "/nominal/cv", "/nominal/time", "/nominal_fixed/cv", "/nominal_fixed/time", "/trajectories/cv", "/trajectories/mv",
               "/trajectories/md", "/trajectories/sample", "/trajectories/time"}
 READ_OF_S0_SENSITIVITY = {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"}
-FOR_PEOPLE |= {"/scenarios/" + name for name in ("experiment", "cv", "name", "description", "affected", "tsse")}
+FOR_PEOPLE |= {"/scenarios/" + name for name in ("experiment", "cv", "name", "description", "affected", "tsse", "lag", "lag_time")}
+FOR_PEOPLE |= {"/nominal_direct/" + name for name in ("cv", "time", "largest_difference")}
 FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/basis/title"}
 
 
@@ -90,7 +91,7 @@ class Damage:
             path = group.rstrip("/") + "/" + name
             message = self.after(lambda file: file[group].attrs.pop(name))
             if path in FOR_PEOPLE_ATTRIBUTES or group in (
-                    "/nominal", "/nominal_fixed", "/s0_sensitivity", "/audit", "/trajectories", "/aggregate", "/scenarios"):
+                    "/nominal", "/nominal_fixed", "/nominal_direct", "/s0_sensitivity", "/audit", "/trajectories", "/aggregate", "/scenarios"):
                 assert message is None, (path, message)
             else:
                 assert message and f"'{path}': missing" in message, (path, message)
@@ -129,6 +130,10 @@ class Damage:
             lambda file: file["true_cv"].__setitem__(4, 0))
         assert "'experiment': found 9; allowed: 0 to 4" in self.after(
             lambda file: file["experiment"].__setitem__(4, 9))
+        assert "'loop_speed': found 4; allowed: 0 to 3" in self.after(
+            lambda file: file["scenarios/loop_speed"].__setitem__((0, 0), 4))
+        assert "'/nominal_direct': found other references" in self.after(
+            lambda file: file["nominal_direct/active_cv"].__setitem__(0, "level"))
         assert "'flagged': found 7" in self.after(lambda file: file["scenarios/flagged"].__setitem__((0, 0), 7))
 
     def random_values(self, count):

@@ -62,6 +62,32 @@ MpmIndicator indicator(Numbers& numbers) {
           numbers.next(), numbers.index(100), numbers.index(100)};
 }
 
+/// Any numbers for columns of quantities, any of the words for verdicts.
+template <class Owner>
+void fill(Numbers& numbers, Owner& owner, const std::vector<NumberColumn<Owner>>& columns) {
+  for (const NumberColumn<Owner>& column : columns)
+    column.set(owner,
+               column.words.empty()
+                   ? numbers.next()
+                   : static_cast<double>(numbers.index(static_cast<Eigen::Index>(column.words.size()))));
+}
+
+DistributionIndicators distribution(Numbers& numbers) {
+  DistributionIndicators made;
+  made.mpm = indicator(numbers);
+  fill(numbers, made, distribution_columns());
+  fill(numbers, made, scatter_columns());
+  return made;
+}
+
+AcfComparison acf(Numbers& numbers, Eigen::Index samples) {
+  AcfComparison made;
+  fill(numbers, made, acf_columns());
+  for (AcfFeatures* features : {&made.y, &made.y0, &made.y0_diag})
+    features->values = numbers.vector(samples / 4 + 1);
+  return made;
+}
+
 Diagnosis diagnosis(Numbers& numbers, Eigen::Index ny) {
   Diagnosis made;
   made.ivar = numbers.vector(ny);
@@ -230,9 +256,13 @@ Campaign scenario_campaign() {
   std::string text = small_study();
   text.erase(text.find("[experiments]"));
   Campaign campaign;
-  campaign.study = parse_study(text + kScenarios, "small");
+  campaign.study = parse_study(text + "[sensitivity]\nform = 'box-jenkins'\n" + kScenarios, "small");
   campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
   campaign.basis = basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}});
+  campaign.basis.sensitivity_direct = campaign.basis.sensitivity;
+  campaign.basis.sensitivity_direct->step_response[0](1, 2) += 0.5;
+  for (int cv = 0; cv < 2; ++cv)
+    campaign.basis.acf.push_back(acf(numbers, campaign.study.simulation.samples));
   for (std::int64_t index = 0; index < campaign.study.experiment_count(); ++index) {
     ExperimentRecord made = record(numbers, campaign.study, index);
     made.draw = draw_experiment(campaign.study, index);
@@ -244,9 +274,10 @@ Campaign scenario_campaign() {
     made.perturbed = {};
     if (made.status == ExperimentStatus::ok) {
       made.diagnosis = diagnosis(numbers, 2);
+      const Eigen::Index samples = campaign.study.simulation.samples;
       for (int cv = 0; cv < 2; ++cv)
         made.diagnosis.cvs.push_back({numbers.index(2) == 1, static_cast<ExperimentKind>(numbers.index(3)),
-                                      indicator(numbers), numbers.next()});
+                                      distribution(numbers), acf(numbers, samples), numbers.next()});
     }
     campaign.records.push_back(std::move(made));
   }

@@ -28,6 +28,8 @@ bool same_bits(const Matrix& a, const Matrix& b) {
 std::string basis_bytes(const BasisCase& basis) {
   ExperimentRecord record;
   record.diagnosis = basis.diagnosis;
+  for (const AcfComparison& acf : basis.acf)
+    record.diagnosis.cvs.push_back({false, ExperimentKind::none, {}, acf, 0.0});
   record.loop = {basis.trajectory, basis.nominal.y_sim};
   return to_bytes(record);
 }
@@ -50,6 +52,11 @@ void check_same(const BasisCase& a, const BasisCase& b) {
   REQUIRE(a.sensitivity.step_response.size() == b.sensitivity.step_response.size());
   for (std::size_t i = 0; i < a.sensitivity.step_response.size(); ++i)
     CHECK(same_bits(a.sensitivity.step_response[i], b.sensitivity.step_response[i]));
+  REQUIRE(a.sensitivity_direct.has_value() == b.sensitivity_direct.has_value());
+  if (a.sensitivity_direct) {
+    check_same_limits(a.sensitivity_direct->active, b.sensitivity_direct->active);
+    CHECK(same_bits(a.sensitivity_direct->step_response[0], b.sensitivity_direct->step_response[0]));
+  }
   REQUIRE(a.sensitivity_fixed.has_value() == b.sensitivity_fixed.has_value());
   if (a.sensitivity_fixed) {
     check_same_limits(a.sensitivity_fixed->active, b.sensitivity_fixed->active);

@@ -67,8 +67,8 @@ TEST_CASE("plot text: the text of a scenario names all its faults, and each CV i
   CHECK(heading[0] == "signals (UD): disturbance on level: gain 0.5, time constant 6 s, white 1;");
   CHECK(std::all_of(heading.begin(), heading.end(), [](const auto& line) { return line.size() <= 100; }));
   ExperimentRecord record = campaign.records[2];
-  record.diagnosis.cvs[0] = {true, ExperimentKind::mpm, {}, 0.0};
-  record.diagnosis.cvs[1] = {true, ExperimentKind::mpm, {}, 0.0};
+  record.diagnosis.cvs[0] = {true, ExperimentKind::mpm, {}, {}, 0.0};
+  record.diagnosis.cvs[1] = {true, ExperimentKind::mpm, {}, {}, 0.0};
   CHECK(verdict_text(study, record) == "flagged level (MPM), heat (MPM); false alarm level; source of heat");
 }
 

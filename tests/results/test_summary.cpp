@@ -146,8 +146,13 @@ TEST_CASE("summary: the JSON form has the numbers of the aggregate and the repor
 TEST_CASE("summary: a study of named scenarios shows each with its truth and its verdict") {
   Campaign campaign = scenario_campaign();
   std::vector<CvDiagnosis>& channels = campaign.records[1].diagnosis.cvs;
-  channels[0] = {true, ExperimentKind::mpm, {}, 1.5};
-  channels[1] = {false, ExperimentKind::none, {}, 0.25};
+  channels[0] = {true, ExperimentKind::mpm, {}, {}, 1.5};
+  channels[1] = {false, ExperimentKind::none, {}, {}, 0.25};
+  channels[0].acf.speed = LoopSpeed::slower;
+  channels[0].acf.y.oscillation.verdict = Oscillation::present;
+  channels[0].acf.y0.oscillation.verdict = Oscillation::absent;
+  channels[0].acf.origin = ErrorOrigin::others;
+  channels[0].distribution.means.dkts.ce = 0.375;
   campaign.records[1].diagnosis.ivar_diag = Eigen::Vector2d(2.5, 1.0);
   const std::string text = summary_text(campaign, "out.h5");
   CHECK_THAT(line_of_text(text, "experiments"),
@@ -157,6 +162,13 @@ TEST_CASE("summary: a study of named scenarios shows each with its truth and its
                                                  Contains("missed heat"));
   CHECK_THAT(line_of_text(text, "failed"), Contains("failed"));
   const std::string indicators = text.substr(text.find("flagged CVs"));
+  const std::string acf = text.substr(text.find("\nACF") + 1);
+  CHECK_THAT(line_of_text(acf, "channels"),
+             Contains("level") && Contains("slower than designed, oscillates; models of other CVs"));
+  const auto cv = nlohmann::json::parse(summary_json(campaign))["scenarios"][1]["cvs"][0];
+  CHECK(cv["distribution"]["ce_dkts"] == 0.375);
+  CHECK(cv["acf"]["loop_speed"] == "slower");
+  CHECK(cv["acf"]["oscillation_y"] == "present");
   CHECK_THAT(line_of_text(indicators, "channels"), Contains("level") && Contains("1.5"));
   CHECK_THAT(indicators.substr(indicators.find("channels")), !Contains("channels        heat"));
   CHECK_THAT(text, Contains("2.5*") && !Contains("measured against reported") && !Contains("other numbers"));

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "results/campaign.hpp"
+#include "results/report_sections.hpp"
+
+namespace mpm {
+
+// Parts of the section of named scenarios.
+
+/// A table of co, ce, mean angle and mean diameter ratio, raw and differentiated, of the flagged CVs, and
+/// their confidence ellipses at one window length (figures 5.11 and 5.19). Nothing when no CV is flagged.
+void add_distributions(ReportSection& section, const Campaign& campaign);
+
+/// The verdicts of the autocorrelation functions as a table, and the functions of y, y0 and y0_diag with the
+/// band of white noise: a figure for the basis case and one a scenario, its flagged CVs, or all when they are
+/// few.
+void add_autocorrelations(ReportSection& section, const Campaign& campaign);
+
+}  // namespace mpm
