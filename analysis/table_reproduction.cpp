@@ -80,7 +80,7 @@ void judge_group(const VerdictRule& rule, const Group& group) {
   const Verdicts thesis_verdicts = judge(rule, thesis);
   for (std::size_t i = 0; i < group.size(); ++i) {
     group[i]->our_verdict = our_verdicts[i];
-    group[i]->thesis_verdict = thesis_verdicts[i];
+    group[i]->thesis_verdict = group[i]->cell.verdict ? group[i]->cell.verdict : thesis_verdicts[i];
   }
 }
 

@@ -108,6 +108,22 @@ std::vector<VerdictRule> read_rules(const TomlTable& document, const std::vector
   return rules;
 }
 
+/// The verdicts of a row, in words; "" stands for a cell of which the thesis says nothing.
+std::vector<std::optional<std::string>> read_verdicts(const TomlTable& table, std::size_t count) {
+  const toml::node& node = table.require("verdicts", fmt::format("a list of {} texts", count));
+  const toml::array* const list = node.as_array();
+  if (list == nullptr || list->size() != count)
+    table.refuse("verdicts", describe(node), fmt::format("a list of {} texts", count));
+  std::vector<std::optional<std::string>> verdicts;
+  for (const toml::node& value : *list) {
+    if (!value.is_string())
+      table.refuse("verdicts", describe(value), "texts, \"\" for an empty cell");
+    const std::string& text = **value.as_string();
+    verdicts.push_back(text.empty() ? std::nullopt : std::optional(text));
+  }
+  return verdicts;
+}
+
 /// The numbers of a row; "" stands for a cell that the thesis leaves empty.
 std::vector<std::optional<double>> read_values(const TomlTable& table, std::size_t count) {
   const toml::node& node = table.require("values", fmt::format("a list of {} numbers", count));
@@ -181,10 +197,19 @@ TableRow read_row(const TomlTable& table, const std::vector<Column>& columns,
   row.variant = read_variant_name(table, studies);
   const Study& study = studies.at(row.variant);
   row.scenario = read_scenario_name(table, study);
-  const std::vector<std::optional<double>> values = read_values(table, columns.size());
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    row.cells.push_back(read_cell(table, columns[i], study, quantities));
-    row.cells.back().thesis = values[i];
+  for (const Column& column : columns)
+    row.cells.push_back(read_cell(table, column, study, quantities));
+  if (table.has("values") == table.has("verdicts"))
+    table.refuse("", table.has("values") ? "both values and verdicts" : "neither values nor verdicts",
+                 "exactly one of the two");
+  if (table.has("values")) {
+    const std::vector<std::optional<double>> values = read_values(table, columns.size());
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      row.cells[i].thesis = values[i];
+  } else {
+    const std::vector<std::optional<std::string>> verdicts = read_verdicts(table, columns.size());
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      row.cells[i].verdict = verdicts[i];
   }
   return row;
 }
@@ -224,6 +249,19 @@ std::vector<ThesisTable> all_tables(const std::vector<std::string>& quantities, 
   return all;
 }
 
+/// A verdict in words that no rule can come to would never agree.
+void refuse_unknown_verdicts(const TomlTable& row, const ThesisTable& table) {
+  for (const TableCell& cell : table.rows.back().cells) {
+    if (!cell.verdict)
+      continue;
+    const VerdictRule* const rule = table.rule_for(cell.quantity);
+    if (rule == nullptr)
+      row.refuse("verdicts", in_quotes(*cell.verdict), "no verdict on a quantity without a rule");
+    if (*cell.verdict != rule->yes && *cell.verdict != rule->no)
+      row.refuse("verdicts", in_quotes(*cell.verdict), fmt::format("{} or {}", rule->yes, rule->no));
+  }
+}
+
 }  // namespace
 
 const VerdictRule* ThesisTable::rule_for(const std::string& quantity) const {
@@ -249,8 +287,10 @@ ThesisTable load_table(const fs::path& path, const std::vector<std::string>& qua
     table.heads.push_back(column.head);
   table.rules = read_rules(document, quantities);
   for (const TomlTable& row :
-       document.tables("row", {"label", "variant", "scenario", "cv", "quantity", "values"}))
+       document.tables("row", {"label", "variant", "scenario", "cv", "quantity", "values", "verdicts"})) {
     table.rows.push_back(read_row(row, columns, table.studies, quantities));
+    refuse_unknown_verdicts(row, table);
+  }
   return table;
 }
 

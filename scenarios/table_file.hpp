@@ -31,7 +31,8 @@ struct VerdictRule {
 struct TableCell {
   std::string cv;
   std::string quantity;
-  std::optional<double> thesis;
+  std::optional<double> thesis = {};        ///< its number, or
+  std::optional<std::string> verdict = {};  ///< what it says in words; both none: an empty cell
 };
 
 /// One row: the loop of one scenario under one variant of the study.

@@ -144,6 +144,29 @@ TEST_CASE("a * in the quantity of a row stands for that of the column", "[table_
   CHECK_THAT(message, Catch::Contains("row[0].quantity: found quantity 'ivarivar'"));
 }
 
+TEST_CASE("a table may have verdicts in words in place of numbers", "[table_file]") {
+  const auto with = [](const std::string& verdicts) {
+    return replaced(kTable, "values = [4.54, 1]", verdicts);
+  };
+  const TableFolder folder;
+  const ThesisTable table =
+      load_table(folder.put("t.toml", with("verdicts = [\"flagged\", \"\"]")), kQuantities);
+  CHECK(table.rows[0].cells[0].verdict == "flagged");
+  CHECK_FALSE(table.rows[0].cells[0].thesis);
+  CHECK_FALSE(table.rows[0].cells[1].verdict);
+
+  const auto refused = [](const std::string& verdicts) { return refusal("values = [4.54, 1]", verdicts); };
+  CHECK_THAT(refused("verdicts = [\"flaged\", \"\"]"),
+             Catch::Contains("row[0].verdicts: found 'flaged'; allowed: flagged or not flagged"));
+  CHECK_THAT(refused("verdicts = [\"flagged\"]"), Catch::Contains("a list of 2 texts"));
+  CHECK_THAT(refused("verdicts = [\"flagged\", 1]"), Catch::Contains("\"\" for an empty cell"));
+  CHECK_THAT(refused("verdicts = [\"\", \"\"]\nvalues = [1, 2]"),
+             Catch::Contains("row[0]: found both values and verdicts"));
+  CHECK_THAT(refused(""), Catch::Contains("row[0]: found neither values nor verdicts"));
+  CHECK_THAT(refusal("values = [1.5, \"\"]", "verdicts = [\"flagged\", \"\"]"),
+             Catch::Contains("no verdict on a quantity without a rule"));
+}
+
 TEST_CASE("what a table file cannot mean is refused by file, line and key", "[table_file]") {
   CHECK_THAT(refusal("cv = \"y1\"", "cv = \"y9\""), Catch::StartsWith("t.toml:13: column[0].cv: found 'y9'"));
   CHECK_THAT(refusal("cv = \"y3\"", "cv = \"y9\""), Catch::Contains("row[0].cv: found cv 'y9'"));
