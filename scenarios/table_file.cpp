@@ -152,8 +152,8 @@ std::string joined_quantity(const std::string& of_row, const std::string& of_col
 /// Which cell it is that all its row and column say.
 TableCell read_cell(const TomlTable& table, const Column& column, const Study& study,
                     const std::vector<std::string>& quantities) {
-  const TableCell cell{column.cv.empty() ? read_text_or(table, "cv", "") : column.cv,
-                       joined_quantity(read_text_or(table, "quantity", ""), column.quantity), std::nullopt};
+  TableCell cell{column.cv.empty() ? read_text_or(table, "cv", "") : column.cv,
+                 joined_quantity(read_text_or(table, "quantity", ""), column.quantity), std::nullopt};
   const auto check = [&](const char* key, const std::string& name, const std::vector<std::string>& known) {
     if (name.empty())
       table.refuse("", fmt::format("no {} for column '{}'", key, column.head),
