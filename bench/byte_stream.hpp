@@ -50,7 +50,15 @@ class ByteReader {
 template <class Stream, class Value>
 requires std::is_arithmetic_v<std::remove_const_t<Value>> || std::is_enum_v<std::remove_const_t<Value>>
 void transfer(Stream& stream, Value& value) {
-  stream.block(&value, sizeof value);
+  if constexpr (std::is_same_v<Stream, ByteReader> && std::is_same_v<Value, bool>) {
+    unsigned char byte = 0;  // a bool made of another byte than 0 and 1 is undefined behaviour
+    stream.block(&byte, sizeof byte);
+    if (byte > 1)
+      throw std::runtime_error("message between processes: a flag that is neither 0 nor 1");
+    value = byte == 1;
+  } else {
+    stream.block(&value, sizeof value);
+  }
 }
 
 template <class Stream, class Text>

@@ -54,7 +54,10 @@ Campaign run_with_progress(Study study, const RunCommand& command, const StopSig
   }
 }
 
+/// The end of a message about a run that was not finished; empty when no shard is left to go on with.
 std::string how_to_go_on(const RunCommand& command, std::string command_line) {
+  if (!has_shards(command.output))
+    return "";
   constexpr std::string_view kDiscard = " --discard";
   if (command.leftovers == Leftovers::discard)
     command_line.erase(command_line.rfind(kDiscard), kDiscard.size());
@@ -92,8 +95,7 @@ ExitCode run(const RunCommand& command, const std::string& command_line) {
     throw std::runtime_error(
         fmt::format("{}: {}{}", signals.name(), error.what(), how_to_go_on(command, command_line)));
   } catch (const std::exception& error) {
-    throw std::runtime_error(error.what() +
-                             (has_shards(command.output) ? how_to_go_on(command, command_line) : ""));
+    throw std::runtime_error(error.what() + how_to_go_on(command, command_line));
   }
   return ExitCode::done;
 }

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -48,6 +49,32 @@ ShardIdentity read_identity(ByteReader& reader) {
   return identity;
 }
 
+ExperimentOutcome read_outcome(ByteReader& reader, std::size_t number) {
+  std::string bytes;
+  transfer(reader, bytes);
+  try {
+    ExperimentOutcome outcome = outcome_from_bytes(bytes);
+    if (outcome.record.draw.index < 0)
+      throw std::runtime_error(fmt::format("its index is {}", outcome.record.draw.index));
+    return outcome;
+  } catch (const std::exception& error) {  // a part of an outcome may refuse its numbers by an InputError
+    throw std::runtime_error(fmt::format("outcome {}: {}", number, error.what()));
+  }
+}
+
+/// What follows the type of the file. Throws InputError for another version or identity, std::runtime_error
+/// for bytes that are no shard.
+Shard read_content(std::string_view content, const ShardIdentity& identity, const std::string& file) {
+  ByteReader reader(content);
+  require_version(reader, file);
+  require_same(read_identity(reader), identity, file);
+  Shard shard;
+  transfer(reader, shard.seconds);
+  while (reader.left() > 0)
+    shard.outcomes.push_back(read_outcome(reader, shard.outcomes.size()));
+  return shard;
+}
+
 }  // namespace
 
 void ShardBytes::add(const ExperimentOutcome& outcome) {
@@ -74,17 +101,12 @@ std::optional<Shard> read_shard(const std::filesystem::path& path, const ShardId
     throw InputError(path.string(), "a whole file of another type", "a shard of mpmbench");
   content->remove_prefix(kFileType.size());
 
-  ByteReader reader(*content);
-  require_version(reader, path.string());
-  require_same(read_identity(reader), identity, path.string());
-  Shard shard;
-  transfer(reader, shard.seconds);
-  while (reader.left() > 0) {
-    std::string outcome;
-    transfer(reader, outcome);
-    shard.outcomes.push_back(outcome_from_bytes(outcome));
+  try {
+    return read_content(*content, identity, path.string());
+  } catch (const std::runtime_error& error) {
+    throw InputError(path.string(), fmt::format("a whole shard with unreadable content ({})", error.what()),
+                     "what mpmbench writes; or --discard to start anew");
   }
-  return shard;
 }
 
 }  // namespace mpm

@@ -38,7 +38,8 @@ class ShardBytes {
 };
 
 /// Reads a shard; none when it is cut off or damaged (its checksum does not fit) or cannot be read. Throws
-/// InputError for a whole file that is no shard of this format version and identity.
+/// InputError for a whole file that is no shard of this format version and identity, or whose content cannot
+/// be read although its checksum fits.
 std::optional<Shard> read_shard(const std::filesystem::path& path, const ShardIdentity& identity);
 
 }  // namespace mpm
