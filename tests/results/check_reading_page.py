@@ -1,0 +1,44 @@
+"""Runs the Python of docs/reading_archives.md, in its order, on an archive, and checks what it computes.
+
+usage: check_reading_page.py WRITER READING_ARCHIVES.md
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import numpy
+
+
+def main(writer, page):
+    text = pathlib.Path(page).read_text(encoding="utf-8")
+    blocks = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    assert len(blocks) == 6, f"{len(blocks)} blocks of Python"
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        subprocess.run([writer, "chapter6.h5"], check=True)
+        names = {}
+        for block in blocks:
+            exec(compile(block, page, "exec"), names)
+        assert list(names["frame"].columns) == ["kind", "status", "true_cv", "predicted_cv", "i_mpm"]
+        assert len(names["frame"]) == 8 and names["cvs"] == [f"y{i}" for i in range(1, 8)]
+        assert names["ok"].sum() == 6  # one is infeasible, one failed
+        assert "[study]" in names["study"]
+        low, high = names["interval"]
+        assert -1e-12 < low <= names["p"] < high + 1e-12 < 1 + 1e-11  # to rounding, at 0 and 1
+        assert names["t0"].dims == ("lag",) and abs(float(names["t0"][-1]) - 1) < 0.05
+        assert names["y2"].dims == ("sample",)
+        # The program's own numbers; y1 is at a setpoint in this archive, and its variances are about it.
+        archived = names["table"].ivar_basis.isel(experiment=0).values[1:]
+        assert numpy.allclose(names["ivar_basis"].values[1:], archived, rtol=1e-12)
+        assert numpy.allclose(names["ivar_of_basis"].values[1:], names["basis"].ivar.values[1:], rtol=1e-12)
+        for name in ("table", "nominal", "loops", "basis"):
+            names[name].close()
+        os.chdir("/")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
