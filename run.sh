@@ -20,7 +20,9 @@ mpmbench="$root/build/release/bench/mpmbench"
 # hint <exit code> <archive> <text>: after a run that was not finished, or found one that was not, how to go on from here.
 # mpmbench proposes a command that begins with `mpmbench`, which is on nobody's PATH.
 hint() {
-  if (($1 == 2 || $1 == 3)) && [[ -n $(compgen -G "$2.shards/*.shard") ]]; then
+  # exit code 2 with --resume: the shards belong to another run, and the message of mpmbench says what differs
+  if { (($1 == 3)) || { (($1 == 2)) && [[ " $words " != *" --resume "* ]]; }; } &&
+    [[ -n $(compgen -G "$2.shards/*.shard") ]]; then
     echo "run.sh: $3" >&2
   fi
   exit "$1"
@@ -37,6 +39,7 @@ output_of() {
   done
 }
 
+words="$*"
 if (($#)) && [[ $1 != --* ]]; then
   "$mpmbench" "$@" || hint $? "$(output_of "$@")" "from here: ./run.sh in the place of mpmbench; --resume goes on"
   exit
