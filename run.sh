@@ -17,14 +17,38 @@ mpm_build mpmbench >&2
 export OPENBLAS_NUM_THREADS=1
 mpmbench="$root/build/release/bench/mpmbench"
 
+# hint <exit code> <archive> <text>: after a run that was not finished, or found one that was not, how to go on from here.
+# mpmbench proposes a command that begins with `mpmbench`, which is on nobody's PATH.
+hint() {
+  # exit code 2 with --resume: the shards belong to another run, and the message of mpmbench says what differs
+  if { (($1 == 3)) || { (($1 == 2)) && [[ " $words " != *" --resume "* ]]; }; } &&
+    [[ -n $(compgen -G "$2.shards/*.shard") ]]; then
+    echo "run.sh: $3" >&2
+  fi
+  exit "$1"
+}
+
+# output_of <word>...: the archive that a command line of mpmbench names.
+output_of() {
+  while (($#)); do
+    case $1 in
+      -o | --output) echo "${2-}" ;;
+      --output=*) echo "${1#*=}" ;;
+    esac
+    shift
+  done
+}
+
+words="$*"
 if (($#)) && [[ $1 != --* ]]; then
-  exec "$mpmbench" "$@"
+  "$mpmbench" "$@" || hint $? "$(output_of "$@")" "from here: ./run.sh in the place of mpmbench; --resume goes on"
+  exit
 fi
 
 archive="$root/out/chapter6.h5"
 page="$root/out/chapter6.html"
 mkdir -p "$root/out"
-"$mpmbench" run chapter6 -o "$archive" "$@"
+"$mpmbench" run chapter6 -o "$archive" "$@" || hint $? "$archive" "./run.sh --resume goes on, and makes the report"
 if [[ -f $archive ]]; then
   "$mpmbench" report "$archive" -o "$page" >/dev/null
   echo "archive: $archive"

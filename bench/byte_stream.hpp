@@ -80,6 +80,10 @@ void transfer(Stream& stream, Matrix& matrix) {
   Eigen::Index shape[2] = {matrix.rows(), matrix.cols()};
   stream.block(shape, sizeof shape);
   if constexpr (!std::is_const_v<Matrix>) {
+    using Plain = std::remove_const_t<Matrix>;  // a fixed size is not checked by resize() without assertions
+    if ((Plain::RowsAtCompileTime >= 0 && shape[0] != Plain::RowsAtCompileTime) ||
+        (Plain::ColsAtCompileTime >= 0 && shape[1] != Plain::ColsAtCompileTime))
+      throw std::runtime_error("message between processes: a matrix of another shape");
     const std::size_t most = stream.left() / sizeof(double);
     if (shape[0] < 0 || shape[1] < 0 ||
         (shape[0] > 0 && static_cast<std::size_t>(shape[1]) > most / static_cast<std::size_t>(shape[0])))
