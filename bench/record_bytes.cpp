@@ -1,5 +1,8 @@
 #include "bench/record_bytes.hpp"
 
+#include <bit>
+#include <cstdint>
+#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
@@ -9,6 +12,18 @@
 namespace mpm {
 namespace {
 
+/// Puts a number of a message back. Throws std::runtime_error for one that is none of the column's: a verdict
+/// without a word, or a number that does not come back as it was.
+template <class Owner>
+void put_back(const NumberColumn<Owner>& column, Owner& owner, double value) {
+  const bool verdict = !column.words.empty();
+  if (verdict && !(value >= 0.0 && value < static_cast<double>(column.words.size())))
+    throw std::runtime_error("message between processes: " + column.name + " is none of its verdicts");
+  column.set(owner, value);
+  if (std::bit_cast<std::uint64_t>(column.value(owner)) != std::bit_cast<std::uint64_t>(value))
+    throw std::runtime_error("message between processes: " + column.name + " is none of its numbers");
+}
+
 /// Every number of a table of columns.
 template <class Stream, class Owner>
 void transfer_numbers(Stream& stream, Owner& owner,
@@ -17,7 +32,7 @@ void transfer_numbers(Stream& stream, Owner& owner,
     double value = column.value(owner);
     transfer(stream, value);
     if constexpr (!std::is_const_v<Owner>)
-      column.set(owner, value);
+      put_back(column, owner, value);
   }
 }
 
