@@ -22,22 +22,20 @@ bool at_or_above(double value, double upper) {
   return std::isfinite(upper) && value >= upper - tolerance_of(upper);
 }
 
-/// What decides whether a CV in a range is active, ny x N.
-Eigen::MatrixXd deciding_outputs(const Study& study, const Trajectory& loop,
-                                 const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
-  if (!study.controller.has_targets())
-    return loop.y;
+}  // namespace
+
+Eigen::MatrixXd optimizer_steady_state(const Study& study, const Trajectory& loop,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
   const Eigen::MatrixXd gain = study.plant.G.static_gain();
   return gain.leftCols(study.mv_count()) * loop.u_target + gain.rightCols(study.md_count()) * loop.d +
          loop.y - y_sim;
 }
 
-}  // namespace
-
 std::vector<ControlStructure> control_structures(const Study& study, const Trajectory& loop,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
   const MpcOptions& options = study.controller;
-  const Eigen::MatrixXd y = deciding_outputs(study, loop, y_sim);
+  // What decides whether a CV in a range is active.
+  const Eigen::MatrixXd y = options.has_targets() ? optimizer_steady_state(study, loop, y_sim) : loop.y;
   const Eigen::MatrixXd& u = options.has_targets() ? loop.u_target : loop.u;
   std::vector<ControlStructure> structures(static_cast<std::size_t>(y.cols()));
   for (Eigen::Index k = 0; k < y.cols(); ++k) {

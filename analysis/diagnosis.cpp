@@ -41,13 +41,16 @@ WindowScan window_scan(const Study& study) {
   return scan;
 }
 
+double distance_from_one(double ivar, LocationDistance distance) {
+  return distance == LocationDistance::linear ? std::abs(ivar - 1.0) : std::abs(std::log(ivar));
+}
+
 Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag,
                                LocationDistance distance) {
   Eigen::Index farthest = -1;
   double largest = -1.0;
   for (Eigen::Index i = 0; i < ivar_diag.size(); ++i) {
-    const double away = distance == LocationDistance::linear ? std::abs(ivar_diag(i) - 1.0)
-                                                             : std::abs(std::log(ivar_diag(i)));
+    const double away = distance_from_one(ivar_diag(i), distance);
     if (away > largest) {
       largest = away;
       farthest = i;

@@ -46,6 +46,9 @@ struct Diagnosis {
 /// The window lengths of (6.13) for this study, in samples.
 WindowScan window_scan(const Study& study);
 
+/// |ivar - 1|, or |log ivar|.
+double distance_from_one(double ivar, LocationDistance distance);
+
 /// Index of the CV that `ivar_diag` points at. Ties go to the first CV; a CV whose index is NaN is passed
 /// over.
 Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, LocationDistance distance);
@@ -68,11 +71,14 @@ class DiagnosisChain {
                                          const NominalOutputs& nominal,
                                          const Eigen::Ref<const Eigen::VectorXd>& ivar_diag);
 
- private:
+  /// I_MPM (6.15) of one CV of the record y.
   MpmIndicator indicator_of(Eigen::Index cv, const Eigen::Ref<const Eigen::MatrixXd>& y,
                             const NominalOutputs& nominal);
+
+  /// mpm or ud, by the threshold of I_MPM.
   ExperimentKind source_of(const MpmIndicator& indicator) const;
 
+ private:
   DiagnosisOptions options_;
   SetpointTrajectories y_set_;  ///< what the variances are taken about; empty: the means of all CVs
   WindowScan windows_;

@@ -1,62 +1,137 @@
 #include "analysis/scenario_quantities.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/assessment/method_table.hpp"
 #include "analysis/nominal_estimator.hpp"
 #include "analysis/simulation_error.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+QuantityScope table_scope(NumberScope scope) {
+  switch (scope) {
+    case NumberScope::loop:
+      return QuantityScope::loop;
+    case NumberScope::cv:
+      return QuantityScope::cv;
+    case NumberScope::channel:
+      break;
+  }
+  return QuantityScope::channel;
+}
+
+void add_method_quantities(const AssessmentMethodInfo& method, std::vector<TableQuantity>& quantities) {
+  quantities.push_back({method.name + ".loop_flagged", QuantityScope::loop});
+  if (method.locates_cvs)
+    quantities.push_back({method.name + ".flagged", QuantityScope::cv});
+  if (method.names_channels)
+    quantities.push_back({method.name + ".channel_flagged", QuantityScope::channel});
+  for (const AssessmentNumberInfo& number : method.numbers)
+    quantities.push_back({method.name + "." + number.name, table_scope(number.scope)});
+}
+
+std::vector<TableQuantity> all_quantities() {
+  std::vector<TableQuantity> quantities{{"ivar"}, {"ivar_diag"},     {"ivar_basis"},
+                                        {"sse"},  {"squared_error"}, {"sqr"}};
+  for (const NumberColumn<DistributionIndicators>& column : distribution_columns())
+    quantities.push_back({column.name});
+  for (const AssessmentMethodInfo& method : assessment_methods())
+    add_method_quantities(method, quantities);
+  return quantities;
+}
+
+void refuse_unknown(const std::string& name) {
+  std::vector<std::string> names;
+  for (const TableQuantity& quantity : ScenarioQuantities::known())
+    names.push_back(quantity.name);
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw InputError("quantity", fmt::format("'{}'", name), fmt::format("{}", fmt::join(names, ", ")));
+}
+
+double cv_flag(const Assessment& assessment, Eigen::Index cv) {
+  if (assessment.cvs.empty())
+    return kNone;
+  const std::optional<bool> flagged = assessment.cvs[static_cast<std::size_t>(cv)].flagged;
+  return flagged ? static_cast<double>(*flagged) : kNone;
+}
+
+}  // namespace
 
 ScenarioQuantities::ScenarioQuantities(const Study& study, const BasisCase& basis, const ExperimentDraw& draw,
-                                       const QpSolverFactory& factory)
-    : study_(study), loop_(simulate_experiment(study, draw, factory)) {
+                                       const QpSolverFactory& factory, std::optional<AssessedLoop> benchmark)
+    : loop_(simulate_experiment(study, draw, factory)),
+      context_{study, basis, factory, std::move(benchmark)},
+      chain_(study) {
   if (loop_.status != ControlStatus::ok)
     return;
   nominal_ = NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(loop_);
-  const Diagnosis diagnosis = DiagnosisChain(study).diagnose(loop_.y, nominal_, basis.trajectory.y);
-  by_cv_["ivar"] = diagnosis.ivar;
-  by_cv_["ivar_diag"] = diagnosis.ivar_diag;
-  by_cv_["ivar_basis"] = diagnosis.ivar_basis;
+  diagnosis_ = chain_.diagnose(loop_.y, nominal_, basis.trajectory.y);
+  by_cv_["ivar"] = diagnosis_.ivar;
+  by_cv_["ivar_diag"] = diagnosis_.ivar_diag;
+  by_cv_["ivar_basis"] = diagnosis_.ivar_basis;
   by_cv_["sse"] = simulation_errors(loop_.y, nominal_.y_sim);
   by_cv_["squared_error"] = by_cv_["sse"].cwiseAbs2();
   by_cv_["sqr"] = (basis.trajectory.y - nominal_.y0).cwiseAbs().rowwise().sum();
 }
 
-double ScenarioQuantities::value(const std::string& name, Eigen::Index cv) {
-  const std::vector<std::string> known = names();
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throw InputError("quantity", fmt::format("'{}'", name), fmt::format("{}", fmt::join(known, ", ")));
+double ScenarioQuantities::value(const std::string& name, Eigen::Index cv, Eigen::Index mv) {
+  refuse_unknown(name);
   if (loop_.status != ControlStatus::ok)
-    return std::numeric_limits<double>::quiet_NaN();
+    return kNone;
   if (const auto found = by_cv_.find(name); found != by_cv_.end())
     return found->second(cv);
+  if (const std::size_t dot = name.find('.'); dot != std::string::npos)
+    return method_value(name.substr(0, dot), std::string_view(name).substr(dot + 1), cv, mv);
   for (const NumberColumn<DistributionIndicators>& column : distribution_columns())
     if (column.name == name)
-      return column.value(indicators(cv));
-  return std::numeric_limits<double>::quiet_NaN();
+      return column.value(cvs()[static_cast<std::size_t>(cv)].distribution);
+  return kNone;
 }
 
-std::vector<std::string> ScenarioQuantities::names() {
-  std::vector<std::string> names{"ivar", "ivar_diag", "ivar_basis", "sse", "squared_error", "sqr"};
-  for (const NumberColumn<DistributionIndicators>& column : distribution_columns())
-    names.push_back(column.name);
-  return names;
+const std::vector<TableQuantity>& ScenarioQuantities::known() {
+  static const std::vector<TableQuantity> quantities = all_quantities();
+  return quantities;
 }
 
-const DistributionIndicators& ScenarioQuantities::indicators(Eigen::Index cv) {
-  const auto found = indicators_.find(cv);
-  if (found != indicators_.end())
+const std::vector<CvDiagnosis>& ScenarioQuantities::cvs() {
+  if (cvs_.empty())
+    cvs_ = chain_.diagnose_each(loop_.y, nominal_, diagnosis_.ivar_diag);
+  return cvs_;
+}
+
+const Assessment& ScenarioQuantities::assessment(const std::string& method) {
+  const auto found = assessments_.find(method);
+  if (found != assessments_.end())
     return found->second;
-  DistributionScanner scanner(study_.simulation.samples);
-  return indicators_
-      .emplace(cv, scanner.compute(loop_.y.row(cv).transpose(), nominal_.y0.row(cv).transpose(),
-                                   nominal_.y0_diag.row(cv).transpose(), window_scan(study_),
-                                   study_.controller.prediction_horizon))
+  return assessments_
+      .emplace(method, Assessor(assessment_method(method), context_)
+                           .assess(assessed_loop(context_.study, context_.basis.point, loop_)))
       .first->second;
+}
+
+double ScenarioQuantities::method_value(const std::string& method, std::string_view name, Eigen::Index cv,
+                                        Eigen::Index mv) {
+  const Assessment& of_loop = assessment(method);
+  if (of_loop.status != AssessmentStatus::ok)
+    return kNone;
+  if (name == "loop_flagged")
+    return of_loop.flagged ? 1.0 : 0.0;
+  if (name == "flagged")
+    return cv_flag(of_loop, cv);
+  if (name == "channel_flagged") {
+    const auto& channels = of_loop.flagged_channels;
+    return std::find(channels.begin(), channels.end(), Channel{cv, mv}) != channels.end() ? 1.0 : 0.0;
+  }
+  return of_loop.number(name, cv, mv);
 }
 
 }  // namespace mpm

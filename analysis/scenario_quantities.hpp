@@ -1,15 +1,19 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "analysis/assessment/assessment_method.hpp"
 #include "analysis/basis_case.hpp"
-#include "analysis/distribution_indicators.hpp"
+#include "analysis/diagnosis.hpp"
+#include "scenarios/table_file.hpp"
 
 namespace mpm {
 
-/// Everything that a table of the thesis has of one loop, by name and CV.
+/// Everything that a table of the thesis has of one loop, by name, CV and MV.
 ///
 /// | name | quantity |
 /// |------|----------|
@@ -19,29 +23,40 @@ namespace mpm {
 /// | squared_error | that sum itself, which tables 4.3 and 4.5 to 4.12 have (docs/reproduction.md) |
 /// | sqr | sum over the samples of |y_basis - y0| (3.31) |
 /// | i_mpm, co_dkts, inclination_skn, ... | those of distribution_columns() |
+/// | METHOD.loop_flagged, METHOD.flagged | 1 when the method flags the loop, the CV; 0 when it does not |
+/// | METHOD.channel_flagged | 1 when the method flags the channel, 0 when it does not |
+/// | METHOD.NUMBER | a number of the method, AssessmentMethodInfo::numbers |
 class ScenarioQuantities {
  public:
   /// Runs the loop of `draw`. `study` and `basis` must outlive this; the basis case must have status ok.
+  /// `benchmark` is that of the methods that need one.
   ScenarioQuantities(const Study& study, const BasisCase& basis, const ExperimentDraw& draw,
-                     const QpSolverFactory& factory);
+                     const QpSolverFactory& factory, std::optional<AssessedLoop> benchmark);
+  ScenarioQuantities(const ScenarioQuantities&) = delete;
+  ScenarioQuantities& operator=(const ScenarioQuantities&) = delete;
 
   ControlStatus status() const { return loop_.status; }
 
-  /// The quantity of one CV; NaN when the loop did not run to its end. Errors: InputError for a name that is
-  /// none of names().
-  double value(const std::string& name, Eigen::Index cv);
+  /// The quantity of one CV or channel; NaN when the loop did not run to its end, or the method says nothing.
+  /// Errors: InputError for a name that is none of known().
+  double value(const std::string& name, Eigen::Index cv, Eigen::Index mv = -1);
 
   /// The names of the table above.
-  static std::vector<std::string> names();
+  static const std::vector<TableQuantity>& known();
 
  private:
-  const DistributionIndicators& indicators(Eigen::Index cv);
+  const std::vector<CvDiagnosis>& cvs();
+  const Assessment& assessment(const std::string& method);
+  double method_value(const std::string& method, std::string_view name, Eigen::Index cv, Eigen::Index mv);
 
-  const Study& study_;
   Trajectory loop_;
+  AssessmentContext context_;
   NominalOutputs nominal_;
+  DiagnosisChain chain_;
+  Diagnosis diagnosis_;
   std::map<std::string, Eigen::VectorXd> by_cv_;
-  std::map<Eigen::Index, DistributionIndicators> indicators_;
+  std::vector<CvDiagnosis> cvs_;  ///< empty until a quantity needs them
+  std::map<std::string, Assessment> assessments_;
 };
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,9 +35,11 @@ class Loops {
       remark = basis.explanation;
       return nullptr;
     }
-    std::unique_ptr<ScenarioQuantities>& loop = loops_[{row.variant, row.scenario}];
+    const std::string& benchmark = row.benchmark.value_or(row.variant);
+    std::unique_ptr<ScenarioQuantities>& loop = loops_[{row.variant, row.scenario, benchmark}];
     if (!loop)
-      loop = std::make_unique<ScenarioQuantities>(study, basis, draw_of(study, row.scenario), factory_);
+      loop = std::make_unique<ScenarioQuantities>(study, basis, draw_of(study, row.scenario), factory_,
+                                                  benchmark_of(benchmark));
     if (loop->status() != ControlStatus::ok)
       remark = fmt::format("the loop is {}", to_string(loop->status()));
     return loop.get();
@@ -49,6 +52,15 @@ class Loops {
                                  : basis_.emplace(variant, run_basis_case(study, factory_)).first->second;
   }
 
+  /// The basis case of a variant; none when it did not run to its end.
+  std::optional<AssessedLoop> benchmark_of(const std::string& variant) {
+    const Study& study = table_.studies.at(variant);
+    const BasisCase& basis = basis_of(variant, study);
+    if (basis.trajectory.status != ControlStatus::ok)
+      return std::nullopt;
+    return assessed_loop(study, basis.point, basis.trajectory);
+  }
+
   static ExperimentDraw draw_of(const Study& study, const std::string& scenario) {
     for (std::size_t i = 0; i < study.scenarios.size(); ++i)
       if (study.scenarios[i].name == scenario)
@@ -59,12 +71,16 @@ class Loops {
   const ThesisTable& table_;
   const QpSolverFactory& factory_;
   std::map<std::string, BasisCase> basis_;
-  std::map<std::pair<std::string, std::string>, std::unique_ptr<ScenarioQuantities>> loops_;
+  /// By variant, scenario and benchmark.
+  std::map<std::tuple<std::string, std::string, std::string>, std::unique_ptr<ScenarioQuantities>> loops_;
 };
 
-Eigen::Index cv_index(const Study& study, const std::string& name) {
-  const auto& cvs = study.plant.cvs;
-  return std::find_if(cvs.begin(), cvs.end(), [&](const auto& cv) { return cv.name == name; }) - cvs.begin();
+/// The place of a name that a cell need not have; -1 without one.
+Eigen::Index place(const std::vector<PlantModel::Variable>& variables, const std::string& name) {
+  for (std::size_t i = 0; i < variables.size(); ++i)
+    if (variables[i].name == name)
+      return static_cast<Eigen::Index>(i);
+  return -1;
 }
 
 /// The cells that one rule judges together.
@@ -187,11 +203,12 @@ ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& facto
     ScenarioQuantities* const loop = loops.of(row, reproduced.remark);
     const Study& study = result.table.studies.at(row.variant);
     for (const TableCell& cell : row.cells)
-      reproduced.cells.push_back({cell,
-                                  loop ? loop->value(cell.quantity, cv_index(study, cell.cv))
-                                       : std::numeric_limits<double>::quiet_NaN(),
-                                  {},
-                                  {}});
+      reproduced.cells.push_back(
+          {cell,
+           loop ? loop->value(cell.quantity, place(study.plant.cvs, cell.cv), place(study.plant.mvs, cell.mv))
+                : std::numeric_limits<double>::quiet_NaN(),
+           {},
+           {}});
     result.rows.push_back(std::move(reproduced));
   }
   judge_table(result);

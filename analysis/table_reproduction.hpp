@@ -47,7 +47,7 @@ struct ReproducedTable {
 
 /// Runs every loop of the table, and judges every cell by the rules of the table, ours and the thesis's by
 /// the same. Each study is run with its own basis case and S0. Throws InputError as run_basis_case(). The
-/// table must have been read with ScenarioQuantities::names().
+/// table must have been read with ScenarioQuantities::known().
 ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& factory);
 
 /// The verdicts on the numbers of one column or row: judge(numbers)[i] for `i` of them. For any_above and

@@ -17,7 +17,7 @@ ExitCode reproduce_tables(const ReproduceCommand& command) {
     require_output_folder(command.output, "page");
   const QpSolverFactory factory = qp_solver_factory(command.solver);
   std::vector<ReproducedTable> tables;
-  for (const ThesisTable& table : find_tables(command.tables, ScenarioQuantities::names()))
+  for (const ThesisTable& table : find_tables(command.tables, ScenarioQuantities::known()))
     tables.push_back(reproduce(table, factory));
   if (!command.output.empty()) {
     const std::string page = reproduction_html(tables, mpmbench_version());

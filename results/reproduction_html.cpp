@@ -64,8 +64,8 @@ std::string table_html(const ReproducedTable& table, std::size_t index) {
     text += "<p>" + html_text(table.table.note) + "</p>\n";
   return fmt::format(
       "<section id=\"table-{0}\" aria-labelledby=\"table-{0}-title\">\n<h2 id=\"table-{0}-title\"><span "
-      "class=\"index\">{1}</span>Table {0}: {2}</h2>\n{3}{4}</section>\n",
-      table.table.number, index, html_text(table.table.title), html.html(), text);
+      "class=\"index\">{1}</span>{5}: {2}</h2>\n{3}{4}</section>\n",
+      table.table.name(), index, html_text(table.table.title), html.html(), text, table.table.label());
 }
 
 std::string agreement_html(const std::vector<ReproducedTable>& tables) {
@@ -75,9 +75,9 @@ std::string agreement_html(const std::vector<ReproducedTable>& tables) {
   for (const ReproducedTable& table : tables) {
     const auto [agreeing, judged] = table.agreement();
     total.add({agreeing, judged});
-    html.row(
-        {fmt::format("<a href=\"#table-{0}\">{0}</a> {1}", table.table.number, html_text(table.table.title)),
-         fmt::to_string(agreeing), fmt::to_string(judged)});
+    html.row({fmt::format("<a href=\"#table-{}\">{}</a> {}", table.table.name(), table.table.label(),
+                          html_text(table.table.title)),
+              fmt::to_string(agreeing), fmt::to_string(judged)});
   }
   html.row({"total", fmt::to_string(total.agreeing), fmt::to_string(total.judged)});
   return html.html();

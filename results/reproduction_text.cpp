@@ -32,8 +32,7 @@ std::string table_text(const ReproducedTable& table) {
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       widths[i] = std::max(widths[i], cell_text(row.cells[i]).size());
 
-  std::string text =
-      fmt::format("Table {}: {}\n{:<{}}", table.table.number, table.table.title, "", label_width);
+  std::string text = fmt::format("{}: {}\n{:<{}}", table.table.label(), table.table.title, "", label_width);
   for (std::size_t i = 0; i < widths.size(); ++i)
     text += fmt::format("  {:>{}}", table.table.heads[i], widths[i]);
   text += '\n';
@@ -55,6 +54,7 @@ ordered_json or_null(const std::optional<Value>& value) {
 ordered_json cell_json(const ReproducedCell& cell, const std::string& head) {
   return {{"head", head},
           {"cv", cell.cell.cv},
+          {"mv", cell.cell.mv},
           {"quantity", cell.cell.quantity},
           {"ours", std::isfinite(cell.ours) ? ordered_json(cell.ours) : ordered_json(nullptr)},
           {"thesis", or_null(cell.cell.thesis)},
@@ -73,8 +73,13 @@ ordered_json table_json(const ReproducedTable& table) {
     rows.push_back({{"label", row.label}, {"remark", row.remark}, {"cells", cells}});
   }
   const auto [agreeing, judged] = table.agreement();
-  return {{"number", table.table.number}, {"title", table.table.title}, {"note", table.table.note},
-          {"agreeing", agreeing},         {"judged", judged},           {"rows", rows}};
+  return {{"number", table.table.number},
+          {"figure", table.table.figure},
+          {"title", table.table.title},
+          {"note", table.table.note},
+          {"agreeing", agreeing},
+          {"judged", judged},
+          {"rows", rows}};
 }
 
 }  // namespace
@@ -88,7 +93,7 @@ std::string reproduction_text(const std::vector<ReproducedTable>& tables) {
   }
   for (const ReproducedTable& table : tables) {
     const auto [agreeing, judged] = table.agreement();
-    text += fmt::format("{:<12} {:>3} of {:>3}\n", "table " + table.table.number, agreeing, judged);
+    text += fmt::format("{:<12} {:>3} of {:>3}\n", table.table.label(), agreeing, judged);
   }
   return text + fmt::format("{:<12} {:>3} of {:>3} verdicts agree\n", "total", total.agreeing, total.judged);
 }

@@ -10,6 +10,7 @@
 
 #include "plants/nonlinear_model.hpp"
 #include "plants/plant_model.hpp"
+#include "scenarios/assessment_options.hpp"
 #include "scenarios/distribution.hpp"
 #include "scenarios/fault.hpp"
 #include "solvers/mpc_options.hpp"
@@ -165,6 +166,7 @@ struct Study {
   SensitivityOptions sensitivity;
   S0PerturbationOptions s0_perturbation;
   DiagnosisOptions diagnosis;
+  AssessmentOptions assessment;
   AggregateOptions aggregate;
   std::vector<ReferenceValue> reference;  ///< shown beside the results, never used to make them
   std::string source;                     ///< the full text of the file

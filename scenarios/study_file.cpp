@@ -67,6 +67,7 @@ Study parse_study(std::string_view text, const std::string& file_name) {
   study.sensitivity = read_sensitivity(document, study.plant, study.controller);
   study.s0_perturbation = read_s0_perturbation(document, study.plant, study.controller);
   study.diagnosis = read_diagnosis(document);
+  study.assessment = read_assessment(document);
   study.aggregate = read_aggregate(document);
   study.reference = read_reference(document);
   refuse_unusable_windows(document, study);

@@ -76,6 +76,9 @@ S0PerturbationOptions read_s0_perturbation(const TomlTable& document, const Plan
 /// [diagnosis]
 DiagnosisOptions read_diagnosis(const TomlTable& document);
 
+/// [assessment] (study_file_assessment.cpp)
+AssessmentOptions read_assessment(const TomlTable& document);
+
 /// [aggregate]
 AggregateOptions read_aggregate(const TomlTable& document);
 /// [reference]

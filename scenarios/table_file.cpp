@@ -33,6 +33,20 @@ std::vector<std::string> cv_names(const Study& study) {
   return names;
 }
 
+std::vector<std::string> mv_names(const Study& study) {
+  std::vector<std::string> names;
+  for (const PlantModel::Variable& mv : study.plant.mvs)
+    names.push_back(mv.name);
+  return names;
+}
+
+std::vector<std::string> quantity_names(const std::vector<TableQuantity>& quantities) {
+  std::vector<std::string> names;
+  for (const TableQuantity& quantity : quantities)
+    names.push_back(quantity.name);
+  return names;
+}
+
 std::vector<std::string> scenario_names(const Study& study) {
   std::vector<std::string> names;
   for (const Scenario& scenario : study.scenarios)
@@ -42,15 +56,17 @@ std::vector<std::string> scenario_names(const Study& study) {
 
 /// What a column says of all its cells.
 struct Column {
-  std::string head, cv, quantity;
+  std::string head, cv, mv, quantity;
 };
 
 std::vector<Column> read_columns(const TomlTable& document, const Study& study) {
   std::vector<Column> columns;
-  for (const TomlTable& table : document.tables("column", {"head", "cv", "quantity"})) {
-    Column column{read_text(table, "head"), "", read_text_or(table, "quantity", "")};
+  for (const TomlTable& table : document.tables("column", {"head", "cv", "mv", "quantity"})) {
+    Column column{read_text(table, "head"), "", "", read_text_or(table, "quantity", "")};
     if (table.has("cv"))
       column.cv = cv_names(study)[read_one_of(table, "cv", cv_names(study))];
+    if (table.has("mv"))
+      column.mv = mv_names(study)[read_one_of(table, "mv", mv_names(study))];
     columns.push_back(column);
   }
   return columns;
@@ -68,10 +84,10 @@ void refuse_idle_keys(const TomlTable& table, RuleKind kind) {
   }
 }
 
-VerdictRule read_rule(const TomlTable& table, const std::vector<std::string>& quantities) {
+VerdictRule read_rule(const TomlTable& table, const std::vector<TableQuantity>& quantities) {
   VerdictRule rule;
-  for (const std::size_t quantity : read_some_of(table, "quantities", quantities))
-    rule.quantities.push_back(quantities[quantity]);
+  for (const std::size_t quantity : read_some_of(table, "quantities", quantity_names(quantities)))
+    rule.quantities.push_back(quantities[quantity].name);
   rule.kind = read_choice_or<RuleKind>(table, "kind",
                                        {{"outside", RuleKind::outside},
                                         {"any-above", RuleKind::any_above},
@@ -93,7 +109,7 @@ VerdictRule read_rule(const TomlTable& table, const std::vector<std::string>& qu
   return rule;
 }
 
-std::vector<VerdictRule> read_rules(const TomlTable& document, const std::vector<std::string>& quantities) {
+std::vector<VerdictRule> read_rules(const TomlTable& document, const std::vector<TableQuantity>& quantities) {
   std::vector<VerdictRule> rules;
   std::set<std::string> ruled;
   if (!document.has("rule"))
@@ -149,36 +165,60 @@ std::string joined_quantity(const std::string& of_row, const std::string& of_col
   return of_column.empty() ? of_row : of_column;
 }
 
+/// The one of `known` that the column names, or else the row under `key`.
+std::string read_cell_name(const TomlTable& table, const char* key, const std::string& of_column,
+                           const Column& column, const std::vector<std::string>& known) {
+  const std::string name = of_column.empty() ? read_text_or(table, key, "") : of_column;
+  if (name.empty())
+    table.refuse("", fmt::format("no {} for column '{}'", key, column.head),
+                 "one in the row or in the column");
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    table.refuse(table.has(key) ? key : "",
+                 fmt::format("{} {} in column '{}'", key, with_nearest(name, known), column.head),
+                 fmt::format("{}", fmt::join(known, ", ")));
+  return name;
+}
+
 /// Which cell it is that all its row and column say.
 TableCell read_cell(const TomlTable& table, const Column& column, const Study& study,
-                    const std::vector<std::string>& quantities) {
-  TableCell cell{column.cv.empty() ? read_text_or(table, "cv", "") : column.cv,
-                 joined_quantity(read_text_or(table, "quantity", ""), column.quantity), std::nullopt};
-  const auto check = [&](const char* key, const std::string& name, const std::vector<std::string>& known) {
-    if (name.empty())
-      table.refuse("", fmt::format("no {} for column '{}'", key, column.head),
-                   "one in the row or in the column");
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      table.refuse(table.has(key) ? key : "",
-                   fmt::format("{} {} in column '{}'", key, with_nearest(name, known), column.head),
-                   fmt::format("{}", fmt::join(known, ", ")));
-  };
-  check("cv", cell.cv, cv_names(study));
-  check("quantity", cell.quantity, quantities);
+                    const std::vector<TableQuantity>& quantities) {
+  TableCell cell;
+  cell.quantity =
+      read_cell_name(table, "quantity", joined_quantity(read_text_or(table, "quantity", ""), column.quantity),
+                     column, quantity_names(quantities));
+  const auto quantity = std::find_if(quantities.begin(), quantities.end(),
+                                     [&](const TableQuantity& q) { return q.name == cell.quantity; });
+  if (quantity->scope != QuantityScope::loop)
+    cell.cv = read_cell_name(table, "cv", column.cv, column, cv_names(study));
+  if (quantity->scope == QuantityScope::channel)
+    cell.mv = read_cell_name(table, "mv", column.mv, column, mv_names(study));
   return cell;
 }
 
-/// The study of this row. `variant` names one of those that the file defines.
-std::string read_variant_name(const TomlTable& table, const std::map<std::string, Study>& studies) {
-  if (!table.has("variant"))
+/// The variant under `key`, one of those that the file defines; empty: the study as it is.
+std::string read_variant_name(const TomlTable& table, std::string_view key,
+                              const std::map<std::string, Study>& studies) {
+  if (!table.has(key))
     return "";
   std::vector<std::string> names;
   for (const auto& [name, study] : studies)
     if (!name.empty())
       names.push_back(name);
   if (names.empty())
-    table.refuse("variant", "a variant", "none: the table defines no [[variant]]");
-  return names[read_one_of(table, "variant", names)];
+    table.refuse(key, "a variant", "none: the table defines no [[variant]]");
+  return names[read_one_of(table, key, names)];
+}
+
+/// What stands for the study as it is where a benchmark is named.
+constexpr std::string_view kStudyItself = "study";
+
+std::optional<std::string> read_benchmark(const TomlTable& table,
+                                          const std::map<std::string, Study>& studies) {
+  if (!table.has("benchmark"))
+    return std::nullopt;
+  if (read_text(table, "benchmark") == kStudyItself)
+    return "";
+  return read_variant_name(table, "benchmark", studies);
 }
 
 std::string read_scenario_name(const TomlTable& table, const Study& study) {
@@ -191,10 +231,11 @@ std::string read_scenario_name(const TomlTable& table, const Study& study) {
 }
 
 TableRow read_row(const TomlTable& table, const std::vector<Column>& columns,
-                  const std::map<std::string, Study>& studies, const std::vector<std::string>& quantities) {
+                  const std::map<std::string, Study>& studies, const std::vector<TableQuantity>& quantities) {
   TableRow row;
   row.label = read_text(table, "label");
-  row.variant = read_variant_name(table, studies);
+  row.variant = read_variant_name(table, "variant", studies);
+  row.benchmark = read_benchmark(table, studies);
   const Study& study = studies.at(row.variant);
   row.scenario = read_scenario_name(table, study);
   for (const Column& column : columns)
@@ -223,6 +264,8 @@ std::map<std::string, Study> read_studies(const TomlTable& document, const TomlT
   const toml::table text = parse_toml(base.source, path.string());
   for (const TomlTable& table : document.tables("variant", {"name", "remove", "set"})) {
     const std::string name = read_name(table, "name");
+    if (name == kStudyItself)
+      table.refuse("name", in_quotes(name), "another name: it stands for the study as it is");
     if (!studies.emplace(name, read_study_variant(table, text, fmt::format("{} ({})", path.string(), name)))
              .second)
       table.refuse("name", in_quotes(name), "each name once");
@@ -230,12 +273,12 @@ std::map<std::string, Study> read_studies(const TomlTable& document, const TomlT
   return studies;
 }
 
-/// Table 3.10 comes after table 3.4.
-std::pair<int, int> numbers_of(const ThesisTable& table) {
-  return {table.chapter, std::stoi(table.number.substr(table.number.find('.') + 1))};
+/// Table 3.10 comes after table 3.4, and the figures of a chapter after its tables.
+std::tuple<int, bool, int> place_of(const ThesisTable& table) {
+  return {table.chapter, table.figure, std::stoi(table.number.substr(table.number.find('.') + 1))};
 }
 
-std::vector<ThesisTable> all_tables(const std::vector<std::string>& quantities, const fs::path& directory) {
+std::vector<ThesisTable> all_tables(const std::vector<TableQuantity>& quantities, const fs::path& directory) {
   std::vector<ThesisTable> all;
   std::error_code error;
   for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error))
@@ -245,7 +288,7 @@ std::vector<ThesisTable> all_tables(const std::vector<std::string>& quantities, 
     throw InputError("folder of the tables", fmt::format("'{}' ({})", directory.string(), error.message()),
                      "a folder that can be read, beside that of the studies (MPMBENCH_STUDIES)");
   std::sort(all.begin(), all.end(),
-            [](const ThesisTable& a, const ThesisTable& b) { return numbers_of(a) < numbers_of(b); });
+            [](const ThesisTable& a, const ThesisTable& b) { return place_of(a) < place_of(b); });
   return all;
 }
 
@@ -271,14 +314,28 @@ const VerdictRule* ThesisTable::rule_for(const std::string& quantity) const {
   return nullptr;
 }
 
-ThesisTable load_table(const fs::path& path, const std::vector<std::string>& quantities) {
+std::string ThesisTable::label() const {
+  return fmt::format("{} {}", figure ? "Figure" : "Table", number);
+}
+
+std::string ThesisTable::name() const {
+  return (figure ? "figure" : "") + number;
+}
+
+ThesisTable load_table(const fs::path& path, const std::vector<TableQuantity>& quantities) {
   const std::string file_name = path.string();
   const toml::table toml = parse_toml(read_toml_file(path, "a table file"), file_name);
   const TomlTable document(toml, file_name, {"table", "variant", "column", "rule", "row"});
-  const TomlTable heading = document.table("table", {"chapter", "number", "title", "study", "note"});
+  const TomlTable heading =
+      document.table("table", {"chapter", "number", "figure", "title", "study", "note"});
   ThesisTable table;
   table.chapter = static_cast<int>(read_whole(heading, "chapter", 1, kLastChapter));
-  table.number = fmt::format("{}.{}", table.chapter, read_whole(heading, "number", 1, 99));
+  table.figure = heading.has("figure");
+  if (table.figure == heading.has("number"))
+    heading.refuse("", table.figure ? "both number and figure" : "neither number nor figure",
+                   "exactly one of the two");
+  table.number =
+      fmt::format("{}.{}", table.chapter, read_whole(heading, table.figure ? "figure" : "number", 1, 99));
   table.title = read_text(heading, "title");
   table.note = read_text_or(heading, "note", "");
   table.studies = read_studies(document, heading, path);
@@ -286,8 +343,8 @@ ThesisTable load_table(const fs::path& path, const std::vector<std::string>& qua
   for (const Column& column : columns)
     table.heads.push_back(column.head);
   table.rules = read_rules(document, quantities);
-  for (const TomlTable& row :
-       document.tables("row", {"label", "variant", "scenario", "cv", "quantity", "values", "verdicts"})) {
+  for (const TomlTable& row : document.tables("row", {"label", "variant", "benchmark", "scenario", "cv", "mv",
+                                                      "quantity", "values", "verdicts"})) {
     table.rows.push_back(read_row(row, columns, table.studies, quantities));
     refuse_unknown_verdicts(row, table);
   }
@@ -298,21 +355,21 @@ fs::path table_directory() {
   return study_directory().parent_path() / "tables";
 }
 
-std::vector<ThesisTable> find_tables(const std::string& which, const std::vector<std::string>& quantities,
+std::vector<ThesisTable> find_tables(const std::string& which, const std::vector<TableQuantity>& quantities,
                                      const fs::path& directory) {
   std::vector<ThesisTable> found;
-  std::vector<std::string> known{"all"}, numbers;
+  std::vector<std::string> known{"all"}, names;
   for (ThesisTable& table : all_tables(quantities, directory)) {
     const std::string chapter = fmt::format("chapter{}", table.chapter);
     if (known.back() != chapter)
       known.push_back(chapter);
-    if (!numbers.empty() && numbers.back() == table.number)
-      throw InputError(directory.string(), fmt::format("two files for table {}", table.number), "one");
-    numbers.push_back(table.number);
-    if (which == "all" || which == chapter || which == table.number)
+    if (!names.empty() && names.back() == table.name())
+      throw InputError(directory.string(), fmt::format("two files for {}", table.label()), "one");
+    names.push_back(table.name());
+    if (which == "all" || which == chapter || which == table.name())
       found.push_back(std::move(table));
   }
-  known.insert(known.end(), numbers.begin(), numbers.end());
+  known.insert(known.end(), names.begin(), names.end());
   if (found.empty())
     throw InputError("tables", with_nearest(which, known), fmt::format("{}", fmt::join(known, ", ")));
   return found;

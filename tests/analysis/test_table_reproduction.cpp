@@ -110,19 +110,22 @@ TEST_CASE("a loop that stops has a remark and no numbers", "[reproduction]") {
 TEST_CASE("a quantity that there is not is refused by name", "[reproduction]") {
   const Study study = find_study("chapter4-shell");
   const BasisCase basis = run_basis_case(study, kFactory);
-  ScenarioQuantities quantities(study, basis, basis_draw(), kFactory);
+  ScenarioQuantities quantities(study, basis, basis_draw(), kFactory, std::nullopt);
   CHECK_THROWS_WITH(quantities.value("ivarr", 0), Catch::Contains("quantity: found 'ivarr'"));
-  for (const std::string& name : ScenarioQuantities::names())
-    CHECK_NOTHROW(quantities.value(name, 0));
+  for (const TableQuantity& quantity : ScenarioQuantities::known())
+    CHECK_NOTHROW(quantities.value(quantity.name, 0, 0));
+  CHECK(quantities.value("botelho.ivar", 0) == quantities.value("ivar", 0));  // the same chain
+  CHECK(quantities.value("botelho.loop_flagged", -1) == 0.0);
   CHECK(quantities.value("squared_error", 0) == Approx(std::pow(quantities.value("sse", 0), 2)));
 }
 
 TEST_CASE("every shipped table is read, under the name of its file", "[reproduction]") {
-  const std::vector<ThesisTable> tables = find_tables("all", ScenarioQuantities::names());
+  const std::vector<ThesisTable> tables = find_tables("all", ScenarioQuantities::known());
   CHECK(tables.size() >= 19);
   for (const ThesisTable& table : tables) {
     INFO(table.number);
-    CHECK(std::filesystem::exists(table_directory() / ("table-" + table.number + ".toml")));
+    CHECK(std::filesystem::exists(table_directory() /
+                                  ((table.figure ? "figure-" : "table-") + table.number + ".toml")));
     CHECK_FALSE(table.rows.empty());
   }
 }

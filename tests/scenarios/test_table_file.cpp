@@ -16,7 +16,11 @@ namespace fs = std::filesystem;
 using testing::line_of;
 using testing::replaced;
 
-const std::vector<std::string> kQuantities{"ivar", "ivar_diag", "sse"};
+const std::vector<TableQuantity> kQuantities{{"ivar"},
+                                             {"ivar_diag"},
+                                             {"sse"},
+                                             {"method.index", QuantityScope::loop},
+                                             {"method.correlation", QuantityScope::channel}};
 
 /// Two studies, two columns (one of them with its own CV), three rules, three rows.
 const std::string kTable = R"([table]
@@ -222,7 +226,7 @@ TEST_CASE("tables are found by chapter and number, in the order of the numbers",
              Catch::Contains("tables: found '4.1'") &&
                  Catch::Contains("allowed: all, chapter3, chapter4, 3.1, 4.5, 4.10"));
   folder.put("d.toml", number(4, 5));
-  CHECK_THAT(message_of(folder.path(), [&] { numbers("all"); }), Catch::Contains("two files for table 4.5"));
+  CHECK_THAT(message_of(folder.path(), [&] { numbers("all"); }), Catch::Contains("two files for Table 4.5"));
   CHECK_THROWS_WITH(find_tables("all", kQuantities, folder.path() / "none"),
                     Catch::Contains("folder of the tables"));
 }

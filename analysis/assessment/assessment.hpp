@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenarios/fault.hpp"
+
+namespace mpm {
+
+/// How the assessment of a loop ended.
+enum class AssessmentStatus : std::int8_t {
+  ok = 0,
+  not_applicable = 1,  ///< the method needs what this loop does not have (Assessment::reason)
+  failed = 2,          ///< the data gave no answer: a singular covariance, no usable model, ...
+};
+
+/// "ok", "not applicable", "failed"
+std::string_view to_string(AssessmentStatus status);
+
+/// What a method says of one CV.
+struct CvAssessment {
+  /// The model of this CV, or its performance, is not as it should be; none: the method says nothing of it.
+  std::optional<bool> flagged = {};
+  /// How far the CV is from being flagged: larger is worse, comparable between CVs and loops of one method;
+  /// NaN where `flagged` is none.
+  double score = std::numeric_limits<double>::quiet_NaN();
+  /// By methods that tell sources apart, of a flagged CV or the worst one: mpm or ud; otherwise none.
+  ExperimentKind source = ExperimentKind::none;
+};
+
+/// A channel of the model, CV against MV.
+struct Channel {
+  Eigen::Index cv;
+  Eigen::Index mv;
+
+  friend bool operator==(const Channel&, const Channel&) = default;
+};
+
+/// One number of a method, by a name of AssessmentMethodInfo::numbers. Of the whole loop (cv and mv -1), of a
+/// CV (mv -1) or of a channel.
+struct AssessmentNumber {
+  std::string name;
+  double value;
+  Eigen::Index cv = -1;
+  Eigen::Index mv = -1;
+};
+
+/// What a method of assessment says of one loop.
+struct Assessment {
+  AssessmentStatus status = AssessmentStatus::ok;
+  std::string reason;  ///< one sentence for people when the status is not ok
+
+  bool flagged = false;  ///< something is wrong with the loop: the verdict that is counted as a detection
+  /// How far the loop is from being flagged, larger is worse: what a ROC curve is drawn over. It need not be
+  /// that of a CV.
+  double score = std::numeric_limits<double>::quiet_NaN();
+  std::vector<CvAssessment> cvs;          ///< ny; empty when the method does not look at CVs alone
+  std::vector<Channel> flagged_channels;  ///< of methods that name channels
+  std::vector<AssessmentNumber> numbers;
+
+  /// The CV with the largest score; none without one.
+  std::optional<Eigen::Index> worst_cv() const;
+  /// The number of this name, CV and MV; NaN when there is none.
+  double number(std::string_view name, Eigen::Index cv = -1, Eigen::Index mv = -1) const;
+
+  static Assessment not_applicable(std::string reason);
+  static Assessment failed(std::string reason);
+};
+
+}  // namespace mpm

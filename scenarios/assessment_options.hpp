@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+
+// The open choices of the methods that assess a controller ([assessment] of a study file). One structure a
+// method; the chain of the thesis has its own, DiagnosisOptions.
+
+namespace mpm {
+
+/// What stands for the setpoint of a CV that the controller holds in a range.
+enum class AssessmentSetpoints : std::int8_t {
+  controller = 0,  ///< nothing: a method that needs setpoints does not apply
+  optimizer = 1,   ///< the steady state that the target optimizer computes (2.32), as chapter 2 does it
+};
+
+/// Of the method of Sun et al. (2013), analysis/assessment/sun.
+struct SunOptions {
+  double tolerance = 0.85;  ///< MQI and iMQI below it show a poor model (2.4.2)
+};
+
+/// Of the method of Badwe et al. (2009), analysis/assessment/badwe2009.
+struct Badwe2009Options {
+  double confidence = 0.95;  ///< of the band of the partial correlation
+};
+
+/// Of the method of Badwe et al. (2010), analysis/assessment/badwe2010.
+struct Badwe2010Options {
+  int smallest_order = 3, largest_order = 7;  ///< of the output-error models (3.3.2)
+};
+
+/// Of the method of Yu and Qin (2008), analysis/assessment/yu_qin.
+struct YuQinOptions {
+  double confidence = 0.95;  ///< of the limits of eigenvalues and angles
+};
+
+/// [assessment]
+struct AssessmentOptions {
+  AssessmentSetpoints setpoints = AssessmentSetpoints::controller;
+  SunOptions sun;
+  Badwe2009Options badwe2009;
+  Badwe2010Options badwe2010;
+  YuQinOptions yu_qin;
+};
+
+}  // namespace mpm
