@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "analysis/study_aggregate.hpp"
+#include "bench/command_compare.hpp"
 #include "bench/command_plot.hpp"
 #include "bench/command_report.hpp"
 #include "bench/command_reproduce.hpp"
@@ -99,6 +100,7 @@ struct Executor {
   ExitCode operator()(const CheckCommand& command) const { return check(command); }
   ExitCode operator()(const ReportCommand& command) const { return report(command); }
   ExitCode operator()(const PlotCommand& command) const { return plot(command); }
+  ExitCode operator()(const CompareCommand& command) const { return compare(command, command_line); }
   ExitCode operator()(const ReproduceCommand& command) const { return reproduce_tables(command); }
   ExitCode operator()(const ListCommand&) const { return list(); }
   ExitCode operator()(const UsageText& usage) const {

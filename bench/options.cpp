@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "analysis/assessment/method_table.hpp"
 #include "bench/version.hpp"
 #include "results/figure_format.hpp"
 #include "solvers/qp_solver.hpp"
@@ -95,6 +96,25 @@ void add_plot(CLI::App& app, PlotCommand& plot) {
   app.add_option("-o,--output", plot.output, "Figure to write: NAME.svg, NAME.pdf or NAME.png")->required();
 }
 
+void add_compare(CLI::App& app, CompareCommand& compare) {
+  compare.methods = assessment_method_names();
+  compare.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  app.add_option("ARCHIVE", compare.archive, "Archive")->required();
+  app.add_option("--methods", compare.methods, "Methods, separated by commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember(assessment_method_names()))
+      ->capture_default_str();
+  app.add_option("-o,--output", compare.output,
+                 "Archive to write with the comparison in it (HDF5); may be ARCHIVE itself");
+  app.add_option("--experiments", compare.experiments, "Compare on the first N experiments only")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--jobs", compare.jobs, "How many loops are assessed at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_flag("--json", compare.json, "As JSON");
+  app.add_flag("--quiet", compare.quiet, "No progress");
+}
+
 void add_reproduce(CLI::App& app, ReproduceCommand& reproduce) {
   app.add_option("TABLES", reproduce.tables,
                  "all, chapter2 to chapter6, or the number of a table such as 4.5")
@@ -145,6 +165,10 @@ Command parse_command_line(int argc, const char* const* argv) {
   PlotCommand plot;
   CLI::App* const plot_app = app.add_subcommand("plot", "Draw the closed loop of one experiment");
   add_plot(*plot_app, plot);
+  CompareCommand compare;
+  CLI::App* const compare_app = app.add_subcommand(
+      "compare", "Assess the loops of an archive by several methods: how often is each right?");
+  add_compare(*compare_app, compare);
   ReproduceCommand reproduce;
   CLI::App* const reproduce_app =
       app.add_subcommand("reproduce", "Run the studies behind the tables of the thesis, cell by cell");
@@ -172,6 +196,8 @@ Command parse_command_line(int argc, const char* const* argv) {
     return report;
   if (plot_app->parsed())
     return plot;
+  if (compare_app->parsed())
+    return compare;
   if (reproduce_app->parsed())
     return reproduce;
   if (list_app->parsed())

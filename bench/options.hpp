@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "analysis/experiment.hpp"
 #include "bench/campaign_runner.hpp"
@@ -71,6 +72,17 @@ struct PlotCommand {
   std::string output;  ///< its extension names the format
 };
 
+/// `mpmbench compare ARCHIVE [--methods A,B,...] [-o OUT.h5] [--json]`
+struct CompareCommand {
+  std::string archive;
+  std::vector<std::string> methods;  ///< names of assessment_methods()
+  std::string output;                ///< archive with the comparison; none when empty
+  std::optional<std::int64_t> experiments;
+  int jobs = 1;
+  bool json = false;
+  bool quiet = false;
+};
+
 /// `mpmbench reproduce [TABLES] [--json] [-o PAGE.html]`
 struct ReproduceCommand {
   std::string tables = "all";
@@ -89,8 +101,9 @@ struct UsageText {
   int exit_code;
 };
 
-using Command = std::variant<RunCommand, ReplayCommand, SummaryCommand, CheckCommand, SweepCommand,
-                             ReportCommand, PlotCommand, ReproduceCommand, ListCommand, UsageText>;
+using Command =
+    std::variant<RunCommand, ReplayCommand, SummaryCommand, CheckCommand, SweepCommand, ReportCommand,
+                 PlotCommand, CompareCommand, ReproduceCommand, ListCommand, UsageText>;
 
 /// Reads the command line; wrong usage gives UsageText with exit code 2.
 Command parse_command_line(int argc, const char* const* argv);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "analysis/assessment/comparison.hpp"
 #include "analysis/basis_case.hpp"
 #include "analysis/experiment.hpp"
 #include "scenarios/audit.hpp"
@@ -32,7 +34,8 @@ struct Campaign {
   CampaignInfo info;
   BasisCase basis;
   std::vector<ExperimentRecord> records;
-  std::vector<AuditedStep> audit;  ///< in the order of experiment and step
+  std::vector<AuditedStep> audit;             ///< in the order of experiment and step
+  std::optional<Comparison> comparison = {};  ///< of methods of assessment; none until one was made
 };
 
 }  // namespace mpm

@@ -1,0 +1,164 @@
+#include "analysis/assessment/method_rates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "analysis/assessment/method_table.hpp"
+#include "analysis/quantile.hpp"
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// The truth about one compared loop.
+using Truths = std::vector<const ExperimentRecord*>;
+
+Truths truths_of(const Comparison& comparison, std::span<const ExperimentRecord> records) {
+  Truths truths;
+  auto record = records.begin();
+  for (const ComparedLoop& loop : comparison.loops) {
+    record = std::find_if(record, records.end(), [&](const ExperimentRecord& candidate) {
+      return candidate.draw.index == loop.experiment;
+    });
+    if (record == records.end())
+      throw InputError("comparison", fmt::format("experiment {}", loop.experiment),
+                       "experiments of the campaign, in their order");
+    truths.push_back(&*record);
+  }
+  return truths;
+}
+
+bool has_fault(const ExperimentRecord& record) {
+  const ExperimentKind kind = record.draw.kind;
+  return kind == ExperimentKind::mpm || kind == ExperimentKind::ud || kind == ExperimentKind::mpm_ud;
+}
+
+bool has_impact(const ExperimentRecord& record, const Study& study) {
+  const Eigen::VectorXd& ivar = record.diagnosis.ivar_basis;
+  return std::any_of(ivar.begin(), ivar.end(),
+                     [&](double value) { return study.diagnosis.has_impact(value); });
+}
+
+/// Counts trials and hits.
+struct Count {
+  std::int64_t hits = 0, total = 0;
+
+  void add(bool hit) {
+    ++total;
+    hits += hit ? 1 : 0;
+  }
+  Rate rate(double confidence) const { return mpm::rate(hits, total, confidence); }
+};
+
+/// The channel of the only mismatch, when it is one of an MV; none otherwise.
+std::optional<Channel> mismatched_channel(const ExperimentRecord& record, const Study& study) {
+  const std::vector<Mismatch>& mismatches = record.draw.mismatches;
+  if (mismatches.size() != 1 || mismatches[0].input >= study.mv_count())
+    return std::nullopt;
+  return Channel{mismatches[0].cv, mismatches[0].input};
+}
+
+struct Counts {
+  Count answered, detected, detected_impact, false_alarm_healthy, false_alarm_tuning, located, source,
+      channel;
+  std::vector<double> fault_scores, healthy_scores, milliseconds;
+
+  void add(const MethodVerdict& verdict, const ExperimentRecord& truth, const Study& study,
+           const AssessmentMethodInfo& method) {
+    answered.add(verdict.status == AssessmentStatus::ok);
+    if (verdict.status != AssessmentStatus::ok)
+      return;
+    milliseconds.push_back(1e3 * verdict.seconds);
+    if (!has_fault(truth)) {
+      healthy_scores.push_back(verdict.score);
+      false_alarm_healthy.add(verdict.flagged);
+      return;
+    }
+    fault_scores.push_back(verdict.score);
+    detected.add(verdict.flagged);
+    if (has_impact(truth, study))
+      detected_impact.add(verdict.flagged);
+    if (verdict.flagged)
+      add_diagnosis(verdict, truth, study, method);
+  }
+
+  void add_diagnosis(const MethodVerdict& verdict, const ExperimentRecord& truth, const Study& study,
+                     const AssessmentMethodInfo& method) {
+    if (method.locates_cvs && truth.draw.true_cv() >= 0)
+      located.add(verdict.located_cv == truth.draw.true_cv());
+    if (method.tells_sources && truth.draw.kind != ExperimentKind::mpm_ud)
+      source.add(verdict.source == truth.draw.kind);
+    const std::optional<Channel> wrong = mismatched_channel(truth, study);
+    if (method.names_channels && wrong)
+      channel.add(std::find(verdict.flagged_channels.begin(), verdict.flagged_channels.end(), *wrong) !=
+                  verdict.flagged_channels.end());
+  }
+};
+
+MethodRates rates_of(std::size_t method, const Comparison& comparison, const Truths& truths,
+                     const Study& study) {
+  const AssessmentMethodInfo& info = assessment_method(comparison.methods[method]);
+  Counts counts;
+  for (std::size_t i = 0; i < truths.size(); ++i)
+    counts.add(comparison.loops[i].verdicts[method], *truths[i], study, info);
+  const double confidence = study.aggregate.confidence;
+  MethodRates rates{.method = info.name,
+                    .reason = comparison.reasons[method],
+                    .answered = counts.answered.rate(confidence),
+                    .detected = counts.detected.rate(confidence),
+                    .detected_impact = counts.detected_impact.rate(confidence),
+                    .false_alarm_healthy = counts.false_alarm_healthy.rate(confidence),
+                    .false_alarm_tuning = counts.false_alarm_tuning.rate(confidence),
+                    .located = counts.located.rate(confidence),
+                    .source = counts.source.rate(confidence),
+                    .channel = counts.channel.rate(confidence),
+                    .roc = roc_curve(counts.fault_scores, counts.healthy_scores),
+                    .roc_area = {kNone, kNone},
+                    .milliseconds = kNone};
+  if (rates.roc.defined())
+    rates.roc_area = area_interval(rates.roc.area, rates.roc.positives, rates.roc.negatives, confidence);
+  if (!counts.milliseconds.empty()) {
+    std::sort(counts.milliseconds.begin(), counts.milliseconds.end());
+    rates.milliseconds = sorted_quantile(counts.milliseconds, 0.5);
+  }
+  return rates;
+}
+
+MethodPair paired(std::size_t first, std::size_t second, const Comparison& comparison, const Truths& truths) {
+  MethodPair pair{first, second, 0, {}};
+  std::int64_t lost = 0, gained = 0;
+  for (std::size_t i = 0; i < truths.size(); ++i) {
+    const MethodVerdict& a = comparison.loops[i].verdicts[first];
+    const MethodVerdict& b = comparison.loops[i].verdicts[second];
+    if (a.status != AssessmentStatus::ok || b.status != AssessmentStatus::ok)
+      continue;
+    const bool truth = has_fault(*truths[i]);
+    ++pair.loops;
+    lost += a.flagged == truth && b.flagged != truth ? 1 : 0;
+    gained += a.flagged != truth && b.flagged == truth ? 1 : 0;
+  }
+  pair.test = mcnemar_test(lost, gained);
+  return pair;
+}
+
+}  // namespace
+
+ComparisonSummary summarise(const Comparison& comparison, std::span<const ExperimentRecord> records,
+                            const Study& study) {
+  const Truths truths = truths_of(comparison, records);
+  ComparisonSummary summary;
+  for (std::size_t method = 0; method < comparison.methods.size(); ++method)
+    summary.methods.push_back(rates_of(method, comparison, truths, study));
+  for (std::size_t first = 0; first < comparison.methods.size(); ++first)
+    for (std::size_t second = first + 1; second < comparison.methods.size(); ++second)
+      summary.pairs.push_back(paired(first, second, comparison, truths));
+  return summary;
+}
+
+}  // namespace mpm
