@@ -1,5 +1,6 @@
 #include "analysis/assessment/comparison.hpp"
 
+#include <algorithm>
 #include <ctime>
 #include <optional>
 #include <utility>
@@ -14,6 +15,14 @@ double thread_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// The channels by CV and MV, each once.
+std::vector<Channel> in_order(std::vector<Channel> channels) {
+  std::sort(channels.begin(), channels.end(),
+            [](const Channel& a, const Channel& b) { return a.cv != b.cv ? a.cv < b.cv : a.mv < b.mv; });
+  channels.erase(std::unique(channels.begin(), channels.end()), channels.end());
+  return channels;
 }
 
 MethodVerdict verdict_of(Assessor& assessor, const AssessedLoop& loop, std::string& reason) {
@@ -31,7 +40,7 @@ MethodVerdict verdict_of(Assessor& assessor, const AssessedLoop& loop, std::stri
     verdict.located_cv = *worst;
     verdict.source = assessment.cvs[static_cast<std::size_t>(*worst)].source;
   }
-  verdict.flagged_channels = std::move(assessment.flagged_channels);
+  verdict.flagged_channels = in_order(std::move(assessment.flagged_channels));
   return verdict;
 }
 

@@ -19,7 +19,7 @@ struct MethodVerdict {
   double score = std::numeric_limits<double>::quiet_NaN();  ///< Assessment::score
   Eigen::Index located_cv = -1;                             ///< Assessment::worst_cv(), -1 for none
   ExperimentKind source = ExperimentKind::none;             ///< of the located CV
-  std::vector<Channel> flagged_channels;
+  std::vector<Channel> flagged_channels;                    ///< by CV and MV, each once
   double seconds = 0.0;  ///< of processor time; the only number that another run does not repeat
 };
 

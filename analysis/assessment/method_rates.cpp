@@ -1,6 +1,7 @@
 #include "analysis/assessment/method_rates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -74,7 +75,8 @@ struct Counts {
     answered.add(verdict.status == AssessmentStatus::ok);
     if (verdict.status != AssessmentStatus::ok)
       return;
-    milliseconds.push_back(1e3 * verdict.seconds);
+    if (!std::isnan(verdict.seconds))  // it would break the order for the median
+      milliseconds.push_back(1e3 * verdict.seconds);
     if (!has_fault(truth)) {
       healthy_scores.push_back(verdict.score);
       false_alarm_healthy.add(verdict.flagged);
@@ -147,7 +149,34 @@ MethodPair paired(std::size_t first, std::size_t second, const Comparison& compa
   return pair;
 }
 
+constexpr std::array<MethodRateInfo, 8> kRates{{
+    {"answered", "answered", "of all loops those on which the method gave a verdict", &MethodRates::answered},
+    {"detected", "detected", "of the loops with a fault those that are flagged", &MethodRates::detected},
+    {"detected_impact", "detected, with impact",
+     "of the loops with a fault that has an impact those that are flagged", &MethodRates::detected_impact},
+    {"false_alarm_healthy", "false alarms, healthy",
+     "of the loops without a fault and with the tuning of the design those that are flagged",
+     &MethodRates::false_alarm_healthy},
+    {"false_alarm_tuning", "false alarms, bad tuning",
+     "of the loops without a fault and with bad tuning those that are flagged",
+     &MethodRates::false_alarm_tuning},
+    {"located", "CV located",
+     "of the flagged loops in which a fault affects one CV those in which this CV has the largest score",
+     &MethodRates::located},
+    {"source", "source right",
+     "of the flagged loops with a mismatch or a disturbance alone those whose located CV has the right "
+     "source",
+     &MethodRates::source},
+    {"channel", "channel named",
+     "of the flagged loops with one mismatch of an MV those in which its channel is named",
+     &MethodRates::channel},
+}};
+
 }  // namespace
+
+std::span<const MethodRateInfo> method_rate_infos() {
+  return kRates;
+}
 
 ComparisonSummary summarise(const Comparison& comparison, std::span<const ExperimentRecord> records,
                             const Study& study) {
@@ -159,6 +188,22 @@ ComparisonSummary summarise(const Comparison& comparison, std::span<const Experi
     for (std::size_t second = first + 1; second < comparison.methods.size(); ++second)
       summary.pairs.push_back(paired(first, second, comparison, truths));
   return summary;
+}
+
+std::vector<AggregateValue> named_values(const ComparisonSummary& summary) {
+  std::vector<AggregateValue> values;
+  for (const MethodRates& method : summary.methods) {
+    for (const MethodRateInfo& info : method_rate_infos()) {
+      const Rate& rate = method.*info.rate;
+      values.push_back({fmt::format("compare.{}.{}", method.method, info.name),
+                        fmt::format("{}: {}", method.method, info.meaning), rate.value, rate.interval,
+                        rate.total});
+    }
+    values.push_back({fmt::format("compare.{}.roc_area", method.method),
+                      fmt::format("{}: area under the ROC curve of its score", method.method),
+                      method.roc.area, method.roc_area, method.roc.positives + method.roc.negatives});
+  }
+  return values;
 }
 
 }  // namespace mpm

@@ -9,24 +9,16 @@
 #include "analysis/interval.hpp"
 #include "analysis/mcnemar.hpp"
 #include "analysis/roc.hpp"
+#include "analysis/study_aggregate.hpp"
 
 namespace mpm {
 
-/// How often one method is right. Loops to which it does not apply are not counted, but in `answered`.
+/// How often one method is right. A loop without a verdict counts in `answered` only; method_rate_infos()
+/// says what each rate counts.
 ///
-/// | member              | of the loops                        | share |
-/// |---------------------|-------------------------------------|----------------------------------------------|
-/// | answered            | all                                 | the method gave a verdict | | detected |
-/// with a fault (mpm, ud, mpm_ud)      | flagged                                      | | detected_impact |
-/// with a fault that has an impact     | flagged                                      | | false_alarm_healthy
-/// | without fault, design tuning        | flagged                                      | |
-/// false_alarm_tuning  | without fault, bad tuning           | flagged                                      |
-/// | located             | flagged, one CV affected            | that CV has the largest score | | source |
-/// flagged, mpm or ud                  | the source of the located CV is right        | | channel | flagged,
-/// one mismatch of an MV      | its channel is among the flagged ones        |
-///
-/// A fault has an impact when Ivar_basis (6.22), the variance of some CV against the same loop without fault,
-/// lies outside the band of impact of the study: a truth that no method under test has a part in.
+/// A fault is of kind mpm, ud or mpm_ud. It has an impact when Ivar_basis (6.22), the variance of some CV
+/// against the same loop without fault, lies outside the band of impact of the study: a truth that no method
+/// under test has a part in.
 struct MethodRates {
   std::string method;
   std::string reason;  ///< why there was no verdict, where there was none
@@ -35,6 +27,18 @@ struct MethodRates {
   Interval roc_area;    ///< of roc.area; NaN when there is no curve
   double milliseconds;  ///< median processor time a loop, of those answered; NaN without
 };
+
+/// A rate of a method under the name that text, JSON, archive, report and gates have for it. All are shares
+/// of loops.
+struct MethodRateInfo {
+  const char* name;     ///< "false_alarm_healthy"
+  const char* title;    ///< for people: "false alarms, healthy"
+  const char* meaning;  ///< which loops are looked at, and which of them count
+  Rate MethodRates::*rate;
+};
+
+/// Every rate of MethodRates once, in the order in which people read them.
+std::span<const MethodRateInfo> method_rate_infos();
 
 /// Two methods on the same loops: is one right where the other is wrong? Right is a flagged loop with a fault
 /// and a loop without one that is not flagged; counted are the loops that both gave a verdict on.
@@ -53,5 +57,9 @@ struct ComparisonSummary {
 /// the comparison. Throws InputError when they have not.
 ComparisonSummary summarise(const Comparison& comparison, std::span<const ExperimentRecord> records,
                             const Study& study);
+
+/// The numbers of every method that a gate can be put on: "compare.METHOD.RATE" for each rate, and
+/// "compare.METHOD.roc_area".
+std::vector<AggregateValue> named_values(const ComparisonSummary& summary);
 
 }  // namespace mpm
