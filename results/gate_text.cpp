@@ -5,53 +5,20 @@
 
 #include "results/gate_report.hpp"
 #include "results/gate_words.hpp"
+#include "results/text_table.hpp"
 
 namespace mpm {
 namespace {
 
-/// Words in columns, each as wide as its longest entry.
-class Table {
- public:
-  using Row = std::vector<std::string>;
-
-  void add(Row row) {
-    widths_.resize(std::max(widths_.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i)
-      widths_[i] = std::max(widths_[i], row[i].size());
-    rows_.push_back(std::move(row));
-  }
-
-  /// The first column is words and stands left, the others are numbers; the last one is words again.
-  std::string text() const {
-    std::string text;
-    for (const Row& row : rows_) {
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        if (i == 0)
-          text += fmt::format("{:<{}}", row[i], widths_[i]);
-        else if (i + 1 < row.size())
-          text += fmt::format("  {:>{}}", row[i], widths_[i]);
-        else
-          text += "  " + row[i];
-      }
-      text += '\n';
-    }
-    return text;
-  }
-
- private:
-  std::vector<Row> rows_;
-  std::vector<std::size_t> widths_;
-};
-
 std::string gate_table(const GateCheck& check) {
-  Table table;
+  TextTable table;
   table.add({"gate", "limit", "judged by", "measured",
              fmt::format("{:g} % interval", 100.0 * check.confidence), "count", "margin", "outcome"});
   for (const GateResult& result : check.results)
     table.add({result.gate.name, limit_text(result.gate), result.gate.with_confidence ? "interval" : "value",
                measured_text(result), interval_text(result), fmt::format("{}", result.measured.count),
                margin_text(result), std::string(to_string(result.outcome))});
-  return table.text();
+  return table.text(TextTable::LastColumn::words);
 }
 
 std::string changes_heading(const char* question, const VerdictChanges& changes) {
