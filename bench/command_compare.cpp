@@ -1,19 +1,31 @@
 #include "bench/command_compare.hpp"
 
-#include <utility>
+#include <algorithm>
 
 #include <fmt/format.h>
 
 #include "bench/comparison_runner.hpp"
 #include "bench/files.hpp"
 #include "bench/progress.hpp"
+#include "bench/version.hpp"
 #include "plants/error.hpp"
 #include "results/archive.hpp"
 #include "results/comparison.hpp"
 
 namespace mpm {
 
+namespace {
+
+void require_each_once(const std::vector<std::string>& methods) {
+  for (auto method = methods.begin(); method != methods.end(); ++method)
+    if (std::find(methods.begin(), method, *method) != method)
+      throw InputError("--methods", fmt::format("'{}' twice", *method), "each method once");
+}
+
+}  // namespace
+
 ExitCode compare(const CompareCommand& command, const std::string& command_line) {
+  require_each_once(command.methods);
   Campaign campaign = read_input(command.archive);
   if (!command.output.empty())
     require_output_folder(command.output, "archive");
@@ -32,7 +44,7 @@ ExitCode compare(const CompareCommand& command, const std::string& command_line)
     throw;
   }
   if (!command.output.empty()) {
-    campaign.info.command = command_line;
+    campaign.comparison_info = {mpmbench_version(), source_revision(), command_line};
     write_archive(command.output, campaign);
   }
   fmt::print("{}", command.json ? comparison_json(campaign) : comparison_text(campaign));

@@ -23,6 +23,7 @@ Campaign read_groups(const std::filesystem::path& path) {
   read_trajectories(root, study, campaign.records, file);
   read_s0_sensitivity(root, study, campaign.records, file);
   campaign.audit = read_audit(root, file);
+  read_comparison(root, campaign, file);
   campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
   read_basis_acf(root, study, campaign.basis, file);
   campaign.basis.sensitivity_direct = read_nominal_direct(root, study, campaign.basis.sensitivity, file);
@@ -50,6 +51,7 @@ void write_archive(const std::filesystem::path& path, const Campaign& campaign) 
   write_s0_sensitivity(root, campaign);
   write_audit(root, campaign.audit);
   write_aggregate(root, campaign);
+  write_comparison(root, campaign);
   write_file_atomically(path, file.image());
 }
 

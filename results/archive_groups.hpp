@@ -72,4 +72,10 @@ std::vector<AuditedStep> read_audit(const Hdf5Group& root, const std::string& fi
 /// /aggregate: all numbers of a StudyAggregate. They follow from the rest and are not read back.
 void write_aggregate(Hdf5Group& root, const Campaign& campaign);
 
+/// /comparison: what methods of assessment say of the loops, and how often they are right; no such group
+/// until a comparison was made. Rates and paired tests follow from the rest and are not read back.
+void write_comparison(Hdf5Group& root, const Campaign& campaign);
+/// Puts the comparison into `campaign`, whose study and records have been read; nothing without the group.
+void read_comparison(const Hdf5Group& root, Campaign& campaign, const std::string& file);
+
 }  // namespace mpm

@@ -1,14 +1,13 @@
-#include <algorithm>
 #include <cstdint>
 
 #include <fmt/format.h>
 
 #include "analysis/s0_curves.hpp"
 #include "analysis/s0_structure.hpp"
-#include "results/archive_error.hpp"
 #include "results/archive_groups.hpp"
 #include "results/dimensions.hpp"
 #include "results/matrix_io.hpp"
+#include "results/record_subset.hpp"
 #include "results/variable_text.hpp"
 
 namespace mpm {
@@ -121,24 +120,6 @@ void write_curves(Hdf5Group& group, const Study& study, const std::vector<Experi
   write_spreads(group, "damping", "damping", curves, &S0Curve::damping);
 }
 
-/// The records of the experiments in the dimension `perturbed`.
-std::vector<ExperimentRecord*> perturbed_records(const Hdf5Group& group,
-                                                 std::vector<ExperimentRecord>& records,
-                                                 const std::string& file) {
-  std::vector<ExperimentRecord*> perturbed;
-  auto record = records.begin();
-  for (const std::int64_t index : group.read_list<std::int64_t>("perturbed")) {
-    record = std::find_if(record, records.end(), [&](const auto& r) { return r.draw.index == index; });
-    if (record == records.end())
-      throw ArchiveError(
-          fmt::format("{}: dimension '/{}/perturbed': found {}; allowed: experiments of the root group in "
-                      "their order, each once",
-                      file, kGroup, index));
-    perturbed.push_back(&*record++);
-  }
-  return perturbed;
-}
-
 }  // namespace
 
 void write_s0_sensitivity(Hdf5Group& root, const Campaign& campaign) {
@@ -161,7 +142,7 @@ void read_s0_sensitivity(const Hdf5Group& root, const Study& study, std::vector<
   if (study.s0_perturbation.multipliers.empty())
     return;
   const Hdf5Group group = root.group(kGroup);
-  const std::vector<ExperimentRecord*> perturbed = perturbed_records(group, records, file);
+  const std::vector<ExperimentRecord*> perturbed = records_along(group, kGroup, "perturbed", records, file);
   const auto size = static_cast<Eigen::Index>(study.s0_perturbation.multipliers.size());
   const std::vector<Eigen::VectorXd> time_constant =
       read_vectors(group, kTimeConstant, true, perturbed.size(), size);

@@ -1,13 +1,10 @@
-#include <algorithm>
 #include <cstdint>
 
-#include <fmt/format.h>
-
-#include "results/archive_error.hpp"
 #include "results/archive_groups.hpp"
 #include "results/column_io.hpp"
 #include "results/dimensions.hpp"
 #include "results/matrix_io.hpp"
+#include "results/record_subset.hpp"
 
 namespace mpm {
 namespace {
@@ -37,23 +34,6 @@ auto signals(const Parts& parts, const SignalColumn& column) {
   for (auto* trajectory : parts.trajectories)
     pointers.push_back(&(trajectory->*column.member));
   return pointers;
-}
-
-/// The record of each experiment that is stored, in the order in which it is stored.
-std::vector<ExperimentRecord*> stored_records(const Hdf5Group& group, std::vector<ExperimentRecord>& records,
-                                              const std::string& file) {
-  std::vector<ExperimentRecord*> stored;
-  auto record = records.begin();
-  for (const std::int64_t index : group.read_list<std::int64_t>("stored")) {
-    record = std::find_if(record, records.end(), [&](const auto& r) { return r.draw.index == index; });
-    if (record == records.end())
-      throw ArchiveError(
-          fmt::format("{}: dimension '/{}/stored': found {}; allowed: experiments of the root "
-                      "group in their order, each once",
-                      file, kGroup, index));
-    stored.push_back(&*record++);
-  }
-  return stored;
 }
 
 }  // namespace
@@ -91,7 +71,7 @@ void read_trajectories(const Hdf5Group& root, const Study& study, std::vector<Ex
     return;
   const Hdf5Group group = root.group(kGroup);
   LoopParts<LoopRecord> parts;
-  for (ExperimentRecord* record : stored_records(group, records, file))
+  for (ExperimentRecord* record : records_along(group, kGroup, "stored", records, file))
     parts.add(record->loop.emplace());
   const std::size_t count = parts.trajectories.size();
   read_columns(group, {count}, loop_columns(), parts.trajectories, file);

@@ -25,6 +25,13 @@ struct CampaignInfo {
   double audit_seconds = 0.0;  ///< processor time of the audit
 };
 
+/// By which program and command a comparison of methods was made.
+struct ComparisonInfo {
+  std::string mpmbench_version;
+  std::string git_sha;
+  std::string command;
+};
+
 /// Everything that a run of a study leaves behind.
 ///
 /// `study.seed` is the seed that was used; it may differ from the one in `study.source`. `records` are the
@@ -36,6 +43,7 @@ struct Campaign {
   std::vector<ExperimentRecord> records;
   std::vector<AuditedStep> audit;             ///< in the order of experiment and step
   std::optional<Comparison> comparison = {};  ///< of methods of assessment; none until one was made
+  ComparisonInfo comparison_info = {};
 };
 
 }  // namespace mpm

@@ -10,7 +10,7 @@ Flags enum_flags(const std::array<Enum, n>& values) {
   Flags flags;
   for (const Enum value : values) {
     flags.values.push_back(static_cast<int>(value));
-    flags.meanings.emplace_back(to_string(value));
+    flags.meanings.push_back(flag_word(std::string(to_string(value))));
   }
   return flags;
 }
@@ -307,6 +307,26 @@ std::vector<Column<AuditedStep>> audit_columns() {
            of_difference<double, &AuditedStep::moves, &AuditDifference::objective>()},
           {{"reference_kkt_residual", "larger KKT residual of the two answers of Ipopt"},
            plain<double, &AuditedStep::reference_kkt_residual, AuditedStep>()}};
+}
+
+std::vector<Column<MethodVerdict>> method_verdict_columns(const Study& study) {
+  return {{{"status", "how the assessment ended", "1", "see reason where it is not ok",
+            enum_flags(std::array{AssessmentStatus::ok, AssessmentStatus::not_applicable,
+                                  AssessmentStatus::failed})},
+           plain<std::int8_t, &MethodVerdict::status, MethodVerdict>()},
+          {{"flagged", "something is wrong with the loop", "1", "no unless the status is ok", yes_no_flags()},
+           plain<std::int8_t, &MethodVerdict::flagged, MethodVerdict>()},
+          {{"score", "how far the loop is from being flagged, larger is worse", "1",
+            "comparable between loops of one method; NaN unless the status is ok"},
+           plain<double, &MethodVerdict::score, MethodVerdict>()},
+          {{"located_cv", "position in cv of the CV with the largest score", "1", "-1: none",
+            index_flags(study.plant.cvs)},
+           plain<std::int32_t, &MethodVerdict::located_cv, MethodVerdict>()},
+          {{"source", "source that the method sees in the located CV", "1", "none: the method tells none",
+            kind_flags()},
+           plain<std::int8_t, &MethodVerdict::source, MethodVerdict>()},
+          {{"seconds", "processor time of the assessment", "s", "differs from run to run"},
+           plain<double, &MethodVerdict::seconds, MethodVerdict>()}};
 }
 
 std::vector<Column<Trajectory>> loop_columns() {

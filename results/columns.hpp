@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "analysis/assessment/comparison.hpp"
 #include "analysis/experiment.hpp"
 #include "results/variable_text.hpp"
 #include "scenarios/audit.hpp"
@@ -64,6 +65,8 @@ std::vector<Column<ExperimentRecord>> dominance_columns();
 std::vector<Column<SolverStatistics>> solver_columns();
 /// What the audit of a step found.
 std::vector<Column<AuditedStep>> audit_columns();
+/// What a method of assessment says of a loop, but for the channels.
+std::vector<Column<MethodVerdict>> method_verdict_columns(const Study& study);
 /// How a closed loop ended.
 std::vector<Column<Trajectory>> loop_columns();
 /// Everything that was recorded in a closed loop.

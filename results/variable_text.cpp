@@ -10,6 +10,11 @@ bool Flags::contains(std::int64_t value) const {
   return std::find(values.begin(), values.end(), value) != values.end();
 }
 
+std::string flag_word(std::string text) {
+  std::replace(text.begin(), text.end(), ' ', '_');
+  return text;
+}
+
 Flags yes_no_flags() {
   return {{0, 1}, {"no", "yes"}};
 }
@@ -18,9 +23,7 @@ Flags index_flags(const std::vector<PlantModel::Variable>& variables) {
   Flags flags{{-1}, {"none"}};
   for (const PlantModel::Variable& variable : variables) {
     flags.values.push_back(static_cast<int>(flags.values.size()) - 1);
-    std::string word = variable.name;
-    std::replace(word.begin(), word.end(), ' ', '_');  // blanks separate the meanings
-    flags.meanings.push_back(word);
+    flags.meanings.push_back(flag_word(variable.name));
   }
   return flags;
 }

@@ -49,6 +49,8 @@ Attributes attributes(const VariableText& text) {
   return list;
 }
 
+/// A word of `Flags::meanings`: with '_' for blanks, which separate them in a file.
+std::string flag_word(std::string text);
 /// 0: no, 1: yes.
 Flags yes_no_flags();
 /// -1: none, then the position of each variable under its name, with '_' for blanks.

@@ -5,6 +5,7 @@
 
 #include "scenarios/study_file.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/results/made_up_campaign.hpp"
 
 using namespace mpm;
 
@@ -47,5 +48,7 @@ Campaign campaign_sample() {
                    0.25,    0.5};
   campaign.audit = {{2, 7, {true, 1e-11, 2e-9}, {true, 3e-7, 4e-9}, 5e-11},
                     {5, 301, {true, 0.0, 0.0}, {false, std::nan(""), std::nan("")}, 6e-11}};
+  campaign.comparison = mpm::testing::made_up_comparison(campaign.study, campaign.records);
+  campaign.comparison_info = {"0.1.0", "abcdef", "mpmbench compare a.h5"};
   return campaign;
 }

@@ -3,5 +3,5 @@
 #include "results/campaign.hpp"
 
 /// A short campaign of the chapter 6 study with made-up records beside it: an infeasible and a failed
-/// experiment, NaN, infinity and a message that is not ASCII.
+/// experiment, NaN, infinity, a message that is not ASCII, and a comparison of methods.
 mpm::Campaign campaign_sample();

@@ -88,7 +88,7 @@ def check_h5py(path, variables, attributes):
             for item in data.values():
                 check_variable(item)
         assert file.attrs["filetype"] == "mpmbench archive"
-        assert list(file.attrs["format_version"]) == [1, 2]
+        assert list(file.attrs["format_version"]) == [1, 3]
         assert file.attrs["master_seed"] == 12345678901234567890
         assert file["message"].asstr()[4] == "ended by signal 9: \u00fc"
         assert file["message"].asstr()[0] == ""
@@ -114,6 +114,16 @@ def check_xarray(path, variables):
         assert nominal.lag[0] == 1 and nominal.time[0] == 4 and nominal.time.dims == ("lag",)
         assert "time" in nominal.t0_step_response.coords
         assert list(nominal.active_cv.values) == ["y1", "y2", "y7"] and list(nominal.side.values) == [2, 0, 1]
+    with xarray.open_dataset(path, group="comparison") as comparison:
+        assert comparison.method[0] == "botelho" and list(comparison.experiment.values) == [0, 1, 2, 5, 6, 7]
+        answered = (comparison.status == 0).sum("experiment")  # what stands in /comparison fits together
+        assert (answered == comparison.hits.sel(rate="answered")).all()
+        rate = comparison.sel(rate="detected")
+        flagged = comparison.flagged.where(comparison.status == 0).sum("experiment")  # every loop has a fault
+        assert (flagged == rate.hits).all() and (answered == rate.total).all()
+        assert (rate.lower <= rate.value).all() and (rate.value <= rate.upper).all()
+        assert comparison.flagged_channel.dims == ("method", "experiment", "cv", "mv")
+        assert comparison.sizes["pair"] == comparison.sizes["method"] * (comparison.sizes["method"] - 1) / 2
     with xarray.open_dataset(path, group="aggregate") as aggregate:
         assert aggregate.reference.sel(name="infeasible") == 0.04
         assert list(aggregate.kind.values) == ["mpm", "ud", "mpm_ud"]
@@ -153,7 +163,7 @@ def check_scenarios(path, variables, attributes):
 
 def check_empty(path, variables):
     """A file whose dimensions have no length opens too."""
-    for group in variables.keys() - {"/scenarios", "/audit", "/nominal_fixed", "/nominal_direct", "/s0_sensitivity", "/trajectories"}:
+    for group in variables.keys() - {"/scenarios", "/comparison", "/audit", "/nominal_fixed", "/nominal_direct", "/s0_sensitivity", "/trajectories"}:
         with xarray.open_dataset(path, group=None if group == "/" else group) as dataset:
             dataset.load()
     with xarray.open_dataset(path) as root:

@@ -20,6 +20,9 @@ FOR_PEOPLE = {"/cv", "/mv", "/md", "/basis/cv", "/basis/mv", "/basis/md", "/basi
               "/basis/acf_y0_diag", "/nominal/cv", "/nominal/time", "/nominal_fixed/cv", "/nominal_fixed/time", "/trajectories/cv", "/trajectories/mv",
               "/trajectories/md", "/trajectories/sample", "/trajectories/time"}
 READ_OF_S0_SENSITIVITY = {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"}
+READ_OF_COMPARISON = {"method", "reason", "experiment", "status", "flagged", "score", "located_cv", "source", "seconds",
+                      "flagged_channel"}
+READ_ATTRIBUTES_OF_COMPARISON = {"mpmbench_version", "git_sha", "command"}
 FOR_PEOPLE |= {"/scenarios/" + name for name in ("experiment", "cv", "name", "description", "affected", "tsse", "lag", "lag_time")}
 FOR_PEOPLE |= {"/nominal_direct/" + name for name in ("cv", "time", "largest_difference")}
 FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/basis/title"}
@@ -81,16 +84,18 @@ class Damage:
         variables, groups, attributes = objects(self.whole)
         for path in variables + groups:
             message = self.after(lambda file: file.pop(path))
-            if (path in FOR_PEOPLE or path.startswith("/aggregate") or path in ("/audit", "/trajectories")
+            if (path in FOR_PEOPLE or path.startswith("/aggregate") or path in ("/audit", "/comparison", "/trajectories")
                     or (path.startswith("/s0_sensitivity/")
-                        and path.split("/")[-1] not in READ_OF_S0_SENSITIVITY)):
+                        and path.split("/")[-1] not in READ_OF_S0_SENSITIVITY)
+                    or (path.startswith("/comparison/") and path.split("/")[-1] not in READ_OF_COMPARISON)):
                 assert message is None, (path, message)
             else:
                 assert message and f"'{path}': missing" in message, (path, message)
         for group, name in attributes:
             path = group.rstrip("/") + "/" + name
             message = self.after(lambda file: file[group].attrs.pop(name))
-            if path in FOR_PEOPLE_ATTRIBUTES or group in (
+            if path in FOR_PEOPLE_ATTRIBUTES or (
+                    group == "/comparison" and name not in READ_ATTRIBUTES_OF_COMPARISON) or group in (
                     "/nominal", "/nominal_fixed", "/nominal_direct", "/s0_sensitivity", "/audit", "/trajectories", "/aggregate", "/scenarios"):
                 assert message is None, (path, message)
             else:
@@ -121,6 +126,22 @@ class Damage:
         assert "'experiment': found -1; allowed" in self.after(lambda file: file["experiment"].__setitem__(0, -1))
         assert "'y9', which is no CV" in self.after(lambda file: file["nominal/active_cv"].__setitem__(0, "y9"))
         assert "found 77" in self.after(lambda file: file["trajectories/stored"].__setitem__(0, 77))
+
+    def wrong_comparison(self):
+        """Verdicts that no method gives, and loops that are not in the campaign."""
+        def after(name, place, value):
+            return self.after(lambda file: file["comparison/" + name].__setitem__(place, value))
+
+        assert "'/comparison/method': found 'nobody'; allowed: botelho" in after("method", 0, "nobody")
+        assert "'/comparison/experiment': found 77; allowed" in after("experiment", 0, 77)
+        assert "'/comparison/experiment': found 0; allowed" in after("experiment", 1, 0)
+        assert "'status': found 5; allowed: 0 to 2" in after("status", (0, 0), 5)
+        assert "'flagged': found 2; allowed: 0 to 1" in after("flagged", (0, 0), 2)
+        assert "'located_cv': found 7; allowed: -1 to 6" in after("located_cv", (0, 0), 7)
+        assert "'source': found -1; allowed" in after("source", (0, 0), -1)
+        assert "'flagged_channel': found 3; allowed: 0 to 1" in after("flagged_channel", (0, 0, 0, 0), 3)
+        assert after("seconds", (0, 0), numpy.nan) is None  # no order for a median has such a number
+        assert after("value", (0, 0), 9.0) is None  # follows from the verdicts
 
     def wrong_scenarios(self):
         """What a scenario does is in the study: a table that says something else is refused."""
@@ -167,6 +188,7 @@ def main(writer, reader):
         damage.broken_seal()
         damage.missing_objects()
         damage.wrong_objects()
+        damage.wrong_comparison()
         damage.random_values(100)
         subprocess.run([writer, whole, "scenarios"], check=True)
         assert damage.after(lambda file: None) is None

@@ -16,7 +16,7 @@ import numpy
 def main(writer, page):
     text = pathlib.Path(page).read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
-    assert len(blocks) == 6, f"{len(blocks)} blocks of Python"
+    assert len(blocks) == 7, f"{len(blocks)} blocks of Python"
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         subprocess.run([writer, "chapter6.h5"], check=True)
@@ -35,7 +35,12 @@ def main(writer, page):
         archived = names["table"].ivar_basis.isel(experiment=0).values[1:]
         assert numpy.allclose(names["ivar_basis"].values[1:], archived, rtol=1e-12)
         assert numpy.allclose(names["ivar_of_basis"].values[1:], names["basis"].ivar.values[1:], rtol=1e-12)
-        for name in ("table", "nominal", "loops", "basis"):
+        assert names["rates"].index[0] == "botelho" and names["rates"].columns[1] == "detected"
+        assert list(names["faults"].index) == list(names["experiments"].values) and len(names["faults"]) > 0
+        # Every loop has a fault, and the sample's verdicts are made up: the share of those with a verdict.
+        answered = int((names["comparison"].status.sel(method="botelho") == 0).sum())
+        assert names["rates"].loc["botelho", "detected"] == len(names["faults"]) / answered
+        for name in ("table", "nominal", "loops", "basis", "comparison"):
             names[name].close()
         os.chdir("/")
 

@@ -1,5 +1,6 @@
 #include "tests/results/made_up_campaign.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "analysis/assessment/method_table.hpp"
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study_file.hpp"
 
@@ -181,6 +183,23 @@ BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<Act
   return made;
 }
 
+/// `ordinary`: with a verdict and a finite score.
+MethodVerdict verdict(Numbers& numbers, const Study& study, bool ordinary) {
+  MethodVerdict made;
+  made.seconds = numbers.next();
+  made.status = static_cast<AssessmentStatus>(ordinary ? 0 : std::max(0, numbers.index(6) - 3));  // mostly ok
+  if (made.status != AssessmentStatus::ok)
+    return made;
+  made.flagged = numbers.index(2) == 1;
+  made.score = ordinary ? 0.001 * numbers.index(1000) : numbers.next();
+  made.located_cv = numbers.index(study.cv_count() + 1) - 1;
+  made.source = static_cast<ExperimentKind>(numbers.index(3));
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    if (numbers.index(2) == 1)
+      made.flagged_channels.push_back({cv, numbers.index(study.mv_count())});
+  return made;
+}
+
 /// In place of the counts of the small study.
 constexpr const char* kScenarios = R"(
 [[scenario]]
@@ -229,7 +248,25 @@ Campaign made_up_campaign() {
   for (std::int64_t step = 0; step < 5; ++step)
     campaign.audit.push_back(
         {numbers.whole(), step, difference(numbers), difference(numbers), numbers.next()});
+  campaign.comparison = made_up_comparison(campaign.study, campaign.records);
+  campaign.comparison_info = {"1.3.0", "def", "mpmbench compare \xC3\xBC.h5"};
   return campaign;
+}
+
+Comparison made_up_comparison(const Study& study, const std::vector<ExperimentRecord>& records) {
+  Numbers numbers;
+  Comparison made;
+  made.methods = assessment_method_names();
+  for (const ExperimentRecord& record : records) {
+    if (record.status != ExperimentStatus::ok)
+      continue;
+    made.loops.push_back({record.draw.index, {}});
+    for (std::size_t method = 0; method < made.methods.size(); ++method)
+      made.loops.back().verdicts.push_back(verdict(numbers, study, method == 0));
+  }
+  for (std::size_t method = 0; method < made.methods.size(); ++method)
+    made.reasons.push_back(method % 2 == 0 ? "" : "no \xC3\xBC");
+  return made;
 }
 
 Campaign empty_campaign() {
@@ -281,6 +318,7 @@ Campaign scenario_campaign() {
     }
     campaign.records.push_back(std::move(made));
   }
+  campaign.comparison = made_up_comparison(campaign.study, campaign.records);
   return campaign;
 }
 

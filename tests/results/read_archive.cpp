@@ -4,6 +4,7 @@
 
 #include "results/archive.hpp"
 #include "results/archive_error.hpp"
+#include "results/comparison.hpp"
 #include "results/summary.hpp"
 
 int main(int argc, char** argv) {
@@ -13,6 +14,8 @@ int main(int argc, char** argv) {
     const mpm::Campaign campaign = mpm::read_archive(argv[1]);
     std::printf("%s", mpm::summary_text(campaign, argv[1]).c_str());
     std::printf("%s", mpm::summary_json(campaign).c_str());
+    if (campaign.comparison)
+      std::printf("%s%s", mpm::comparison_text(campaign).c_str(), mpm::comparison_json(campaign).c_str());
     return 0;
   } catch (const mpm::ArchiveError& error) {
     std::fprintf(stderr, "%s\n", error.what());

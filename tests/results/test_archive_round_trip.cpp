@@ -100,12 +100,43 @@ void check_same(const std::vector<AuditedStep>& a, const std::vector<AuditedStep
   }
 }
 
+void check_same(const Comparison& a, const Comparison& b) {
+  CHECK(a.methods == b.methods);
+  CHECK(a.reasons == b.reasons);
+  REQUIRE(a.loops.size() == b.loops.size());
+  for (std::size_t i = 0; i < a.loops.size(); ++i) {
+    CHECK(a.loops[i].experiment == b.loops[i].experiment);
+    REQUIRE(a.loops[i].verdicts.size() == b.loops[i].verdicts.size());
+    for (std::size_t m = 0; m < a.loops[i].verdicts.size(); ++m) {
+      INFO("loop " << i << ", method " << m);
+      const MethodVerdict &of_a = a.loops[i].verdicts[m], &of_b = b.loops[i].verdicts[m];
+      CHECK(of_a.status == of_b.status);
+      CHECK(of_a.flagged == of_b.flagged);
+      CHECK(same_bits(of_a.score, of_b.score));
+      CHECK(of_a.located_cv == of_b.located_cv);
+      CHECK(of_a.source == of_b.source);
+      CHECK(of_a.flagged_channels == of_b.flagged_channels);
+      CHECK(same_bits(of_a.seconds, of_b.seconds));
+    }
+  }
+}
+
+void check_same(const ComparisonInfo& a, const ComparisonInfo& b) {
+  CHECK(a.mpmbench_version == b.mpmbench_version);
+  CHECK(a.git_sha == b.git_sha);
+  CHECK(a.command == b.command);
+}
+
 void check_same(const Campaign& a, const Campaign& b) {
   CHECK(a.study.source == b.study.source);
   CHECK(a.study.seed == b.study.seed);
   check_same(a.info, b.info);
   check_same(a.basis, b.basis);
   check_same(a.audit, b.audit);
+  check_same(a.comparison_info, b.comparison_info);
+  REQUIRE(a.comparison.has_value() == b.comparison.has_value());
+  if (a.comparison)
+    check_same(*a.comparison, *b.comparison);
   REQUIRE(a.records.size() == b.records.size());
   for (std::size_t i = 0; i < a.records.size(); ++i) {
     INFO("experiment " << i);
@@ -182,9 +213,40 @@ TEST_CASE("archive: the aggregate of what is read equals the aggregate of what w
   }
 }
 
+TEST_CASE("archive: a comparison of some experiments, of one method and of none comes back") {
+  Campaign campaign = made_up_campaign();
+  campaign.comparison->loops.erase(campaign.comparison->loops.begin() + 3,
+                                   campaign.comparison->loops.begin() + 9);
+  check_same(there_and_back(campaign), campaign);
+  campaign.comparison->methods.resize(1);
+  campaign.comparison->reasons.resize(1);
+  for (ComparedLoop& loop : campaign.comparison->loops)
+    loop.verdicts.resize(1);
+  check_same(there_and_back(campaign), campaign);
+  campaign.comparison->loops.clear();
+  check_same(there_and_back(campaign), campaign);
+  campaign.comparison = {};
+  campaign.comparison_info = {};
+  check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: a second comparison takes the place of the first, which leaves no trace") {
+  Campaign campaign = made_up_campaign();
+  Campaign twice = there_and_back(campaign);
+  campaign.comparison->loops.resize(5);
+  campaign.comparison_info.command = "mpmbench compare again";
+  twice.comparison = campaign.comparison;
+  twice.comparison_info = campaign.comparison_info;
+  const TemporaryFolder folder;
+  write_archive(folder / "once.h5", campaign);
+  write_archive(folder / "twice.h5", twice);
+  CHECK(file_content(folder / "once.h5") == file_content(folder / "twice.h5"));
+}
+
 TEST_CASE("archive: records with gaps in their indices keep their indices and loops") {
   Campaign campaign = made_up_campaign();
   campaign.records.erase(campaign.records.begin() + 2, campaign.records.begin() + 9);
+  campaign.comparison = made_up_comparison(campaign.study, campaign.records);
   check_same(there_and_back(campaign), campaign);
 }
 
