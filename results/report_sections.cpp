@@ -11,17 +11,19 @@ void ReportSection::leave_out(const std::string& why) {
 }
 
 std::vector<ReportSection> report_sections(const ReportInput& input) {
-  if (input.campaign.study.names_scenarios())
-    return {run_section(input),         scenarios_section(input),
-            sensitivity_section(input), s0_perturbation_section(input),
-            basis_section(input),       solver_section(input)};
-  return {run_section(input),          rates_section(input),
-          variance_section(input),     location_section(input),
-          indicator_section(input),    dominance_section(input),
-          roc_section(input),          fault_size_section(input),
-          sensitivity_section(input),  s0_perturbation_section(input),
-          basis_section(input),        solver_section(input),
-          wrong_verdict_section(input)};
+  const bool named = input.campaign.study.names_scenarios();
+  std::vector<ReportSection> sections =
+      named ? std::vector{run_section(input), scenarios_section(input)}
+            : std::vector{run_section(input),      rates_section(input),     variance_section(input),
+                          location_section(input), indicator_section(input), dominance_section(input),
+                          roc_section(input),      fault_size_section(input)};
+  if (input.campaign.comparison)
+    sections.push_back(comparison_section(input));
+  for (const auto& section : {sensitivity_section, s0_perturbation_section, basis_section, solver_section})
+    sections.push_back(section(input));
+  if (!named)
+    sections.push_back(wrong_verdict_section(input));
+  return sections;
 }
 
 std::string interval_title(const Study& study) {

@@ -50,10 +50,12 @@ ReportSection sensitivity_section(const ReportInput& input);      ///< T0 (6.10)
 ReportSection s0_perturbation_section(const ReportInput& input);  ///< S0 modified (6.27 to 6.29, 6.32)
 ReportSection basis_section(const ReportInput& input);            ///< the basis case (6.8, 6.9)
 ReportSection solver_section(const ReportInput& input);           ///< effort and accuracy of the QP solver
+ReportSection comparison_section(const ReportInput& input);       ///< methods of assessment, side by side
 ReportSection wrong_verdict_section(const ReportInput& input);    ///< wrong verdicts and failures, one by one
 
 /// Those that the study can have: rates and what belongs to them for random experiments, `scenarios` in their
-/// place for named ones. A later section is a function as above and a line in the list of this one.
+/// place for named ones; `comparison` in archives that have one. A later section is a function as above and a
+/// line in the list of this one.
 std::vector<ReportSection> report_sections(const ReportInput& input);
 
 /// Share of an interval in words: "95 % interval".

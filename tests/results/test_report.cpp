@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "analysis/assessment/method_rates.hpp"
 #include "results/archive_error.hpp"
 #include "results/report.hpp"
 #include "results/report_sections.hpp"
@@ -99,8 +100,8 @@ TEST_CASE("report: a study of named scenarios has their section in place of rate
   std::vector<std::string> ids;
   for (const ReportSection& section : report_sections({campaign, parts, "f"}))
     ids.push_back(section.id);
-  CHECK(ids ==
-        std::vector<std::string>{"run", "scenarios", "sensitivity", "s0-perturbation", "basis", "solver"});
+  CHECK(ids == std::vector<std::string>{"run", "scenarios", "comparison", "sensitivity", "s0-perturbation",
+                                        "basis", "solver"});
   const ReportSection section = scenarios_section({campaign, parts, "a b.h5"});
   CHECK(has_figure(section));
   const std::string html = html_of(section);
@@ -116,6 +117,30 @@ TEST_CASE("report: a study of named scenarios has their section in place of rate
   CHECK_THAT(html_of(scenarios_section({none, of_none, "f"})), Contains("Left out: "));
 }
 
+TEST_CASE("report: methods stand side by side when the archive has a comparison, with curves where it can") {
+  Campaign campaign = scenario_campaign();
+  campaign.comparison->reasons[0] = "it needs <more>";
+  const SummaryParts parts = summary_parts(campaign);
+  const ReportSection section = comparison_section({campaign, parts, "f"});
+  std::vector<std::string> figures;
+  for (const auto& piece : section.content)
+    if (const Figure* const figure = std::get_if<Figure>(&piece))
+      figures.push_back(figure->name);
+  CHECK(figures == std::vector<std::string>{"comparison-rates", "comparison-roc"});
+  const std::string html = html_of(section);
+  CHECK_THAT(html, Contains("the same 3 of 5 experiments") && Contains("it needs &lt;more&gt;"));
+  for (const MethodRateInfo& info : method_rate_infos())
+    CHECK_THAT(html, Contains(std::string("<strong>") + info.title + "</strong>: "));
+  for (const std::string& method : campaign.comparison->methods)
+    CHECK_THAT(html, Contains(method));
+
+  // Every loop of the sample has a fault, so that there is nothing to draw a curve with.
+  const SummaryParts of_sample = summary_parts(sample());
+  CHECK_THAT(html_of(comparison_section({sample(), of_sample, "f"})), Contains("ROC curves are left out"));
+  campaign.comparison.reset();
+  CHECK_THAT(report_html(campaign, "f.h5"), !Contains("Assessment methods compared"));
+}
+
 TEST_CASE("report: awkward numbers and foreign texts make no broken page") {
   Campaign campaign = made_up_campaign();
   campaign.study.title = "<script>alert(1)</script> `id` '\"&";
@@ -129,7 +154,7 @@ TEST_CASE("report: awkward numbers and foreign texts make no broken page") {
 TEST_CASE("report: the same figures as files, and a folder that cannot be made") {
   const TemporaryFolder folder;
   const auto files = write_figures(sample(), folder / "figures", FigureFormat::svg);
-  CHECK(files.size() == 11);
+  CHECK(files.size() == 12);
   for (const auto& file : files)
     CHECK_THAT(file_content(file), Contains("<svg ") && Contains("</svg>"));
   make_file(folder / "file", "");

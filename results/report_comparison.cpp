@@ -1,0 +1,263 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "analysis/assessment/method_rates.hpp"
+#include "analysis/assessment/method_table.hpp"
+#include "results/comparison_words.hpp"
+#include "results/html_table.hpp"
+#include "results/panel_script.hpp"
+#include "results/plot_text.hpp"
+#include "results/report_sections.hpp"
+
+namespace mpm {
+namespace {
+
+/// Of the methods, in their order; neighbours differ in dash as well.
+constexpr std::array<Pen, 7> kPens{{
+    {colour::kBlue, Dash::solid, Mark::dot, 2.0, 0.8},
+    {colour::kVermillion, Dash::dashed, Mark::square, 2.0, 0.8},
+    {colour::kGreen, Dash::solid, Mark::triangle, 2.0, 0.9},
+    {colour::kPurple, Dash::dashed, Mark::diamond, 2.0, 1.0},
+    {colour::kOrange, Dash::solid, Mark::circle, 2.0, 0.8},
+    {colour::kSky, Dash::dotted, Mark::hollow_diamond, 2.0, 1.0},
+    {colour::kBlack, Dash::dashed, Mark::circle, 1.5, 0.8},
+}};
+const Pen kChance{colour::kGrey, Dash::dotted, Mark::none, 1.2};
+
+using Methods = std::vector<MethodRates>;
+
+/// A curve in the pen of its method.
+Pen curve_pen(std::size_t method) {
+  Pen pen = kPens[method % kPens.size()];
+  pen.mark = Mark::none;
+  return pen;
+}
+
+/// Whiskers in the colour of their method, solid so that short ones can be seen.
+Pen whisker_pen(std::size_t method) {
+  Pen pen = kPens[method % kPens.size()];
+  pen.dash = Dash::solid;
+  return pen;
+}
+
+std::string introduction(const Campaign& campaign) {
+  return fmt::format(
+      "<p>Every method has assessed the same {} of {} experiments, those that ran to their end, and has seen "
+      "of each what a historian would have kept. Judge detection and false alarms together, for a method "
+      "that flags every loop detects every fault; a rate that is missing had no loop to be counted on.</p>\n",
+      campaign.comparison->loops.size(), campaign.records.size());
+}
+
+/// "97.2 %" over "95.1 to 98.8 % of 384".
+std::string rate_cell(const Rate& rate) {
+  if (rate.total == 0)
+    return html_number(NAN);
+  return fmt::format("{}<br><small>{} of {}</small>", html_number(rate.value, true),
+                     html_interval(rate.interval, true), rate.total);
+}
+
+std::string rates_table(const Study& study, const Methods& methods) {
+  std::vector<HtmlTable::Column> columns{{"Method", HtmlTable::Align::left}};
+  for (const MethodRateInfo& info : method_rate_infos())
+    columns.push_back({html_text(info.title)});
+  columns.push_back({"Area under ROC"});
+  HtmlTable table(
+      fmt::format("Shares of loops with their {}, and the number of loops looked at.", interval_title(study)),
+      columns);
+  for (const MethodRates& method : methods) {
+    std::vector<std::string> cells{html_text(method.method)};
+    for (const MethodRateInfo& info : method_rate_infos())
+      cells.push_back(rate_cell(method.*info.rate));
+    cells.push_back(method.roc.defined() ? html_number(method.roc.area) + "<br><small>" +
+                                               html_interval(method.roc_area) + "</small>"
+                                         : html_number(NAN));
+    table.row(cells);
+  }
+  return table.html();
+}
+
+/// What each rate counts.
+std::string rates_legend() {
+  std::string html = "<p><small>";
+  for (const MethodRateInfo& info : method_rate_infos())
+    html += fmt::format("<strong>{}</strong>: {}. ", html_text(info.title), html_text(info.meaning));
+  return html + "</small></p>\n";
+}
+
+Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
+  const auto rows = static_cast<double>(methods.size());
+  Axis y{.label = "", .lower = -0.6, .upper = rows - 0.4};
+  for (auto method = methods.rbegin(); method != methods.rend(); ++method)
+    y.words.push_back(method->method);  // the first one on top
+  PanelScript panel(
+      info.name, info.title,
+      {.label = "share of loops (%)", .lower = -2, .upper = 102, .ticks = {0, 20, 40, 60, 80, 100}}, y);
+  panel.left_margin(13);
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    const Rate& rate = methods[m].*info.rate;
+    if (rate.total == 0)
+      continue;
+    panel.level_whiskers({{rows - 1.0 - static_cast<double>(m), 100.0 * rate.value,
+                           100.0 * rate.interval.lower, 100.0 * rate.interval.upper,
+                           fmt::format("{}: {:.1f} %, interval {:.1f} to {:.1f} %, {} of {} loops",
+                                       methods[m].method, 100.0 * rate.value, 100.0 * rate.interval.lower,
+                                       100.0 * rate.interval.upper, rate.hits, rate.total)}},
+                         whisker_pen(m));
+  }
+  return panel.finish(fmt::format("Share of loops with its interval, one row a method: {}.", info.meaning),
+                      70.0 + 28.0 * rows);
+}
+
+/// A panel a rate that some method has; `answered` says nothing that the table does not.
+Figure rates_figure(const Study& study, const Methods& methods) {
+  Figure figure;
+  figure.name = "comparison-rates";
+  figure.caption = fmt::format(
+      "How often each method is right, with {:g} % intervals: shares of false alarms are "
+      "good on the left, all others on the right.",
+      100.0 * study.aggregate.confidence);
+  for (const MethodRateInfo& info : method_rate_infos()) {
+    const bool counted = std::any_of(methods.begin(), methods.end(),
+                                     [&](const MethodRates& m) { return (m.*info.rate).total > 0; });
+    if (counted && info.rate != &MethodRates::answered)
+      figure.panels.push_back(rate_panel(info, methods));
+  }
+  return figure;
+}
+
+/// The curve with at most kMostPoints points, of which the first and the last are always there.
+void draw_curve(PanelScript& panel, const RocCurve& roc, const Pen& pen) {
+  std::vector<double> x, y;
+  const std::size_t stride = roc.points.size() / kMostPoints + 1;
+  for (std::size_t i = 0; i < roc.points.size(); ++i) {
+    if (i % stride != 0 && i + 1 != roc.points.size())
+      continue;
+    x.push_back(100.0 * roc.points[i].false_positive_rate);
+    y.push_back(100.0 * roc.points[i].true_positive_rate);
+  }
+  panel.line(x, y, pen);
+}
+
+/// Where the method itself draws the line: what it flags of both kinds of loops.
+NamedPoint verdict_point(const MethodRates& method) {
+  const double x = 100.0 * method.false_alarm_healthy.value, y = 100.0 * method.detected.value;
+  return {x, y,
+          fmt::format("{}: {:.1f} % of the faults detected, {:.1f} % false alarms", method.method, y, x)};
+}
+
+Figure roc_figure(const Methods& methods) {
+  PanelScript panel(
+      "comparison_roc", "",
+      {.label = "healthy loops flagged (%)", .lower = 0, .upper = 100, .ticks = {0, 20, 40, 60, 80, 100}},
+      {.label = "loops with a fault flagged (%)",
+       .lower = 0,
+       .upper = 101,
+       .ticks = {0, 20, 40, 60, 80, 100}});
+  panel.line({0, 100}, {0, 100}, kChance);
+  Figure figure;
+  figure.name = "comparison-roc";
+  figure.caption =
+      "Each method with any threshold on its score; the mark is its own verdict, which need not lie on the "
+      "curve of a method that flags by more than one number.";
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    if (!methods[m].roc.defined())
+      continue;
+    draw_curve(panel, methods[m].roc, curve_pen(m));
+    figure.legend.push_back(
+        {fmt::format("{}, area {:.3f} ({:.3f} to {:.3f})", methods[m].method, methods[m].roc.area,
+                     methods[m].roc_area.lower, methods[m].roc_area.upper),
+         kPens[m % kPens.size()]});
+  }
+  for (std::size_t m = 0; m < methods.size(); ++m)
+    if (methods[m].roc.defined())
+      panel.points({verdict_point(methods[m])}, kPens[m % kPens.size()]);
+  figure.legend.push_back({"chance", kChance});
+  figure.panels = {
+      panel.finish("Receiver operating characteristics of the scores of the methods, loops with a "
+                   "fault against healthy ones.",
+                   360)};
+  return figure;
+}
+
+void add_roc(ReportSection& section, const Methods& methods) {
+  if (std::any_of(methods.begin(), methods.end(), [](const MethodRates& m) { return m.roc.defined(); }))
+    section.add(roc_figure(methods));
+  else
+    section.add(
+        "<p class=\"absent\">ROC curves are left out: they need loops with a fault and healthy ones "
+        "that a method has scored.</p>\n");
+}
+
+std::string pairs_table(const ComparisonSummary& summary) {
+  HtmlTable table(
+      "Two methods on the loops that both gave a verdict on. Right is a loop with a fault that is "
+      "flagged, or one without that is not; p is that of McNemar&rsquo;s exact test, two-sided.",
+      {{"First", HtmlTable::Align::left},
+       {"Second", HtmlTable::Align::left},
+       {"Loops"},
+       {"First alone right"},
+       {"Second alone right"},
+       {"p"}});
+  for (const MethodPair& pair : summary.pairs)
+    if (pair.loops > 0)
+      table.row({html_text(summary.methods[pair.first].method),
+                 html_text(summary.methods[pair.second].method), fmt::format("{}", pair.loops),
+                 fmt::format("{}", pair.test.lost), fmt::format("{}", pair.test.gained),
+                 fmt::format("{:.2g}", pair.test.p_two_sided)});
+  return table.html();
+}
+
+/// Why some loops have no verdict of the method.
+std::string reason_cell(const MethodRates& method) {
+  if (method.reason.empty())
+    return "";
+  return fmt::format("{} of {} loops: {}", method.answered.total - method.answered.hits,
+                     method.answered.total, html_text(method.reason));
+}
+
+std::string methods_table(const Methods& methods) {
+  HtmlTable table(
+      "What a method needs of a loop and tells of it, its median processor time, and why it gave no "
+      "verdict.",
+      {{"Method", HtmlTable::Align::left},
+       {"A flagged loop", HtmlTable::Align::text},
+       {"Needs", HtmlTable::Align::left},
+       {"Tells besides", HtmlTable::Align::left},
+       {"ms a loop"},
+       {"No verdict on", HtmlTable::Align::text}});
+  for (const MethodRates& method : methods) {
+    const AssessmentMethodInfo& info = assessment_method(method.method);
+    table.row(
+        {fmt::format("{}<br><small>{}</small>", html_text(info.name), html_text(info.title)),
+         html_text(info.verdict), html_text(needs_text(info)), html_text(answers_text(info)),
+         std::isnan(method.milliseconds) ? html_number(NAN) : fmt::format("{:.2f}", method.milliseconds),
+         reason_cell(method)});
+  }
+  return table.html();
+}
+
+}  // namespace
+
+ReportSection comparison_section(const ReportInput& input) {
+  const Campaign& campaign = input.campaign;
+  ReportSection section{"comparison", "Assessment methods compared", {}};
+  const ComparisonSummary summary = summarise(*campaign.comparison, campaign.records, campaign.study);
+  section.add(introduction(campaign));
+  Figure rates = rates_figure(campaign.study, summary.methods);
+  if (!rates.panels.empty())
+    section.add(std::move(rates));
+  section.add(rates_table(campaign.study, summary.methods));
+  section.add(rates_legend());
+  add_roc(section, summary.methods);
+  const bool paired = std::any_of(summary.pairs.begin(), summary.pairs.end(),
+                                  [](const MethodPair& pair) { return pair.loops > 0; });
+  if (paired)
+    section.add(pairs_table(summary));
+  section.add(methods_table(summary.methods));
+  return section;
+}
+
+}  // namespace mpm
