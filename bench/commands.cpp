@@ -64,7 +64,7 @@ ExitCode summary(const SummaryCommand& command) {
 
 ExitCode check(const CheckCommand& command) {
   const Campaign campaign = read_input(command.archive);
-  const GateFile gates = load_gates(command.gates, gate_names(campaign.study));
+  const GateFile gates = load_gates(command.gates, gate_names(campaign));
   std::optional<Campaign> baseline;
   if (gates.baseline)
     baseline = read_input(gates.baseline->archive.string());

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/assessment/method_rates.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
@@ -76,6 +77,13 @@ void judge_changes(const std::string& question, const VerdictChanges& changes, c
   results.push_back(judge(limit(lost, -kNoLimit, static_cast<double>(*limits.maximum_lost)), lost));
 }
 
+/// The numbers of the comparison of methods with the intervals of `study`; none without a comparison.
+std::vector<AggregateValue> comparison_values(const Campaign& campaign, const Study& study) {
+  if (!campaign.comparison)
+    return {};
+  return named_values(summarise(*campaign.comparison, campaign.records, study));
+}
+
 }  // namespace
 
 bool GateCheck::stops(const GateResult& result) const {
@@ -95,6 +103,13 @@ std::vector<std::string> gate_names(const Study& study) {
   return names;
 }
 
+std::vector<std::string> gate_names(const Campaign& campaign) {
+  std::vector<std::string> names = gate_names(campaign.study);
+  for (AggregateValue& value : comparison_values(campaign, campaign.study))
+    names.push_back(std::move(value.name));
+  return names;
+}
+
 GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Campaign* baseline) {
   assert(file.baseline.has_value() == (baseline != nullptr));
   GateCheck check;
@@ -103,7 +118,9 @@ GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Camp
   study.aggregate.confidence = check.confidence = file.confidence.value_or(study.aggregate.confidence);
   const StudyAggregate total = aggregate(study, campaign.records);
   judge_campaign(campaign, total, file, check.results);
-  const std::vector<AggregateValue> values = named_values(total);
+  std::vector<AggregateValue> values = named_values(total);
+  for (AggregateValue& value : comparison_values(campaign, study))
+    values.push_back(std::move(value));
   for (const Gate& gate : file.gates) {
     const auto value = std::find_if(values.begin(), values.end(),
                                     [&](const AggregateValue& entry) { return entry.name == gate.name; });

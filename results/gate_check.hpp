@@ -34,6 +34,10 @@ struct GateCheck {
 /// The names of the numbers that a gate can be put on: those of named_values() for this study.
 std::vector<std::string> gate_names(const Study& study);
 
+/// The names for this campaign: those for its study, and, when it has a comparison of methods,
+/// "compare.METHOD.RATE" as named_values(const ComparisonSummary&) has them.
+std::vector<std::string> gate_names(const Campaign& campaign);
+
 /// Judges a campaign. Beside the gates of the file, every campaign has the gates `self_check` (the basis case
 /// is healthy), `experiments` (at least minimum_experiments) and `failed` (at most maximum_failed). With
 /// [baseline], which `baseline` must then be, it also has `baseline.located.p_worse` (at least the

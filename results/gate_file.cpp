@@ -28,7 +28,25 @@ NumberRule limit_rule(const std::string& name) {
                         : NumberRule::finite();
 }
 
+constexpr std::string_view kComparison = "compare.";
+
+bool is_of_comparison(const std::string& name) {
+  return name.starts_with(kComparison);
+}
+
+/// A gate on a comparison where there is none gets its own message: a list of other numbers would not help.
+void require_comparison(const TomlTable& table, const std::vector<std::string>& names) {
+  if (!table.has("aggregate"))
+    return;
+  const toml::value<std::string>* name = table.require("aggregate", "").as_string();
+  if (name != nullptr && is_of_comparison(name->get()) &&
+      std::none_of(names.begin(), names.end(), is_of_comparison))
+    table.refuse("aggregate", fmt::format("'{}', and the archive has no comparison of methods", name->get()),
+                 "this number for an archive that `mpmbench compare ARCHIVE -o OUT.h5` has written");
+}
+
 Gate read_gate(const TomlTable& table, const std::vector<std::string>& names) {
+  require_comparison(table, names);
   Gate gate;
   gate.name = names[read_one_of(table, "aggregate", names)];
   const NumberRule rule = limit_rule(gate.name);

@@ -1,10 +1,13 @@
 #include "results/summary_parts.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <utility>
 
+#include "analysis/assessment/method_rates.hpp"
 #include "results/reference.hpp"
 
 namespace mpm {
@@ -16,7 +19,9 @@ bool is_share(std::string_view name) {
   for (const std::string_view share : kShares)
     if (last == share)
       return true;
-  return false;
+  const std::span<const MethodRateInfo> rates = method_rate_infos();
+  return std::any_of(rates.begin(), rates.end(),
+                     [&](const MethodRateInfo& rate) { return last == rate.name; });
 }
 
 bool SummaryValue::has_reported() const {

@@ -17,6 +17,7 @@ using Catch::Contains;
 Campaign good_campaign() {
   Campaign campaign = made_up_campaign();
   campaign.study.aggregate.bootstrap_replications = 100;
+  campaign.comparison.reset();
   for (ExperimentRecord& record : campaign.records) {
     if (record.status == ExperimentStatus::failed)
       record.status = ExperimentStatus::infeasible;
@@ -126,6 +127,40 @@ TEST_CASE("gate check: a baseline of another study, seed or other experiments is
   CHECK_THROWS_WITH(check_gates(campaign, file, &baseline),
                     Contains("baseline old.h5: experiments: found number 39"));
   CHECK(check_gates(baseline, file, &campaign).passed());
+}
+
+TEST_CASE("gate check: the rates of a comparison of methods are judged as the numbers of a study are") {
+  Campaign campaign = made_up_campaign();
+  ComparedLoop loop = campaign.comparison->loops.front();
+  campaign.comparison->loops.clear();
+  for (const ExperimentRecord& record : campaign.records) {
+    loop.experiment = record.draw.index;
+    for (MethodVerdict& verdict : loop.verdicts)
+      verdict = {.status = AssessmentStatus::ok, .flagged = record.draw.index % 10 != 0, .score = 1.0};
+    campaign.comparison->loops.push_back(loop);
+  }
+  const auto outcome = [&](const std::string& gate) {
+    const GateFile file =
+        parse_gates("[[gate]]\naggregate = \"compare.botelho." + gate, "g.toml", gate_names(campaign));
+    const GateResult result = check_gates(campaign, file).results.back();
+    CHECK(result.measured.count == (gate.starts_with("false") ? 0 : 40));
+    return result.outcome;
+  };
+  // 36 of 40 are flagged; Wilson's interval is 76.9 to 96.0 %.
+  CHECK(outcome("detected\"\nminimum = 0.9\n") == GateOutcome::pass);
+  CHECK(outcome("detected\"\nminimum = 0.91\n") == GateOutcome::fail);
+  CHECK(outcome("detected\"\nminimum = 0.8\nwith_confidence = true\n") == GateOutcome::inconclusive);
+  CHECK(outcome("detected\"\nminimum = 0.76\nwith_confidence = true\n") == GateOutcome::pass);
+  CHECK(outcome("false_alarm_healthy\"\nmaximum = 0.1\n") == GateOutcome::inconclusive);  // no healthy loop
+  CHECK_THROWS_WITH(outcome("detected\"\nminimum = 90\n"), Contains("minimum: found 90"));
+  CHECK_THROWS_WITH(outcome("detekted\"\nminimum = 0.9\n"), Contains("nearest: 'compare.botelho.detected'"));
+
+  campaign.comparison.reset();
+  CHECK_THROWS_WITH(
+      outcome("detected\"\nminimum = 0.9\n"),
+      Contains("g.toml:2: gate[0].aggregate: found 'compare.botelho.detected', and the archive has "
+               "no comparison of methods; allowed: this number for an archive that `mpmbench "
+               "compare ARCHIVE -o OUT.h5` has written"));
 }
 
 TEST_CASE("gate report: the table names the distance, the reason and the experiments that changed") {
