@@ -171,6 +171,85 @@ TEST_CASE("a table may have verdicts in words in place of numbers", "[table_file
              Catch::Contains("no verdict on a quantity without a rule"));
 }
 
+TEST_CASE("a quantity of the loop has no CV, one of a channel has a CV and an MV", "[table_file]") {
+  const TableFolder folder;
+  const auto rows_with = [&](const std::string& quantity_and_mv) {
+    const std::string text = replaced(kTable, "quantity = \"ivar\"\nvalues", quantity_and_mv + "\nvalues");
+    return load_table(folder.put("t.toml", text), kQuantities).rows.at(0).cells;
+  };
+  const std::vector<TableCell> of_loop = rows_with("quantity = \"method.index\"");
+  CHECK(of_loop[0].cv.empty());  // although the column has one
+  CHECK(of_loop[1].cv.empty());
+  CHECK(of_loop[1].mv.empty());
+  const std::vector<TableCell> of_channel = rows_with("quantity = \"method.correlation\"\nmv = \"u2\"");
+  CHECK(of_channel[0].cv == "y1");
+  CHECK(of_channel[1].cv == "y3");
+  CHECK(of_channel[0].mv == "u2");
+  CHECK(of_channel[1].mv == "u2");
+  const std::vector<TableCell> of_cv = rows_with("quantity = \"ivar\"\nmv = \"u2\"");
+  CHECK(of_cv[0].mv.empty());  // a quantity of a CV takes no notice of it
+
+  std::string columns = replaced(kTable, "quantity = \"ivar\"\nvalues",
+                                 "quantity = \"method.correlation\"\nmv = \"u2\"\nvalues");
+  columns = replaced(columns, "cv = \"y1\"\n", "cv = \"y1\"\nmv = \"u3\"\n");
+  const std::vector<TableCell> cells = load_table(folder.put("t.toml", columns), kQuantities).rows[0].cells;
+  CHECK(cells[0].mv == "u3");  // of the column, although the row has one
+  CHECK(cells[1].mv == "u2");
+
+  const std::string channel = "quantity = \"method.correlation\"";
+  CHECK_THAT(refusal("quantity = \"ivar\"", channel),
+             Catch::Contains("row[0]: found no mv for column 'first'"));
+  CHECK_THAT(refusal("quantity = \"ivar\"", channel + "\nmv = \"u9\""),
+             Catch::Contains("row[0].mv: found mv 'u9'") && Catch::Contains("allowed: u1, u2, u3"));
+  CHECK_THAT(refusal("cv = \"y1\"", "cv = \"y1\"\nmv = \"u9\""), Catch::Contains("column[0].mv: found 'u9'"));
+}
+
+TEST_CASE("a figure in words is a table with a name of its own", "[table_file]") {
+  const TableFolder folder;
+  const auto figure = [](int number) {
+    return replaced(kTable, "number = 5", "figure = " + std::to_string(number));
+  };
+  const ThesisTable table = load_table(folder.put("f.toml", figure(8)), kQuantities);
+  CHECK(table.figure);
+  CHECK(table.label() == "Figure 4.8");
+  CHECK(table.name() == "figure4.8");
+  CHECK_THAT(refusal("number = 5", "number = 5\nfigure = 8"),
+             Catch::Contains("table: found both number and figure; allowed: exactly one of the two"));
+  CHECK_THAT(refusal("number = 5\n", ""), Catch::Contains("table: found neither number nor figure"));
+  CHECK_THAT(refusal("number = 5", "figure = 0"), Catch::Contains("table.figure: found 0"));
+
+  folder.put("a.toml", number(4, 8));  // figures and tables have numbers of their own
+  folder.put("b.toml", number(4, 10));
+  folder.put("c.toml", number(5, 1));
+  const auto names = [&](const std::string& which) {
+    std::string text;
+    for (const ThesisTable& found : find_tables(which, kQuantities, folder.path()))
+      text += found.name() + " ";
+    return text;
+  };
+  CHECK(names("all") == "4.8 4.10 figure4.8 5.1 ");
+  CHECK(names("chapter4") == "4.8 4.10 figure4.8 ");
+  CHECK(names("figure4.8") == "figure4.8 ");
+  CHECK(names("4.8") == "4.8 ");
+  folder.put("g.toml", figure(8));
+  CHECK_THAT(message_of(folder.path(), [&] { names("all"); }), Catch::Contains("two files for Figure 4.8"));
+}
+
+TEST_CASE("a row can name the benchmark of methods that need one", "[table_file]") {
+  const TableFolder folder;
+  const auto benchmark = [&](const std::string& key) {
+    const std::string text = replaced(kTable, "scenario = \"Scen1\"\n", "scenario = \"Scen1\"\n" + key);
+    return load_table(folder.put("t.toml", text), kQuantities).rows.at(0).benchmark;
+  };
+  CHECK_FALSE(benchmark("").has_value());  // the basis case of the variant of the row
+  CHECK(benchmark("benchmark = \"slow\"\n") == "slow");
+  CHECK(benchmark("benchmark = \"study\"\n") == "");  // the study as it is
+  CHECK_THAT(refusal("scenario = \"Scen1\"", "scenario = \"Scen1\"\nbenchmark = \"slo\""),
+             Catch::Contains("row[0].benchmark: found 'slo' (nearest: 'slow')"));
+  CHECK_THAT(refusal("name = \"slow\"", "name = \"study\""),
+             Catch::Contains("variant[0].name: found 'study'; allowed: another name"));
+}
+
 TEST_CASE("what a table file cannot mean is refused by file, line and key", "[table_file]") {
   CHECK_THAT(refusal("cv = \"y1\"", "cv = \"y9\""), Catch::StartsWith("t.toml:13: column[0].cv: found 'y9'"));
   CHECK_THAT(refusal("cv = \"y3\"", "cv = \"y9\""), Catch::Contains("row[0].cv: found cv 'y9'"));
