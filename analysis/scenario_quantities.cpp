@@ -40,8 +40,16 @@ void add_method_quantities(const AssessmentMethodInfo& method, std::vector<Table
 }
 
 std::vector<TableQuantity> all_quantities() {
-  std::vector<TableQuantity> quantities{{"ivar"}, {"ivar_diag"},     {"ivar_basis"},
-                                        {"sse"},  {"squared_error"}, {"sqr"}};
+  std::vector<TableQuantity> quantities{{"ivar"},
+                                        {"ivar_diag"},
+                                        {"ivar_basis"},
+                                        {"sse"},
+                                        {"squared_error"},
+                                        {"sqr"},
+                                        {"rga_diagonal"},
+                                        {"rpn_frequency", QuantityScope::loop},
+                                        {"rpn_lowest_peak", QuantityScope::loop},
+                                        {"rpn_maximum", QuantityScope::loop}};
   for (const NumberColumn<DistributionIndicators>& column : distribution_columns())
     quantities.push_back({column.name});
   for (const AssessmentMethodInfo& method : assessment_methods())
@@ -91,6 +99,14 @@ double ScenarioQuantities::value(const std::string& name, Eigen::Index cv, Eigen
     return found->second(cv);
   if (const std::size_t dot = name.find('.'); dot != std::string::npos)
     return method_value(name.substr(0, dot), std::string_view(name).substr(dot + 1), cv, mv);
+  if (name == "rpn_frequency")
+    return interaction().rpn_frequency;
+  if (name == "rpn_lowest_peak")
+    return interaction().peaks.empty() ? kNone : interaction().peaks.front().frequency;
+  if (name == "rpn_maximum")
+    return interaction().rpn_maximum;
+  if (name == "rga_diagonal")
+    return relative_gain(cv);
   for (const NumberColumn<DistributionIndicators>& column : distribution_columns())
     if (column.name == name)
       return column.value(cvs()[static_cast<std::size_t>(cv)].distribution);
@@ -106,6 +122,21 @@ const std::vector<CvDiagnosis>& ScenarioQuantities::cvs() {
   if (cvs_.empty())
     cvs_ = chain_.diagnose_each(loop_.y, nominal_, diagnosis_.ivar_diag);
   return cvs_;
+}
+
+const LoopInteraction& ScenarioQuantities::interaction() {
+  if (!interaction_)
+    interaction_ = loop_interaction(context_.study, context_.basis.point, context_.basis.sensitivity);
+  return *interaction_;
+}
+
+double ScenarioQuantities::relative_gain(Eigen::Index cv) {
+  const LoopInteraction& of_study = interaction();
+  const auto found = std::find(of_study.cvs.begin(), of_study.cvs.end(), cv);
+  if (of_study.mvs.empty() || found == of_study.cvs.end())
+    return kNone;
+  const Eigen::Index at = found - of_study.cvs.begin();
+  return of_study.relative_gain_at_maximum(at, at);
 }
 
 const Assessment& ScenarioQuantities::assessment(const std::string& method) {

@@ -9,6 +9,7 @@
 #include "analysis/assessment/assessment_method.hpp"
 #include "analysis/basis_case.hpp"
 #include "analysis/diagnosis.hpp"
+#include "analysis/loop_interaction.hpp"
 #include "scenarios/table_file.hpp"
 
 namespace mpm {
@@ -23,6 +24,9 @@ namespace mpm {
 /// | squared_error | that sum itself, which tables 4.3 and 4.5 to 4.12 have (docs/reproduction.md) |
 /// | sqr | sum over the samples of |y_basis - y0| (3.31) |
 /// | i_mpm, co_dkts, inclination_skn, ... | those of distribution_columns() |
+/// | rpn_frequency, rpn_maximum | where the RPN (4.16) of the study is largest, rad/time, and how large |
+/// | rpn_lowest_peak | local maximum of the RPN with the lowest frequency, rad/time |
+/// | rga_diagonal | of a CV: magnitude of its diagonal entry of the RGA at rpn_frequency |
 /// | METHOD.loop_flagged, METHOD.flagged | 1 when the method flags the loop, the CV; 0 when it does not |
 /// | METHOD.channel_flagged | 1 when the method flags the channel, 0 when it does not |
 /// | METHOD.NUMBER | a number of the method, AssessmentMethodInfo::numbers |
@@ -46,6 +50,8 @@ class ScenarioQuantities {
 
  private:
   const std::vector<CvDiagnosis>& cvs();
+  const LoopInteraction& interaction();
+  double relative_gain(Eigen::Index cv);
   const Assessment& assessment(const std::string& method);
   double method_value(const std::string& method, std::string_view name, Eigen::Index cv, Eigen::Index mv);
 
@@ -56,6 +62,7 @@ class ScenarioQuantities {
   Diagnosis diagnosis_;
   std::map<std::string, Eigen::VectorXd> by_cv_;
   std::vector<CvDiagnosis> cvs_;  ///< empty until a quantity needs them
+  std::optional<LoopInteraction> interaction_;
   std::map<std::string, Assessment> assessments_;
 };
 

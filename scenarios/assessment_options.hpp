@@ -31,6 +31,14 @@ struct Badwe2010Options {
 /// Of the method of Yu and Qin (2008), analysis/assessment/yu_qin.
 struct YuQinOptions {
   double confidence = 0.95;  ///< of the limits of eigenvalues and angles
+  int largest_lag = 0;       ///< of the sum over autocorrelations (2.9); 0: all lags
+  int first_sample = 0;      ///< at which both periods begin; leaves out how a loop starts
+};
+
+/// Of a monitor of the simulation errors alone, analysis/assessment/sse_method.
+struct SseOptions {
+  double threshold =
+      1.5;  ///< a CV is flagged when its mean squared error is above so many times the benchmark's
 };
 
 /// [assessment]
@@ -40,6 +48,7 @@ struct AssessmentOptions {
   Badwe2009Options badwe2009;
   Badwe2010Options badwe2010;
   YuQinOptions yu_qin;
+  SseOptions sse;
 };
 
 }  // namespace mpm

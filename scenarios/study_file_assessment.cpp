@@ -8,6 +8,7 @@ namespace mpm {
 namespace {
 
 constexpr std::int64_t kMaxOrder = 100;
+constexpr std::int64_t kMaxLag = 1'000'000;
 
 SunOptions read_sun(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("sun", study_file_keys("assessment.sun"));
@@ -38,6 +39,17 @@ YuQinOptions read_yu_qin(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("yu-qin", study_file_keys("assessment.yu-qin"));
   YuQinOptions options;
   options.confidence = read_number_or(table, "confidence", NumberRule::inside(0, 1), options.confidence);
+  options.largest_lag =
+      static_cast<int>(read_whole_or(table, "largest_lag", 0, kMaxLag, options.largest_lag));
+  options.first_sample =
+      static_cast<int>(read_whole_or(table, "first_sample", 0, kMaxLag, options.first_sample));
+  return options;
+}
+
+SseOptions read_sse(const TomlTable& assessment) {
+  const TomlTable table = assessment.table_or_empty("sse", study_file_keys("assessment.sse"));
+  SseOptions options;
+  options.threshold = read_number_or(table, "threshold", NumberRule::positive(), options.threshold);
   return options;
 }
 
@@ -54,6 +66,7 @@ AssessmentOptions read_assessment(const TomlTable& document) {
   options.badwe2009 = read_badwe2009(table);
   options.badwe2010 = read_badwe2010(table);
   options.yu_qin = read_yu_qin(table);
+  options.sse = read_sse(table);
   return options;
 }
 

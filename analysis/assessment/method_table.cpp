@@ -11,6 +11,8 @@ namespace mpm {
 const std::vector<AssessmentMethodInfo>& assessment_methods() {
   static const std::vector<AssessmentMethodInfo> methods{
       botelho_method(),
+      yu_qin_method(),
+      sse_method(),
   };
   return methods;
 }

@@ -7,5 +7,7 @@ namespace mpm {
 // The methods, each described in a source file of its own and listed in method_table.cpp.
 
 AssessmentMethodInfo botelho_method();  ///< the chain of the thesis, appendix A2
+AssessmentMethodInfo sse_method();      ///< simulation errors against a benchmark (4.17), (6.21)
+AssessmentMethodInfo yu_qin_method();   ///< variability against a benchmark, section 2.2.2, A1.3
 
 }  // namespace mpm
