@@ -30,7 +30,7 @@ struct DesignedOutputOptions {
   DesignedOrderCriterion criterion = DesignedOrderCriterion::record_fit;
   /// Share of the record, its end, that `validation_fit` keeps.
   double validation_share = 0.3;
-  /// Iterations of the search for each model; 20 is what the toolbox that the thesis used takes by default.
+  /// Iterations of the search for each model; 20 is the default of Matlab's `oe`.
   int max_iterations = 20;
   /// A residual y - y_hat, or an eps, whose root mean square is below this share of the largest of eps is
   /// rounding of a model that has no mismatch; nothing is identified from it.
@@ -50,7 +50,7 @@ enum class ClosedLoopModelStatus : std::int8_t {
 
 std::string_view to_string(ClosedLoopModelStatus status);
 
-/// One row of S_d or Delta G K: an output-error model from all eps (Matlab's `oe` of one output).
+/// One row of S_d or Delta G K: an output-error model from all eps (`oe` of one output in Matlab).
 struct ClosedLoopModel {
   ClosedLoopModelStatus status = ClosedLoopModelStatus::no_model;
   PolynomialModel model;   ///< one path for each eps, those that stand still with B = 0
