@@ -116,7 +116,10 @@ Identification identify_prediction_error(const Eigen::Ref<const Eigen::VectorXd>
   Identification best;
   best.model = model_from_parameters(order, Eigen::VectorXd::Zero(order.parameter_count()));
   bool found = false;
+  int searches = 0;
   for (const PolynomialModel& start : prediction_error_starts(y, u, order, options)) {
+    if (++searches > options.max_starts)
+      break;
     Identification result = search_from(data, start);
     const bool minimum = is_minimum(result.status);
     if (!found || minimum || result.loss < best.loss)

@@ -21,6 +21,8 @@ void PredictionErrorOptions::validate() const {
     throw InputError("first sample of the loss", fmt::format("{}", first_sample), "0 or later");
   if (max_iterations < 1)
     throw InputError("iteration limit", fmt::format("{}", max_iterations), "1 or more");
+  if (max_starts < 1)
+    throw InputError("number of starts", fmt::format("{}", max_starts), "1 or more");
   require_share("largest radius of the roots", largest_radius);
   require_share("rank tolerance", rank_tolerance);
 }

@@ -13,6 +13,7 @@ const std::vector<AssessmentMethodInfo>& assessment_methods() {
       botelho_method(),
       yu_qin_method(),
       sse_method(),
+      badwe2010_method(),
   };
   return methods;
 }

@@ -9,5 +9,7 @@ namespace mpm {
 AssessmentMethodInfo botelho_method();  ///< the chain of the thesis, appendix A2
 AssessmentMethodInfo sse_method();      ///< simulation errors against a benchmark (4.17), (6.21)
 AssessmentMethodInfo yu_qin_method();   ///< variability against a benchmark, section 2.2.2, A1.3
+AssessmentMethodInfo botelho_method();    ///< the chain of the thesis, appendix A2
+AssessmentMethodInfo badwe2010_method();  ///< designed outputs, section 3.1
 
 }  // namespace mpm

@@ -191,6 +191,24 @@ TEST_CASE("data that do not determine a model are a status") {
   }
 }
 
+TEST_CASE("with one start allowed the search from the best one is all there is") {
+  // A noise that drifts ends at the stability limit from every start, so that all of them are tried.
+  const Eigen::MatrixXd u = random_steps(1, 400, 47);
+  Eigen::VectorXd y = white_noise(400, 48);
+  for (Eigen::Index k = 1; k < y.size(); ++k)
+    y(k) += y(k - 1);
+  const mpm::ModelOrder order = box_jenkins_order(1, 2, 2, 1, 1);
+  PredictionErrorOptions options;
+  const Identification all = identify_prediction_error(y, u, order, options);
+  options.max_starts = 1;
+  const Identification first = identify_prediction_error(y, u, order, options);
+  CHECK(first.loss >= all.loss);
+  const auto starts = mpm::prediction_error_starts(y, u, order, options);
+  REQUIRE(starts.size() > 1);
+  CHECK(first.model.parameters() ==
+        mpm::search_prediction_error(starts[0], y, u, options).model.parameters());
+}
+
 TEST_CASE("an identification refuses what cannot be meant") {
   const Eigen::MatrixXd u = random_steps(1, 20, 45);
   const Eigen::VectorXd y = white_noise(20, 46);
@@ -203,6 +221,10 @@ TEST_CASE("an identification refuses what cannot be meant") {
   options.largest_radius = 1.0;
   CHECK_THROWS_WITH(identify_prediction_error(y, u, output_error_order(1, 1, 1), options),
                     Catch::Contains("largest radius"));
+  options = {};
+  options.max_starts = 0;
+  CHECK_THROWS_WITH(identify_prediction_error(y, u, output_error_order(1, 1, 1), options),
+                    Catch::Contains("number of starts: found 0"));
   options = {};
   options.first_sample = 18;
   CHECK_THROWS_WITH(identify_prediction_error(y, u, output_error_order(1, 1, 1), options),
