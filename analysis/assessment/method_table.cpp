@@ -11,6 +11,7 @@ namespace mpm {
 const std::vector<AssessmentMethodInfo>& assessment_methods() {
   static const std::vector<AssessmentMethodInfo> methods{
       botelho_method(),
+      badwe2009_method(),
   };
   return methods;
 }
