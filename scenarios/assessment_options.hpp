@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "scenarios/badwe2009_options.hpp"
+
 // The open choices of the methods that assess a controller ([assessment] of a study file). One structure a
 // method; the chain of the thesis has its own, DiagnosisOptions.
 
@@ -16,11 +18,6 @@ enum class AssessmentSetpoints : std::int8_t {
 /// Of the method of Sun et al. (2013), analysis/assessment/sun.
 struct SunOptions {
   double tolerance = 0.85;  ///< MQI and iMQI below it show a poor model (2.4.2)
-};
-
-/// Of the method of Badwe et al. (2009), analysis/assessment/badwe2009.
-struct Badwe2009Options {
-  double confidence = 0.95;  ///< of the band of the partial correlation
 };
 
 /// Of the method of Badwe et al. (2010), analysis/assessment/badwe2010.

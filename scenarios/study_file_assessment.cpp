@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::int64_t kMaxOrder = 100;
 constexpr std::int64_t kMaxLag = 1'000'000;
+constexpr std::int64_t kMaxLength = 1000;  // of filters and lags, in samples
 
 SunOptions read_sun(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("sun", study_file_keys("assessment.sun"));
@@ -17,10 +18,52 @@ SunOptions read_sun(const TomlTable& assessment) {
   return options;
 }
 
+int read_int_or(const TomlTable& table, std::string_view key, std::int64_t low, int fallback) {
+  return static_cast<int>(read_whole_or(table, key, low, kMaxLength, fallback));
+}
+
+void read_badwe2009_models(const TomlTable& table, Badwe2009Options& options) {
+  options.filter = read_choice_or<NoiseFilter>(table, "filter",
+                                               {{"automatic", NoiseFilter::automatic},
+                                                {"none", NoiseFilter::none},
+                                                {"moving-average", NoiseFilter::moving_average},
+                                                {"first-order", NoiseFilter::first_order},
+                                                {"external", NoiseFilter::external}},
+                                               options.filter);
+  options.filter_length = read_int_or(table, "filter_length", 1, options.filter_length);
+  options.model = read_choice_or<DecorrelationModel>(
+      table, "model", {{"fir", DecorrelationModel::fir}, {"output-error", DecorrelationModel::output_error}},
+      options.model);
+  options.nb = read_int_or(table, "nb", 1, options.nb);
+  options.nf = read_int_or(table, "nf", 0, options.nf);
+  options.fir_length = read_int_or(table, "fir_length", 1, options.fir_length);
+  options.fir_pole =
+      read_number_or(table, "fir_pole", {.low = 0, .high = 1, .low_included = true}, options.fir_pole);
+}
+
+void read_badwe2009_verdict(const TomlTable& table, Badwe2009Options& options) {
+  const NumberRule share{.low = 0, .high = 1, .low_included = true, .high_included = true};
+  options.min_lag = read_int_or(table, "min_lag", 0, options.min_lag);
+  options.max_lag =
+      read_int_or(table, "max_lag", options.min_lag, std::max(options.min_lag, options.max_lag));
+  options.confidence = read_number_or(table, "confidence", NumberRule::inside(0, 1), options.confidence);
+  options.multiplicity = read_choice_or<Multiplicity>(
+      table, "multiplicity",
+      {{"none", Multiplicity::none}, {"lags", Multiplicity::lags}, {"channels", Multiplicity::channels}},
+      options.multiplicity);
+  options.weakest_correlation =
+      read_number_or(table, "weakest_correlation", share, options.weakest_correlation);
+  options.saturated_share = read_number_or(table, "saturated_share", share, options.saturated_share);
+  options.smallest_deviation =
+      read_number_or(table, "smallest_deviation", NumberRule::at_least(0), options.smallest_deviation);
+  options.smallest_own_share = read_number_or(table, "smallest_own_share", share, options.smallest_own_share);
+}
+
 Badwe2009Options read_badwe2009(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("badwe2009", study_file_keys("assessment.badwe2009"));
   Badwe2009Options options;
-  options.confidence = read_number_or(table, "confidence", NumberRule::inside(0, 1), options.confidence);
+  read_badwe2009_models(table, options);
+  read_badwe2009_verdict(table, options);
   return options;
 }
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+/// Whether an MV says anything about its channels.
+enum class MvUse : std::int8_t {
+  evaluated = 0,
+  saturated = 1,       ///< at a limit for too large a share of the record
+  standing_still = 2,  ///< without excitation
+  dependent = 3,       ///< moves only as the other MVs make it: nothing of its own is left to correlate
+};
+
+/// "evaluated", "saturated", ...
+std::string to_string(MvUse use);
+
+/// Limits of the MVs, one entry an MV; infinite where there is none.
+struct MvLimits {
+  Eigen::VectorXd lower;
+  Eigen::VectorXd upper;
+};
+
+/// Share of samples at which each MV is at a limit, within 1e-6 of the distance of its limits (of 1 when
+/// either is infinite).
+/// @throws InputError for limits other than one an MV, or a lower limit above the upper one
+Eigen::VectorXd saturated_shares(const Eigen::Ref<const Eigen::MatrixXd>& u, const MvLimits& limits);
+
+/// Saturated: a share above `largest_share`. Standing still: a standard deviation of at most
+/// `smallest_deviation`, or that rounding explains (`variance_floor`). Evaluated: all others. u is nu x N.
+/// @throws InputError as `saturated_shares`, and for fewer than 2 samples
+std::vector<MvUse> mv_uses(const Eigen::Ref<const Eigen::MatrixXd>& u, const MvLimits& limits,
+                           double largest_share, double smallest_deviation);
+
+}  // namespace mpm

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <limits>
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+/// The correlation of what is left of a prediction error with what is left of an MV, at the lags at which the
+/// MV can act.
+///
+/// | member      | shape      | meaning                                                       |
+/// |-------------|------------|---------------------------------------------------------------|
+/// | values      | max_lag - min_lag + 1 | r(l), correlation of eps2(k) with eps1(k-l), l = min_lag ...
+/// max_lag | | band        |            | half width that a single r(l) of independent signals keeps    | |
+/// white_band  |            | the same for white signals, z/sqrt(N - p)                     | | lag, peak   |
+/// | where |r| is largest, and r there                             |
+struct PartialCorrelation {
+  Eigen::VectorXd values;
+  double band = std::numeric_limits<double>::quiet_NaN();
+  double white_band = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Index lag = 0;
+  double peak = std::numeric_limits<double>::quiet_NaN();
+
+  /// Whether |peak| is outside of the band, and above `weakest`; false without a correlation.
+  bool is_strong(double weakest = 0.0) const;
+};
+
+/// The partial correlation of an MV with a prediction error from the residuals of (2.5) and (2.6),
+///
+///   r(l) = sum_k eps2(k) eps1(k-l) / sqrt(sum eps1^2 sum eps2^2),   l = min_lag ... max_lag
+///
+/// The effect of a mismatch comes with dead time and lag, so it shows at many l; at l < 0 there is only
+/// feedback, and where u(k) acts after y(k) at l = 0 as well. Both residuals are coloured: a mismatch acts
+/// through a slow process, an MV moves with setpoints. Their correlations then scatter more than those of
+/// white signals, by Bartlett's formula for independent series (Box and Jenkins 1976, section 11.1.3; Ljung
+/// 1999, eq. 16.66),
+///
+///   var r(l) = sum_m r_11(m) r_22(m) / (N - p)
+///
+/// and the band is z times its root; the white-noise band z/sqrt(N - p) would take most coloured residuals
+/// for mismatches. p is the number of coefficients that the models of (2.5) and (2.6) each fitted to the
+/// same samples: residuals of p regressors have N - p degrees of freedom.
+///
+/// Residuals without variance have no correlation: NaN, which is not strong.
+/// @throws InputError as `input_correlation`, and unless 0 <= min_lag <= max_lag and 0 <= parameters < N
+PartialCorrelation partial_correlation(const Eigen::Ref<const Eigen::VectorXd>& eps1,
+                                       const Eigen::Ref<const Eigen::VectorXd>& eps2, Eigen::Index min_lag,
+                                       Eigen::Index max_lag, double confidence, Eigen::Index parameters = 0);
+
+}  // namespace mpm
