@@ -1,13 +1,12 @@
 #include "analysis/acf_comparison.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 
 #include <fmt/format.h>
 
 #include "analysis/correlation.hpp"
+#include "analysis/interval.hpp"
 #include "analysis/signal_check.hpp"
 #include "plants/error.hpp"
 
@@ -40,8 +39,9 @@ Deviation deviation(const Signal& signal, const std::optional<Eigen::VectorXd>& 
 }
 
 AcfFeatures features(const Autocorrelation& acf, const AcfComparisonOptions& options) {
-  return {decay_lag(acf, options.decay_level), acf_oscillation(acf, options.oscillation_threshold),
-          acf.values};
+  const double band_factor = simultaneous_band_factor(options.confidence, acf.values.size() - 1);
+  return {decay_lag(acf, options.decay_level, band_factor),
+          acf_oscillation(acf, options.oscillation_threshold), acf.values};
 }
 
 /// Bartlett's half band at the decay lag, at the last lag when it lies beyond.
@@ -102,66 +102,6 @@ ErrorOrigin origin_verdict(const AcfComparison& comparison, double own_share) {
   return comparison.own_share <= 1.0 - own_share ? ErrorOrigin::others : ErrorOrigin::both;
 }
 
-struct Number {
-  const char* name;
-  const char* unit;
-  const char* meaning;
-  double AcfComparison::*member;
-};
-
-constexpr std::array<Number, 7> kNumbers{{
-    {"white_band", "1", "half width of the band of white noise", &AcfComparison::white_band},
-    {"decay_lag_ratio", "1", "decay lag of y over that of y0", &AcfComparison::decay_lag_ratio},
-    {"decay_margin", "1", "ratio up to which decay lags are alike", &AcfComparison::decay_margin},
-    {"y_from_y0", "1", "distance of ACF(y) from ACF(y0)", &AcfComparison::y_from_y0},
-    {"y_from_y0_diag", "1", "distance of ACF(y) from ACF(y0_diag)", &AcfComparison::y_from_y0_diag},
-    {"y0_diag_from_y0", "1", "distance of ACF(y0_diag) from ACF(y0)", &AcfComparison::y0_diag_from_y0},
-    {"own_share", "1", "1 when y0_diag is like y0, 0 when it is like y", &AcfComparison::own_share},
-}};
-
-struct Record {
-  const char* name;
-  AcfFeatures AcfComparison::*member;
-};
-
-constexpr std::array<Record, 3> kRecords{
-    {{"y", &AcfComparison::y}, {"y0", &AcfComparison::y0}, {"y0_diag", &AcfComparison::y0_diag}}};
-
-using Columns = std::vector<NumberColumn<AcfComparison>>;
-
-/// The words of enumerators that count from 0.
-template <class Enum, std::size_t n>
-std::vector<std::string> words(const std::array<Enum, n>& enumerators) {
-  std::vector<std::string> list;
-  for (const Enum enumerator : enumerators) {
-    list.emplace_back(to_string(enumerator));
-  }
-  return list;
-}
-
-void append_features(Columns& columns, const Record& record) {
-  const std::string of = std::string(" of ") + record.name;
-  const auto name = [&record](const char* quantity) { return std::string(quantity) + "_" + record.name; };
-  const auto member = record.member;
-  columns.push_back({name("decay_lag"), "samples", "lag from which on |ACF| stays below its level," + of,
-                     [member](const AcfComparison& c) { return (c.*member).decay_lag; },
-                     [member](AcfComparison& c, double value) { (c.*member).decay_lag = value; }});
-  columns.push_back(
-      {name("oscillation"), "1", "whether the ACF oscillates," + of,
-       [member](const AcfComparison& c) { return static_cast<double>((c.*member).oscillation.verdict); },
-       [member](AcfComparison& c, double value) {
-         (c.*member).oscillation.verdict = static_cast<Oscillation>(value);
-       },
-       words(std::array{Oscillation::undetermined, Oscillation::absent, Oscillation::present})});
-  columns.push_back(
-      {name("decay_ratio"), "1", "decay ratio of the ACF over half a period," + of,
-       [member](const AcfComparison& c) { return (c.*member).oscillation.decay_ratio; },
-       [member](AcfComparison& c, double value) { (c.*member).oscillation.decay_ratio = value; }});
-  columns.push_back({name("period"), "samples", "period of the ACF," + of,
-                     [member](const AcfComparison& c) { return (c.*member).oscillation.period; },
-                     [member](AcfComparison& c, double value) { (c.*member).oscillation.period = value; }});
-}
-
 }  // namespace
 
 std::string_view to_string(LoopSpeed speed) {
@@ -211,21 +151,38 @@ bool AcfComparison::calmed_by_error() const {
   return y.oscillation.verdict == Oscillation::absent && y0.oscillation.verdict == Oscillation::present;
 }
 
-double decay_lag(const Autocorrelation& acf, double level) {
-  const Eigen::VectorXd& r = acf.values;
-  if (r.size() == 0 || std::isnan(r[0])) {
+double decay_lag(const Autocorrelation& acf, double level, double band_factor) {
+  if (acf.values.size() == 0 || std::isnan(acf.values[0])) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  Eigen::Index last = r.size() - 1;
-  while (last > 0 && std::abs(r[last]) < level) {
-    --last;
+  const Eigen::ArrayXd r = acf.values.array().abs();
+  const Eigen::Index lags = r.size();
+  const auto end_of_run = [&](Eigen::Index lag) {
+    while (lag + 1 < lags && r[lag + 1] >= level) {
+      ++lag;
+    }
+    return lag;
+  };
+  Eigen::Index last = end_of_run(0);
+  for (Eigen::Index lag = last + 1; lag < lags; ++lag) {
+    if (r[lag] >= level) {
+      const Eigen::Index end = end_of_run(lag);
+      const Eigen::Index length = end - lag + 1;
+      if ((r.segment(lag, length) >= band_factor * acf.bartlett_band.array().segment(lag, length)).any()) {
+        last = end;
+      }
+      lag = end;
+    }
   }
-  if (last == r.size() - 1) {
+  if (last == lags - 1) {
     return std::numeric_limits<double>::infinity();
   }
-  const double above = std::abs(r[last]);
-  const double below = std::abs(r[last + 1]);
-  return static_cast<double>(last) + (above - level) / (above - below);
+  return static_cast<double>(last) + (r[last] - level) / (r[last] - r[last + 1]);
+}
+
+double simultaneous_band_factor(double confidence, Eigen::Index max_lag) {
+  const double each = 1.0 - (1.0 - confidence) / static_cast<double>(max_lag);
+  return two_sided_normal_quantile(each) / two_sided_normal_quantile(confidence);
 }
 
 AcfComparison compare_autocorrelations(const Signal& y, const Signal& y0, const Signal& y0_diag,
@@ -257,29 +214,6 @@ AcfComparison compare_autocorrelations(const Signal& y, const Signal& y0, const 
   result.own_share = result.y_from_y0_diag / (result.y_from_y0_diag + result.y0_diag_from_y0);
   result.origin = origin_verdict(result, options.own_share);
   return result;
-}
-
-std::vector<NumberColumn<AcfComparison>> acf_columns() {
-  Columns columns;
-  for (const Record& record : kRecords) {
-    append_features(columns, record);
-  }
-  for (const Number& number : kNumbers) {
-    columns.push_back({number.name, number.unit, number.meaning,
-                       [member = number.member](const AcfComparison& c) { return c.*member; },
-                       [member = number.member](AcfComparison& c, double value) { c.*member = value; }});
-  }
-  columns.push_back(
-      {"loop_speed", "1", "speed of y against that of y0",
-       [](const AcfComparison& c) { return static_cast<double>(c.speed); },
-       [](AcfComparison& c, double value) { c.speed = static_cast<LoopSpeed>(value); },
-       words(std::array{LoopSpeed::undetermined, LoopSpeed::alike, LoopSpeed::slower, LoopSpeed::faster})});
-  columns.push_back(
-      {"error_origin", "1", "whose model the error that shows in the ACF comes from",
-       [](const AcfComparison& c) { return static_cast<double>(c.origin); },
-       [](AcfComparison& c, double value) { c.origin = static_cast<ErrorOrigin>(value); },
-       words(std::array{ErrorOrigin::none, ErrorOrigin::own, ErrorOrigin::others, ErrorOrigin::both})});
-  return columns;
 }
 
 }  // namespace mpm

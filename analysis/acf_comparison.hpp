@@ -58,8 +58,8 @@ struct AcfComparisonOptions {
 
 /// What one autocorrelation function says.
 struct AcfFeatures {
-  /// First lag from which on |r| stays below the decay level, between lags by linear interpolation; infinite
-  /// when it does not within the lags, NaN without a function. Unit: samples.
+  /// Lag from which on |r| stays below the decay level, but for rises that chance may make (`decay_lag`);
+  /// infinite when it does not within the lags, NaN without a function. Unit: samples.
   double decay_lag = std::numeric_limits<double>::quiet_NaN();
   AcfOscillation oscillation;
   Eigen::VectorXd values = {};  ///< the function at the lags 0 ... max_lag; NaN without one
@@ -119,8 +119,18 @@ AcfComparison compare_autocorrelations(const Eigen::Ref<const Eigen::VectorXd>& 
                                        const std::optional<Eigen::VectorXd>& y_set = std::nullopt,
                                        const AcfComparisonOptions& options = {});
 
-/// The first lag from which on |r| stays below `level`, as in `AcfFeatures`.
-double decay_lag(const Autocorrelation& acf, double level);
+/// The lag from which on |r| stays below `level`, between lags by linear interpolation; infinite when it does
+/// not within the lags.
+///
+/// The sample function of a record of 20 time constants swings by 0.2 (one standard deviation) where it
+/// should be 0, and often rises over 1/e once more. So a rise, a run of lags with |r| >= level after the
+/// function has been below it, counts only when |r| leaves `band_factor` times Bartlett's band at one of its
+/// lags.
+double decay_lag(const Autocorrelation& acf, double level, double band_factor = 1.0);
+
+/// The factor that makes Bartlett's band of `confidence` at each lag one of this confidence for all lags
+/// 1 ... max_lag together (Bonferroni): 1.68 for 50 lags and 0.95.
+double simultaneous_band_factor(double confidence, Eigen::Index max_lag);
 
 /// Every number of a comparison, the verdicts as the numbers of their enumerators. The functions themselves
 /// (`AcfFeatures::values`) are none of them.

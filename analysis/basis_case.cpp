@@ -14,6 +14,11 @@ namespace {
 
 void check_health(const Study& study, BasisCase& basis) {
   const DiagnosisOptions& options = study.diagnosis;
+  if (basis.trajectory.failure == LoopFailure::plant) {
+    basis.explanation = fmt::format("the nominal loop fails at sample {}: {}", basis.trajectory.samples_done,
+                                    basis.trajectory.message);
+    return;
+  }
   if (basis.trajectory.status != ControlStatus::ok) {
     basis.explanation =
         fmt::format("the nominal loop is {} at sample {}: its excitation is too strong for its limits",
@@ -48,6 +53,13 @@ void require_active(const Study& study, const NominalSensitivity& sensitivity) {
                        "CVs at a setpoint or an active soft limit");
 }
 
+/// Without a fault, a plant that cannot rest where the loops begin is the study's.
+void require_start(const Trajectory& loop) {
+  if (loop.failure == LoopFailure::no_steady_state)
+    throw InputError("the study's loop without a fault", loop.message,
+                     "a plant with a steady state at the first setpoints and limits");
+}
+
 }  // namespace
 
 BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, const StepObserver& observer) {
@@ -62,6 +74,7 @@ BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, con
   if (!study.s0_perturbation.fixed_mvs.empty())
     basis.sensitivity_fixed = sensitivity(study, with_fixed_mvs(study, basis.point), factory, observer);
   basis.trajectory = simulate_experiment(study, basis_draw(), factory, observer);
+  require_start(basis.trajectory);
   if (basis.trajectory.status == ControlStatus::ok) {
     basis.nominal =
         NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);

@@ -34,7 +34,7 @@ struct BasisCase {
 
 /// Runs the basis case of the study. `observer` sees each step of its loops, those that give T0 among them;
 /// an exception from it ends the basis case and is passed on. Throws InputError when the sensitivity cannot
-/// be determined.
+/// be determined, or the plant has no steady state where the loops begin.
 BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory,
                          const StepObserver& observer = {});
 

@@ -1,28 +1,8 @@
 #include "analysis/control_structure.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "analysis/active_limit.hpp"
 
 namespace mpm {
-namespace {
-
-/// Targets and MVs are exact to the tolerance of the solver; a limit is met well above that.
-constexpr double kLimitTolerance = 1e-5;
-
-double tolerance_of(double limit) {
-  return kLimitTolerance * std::max(1.0, std::abs(limit));
-}
-
-/// False for a limit that is none (infinite).
-bool at_or_below(double value, double lower) {
-  return std::isfinite(lower) && value <= lower + tolerance_of(lower);
-}
-
-bool at_or_above(double value, double upper) {
-  return std::isfinite(upper) && value >= upper - tolerance_of(upper);
-}
-
-}  // namespace
 
 Eigen::MatrixXd optimizer_steady_state(const Study& study, const Trajectory& loop,
                                        const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {

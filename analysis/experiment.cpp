@@ -97,6 +97,7 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
 
   DiagnosedLoop main = run_loop(record.draw, observer);
   record.status = main.status;
+  record.message = main.loop.trajectory.message;
   record.solver = main.loop.trajectory.solver;
   const Eigen::Index true_cv = record.draw.true_cv();
   if (record.draw.kind == ExperimentKind::mpm_ud && true_cv >= 0 && record.status == ExperimentStatus::ok) {
@@ -105,6 +106,8 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
     for (const DiagnosedLoop* part : {&mpm_alone, &ud_alone}) {
       record.solver.add(part->loop.trajectory.solver);
       record.status = std::max(record.status, part->status);
+      if (record.message.empty())
+        record.message = part->loop.trajectory.message;
     }
     if (record.status == ExperimentStatus::ok) {
       record.ivar_diag_mpm_alone = mpm_alone.diagnosis.ivar_diag(true_cv);
@@ -120,9 +123,6 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
           perturbation_.ivar_diag(true_cv, Eigen::RowVectorXd(main.loop.trajectory.y.row(true_cv)),
                                   Eigen::RowVectorXd(main.loop.y_sim.row(true_cv)));
   }
-  if (record.status == ExperimentStatus::failed)
-    record.message = study_.nonlinear ? "the solver gave no answer, or the plant could not be integrated"
-                                      : "the solver gave no answer";
   if (store == StorePolicy::all || (store == StorePolicy::flagged && record.wrong()))
     record.loop = std::move(main.loop);
   return record;

@@ -19,8 +19,8 @@ namespace mpm {
 enum class ExperimentStatus : std::int8_t {
   ok = 0,
   infeasible = 1,  ///< some MPC problem had no solution; the experiment is left out, as in the thesis
-  failed = 2,  ///< the solver gave no answer, the plant could not be integrated, or the process that ran the
-               ///< experiment died
+  failed = 2,      ///< the solver gave no answer, the plant could not be integrated or had no steady state to
+                   ///< begin at, or the process that ran the experiment died
 };
 
 std::string_view to_string(ExperimentStatus status);

@@ -6,19 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "analysis/active_limit.hpp"
 #include "plants/error.hpp"
 #include "plants/linear_plant.hpp"
 #include "solvers/mpc.hpp"
 
 namespace mpm {
 namespace {
-
-// The optimizer's vertex is exact to the solver's tolerance; a limit is active well above that.
-constexpr double kActiveTolerance = 1e-5;
-
-bool at(double value, double limit) {
-  return std::isfinite(limit) && std::abs(value - limit) <= kActiveTolerance * std::max(1.0, std::abs(limit));
-}
 
 ActiveReference limit_reference(Eigen::Index cv, bool upper) {
   return {cv, upper ? ReferenceKind::upper_limit : ReferenceKind::lower_limit};
@@ -50,7 +44,7 @@ std::vector<Eigen::Index> cvs_at_limit(const Study& study, const Eigen::VectorXd
   const Limits& soft = study.controller.cv_soft;
   std::vector<Eigen::Index> cvs;
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    if (at(y(cv), soft.lower(cv)) || at(y(cv), soft.upper(cv)))
+    if (at_limit(y(cv), soft.lower(cv)) || at_limit(y(cv), soft.upper(cv)))
       cvs.push_back(cv);
   return cvs;
 }
@@ -149,8 +143,8 @@ OperatingPoint operating_point(const Study& study, const QpSolverFactory& factor
   point.active = references(study, named.empty() ? cvs_at_limit(study, point.y) : named, point.y);
   const Limits& hard = study.controller.mv_hard;
   for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
-    if (contains(study.sensitivity.fixed_mvs, mv) || at(point.u(mv), hard.lower(mv)) ||
-        at(point.u(mv), hard.upper(mv)))
+    if (contains(study.sensitivity.fixed_mvs, mv) || at_limit(point.u(mv), hard.lower(mv)) ||
+        at_limit(point.u(mv), hard.upper(mv)))
       point.fixed_mvs.push_back(mv);
   return point;
 }

@@ -33,7 +33,10 @@ void OdePlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) {
   if (!steady_input.allFinite())
     throw InputError("steady plant input", "a number that is not finite", "finite numbers");
   input_ = steady_input;
-  set_state(at_rest_->steady_state(input_));
+  const Eigen::VectorXd x = at_rest_->steady_state(input_);
+  if (!x.allFinite())
+    throw NoSteadyState("steady state of the plant", "a number that is not finite", "finite numbers");
+  set_state(x);
 }
 
 PlantStatus OdePlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {

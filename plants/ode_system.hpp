@@ -37,7 +37,7 @@ class OdeSystem {
   virtual void output(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& u,
                       Eigen::Ref<Eigen::VectorXd> y) const = 0;
 
-  /// The x with f(x, u) = 0. Errors: InputError for an input without a steady state.
+  /// The x with f(x, u) = 0. Errors: NoSteadyState.
   virtual Eigen::VectorXd steady_state(const Eigen::Ref<const Eigen::VectorXd>& u) const = 0;
 
  protected:

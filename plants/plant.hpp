@@ -27,8 +27,7 @@ class Plant {
   virtual double sample_time() const = 0;
 
   /// Puts the plant at its steady state under the constant `steady_input` (input_count()), as if it had acted
-  /// for ever. Errors: InputError for a wrong size, a number that is not finite, or an input without a steady
-  /// state.
+  /// for ever. Errors: InputError for a wrong size or a number that is not finite; NoSteadyState.
   virtual void reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) = 0;
 
   /// y(k), output_count(): just before the input of sample k is applied.

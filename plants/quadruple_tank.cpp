@@ -109,13 +109,13 @@ Eigen::VectorXd QuadrupleTank::steady_state(const Eigen::Ref<const Eigen::Vector
     const auto tank = static_cast<std::size_t>(i);
     out(i) = pumped(i) + u(kMvs + i) + (i < 2 ? out(i + 2) : 0.0);
     if (!(out(i) >= 0.0))
-      throw InputError(fmt::format("steady inflow of tank {}", i + 1), fmt::format("{} cm^3/s", out(i)),
-                       "0 or more: no more can be taken out than flows in");
+      throw NoSteadyState(fmt::format("steady inflow of tank {}", i + 1), fmt::format("{} cm^3/s", out(i)),
+                          "0 or more: no more can be taken out than flows in");
     level(i) = std::pow(out(i) / parameters_.discharge[tank], 1 / parameters_.exponent[tank]);
     if (level(i) < kShallow) {
       if (u(kMvs + i) < 0.0)
-        throw InputError(fmt::format("steady level of tank {}", i + 1), fmt::format("{} cm", level(i)),
-                         fmt::format("{} cm or more where a flow is taken out", kShallow));
+        throw NoSteadyState(fmt::format("steady level of tank {}", i + 1), fmt::format("{} cm", level(i)),
+                            fmt::format("{} cm or more where a flow is taken out", kShallow));
       // a h + b h^2 = out / cd, see outflow(); the form without cancellation.
       const double n = parameters_.exponent[tank];
       const double relative = out(i) / (parameters_.discharge[tank] * std::pow(kShallow, n));

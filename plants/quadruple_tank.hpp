@@ -59,7 +59,7 @@ class QuadrupleTank final : public OdeSystem {
   void output(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& u,
               Eigen::Ref<Eigen::VectorXd> y) const override;
 
-  /// In closed form, from the upper tanks down. Errors: InputError when more is taken out of a tank than
+  /// In closed form, from the upper tanks down. Errors: NoSteadyState when more is taken out of a tank than
   /// flows in, or the level would be below kShallow where a flow is taken out.
   Eigen::VectorXd steady_state(const Eigen::Ref<const Eigen::VectorXd>& u) const override;
 

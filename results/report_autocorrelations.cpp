@@ -69,8 +69,7 @@ Figure acf_figure(const Study& study, const Loop& loop) {
   figure.name = "scenario-acf-" + loop.id;
   figure.caption = fmt::format(
       "{}: autocorrelation about the setpoint, or the mean of a CV without one, with the band of white "
-      "noise; "
-      "section 3.2 of the thesis, figure A2.1.",
+      "noise; section 3.2 of the thesis, figure A2.1.",
       as_label(loop.name));
   figure.legend = {{"y", kY}, {"y_{0}", kY0}, {"y_{0 diag}", kY0Diag}, {"white noise", kBand}};
   for (const std::size_t cv : loop.drawn)
@@ -81,8 +80,7 @@ Figure acf_figure(const Study& study, const Loop& loop) {
 std::string acf_table(const Study& study, const std::vector<Loop>& loops) {
   HtmlTable table(
       "Verdicts of the autocorrelation functions: the loop against its nominal output. Only CVs that differ "
-      "from "
-      "it.",
+      "from it.",
       {{"Scenario", HtmlTable::Align::left},
        {"CV", HtmlTable::Align::left},
        {"Verdict", HtmlTable::Align::left},

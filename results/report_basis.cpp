@@ -39,8 +39,7 @@ std::string difference_text(const Study& study, const BasisCase& basis) {
                         html_text(cv_name(study, basis.sensitivity.active[static_cast<std::size_t>(a)].cv)),
                         html_number(largest(a)));
   return "<p>T<sub>0</sub> is identified as Box-Jenkins models (appendix A3). Largest difference from the "
-         "direct "
-         "step responses, by reference: " +
+         "direct step responses, by reference: " +
          html + ".</p>\n";
 }
 

@@ -88,8 +88,7 @@ Figure ellipse_figure(const Campaign& campaign) {
 std::string distribution_table(const Campaign& campaign) {
   HtmlTable table(
       "Indicators of chapter 5 for the flagged CVs: means over the window lengths, of moving kurtosis (kts) "
-      "and "
-      "skewness (skn) and of their differences (dkts, dskn).",
+      "and skewness (skn) and of their differences (dkts, dskn).",
       {{"Scenario, CV", HtmlTable::Align::left},
        {"Of", HtmlTable::Align::left},
        {"co"},

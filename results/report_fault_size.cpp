@@ -99,9 +99,8 @@ ReportSection fault_size_section(const ReportInput& input) {
   figure.name = "fault-size";
   figure.caption = fmt::format(
       "Share of feasible experiments with a single fault that has an impact, and share with CV and source "
-      "right "
-      "as well, against the size of the fault: {} groups of equal number at their medians, {:g} % intervals. "
-      "Below them one mark for each experiment without impact and each wrong verdict.",
+      "right as well, against the size of the fault: {} groups of equal number at their medians, {:g} % "
+      "intervals. Below them one mark for each experiment without impact and each wrong verdict.",
       kBins, 100.0 * study.aggregate.confidence);
   figure.legend = {{"has an impact", kSeen},
                    {"CV and source right", kDiagnosed},

@@ -109,8 +109,7 @@ ReportSection indicator_section(const ReportInput& input) {
   figure.name = "i-mpm";
   figure.caption = fmt::format(
       "I_{{MPM}} of the located CV, experiments {}; thesis figure 6.21. Above the threshold {:g} the verdict "
-      "is "
-      "MPM, below it UD.",
+      "is MPM, below it UD.",
       population(study), study.diagnosis.mpm_threshold);
   figure.legend = {{"source right", kRight}, {"source wrong", kWrong}, {"threshold", kThreshold}};
   for (const KindAggregate& kind : input.parts.aggregate.kinds)

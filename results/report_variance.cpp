@@ -115,10 +115,8 @@ ReportSection variance_section(const ReportInput& input) {
   figure.name = "ivar";
   figure.caption = fmt::format(
       "Ivar_{{basis}} (what the fault really does to the variance) against Ivar (what the loop data say), "
-      "one "
-      "point a CV and experiment; thesis figures 6.18 and 6.22. Grey band: no impact, Ivar from {:g} to "
-      "{:g}. "
-      "The regression is a straight line, which logarithmic axes bend.",
+      "one point a CV and experiment; thesis figures 6.18 and 6.22. Grey band: no impact, Ivar from {:g} to "
+      "{:g}. The regression is a straight line, which logarithmic axes bend.",
       options.impact_lower, options.impact_upper);
   figure.legend = {{"affected CV", kAffected},
                    {"other CVs", kOther},

@@ -42,8 +42,7 @@ std::string wrong_table(const ReportInput& input) {
   const Study& study = input.campaign.study;
   HtmlTable table(
       "Experiments with impact whose CV, or the source of a single fault, is not the true one (marked). Ivar "
-      "and "
-      "Ivar<sub>diag</sub> are those of the true CV, then Ivar<sub>diag</sub> of the located one.",
+      "and Ivar<sub>diag</sub> are those of the true CV, then Ivar<sub>diag</sub> of the located one.",
       {{"No."},
        {"Kind", HtmlTable::Align::left},
        {"Fault, and how to replay it", HtmlTable::Align::text},

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -41,6 +43,23 @@ Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
   return trajectory;
 }
 
+void fail(Trajectory& trajectory, LoopFailure failure, std::string message) {
+  trajectory.status = ControlStatus::failed;
+  trajectory.failure = failure;
+  trajectory.message = std::move(message);
+}
+
+/// Puts the plant at rest. Whether it can rest there depends on what differs from the model in this loop:
+/// that is an outcome of the loop.
+void begin(Plant& plant, const Eigen::VectorXd& input, Trajectory& trajectory) {
+  try {
+    plant.reset(input);
+  } catch (const NoSteadyState& error) {
+    fail(trajectory, LoopFailure::no_steady_state,
+         fmt::format("the plant has no steady state to begin at: {}", error.what()));
+  }
+}
+
 }  // namespace
 
 void SolverStatistics::add(const SolverStatistics& other) {
@@ -71,10 +90,10 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   Eigen::VectorXd input = Eigen::VectorXd::Zero(plant.input_count());
   input.head(study.mv_count()) = controller.nominal_target(d_rest);
   controller.reset(input.head(study.mv_count()), d_rest);
-  plant.reset(input);
 
   Trajectory trajectory = empty_trajectory(study, signals);
-  for (Eigen::Index k = 0; k < samples; ++k) {
+  begin(plant, input, trajectory);
+  for (Eigen::Index k = 0; k < samples && trajectory.failure == LoopFailure::none; ++k) {
     trajectory.y.col(k) = plant.output() + signals.y_d.col(k) + signals.noise.col(k);
     if (signals.y_set.size() > 0)
       controller.set_setpoints(signals.y_set.col(k));
@@ -85,6 +104,8 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     if (observer)
       observer(controller);
     trajectory.status = move.status;
+    if (move.status == ControlStatus::failed)
+      fail(trajectory, LoopFailure::solver, "the solver gave no answer");
     if (move.status != ControlStatus::ok)
       break;
     trajectory.solver.largest_kkt_residual =
@@ -94,7 +115,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     if (within > 0)
       input.tail(within) = signals.within_plant.col(k);
     if (plant.advance(input) != PlantStatus::ok) {
-      trajectory.status = ControlStatus::failed;
+      fail(trajectory, LoopFailure::plant, "the plant could not be integrated");
       break;
     }
     trajectory.u.col(k) = move.u;

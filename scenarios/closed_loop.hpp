@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include <Eigen/Core>
 
@@ -23,6 +24,14 @@ struct SolverStatistics {
   void add(const SolverStatistics& other);
 };
 
+/// What made a closed loop fail.
+enum class LoopFailure {
+  none,
+  solver,           ///< it gave no answer
+  plant,            ///< it could not be integrated
+  no_steady_state,  ///< the plant cannot rest where the loop begins
+};
+
 /// The data of one closed loop; one row a variable, one column a sample.
 ///
 /// | symbol   | member   | shape  | meaning                                      |
@@ -37,6 +46,8 @@ struct Trajectory {
   Eigen::Index samples_done = 0;  ///< columns after these are zero when the status is not `ok`
   Eigen::MatrixXd y, u, u_target, d, y_set;
   SolverStatistics solver;
+  LoopFailure failure = LoopFailure::none;  ///< another one if and only if the status is `failed`
+  std::string message = {};                 ///< what failed, for people; empty when nothing did
 };
 
 /// The signals that act on a loop from outside.
@@ -57,7 +68,8 @@ using StepObserver = std::function<void(const Mpc& controller)>;
 /// the steady state of the nominal model at zero disturbances that Mpc::nominal_target() gives for the
 /// first setpoints.
 /// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant
-/// cannot be integrated (status `failed`). Throws InputError when a signal has not the shape that the study
+/// cannot be integrated (status `failed`), and does not begin when the plant has no steady state there
+/// (`failed` as well). Throws InputError when a signal has not the shape that the study
 /// asks for, or the plant another sample time, other outputs or fewer inputs.
 ///
 /// A controller on a linear model thinks in deviations: a nonlinear plant goes in as a DeviationPlant.

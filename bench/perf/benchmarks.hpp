@@ -14,9 +14,22 @@ namespace mpm {
 /// Counters: the members of QpTimes.
 void register_qp_benchmarks(const std::vector<QpSequence>& sequences);
 
-/// Registers the benchmarks of what a study is made of,
-///     loop/<loop>/<back end>     one closed loop
-///     loop/setpoint/active-set   one closed loop of chapter4-shell: setpoint MPC, 900 samples
+/// Registers the benchmarks of closed loops,
+///     loop/<loop>/<back end>      a recorded loop of `study`
+///     loop/setpoint/<back end>    chapter4-shell, scenario 1: setpoint MPC
+///     basis/<study>/auto          the basis loop of every shipped study
+///     tank/nonlinear, tank/linear the basis loop of chapter5-tank on CVODE, and on its linear model
+///
+/// | counter          | meaning                                                              |
+/// |------------------|----------------------------------------------------------------------|
+/// | samples          | of the loop                                                          |
+/// | kkt              | largest KKT residual                                                 |
+/// | fallbacks        | problems of the loop that the active-set method left to Ipopt        |
+/// | plant_share      | share of the loop's processor time in Plant::advance (tank only)     |
+/// | controller_share | the rest of it: the steps of the controller and the noise added      |
+void register_loop_benchmarks(const Study& study);
+
+/// Registers the benchmarks of what else a study is made of,
 ///     sensitivity/<back end>     T0 (appendix A3)
 ///     diagnosis                  the chain of one loop, nominal outputs included
 ///     study/<experiments>        basis case and the first experiments, one process, back end active-set

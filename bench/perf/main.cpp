@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
     return 0;
   }
   mpm::register_qp_benchmarks(sequences);
+  mpm::register_loop_benchmarks(study);
   mpm::register_study_benchmarks(study, options.experiments);
   return measure(argv[0], options.rest);
 }

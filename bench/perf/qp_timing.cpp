@@ -1,19 +1,12 @@
 #include "bench/perf/qp_timing.hpp"
 
 #include <algorithm>
-#include <ctime>
 
 #include "analysis/quantile.hpp"
+#include "bench/perf/thread_clock.hpp"
 
 namespace mpm {
 namespace {
-
-// On an idle machine the same as a steady clock; on a busy one it does not count the others' turns.
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double quantile(std::vector<double> values, double probability) {
   std::sort(values.begin(), values.end());

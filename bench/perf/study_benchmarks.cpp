@@ -8,7 +8,6 @@
 #include "bench/campaign_runner.hpp"
 #include "bench/perf/benchmarks.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study_library.hpp"
 
 namespace mpm {
 namespace {
@@ -23,54 +22,6 @@ double processor_seconds() {
       seconds += static_cast<double>(part.tv_sec) + 1e-6 * static_cast<double>(part.tv_usec);
   }
   return seconds;
-}
-
-void add_loops(const Study& study) {
-  for (const char* loop : {"quiet", "mpm", "ud"})
-    for (const char* back_end : {"active-set", "ipopt"}) {
-      const auto run = [&study, draw = recorded_draw(study, loop),
-                        factory = qp_solver_factory(back_end)](benchmark::State& state) {
-        Trajectory trajectory;
-        for ([[maybe_unused]] const auto pass : state)
-          trajectory = simulate_experiment(study, draw, factory);
-        state.counters["samples"] = static_cast<double>(trajectory.samples_done);
-        state.counters["kkt"] = trajectory.solver.largest_kkt_residual;
-      };
-      const auto name = fmt::format("loop/{}/{}", loop, back_end);
-      auto* entry = benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond);
-      if (std::string_view(back_end) == "ipopt")
-        entry->Iterations(1);
-    }
-}
-
-/// Setpoint MPC: 900 samples of a scenario with a mismatch.
-void add_setpoint_loop() {
-  const auto run = [study = find_study("chapter4-shell"),
-                    factory = qp_solver_factory("active-set")](benchmark::State& state) {
-    const ExperimentDraw draw = draw_experiment(study, 1);
-    Trajectory trajectory;
-    for ([[maybe_unused]] const auto pass : state)
-      trajectory = simulate_experiment(study, draw, factory);
-    state.counters["samples"] = static_cast<double>(trajectory.samples_done);
-    state.counters["kkt"] = trajectory.solver.largest_kkt_residual;
-  };
-  benchmark::RegisterBenchmark("loop/setpoint/active-set", run)->Unit(benchmark::kMillisecond);
-}
-
-/// The basis loop of the quadruple tank on CVODE and on its linear model: the difference is what CVODE takes.
-void add_tank_loops() {
-  for (const bool nonlinear : {true, false}) {
-    const auto run = [nonlinear](benchmark::State& state) {
-      Study study = find_study("chapter5-tank");
-      if (!nonlinear)
-        study.nonlinear.reset();
-      const QpSolverFactory factory = qp_solver_factory("active-set");
-      for ([[maybe_unused]] const auto pass : state)
-        benchmark::DoNotOptimize(simulate_experiment(study, basis_draw(), factory));
-    };
-    benchmark::RegisterBenchmark(nonlinear ? "tank/nonlinear" : "tank/linear", run)
-        ->Unit(benchmark::kMillisecond);
-  }
 }
 
 void add_sensitivity(const Study& study) {
@@ -127,9 +78,6 @@ void register_study_benchmarks(const Study& study, std::int64_t experiments) {
   if (experiments < 1 || experiments > study.experiment_count())
     throw InputError("experiments", fmt::to_string(experiments),
                      fmt::format("1 to {}", study.experiment_count()));
-  add_loops(study);
-  add_setpoint_loop();
-  add_tank_loops();
   add_sensitivity(study);
   add_diagnosis(study);
   add_study(study, experiments);

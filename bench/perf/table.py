@@ -7,6 +7,7 @@ usage: table.py FILE.json [OCTAVE.txt]     OCTAVE.txt: what octave.sh has printe
 
 import json
 import re
+import statistics
 import sys
 from pathlib import Path
 
@@ -64,9 +65,55 @@ def octave_cells(path):
 
 
 def whole_time(benchmark):
-    """The time that compare.py compares."""
-    kind = "real_time" if benchmark["name"].endswith("/manual_time") else "cpu_time"
-    return f"{benchmark[kind]:.3g} {benchmark['time_unit']}"
+    """The time that compare.py compares, in microseconds."""
+    kind = "real_time" if benchmark["run_name"].endswith("/manual_time") else "cpu_time"
+    return benchmark[kind] * {"us": 1, "ms": 1e3, "s": 1e6}[benchmark["time_unit"]]
+
+
+def repetitions(benchmarks):
+    """Plain name -> its repetitions, in their order; averages of Google Benchmark are left out."""
+    groups = {}
+    for b in benchmarks:
+        if b.get("run_type", "iteration") == "iteration":
+            name = re.sub("(/iterations:1)?(/repeats:[0-9]+)?(/manual_time)?$", "", b["run_name"])
+            groups.setdefault(name, []).append(b)
+    return groups
+
+
+def spread(values, form):
+    """The median, with the least and the largest of several."""
+    text = form(statistics.median(values))
+    return text if len(values) == 1 else f"{text} ({form(min(values))} to {form(max(values))})"
+
+
+def part_rows(parts):
+    for name, runs in parts.items():
+        yield [name, spread([whole_time(b) for b in runs], number)]
+
+
+def ratio_rows(parts):
+    """Loops that both back ends ran: how many times longer Ipopt took, repetition by repetition."""
+    for name, runs in parts.items():
+        slow = parts.get(name.removesuffix("/active-set") + "/ipopt")
+        if name.endswith("/active-set") and slow:
+            ratios = [whole_time(b) / whole_time(a) for a, b in zip(runs, slow)]
+            yield [name.removesuffix("/active-set"), spread(ratios, "{:.0f}".format)]
+
+
+def share_rows(parts):
+    """Loops whose plant was timed by itself."""
+    for name, runs in parts.items():
+        if "plant_share" in runs[0]:
+            yield [name] + [spread([100 * b[key] for b in runs], "{:.0f} %".format)
+                            for key in ("plant_share", "controller_share")]
+
+
+def fallback_rows(parts):
+    """Loops with fallback: samples, problems that fell back, residual."""
+    for name, runs in parts.items():
+        if name.startswith("basis/"):
+            yield [name, f"{runs[0]['samples']:.0f}", f"{max(b['fallbacks'] for b in runs):.0f}",
+                   f"{max(b['kkt'] for b in runs):.0e}"]
 
 
 def main(file, octave_file=None):
@@ -83,10 +130,14 @@ def main(file, octave_file=None):
         if rows:
             print(f"The same programs for every solver, {start}, median / maximum\n")
             table(["program / slack / loop"] + back_ends + (["Octave qp"] if octave else []), rows)
-    rest = [[re.sub("(/iterations:1)?(/manual_time)?$", "", b["name"]), whole_time(b)]
-            for b in benchmarks if not b["name"].startswith("qp/")]
-    if rest:
-        table(["part of a study", "time"], rest)
+    parts = {name: runs for name, runs in repetitions(benchmarks).items() if not name.startswith("qp/")}
+    for head, rows in ((["part of a study", "time"], part_rows(parts)),
+                       (["loop", "Ipopt : active set"], ratio_rows(parts)),
+                       (["loop", "plant", "controller"], share_rows(parts)),
+                       (["loop", "samples", "fallbacks", "KKT residual"], fallback_rows(parts))):
+        rows = list(rows)
+        if rows:
+            table(head, rows)
 
 
 if __name__ == "__main__":

@@ -2,14 +2,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <set>
-#include <string>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/distribution_indicators.hpp"
 #include "analysis/scatter_ellipse.hpp"
 #include "plants/error.hpp"
+#include "tests/analysis/column_checks.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/plants/allocation_counter.hpp"
 
@@ -293,23 +292,8 @@ TEST_CASE("a signal that stands still has no shape, and no mean") {
 
 TEST_CASE("every indicator has one column") {
   const auto columns = mpm::distribution_columns();
-  std::set<std::string> names;
-  for (const auto& column : columns) {
-    names.insert(column.name);
-    CHECK_FALSE(column.unit.empty());
-    CHECK_FALSE(column.meaning.empty());
-  }
-  CHECK(names.size() == columns.size());
-  CHECK(columns.size() == 4 * 5 + 4 * 4 + 1);
+  mpm::testing::check_columns(columns, 4 * 5 + 4 * 4 + 1);
   DistributionIndicators marked;
-  for (const auto& column : columns) {
-    DistributionIndicators one;
-    column.set(one, 0.5);
-    for (const auto& other : columns) {
-      INFO(column.name << " " << other.name);
-      CHECK((other.name == column.name ? other.value(one) == 0.5 : std::isnan(other.value(one))));
-    }
-  }
   marked.means.dskn.ce = 0.25;
   marked.shape.kts.regression_angle = 12.5;
   for (const auto& column : columns) {

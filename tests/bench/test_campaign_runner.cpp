@@ -61,6 +61,23 @@ TEST_CASE("campaign: loops on a nonlinear plant are the same in threads and proc
   check_same(run_campaign(study, options), serial, 6);
 }
 
+TEST_CASE("campaign: an experiment whose plant cannot rest where its loop begins costs itself only") {
+  Study study = find_study("wood-berry");
+  const TransferFunction integrator(Eigen::VectorXd::Constant(1, -1.0), Eigen::Vector2d(1.0, 0.0));
+  study.scenarios = {{"none", "", {}, {}, {}},
+                     {"integrates", "", {{0, 1, MismatchParameter::channel, 0.0, integrator}}, {}, {}},
+                     {"none again", "", {}, {}, {}}};
+  CampaignOptions options;
+  options.experiments = 3;
+  options.parallel = GENERATE(Parallel::threads, Parallel::processes);
+  const Campaign campaign = run_campaign(study, options);
+  REQUIRE(campaign.records.size() == 3);
+  CHECK(campaign.records[0].status == ExperimentStatus::ok);
+  CHECK(campaign.records[1].status == ExperimentStatus::failed);
+  CHECK_THAT(campaign.records[1].message, Contains("no steady state to begin at"));
+  CHECK(campaign.records[2].status == ExperimentStatus::ok);
+}
+
 TEST_CASE("campaign: a longer one goes on where a shorter one ended") {
   const Study study = find_study("wood-berry");
   CampaignOptions options = fourteen();

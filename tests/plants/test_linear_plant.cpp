@@ -134,7 +134,7 @@ TEST_CASE("an integrating plant can be reset at zero input only", "[linear_plant
   for (int k = 0; k < 10; ++k) {
     plant.advance(Eigen::Vector3d(1, 1, 1));
   }
-  CHECK_THROWS_AS(plant.reset(Eigen::Vector3d(1, 0.1, 1)), InputError);
+  CHECK_THROWS_AS(plant.reset(Eigen::Vector3d(1, 0.1, 1)), NoSteadyState);
   CHECK_THROWS_WITH(plant.reset(Eigen::Vector3d(1, 0.1, 1)), Catch::Contains("(1, 1)"));
   plant.reset(Eigen::Vector3d(3, 0, 5));
   for (int k = 0; k < 10; ++k) {

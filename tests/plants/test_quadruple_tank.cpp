@@ -162,6 +162,7 @@ TEST_CASE("the steady state is one", "[quadruple-tank]") {
   }
   Eigen::VectorXd u = no_pumps();
   u(4) = -1;
+  CHECK_THROWS_AS(tank()->steady_state(u), NoSteadyState);
   CHECK_THROWS_WITH(tank()->steady_state(u), Catch::Contains("tank 1") && Catch::Contains("-1 cm^3/s"));
   u(6) = 1.00001;
   CHECK_THROWS_WITH(tank()->steady_state(u), Catch::Contains("steady level of tank 1"));

@@ -148,8 +148,22 @@ TEST_CASE("closed loop: it ends as failed where the plant does") {
   StuckPlant plant;
   const Trajectory loop = run_closed_loop(study, plant, quiet(study), qp_solver_factory("active-set"));
   CHECK(loop.status == ControlStatus::failed);
+  CHECK(loop.failure == LoopFailure::plant);
   CHECK(loop.samples_done == 3);
   CHECK(loop.u.rightCols(97).isZero(0));
+}
+
+TEST_CASE("closed loop: it fails before its first sample where the plant cannot rest") {
+  const Study study = tank_study();
+  TransferMatrix model = study.plant.G;
+  model(0, 0) = TransferFunction(Eigen::VectorXd::Constant(1, 0.1), Eigen::Vector2d(1.0, 0.0));
+  const Trajectory loop = run_closed_loop(study, model, quiet(study), qp_solver_factory("active-set"));
+  CHECK(loop.status == ControlStatus::failed);
+  CHECK(loop.failure == LoopFailure::no_steady_state);
+  CHECK_THAT(loop.message, Catch::Contains("steady value of input 0"));
+  CHECK(loop.samples_done == 0);
+  CHECK(loop.y.isZero(0));
+  CHECK(loop.y.cols() == study.simulation.samples);
 }
 
 TEST_CASE("closed loop: a plant that does not fit the study is refused") {

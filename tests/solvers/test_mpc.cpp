@@ -11,12 +11,7 @@
 namespace mpm {
 namespace {
 
-using samples::loop_back_ends;
-using samples::LoopInputs;
-using samples::LoopRun;
-using samples::run_small_loop;
-using samples::small_model;
-using samples::small_options;
+using namespace samples;
 
 Mpc small_controller(const std::string& back_end, const MpcOptions& options = small_options()) {
   return {small_model(), 2, options, qp_solver_factory(back_end)};

@@ -12,12 +12,7 @@
 namespace mpm {
 namespace {
 
-using samples::loop_back_ends;
-using samples::LoopInputs;
-using samples::LoopRun;
-using samples::run_small_loop;
-using samples::small_model;
-using samples::small_options;
+using namespace samples;
 
 /// (2.26): both CVs at setpoints, no targets, no soft limits.
 MpcOptions setpoint_options() {

@@ -17,9 +17,16 @@ TEST_CASE("a step of the closed loop of P1 allocates nothing, whatever disturbs 
   const auto slack = GENERATE(SlackForm::per_sample, SlackForm::per_cv);
   MpcOptions options = samples::p1_options();
   options.slack_form = slack;
-  const bool setpoints = GENERATE(false, true);
-  if (setpoints)
+  const auto composition = GENERATE(as<std::string>(), "ranges", "ranges and setpoints", "setpoints");
+  const bool setpoints = composition != "ranges";
+  if (composition == "ranges and setpoints")
     options.setpoint_weight.head(2).setConstant(2.0);
+  if (composition == "setpoints") {  // (2.26)
+    options.setpoint_weight.setConstant(2.0);
+    options.target_weight.setZero();
+    options.slack_weight.setZero();
+    options.cv_soft = Limits::none(7);
+  }
   const PlantModel p1 = benchmark_plant("shell-7x3");
   const auto mv_count = static_cast<Eigen::Index>(p1.mvs.size());
   Mpc controller(p1.G, mv_count, options, qp_solver_factory(back_end));
