@@ -1,9 +1,9 @@
-#include <array>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "analysis/box_jenkins_sensitivity.hpp"
+#include "results/cv_pen.hpp"
 #include "results/experiment_text.hpp"
 #include "results/html_table.hpp"
 #include "results/panel_script.hpp"
@@ -14,18 +14,6 @@
 
 namespace mpm {
 namespace {
-
-constexpr std::array<std::string_view, 7> kCvColours{colour::kBlue, colour::kOrange,     colour::kGreen,
-                                                     colour::kSky,  colour::kVermillion, colour::kPurple,
-                                                     colour::kBlack};
-
-/// CVs differ in colour, and in dash once the colours are used up; the stepped one is thick.
-Pen cv_pen(Eigen::Index cv, bool stepped) {
-  const auto i = static_cast<std::size_t>(cv);
-  constexpr std::array<Dash, 3> kDashes{Dash::solid, Dash::dashed, Dash::dotted};
-  return {kCvColours[i % kCvColours.size()], kDashes[(i / kCvColours.size()) % kDashes.size()], Mark::none,
-          stepped ? 3.0 : 1.5};
-}
 
 /// The direct step responses under the identified ones.
 const Pen kDirect{colour::kLightGrey, Dash::solid, Mark::none, 4.0};
@@ -84,7 +72,7 @@ ReportSection sensitivity_section(const ReportInput& input) {
       "Step responses of T_{0} = I - S_{0} from each CV at a setpoint or soft limit, the diagonal one thick; "
       "thesis figure 6.10. T_{0} from the other CVs is zero.";
   for (Eigen::Index i = 0; i < study.cv_count(); ++i)
-    figure.legend.push_back({as_label(cv_name(study, i)), cv_pen(i, false)});
+    figure.legend.push_back({as_label(cv_name(study, i)), cv_pen(i)});
   if (direct)
     figure.legend.push_back({"direct step response", kDirect});
   for (std::size_t a = 0; a < sensitivity.active.size() && a < sensitivity.step_response.size(); ++a)

@@ -19,7 +19,8 @@ std::vector<ReportSection> report_sections(const ReportInput& input) {
                           roc_section(input),      fault_size_section(input)};
   if (input.campaign.comparison)
     sections.push_back(comparison_section(input));
-  for (const auto& section : {sensitivity_section, s0_perturbation_section, basis_section, solver_section})
+  for (const auto& section :
+       {sensitivity_section, interaction_section, s0_perturbation_section, basis_section, solver_section})
     sections.push_back(section(input));
   if (!named)
     sections.push_back(wrong_verdict_section(input));

@@ -47,6 +47,7 @@ ReportSection dominance_section(const ReportInput& input);        ///< I_MPM aga
 ReportSection roc_section(const ReportInput& input);              ///< I_MPM as a classifier, any threshold
 ReportSection fault_size_section(const ReportInput& input);       ///< which small faults are missed
 ReportSection sensitivity_section(const ReportInput& input);      ///< T0 (6.10)
+ReportSection interaction_section(const ReportInput& input);      ///< RPN and RGA (4.5, 4.6, 4.11, 4.12)
 ReportSection s0_perturbation_section(const ReportInput& input);  ///< S0 modified (6.27 to 6.29, 6.32)
 ReportSection basis_section(const ReportInput& input);            ///< the basis case (6.8, 6.9)
 ReportSection solver_section(const ReportInput& input);           ///< effort and accuracy of the QP solver

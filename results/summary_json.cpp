@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/box_jenkins_sensitivity.hpp"
+#include "analysis/loop_interaction.hpp"
 #include "results/experiment_text.hpp"
 #include "results/scenario_text.hpp"
 #include "results/summary.hpp"
@@ -52,6 +53,20 @@ Json numbers_json(const Owner& owner, const std::vector<NumberColumn<Owner>>& co
   return numbers;
 }
 
+Json interaction_json(const Study& study, const BasisCase& basis) {
+  const LoopInteraction interaction = loop_interaction(study, basis.point, basis.sensitivity);
+  Json gains = Json::array();
+  for (std::size_t i = 0; i < interaction.mvs.size(); ++i)
+    for (std::size_t j = 0; j < interaction.mvs.size(); ++j)
+      gains.push_back({{"cv", study.plant.cvs[static_cast<std::size_t>(interaction.cvs[i])].name},
+                       {"mv", study.plant.mvs[static_cast<std::size_t>(interaction.mvs[j])].name},
+                       {"value", interaction.relative_gain_at_maximum(static_cast<Eigen::Index>(i),
+                                                                      static_cast<Eigen::Index>(j))}});
+  return {{"rpn_frequency", interaction.rpn_frequency},
+          {"rpn_maximum", interaction.rpn_maximum},
+          {"relative_gains", gains}};
+}
+
 Json basis_json(const Study& study, const BasisCase& basis) {
   Json ivar = Json::object();
   for (Eigen::Index cv = 0; cv < basis.diagnosis.ivar.size(); ++cv)
@@ -71,7 +86,8 @@ Json basis_json(const Study& study, const BasisCase& basis) {
           {"explanation", basis.explanation},
           {"ivar", ivar},
           {"acf", acf},
-          {"t0_difference", differences}};
+          {"t0_difference", differences},
+          {"interaction", interaction_json(study, basis)}};
 }
 
 Json kinds_json(const StudyAggregate& aggregate) {

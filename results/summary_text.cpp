@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "analysis/box_jenkins_sensitivity.hpp"
+#include "analysis/loop_interaction.hpp"
 #include "results/summary.hpp"
 #include "results/summary_lines.hpp"
 #include "results/summary_parts.hpp"
@@ -39,6 +40,24 @@ std::string identification_sentence(const Study& study, const BasisCase& basis) 
   return sentence;
 }
 
+/// Where the controller works, and how its loops interact there.
+std::string interaction_sentence(const Study& study, const BasisCase& basis) {
+  const LoopInteraction interaction = loop_interaction(study, basis.point, basis.sensitivity);
+  if (interaction.frequency.size() == 0)
+    return "no CV is at a setpoint or a soft limit";
+  std::string sentence =
+      fmt::format("RPN (4.16) is largest at {:.3g} rad/{}, {:.3g}", interaction.rpn_frequency,
+                  study.plant.time_unit, interaction.rpn_maximum);
+  for (std::size_t i = 0; i < interaction.mvs.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    sentence += fmt::format("{} {}-{} {:.3g}", i == 0 ? "; |RGA| there:" : ",",
+                            study.plant.cvs[static_cast<std::size_t>(interaction.cvs[i])].name,
+                            study.plant.mvs[static_cast<std::size_t>(interaction.mvs[i])].name,
+                            interaction.relative_gain_at_maximum(at, at));
+  }
+  return sentence;
+}
+
 void add_heading(SummaryLines& text, const Campaign& campaign, const SummaryParts& parts) {
   const StudyAggregate& aggregate = parts.aggregate;
   const Study& study = campaign.study;
@@ -66,6 +85,7 @@ void add_heading(SummaryLines& text, const Campaign& campaign, const SummaryPart
     text.entry("audit", audit_sentence(parts, info));
   if (campaign.basis.sensitivity_direct)
     text.entry("T0", identification_sentence(study, campaign.basis));
+  text.entry("interaction", interaction_sentence(study, campaign.basis));
   text.entry("self-check",
              fmt::format("{}: {}", campaign.basis.healthy ? "passed" : "FAILED", campaign.basis.explanation));
 }

@@ -16,12 +16,14 @@ import tempfile
 
 SKIPPED = 77
 SECTIONS = ["run", "rates", "variance", "location", "indicator", "dominance", "roc", "fault-size", "comparison",
-            "sensitivity", "s0-perturbation", "basis", "solver", "wrong-verdicts"]
+            "sensitivity", "interaction", "s0-perturbation", "basis", "solver", "wrong-verdicts"]
 FIGURES = ["headline-rates", "ivar", "i-mpm", "dominance", "roc", "fault-size", "comparison-rates", "t0",
-           "s0-perturbation", "s0-structure", "basis-case"]
-SCENARIO_SECTIONS = ["run", "scenarios", "comparison", "sensitivity", "s0-perturbation", "basis", "solver"]
+           "interaction", "s0-perturbation", "s0-structure", "basis-case"]
+SCENARIO_SECTIONS = ["run", "scenarios", "comparison", "sensitivity", "interaction", "s0-perturbation", "basis",
+                     "solver"]
 SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "scenario-ellipses", "scenario-acf-basis", "scenario-acf-0",
-                    "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "t0", "basis-case"]
+                    "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "t0", "interaction",
+                    "basis-case"]
 PHONE, DESKTOP = 390, 1280  # pixels
 
 # The page in a frame of either width, which a script can look into because it has the same origin.
