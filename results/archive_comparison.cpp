@@ -19,6 +19,8 @@ namespace mpm {
 namespace {
 
 constexpr const char* kGroup = "comparison";
+/// Not "method": `sel(method=...)` of xarray means something else, and would select nothing without a word.
+constexpr const char* kMethod = "assessment_method";
 constexpr const char* kChannels = "flagged_channel";
 
 /// The verdicts method by method, each in the order of the experiments.
@@ -32,19 +34,19 @@ auto verdicts_of(OneComparison& comparison) {
 }
 
 void write_methods(Hdf5Group& group, const Comparison& comparison) {
-  group.write_dimension("method", comparison.methods,
-                        attributes<std::string>({"method", "method of assessment"}));
+  group.write_dimension(kMethod, comparison.methods,
+                        attributes<std::string>({kMethod, "method of assessment"}));
   const auto text = [&](const char* name, const char* long_name, const auto& of_method) {
     std::vector<std::string> texts;
     for (const std::string& method : comparison.methods)
       texts.push_back(of_method(assessment_method(method)));
-    group.write(name, {"method"}, texts, attributes<std::string>({name, long_name}));
+    group.write(name, {kMethod}, texts, attributes<std::string>({name, long_name}));
   };
   text("title", "the method as people cite it", [](const AssessmentMethodInfo& m) { return m.title; });
   text("verdict", "what a flagged loop is", [](const AssessmentMethodInfo& m) { return m.verdict; });
   text("needs", "what the method needs of a loop", needs_text);
   text("answers", "what the method tells besides its verdict", answers_text);
-  group.write("reason", {"method"}, comparison.reasons,
+  group.write("reason", {kMethod}, comparison.reasons,
               attributes<std::string>({"reason", "why there was no verdict, of the first loop without one",
                                        "1", "empty when there always was one"}));
 }
@@ -56,7 +58,7 @@ void write_channels(Hdf5Group& group, const Study& study, const std::vector<cons
     for (const Channel& channel : verdicts[i]->flagged_channels)
       flags[(i * ny + static_cast<std::size_t>(channel.cv)) * nu + static_cast<std::size_t>(channel.mv)] = 1;
   const VariableText text{kChannels, "the method names this channel of the model", "1", "", yes_no_flags()};
-  group.write(kChannels, {"method", "experiment", "cv", "mv"}, flags, attributes<std::int8_t>(text));
+  group.write(kChannels, {kMethod, "experiment", "cv", "mv"}, flags, attributes<std::int8_t>(text));
 }
 
 void read_channels(const Hdf5Group& group, const Study& study, const std::vector<MethodVerdict*>& verdicts,
@@ -113,9 +115,9 @@ void write_rates(Hdf5Group& group, const std::vector<MethodRates>& methods) {
       total.add(rate.total);
     }
   for (const Variable<double>& variable : {value, lower, upper})
-    variable.write(group, {"method", "rate"});
+    variable.write(group, {kMethod, "rate"});
   for (const Variable<std::int64_t>& variable : {hits, total})
-    variable.write(group, {"method", "rate"});
+    variable.write(group, {kMethod, "rate"});
 }
 
 void write_scores(Hdf5Group& group, const std::vector<MethodRates>& methods) {
@@ -132,7 +134,7 @@ void write_scores(Hdf5Group& group, const std::vector<MethodRates>& methods) {
     cost.add(method.milliseconds);
   }
   for (const Variable<double>& variable : {area, lower, upper, cost})
-    variable.write(group, {"method"});
+    variable.write(group, {kMethod});
 }
 
 void write_pairs(Hdf5Group& group, const ComparisonSummary& summary) {
@@ -168,7 +170,7 @@ void require_known(const std::vector<std::string>& methods, const std::string& f
   const std::vector<std::string> known = assessment_method_names();
   for (const std::string& method : methods)
     if (std::find(known.begin(), known.end(), method) == known.end())
-      throw ArchiveError(fmt::format("{}: dimension '/{}/method': found '{}'; allowed: {}", file, kGroup,
+      throw ArchiveError(fmt::format("{}: dimension '/{}/{}': found '{}'; allowed: {}", file, kGroup, kMethod,
                                      method, fmt::join(known, ", ")));
 }
 
@@ -195,7 +197,7 @@ void write_comparison(Hdf5Group& root, const Campaign& campaign) {
   write_variable_dimension(group, "cv", "controlled variable", study.plant.cvs);
   write_variable_dimension(group, "mv", "manipulated variable", study.plant.mvs);
   const std::vector<const MethodVerdict*> verdicts = verdicts_of(comparison);
-  write_columns(group, {"method", "experiment"}, method_verdict_columns(study), verdicts);
+  write_columns(group, {kMethod, "experiment"}, method_verdict_columns(study), verdicts);
   write_channels(group, study, verdicts);
   const ComparisonSummary summary = summarise(comparison, campaign.records, study);
   write_rates(group, summary.methods);
@@ -211,7 +213,7 @@ void read_comparison(const Hdf5Group& root, Campaign& campaign, const std::strin
                               group.attribute<std::string>("git_sha"),
                               group.attribute<std::string>("command")};
   Comparison comparison;
-  comparison.methods = group.read_list<std::string>("method");
+  comparison.methods = group.read_list<std::string>(kMethod);
   require_known(comparison.methods, file);
   const std::size_t methods = comparison.methods.size();
   comparison.reasons = group.read<std::string>("reason", {methods});

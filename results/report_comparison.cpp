@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -51,29 +52,48 @@ std::string introduction(const Campaign& campaign) {
       campaign.comparison->loops.size(), campaign.records.size());
 }
 
-/// "97.2 %" over "95.1 to 98.8 % of 384".
+/// The rates that were counted on some loop of some method; the others are empty columns and panels.
+std::vector<MethodRateInfo> counted_rates(const Methods& methods) {
+  std::vector<MethodRateInfo> counted;
+  for (const MethodRateInfo& info : method_rate_infos())
+    if (std::any_of(methods.begin(), methods.end(),
+                    [&](const MethodRates& m) { return (m.*info.rate).total > 0; }))
+      counted.push_back(info);
+  return counted;
+}
+
+/// A value over its interval and what it rests on, both small.
+std::string cell(const std::string& value, const std::string& interval, std::int64_t count) {
+  return fmt::format("{}<br><small>{}<br>of {}</small>", value, interval, count);
+}
+
 std::string rate_cell(const Rate& rate) {
-  if (rate.total == 0)
-    return html_number(NAN);
-  return fmt::format("{}<br><small>{} of {}</small>", html_number(rate.value, true),
-                     html_interval(rate.interval, true), rate.total);
+  return rate.total == 0
+             ? html_number(NAN)
+             : cell(html_number(rate.value, true), html_interval(rate.interval, true), rate.total);
+}
+
+std::string area_cell(const MethodRates& method) {
+  return method.roc.defined() ? cell(html_number(method.roc.area), html_interval(method.roc_area),
+                                     method.roc.positives + method.roc.negatives)
+                              : html_number(NAN);
 }
 
 std::string rates_table(const Study& study, const Methods& methods) {
+  const std::vector<MethodRateInfo> rates = counted_rates(methods);
   std::vector<HtmlTable::Column> columns{{"Method", HtmlTable::Align::left}};
-  for (const MethodRateInfo& info : method_rate_infos())
+  for (const MethodRateInfo& info : rates)
     columns.push_back({html_text(info.title)});
-  columns.push_back({"Area under ROC"});
-  HtmlTable table(
-      fmt::format("Shares of loops with their {}, and the number of loops looked at.", interval_title(study)),
-      columns);
+  columns.push_back({"area under ROC"});
+  HtmlTable table(fmt::format("Shares of loops with their {}, and the number of loops looked at. "
+                              "Rates that no loop was counted for are left out.",
+                              interval_title(study)),
+                  columns);
   for (const MethodRates& method : methods) {
     std::vector<std::string> cells{html_text(method.method)};
-    for (const MethodRateInfo& info : method_rate_infos())
+    for (const MethodRateInfo& info : rates)
       cells.push_back(rate_cell(method.*info.rate));
-    cells.push_back(method.roc.defined() ? html_number(method.roc.area) + "<br><small>" +
-                                               html_interval(method.roc_area) + "</small>"
-                                         : html_number(NAN));
+    cells.push_back(area_cell(method));
     table.row(cells);
   }
   return table.html();
@@ -111,7 +131,7 @@ Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
                       70.0 + 28.0 * rows);
 }
 
-/// A panel a rate that some method has; `answered` says nothing that the table does not.
+/// A panel a rate; `answered` says nothing that the table does not.
 Figure rates_figure(const Study& study, const Methods& methods) {
   Figure figure;
   figure.name = "comparison-rates";
@@ -119,12 +139,9 @@ Figure rates_figure(const Study& study, const Methods& methods) {
       "How often each method is right, with {:g} % intervals: shares of false alarms are "
       "good on the left, all others on the right.",
       100.0 * study.aggregate.confidence);
-  for (const MethodRateInfo& info : method_rate_infos()) {
-    const bool counted = std::any_of(methods.begin(), methods.end(),
-                                     [&](const MethodRates& m) { return (m.*info.rate).total > 0; });
-    if (counted && info.rate != &MethodRates::answered)
+  for (const MethodRateInfo& info : counted_rates(methods))
+    if (info.rate != &MethodRates::answered)
       figure.panels.push_back(rate_panel(info, methods));
-  }
   return figure;
 }
 

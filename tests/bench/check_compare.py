@@ -102,7 +102,7 @@ def check_archive(compare, archive, answer):
     compare.run("compare", output, "-o", output, "--methods", "botelho", "--experiments", 4, "--quiet")
     assert seal.is_sealed(output)
     values, _ = datasets(output)
-    assert list(values["comparison/method"]) == [b"botelho"] and len(values["comparison/experiment"]) <= 4
+    assert list(values["comparison/assessment_method"]) == [b"botelho"] and len(values["comparison/experiment"]) <= 4
     assert all(same(before[name], values[name]) for name in before)
     return output
 

@@ -115,15 +115,15 @@ def check_xarray(path, variables):
         assert "time" in nominal.t0_step_response.coords
         assert list(nominal.active_cv.values) == ["y1", "y2", "y7"] and list(nominal.side.values) == [2, 0, 1]
     with xarray.open_dataset(path, group="comparison") as comparison:
-        assert comparison.method[0] == "botelho" and list(comparison.experiment.values) == [0, 1, 2, 5, 6, 7]
+        assert comparison.assessment_method[0] == "botelho" and list(comparison.experiment.values) == [0, 1, 2, 5, 6, 7]
         answered = (comparison.status == 0).sum("experiment")  # what stands in /comparison fits together
         assert (answered == comparison.hits.sel(rate="answered")).all()
         rate = comparison.sel(rate="detected")
         flagged = comparison.flagged.where(comparison.status == 0).sum("experiment")  # every loop has a fault
         assert (flagged == rate.hits).all() and (answered == rate.total).all()
         assert (rate.lower <= rate.value).all() and (rate.value <= rate.upper).all()
-        assert comparison.flagged_channel.dims == ("method", "experiment", "cv", "mv")
-        assert comparison.sizes["pair"] == comparison.sizes["method"] * (comparison.sizes["method"] - 1) / 2
+        assert comparison.flagged_channel.dims == ("assessment_method", "experiment", "cv", "mv")
+        assert comparison.sizes["pair"] == comparison.sizes["assessment_method"] * (comparison.sizes["assessment_method"] - 1) / 2
     with xarray.open_dataset(path, group="aggregate") as aggregate:
         assert aggregate.reference.sel(name="infeasible") == 0.04
         assert list(aggregate.kind.values) == ["mpm", "ud", "mpm_ud"]

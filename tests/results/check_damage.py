@@ -20,7 +20,7 @@ FOR_PEOPLE = {"/cv", "/mv", "/md", "/basis/cv", "/basis/mv", "/basis/md", "/basi
               "/basis/acf_y0_diag", "/nominal/cv", "/nominal/time", "/nominal_fixed/cv", "/nominal_fixed/time", "/trajectories/cv", "/trajectories/mv",
               "/trajectories/md", "/trajectories/sample", "/trajectories/time"}
 READ_OF_S0_SENSITIVITY = {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"}
-READ_OF_COMPARISON = {"method", "reason", "experiment", "status", "flagged", "score", "located_cv", "source", "seconds",
+READ_OF_COMPARISON = {"assessment_method", "reason", "experiment", "status", "flagged", "score", "located_cv", "source", "seconds",
                       "flagged_channel"}
 READ_ATTRIBUTES_OF_COMPARISON = {"mpmbench_version", "git_sha", "command"}
 FOR_PEOPLE |= {"/scenarios/" + name for name in ("experiment", "cv", "name", "description", "affected", "tsse", "lag", "lag_time")}
@@ -132,7 +132,7 @@ class Damage:
         def after(name, place, value):
             return self.after(lambda file: file["comparison/" + name].__setitem__(place, value))
 
-        assert "'/comparison/method': found 'nobody'; allowed: botelho" in after("method", 0, "nobody")
+        assert "'/comparison/assessment_method': found 'nobody'; allowed: botelho" in after("assessment_method", 0, "nobody")
         assert "'/comparison/experiment': found 77; allowed" in after("experiment", 0, 77)
         assert "'/comparison/experiment': found 0; allowed" in after("experiment", 1, 0)
         assert "'status': found 5; allowed: 0 to 2" in after("status", (0, 0), 5)

@@ -38,7 +38,7 @@ def main(writer, page):
         assert names["rates"].index[0] == "botelho" and names["rates"].columns[1] == "detected"
         assert list(names["faults"].index) == list(names["experiments"].values) and len(names["faults"]) > 0
         # Every loop has a fault, and the sample's verdicts are made up: the share of those with a verdict.
-        answered = int((names["comparison"].status.sel(method="botelho") == 0).sum())
+        answered = int((names["comparison"].status.sel(assessment_method="botelho") == 0).sum())
         assert names["rates"].loc["botelho", "detected"] == len(names["faults"]) / answered
         for name in ("table", "nominal", "loops", "basis", "comparison"):
             names[name].close()

@@ -26,9 +26,13 @@ Campaign four_methods() {
   comparison.reasons = {"", "it needs <more>", "", ""};
   for (std::size_t method = 0; method < 4; ++method)
     comparison.methods.push_back(known[method % known.size()]);
+  MethodVerdict answer;
+  answer.status = AssessmentStatus::ok;
+  answer.flagged = true;
+  answer.score = 0.5;
+  answer.seconds = 0.001;
   for (ComparedLoop& loop : comparison.loops) {
-    loop.verdicts.assign(4,
-                         {.status = AssessmentStatus::ok, .flagged = true, .score = 0.5, .seconds = 0.001});
+    loop.verdicts.assign(4, answer);
     loop.verdicts[0].flagged = loop.experiment % 4 != 0;
     loop.verdicts[1].status = loop.experiment < 10 ? AssessmentStatus::ok : AssessmentStatus::not_applicable;
   }

@@ -135,8 +135,11 @@ TEST_CASE("gate check: the rates of a comparison of methods are judged as the nu
   campaign.comparison->loops.clear();
   for (const ExperimentRecord& record : campaign.records) {
     loop.experiment = record.draw.index;
-    for (MethodVerdict& verdict : loop.verdicts)
-      verdict = {.status = AssessmentStatus::ok, .flagged = record.draw.index % 10 != 0, .score = 1.0};
+    for (MethodVerdict& verdict : loop.verdicts) {
+      verdict.status = AssessmentStatus::ok;
+      verdict.flagged = record.draw.index % 10 != 0;
+      verdict.score = 1.0;
+    }
     campaign.comparison->loops.push_back(loop);
   }
   const auto outcome = [&](const std::string& gate) {
