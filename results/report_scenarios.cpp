@@ -5,6 +5,7 @@
 
 #include "results/experiment_text.hpp"
 #include "results/html_table.hpp"
+#include "results/plot_text.hpp"
 #include "results/report_sections.hpp"
 #include "results/scenario_sections.hpp"
 #include "results/scenario_text.hpp"
