@@ -20,9 +20,19 @@ struct SunOptions {
   double tolerance = 0.85;  ///< MQI and iMQI below it show a poor model (2.4.2)
 };
 
+/// By what the order of an output-error model of Badwe et al. (2010) is chosen.
+enum class DesignedOrderCriterion : std::int8_t {
+  record_fit = 0,      ///< largest %Fit (3.32) over the record that the models are fitted to
+  validation_fit = 1,  ///< largest %Fit over the end of the record, of models fitted to what is before it;
+                       ///< the order chosen is then fitted to the whole record
+  bic = 2,             ///< smallest n log V + p log n over the record
+};
+
 /// Of the method of Badwe et al. (2010), analysis/assessment/badwe2010.
 struct Badwe2010Options {
   int smallest_order = 3, largest_order = 7;  ///< of the output-error models (3.3.2)
+  DesignedOrderCriterion criterion = DesignedOrderCriterion::record_fit;
+  int max_iterations = 20;  ///< of the search for each model
 };
 
 /// Of the method of Yu and Qin (2008), analysis/assessment/yu_qin.

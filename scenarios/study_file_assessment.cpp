@@ -10,6 +10,7 @@ namespace {
 constexpr std::int64_t kMaxOrder = 100;
 constexpr std::int64_t kMaxLag = 1'000'000;
 constexpr std::int64_t kMaxLength = 1000;  // of filters and lags, in samples
+constexpr std::int64_t kMaxIterations = 100'000;
 
 SunOptions read_sun(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("sun", study_file_keys("assessment.sun"));
@@ -75,6 +76,14 @@ Badwe2010Options read_badwe2010(const TomlTable& assessment) {
   options.largest_order =
       static_cast<int>(read_whole_or(table, "largest_order", options.smallest_order, kMaxOrder,
                                      std::max(options.smallest_order, options.largest_order)));
+  options.criterion =
+      read_choice_or<DesignedOrderCriterion>(table, "criterion",
+                                             {{"record-fit", DesignedOrderCriterion::record_fit},
+                                              {"validation-fit", DesignedOrderCriterion::validation_fit},
+                                              {"bic", DesignedOrderCriterion::bic}},
+                                             options.criterion);
+  options.max_iterations =
+      static_cast<int>(read_whole_or(table, "max_iterations", 1, kMaxIterations, options.max_iterations));
   return options;
 }
 

@@ -70,7 +70,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
        {"filter", "filter_length", "model", "nb", "nf", "fir_length", "fir_pole", "min_lag", "max_lag",
         "confidence", "multiplicity", "weakest_correlation", "saturated_share", "smallest_deviation",
         "smallest_own_share"}},
-      {"assessment.badwe2010", {"smallest_order", "largest_order"}},
+      {"assessment.badwe2010", {"smallest_order", "largest_order", "criterion", "max_iterations"}},
       {"assessment.yu-qin", {"confidence", "largest_lag", "first_sample"}},
       {"assessment.sse", {"threshold"}},
       {"aggregate", {"confidence", "bootstrap_replications"}},

@@ -20,6 +20,8 @@ DesignedOutputOptions options_of(const Badwe2010Options& study) {
   options.orders.clear();
   for (int order = study.smallest_order; order <= study.largest_order; ++order)
     options.orders.push_back(order);
+  options.criterion = study.criterion;
+  options.max_iterations = study.max_iterations;
   options.validate();
   return options;
 }
@@ -28,8 +30,10 @@ DesignedOutputOptions options_of(const Badwe2010Options& study) {
 void require_long_records(const Study& study, const DesignedOutputOptions& options) {
   const Eigen::Index largest = options.orders.back();
   const Eigen::Index coefficients = static_cast<Eigen::Index>(study.plant.cvs.size()) * (2 * largest + 1);
-  const int samples = study.simulation.samples;
-  if (samples <= coefficients)
+  const double estimated =
+      options.criterion == DesignedOrderCriterion::validation_fit ? 1.0 - options.validation_share : 1.0;
+  const double samples = estimated * static_cast<double>(study.simulation.samples);
+  if (samples < static_cast<double>(coefficients + 1))
     throw InputError(
         "assessment.badwe2010.largest_order",
         fmt::format("{}, which makes {} coefficients for {} samples", largest, coefficients, samples),

@@ -9,6 +9,7 @@
 
 #include "analysis/percent_fit.hpp"
 #include "analysis/prediction_error_fit.hpp"
+#include "analysis/prediction_error_options.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
@@ -130,18 +131,6 @@ void require_record(const Signals& y, const Signals& y_hat, const Signals& y_set
 }
 
 }  // namespace
-
-std::string_view to_string(DesignedOrderCriterion criterion) {
-  switch (criterion) {
-    case DesignedOrderCriterion::record_fit:
-      return "record-fit";
-    case DesignedOrderCriterion::validation_fit:
-      return "validation-fit";
-    case DesignedOrderCriterion::bic:
-      break;
-  }
-  return "bic";
-}
 
 std::string_view to_string(ClosedLoopModelStatus status) {
   switch (status) {

@@ -8,19 +8,9 @@
 #include <Eigen/Core>
 
 #include "analysis/polynomial_model.hpp"
-#include "analysis/prediction_error_options.hpp"
+#include "scenarios/assessment_options.hpp"
 
 namespace mpm {
-
-/// By what the order of an output-error model of Badwe et al. is chosen.
-enum class DesignedOrderCriterion : std::int8_t {
-  record_fit = 0,      ///< largest %Fit (3.32) over the record that the models are fitted to
-  validation_fit = 1,  ///< largest %Fit over the end of the record, of models fitted to what is before it;
-                       ///< the order chosen is then fitted to the whole record
-  bic = 2,             ///< smallest n log V + p log n over the record
-};
-
-std::string_view to_string(DesignedOrderCriterion criterion);
 
 /// Options of `designed_output`.
 struct DesignedOutputOptions {

@@ -121,6 +121,27 @@ TEST_CASE("the keys of s0_perturbation land in their place", "[study_file]") {
   CHECK(options.fixed_active_cvs == std::vector<Eigen::Index>{0});
 }
 
+TEST_CASE("the keys of assessment.badwe2010 land in their place", "[study_file]") {
+  const std::string table = "\n[assessment.badwe2010]\n";
+  const Badwe2010Options options =
+      small_and(table +
+                "smallest_order = 2\nlargest_order = 4\ncriterion = 'validation-fit'\nmax_iterations = 9\n")
+          .assessment.badwe2010;
+  CHECK(options.smallest_order == 2);
+  CHECK(options.largest_order == 4);
+  CHECK(options.criterion == DesignedOrderCriterion::validation_fit);
+  CHECK(options.max_iterations == 9);
+  check_refusals({
+      {"", table + "criterion = 'aic'\n", "criterion",
+       "assessment.badwe2010.criterion: found 'aic' (nearest: 'bic'); allowed: record-fit, validation-fit, "
+       "bic"},
+      {"", table + "max_iterations = 0\n", "max_iterations",
+       "assessment.badwe2010.max_iterations: found 0; allowed: a whole number from 1 to 100000"},
+      {"", table + "smallest_order = 5\nlargest_order = 4\n", "largest_order",
+       "assessment.badwe2010.largest_order: found 4; allowed: a whole number from 5 to 100"},
+  });
+}
+
 TEST_CASE("noise can differ between the CVs, by their names", "[study_file]") {
   const Study study = small_with("deviation = 0.01", "deviation = {heat = 0.2, level = 0}");
   CHECK(study.simulation.noise_standard_deviation == Eigen::Vector2d(0, 0.2));

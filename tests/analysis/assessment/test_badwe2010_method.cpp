@@ -99,6 +99,8 @@ TEST_CASE("badwe2010: a CV without a setpoint gets no verdict, and a loop withou
 TEST_CASE("badwe2010: the options of the study are those of the models") {
   Study study = short_tank();
   study.assessment.badwe2010.smallest_order = study.assessment.badwe2010.largest_order = 2;
+  study.assessment.badwe2010.max_iterations = 1;
+  study.assessment.badwe2010.criterion = DesignedOrderCriterion::bic;
   const BasisCase basis = run_basis_case(study, kFactory);
   const AssessmentContext context = assessment_context(study, basis, kFactory);
   const AssessedLoop loop = loop_of(study, basis, "MPM2");
@@ -107,6 +109,8 @@ TEST_CASE("badwe2010: the options of the study are those of the models") {
   CHECK(assessment.number("order_dgk", 0) == 2.0);
   DesignedOutputOptions options;
   options.orders = {2};
+  options.max_iterations = 1;
+  options.criterion = DesignedOrderCriterion::bic;
   CHECK(assessment.number("fit_sd", 0) ==
         designed_output(loop.y, loop.y_sim, loop.y_set, options).sensitivity[0].fit);
 
