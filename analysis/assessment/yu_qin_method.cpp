@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <memory>
 #include <vector>
@@ -26,6 +27,9 @@ std::vector<Eigen::Index> common_setpoint_cvs(const AssessedLoop& a, const Asses
   std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::back_inserter(common));
   return common;
 }
+
+/// When every direction is worse, every cosine is 1. The worst direction then says which CV comes first.
+constexpr double kTieBreak = 1e-6;
 
 class YuQin final : public AssessmentMethod {
  public:
@@ -70,7 +74,8 @@ class YuQin final : public AssessmentMethod {
     for (std::size_t i = 0; i < cvs.size(); ++i) {
       const double worse = found.cos_worse(static_cast<Eigen::Index>(i));
       const double better = found.cos_better(static_cast<Eigen::Index>(i));
-      assessment.cvs[static_cast<std::size_t>(cvs[i])] = {worse > found.beta, worse};
+      const double nearness = std::abs(found.directions.front().p(static_cast<Eigen::Index>(i)));
+      assessment.cvs[static_cast<std::size_t>(cvs[i])] = {worse > found.beta, worse + kTieBreak * nearness};
       assessment.numbers.push_back({"cos_worse", worse, cvs[i]});
       assessment.numbers.push_back({"cos_better", better, cvs[i]});
       assessment.numbers.push_back({"worse", worse > found.beta ? 1.0 : 0.0, cvs[i]});

@@ -75,6 +75,18 @@ TEST_CASE("yu-qin: the CV that varies more is named, the one that varies less is
   CHECK(same.number("i_v") == Approx(1.0));
 }
 
+TEST_CASE("yu-qin: when every direction is worse, the CV of the worst comes first") {
+  const AssessedLoop benchmark = made_up_loop(400, 9);
+  AssessedLoop loop = benchmark;
+  loop.y = loop.y_set + Eigen::Vector3d(2.0, 4.0, 3.0).asDiagonal() * (loop.y - loop.y_set);
+  const Assessment found = Setting(benchmark).assess("yu-qin", loop);
+  for (Eigen::Index cv = 0; cv < 3; ++cv) {
+    CHECK(found.number("cos_worse", cv) == Approx(1.0));
+    CHECK(found.cvs[static_cast<std::size_t>(cv)].flagged == true);
+  }
+  CHECK(found.worst_cv() == 1);
+}
+
 TEST_CASE("yu-qin: nothing is said of a CV without a setpoint, in the loop or in the benchmark") {
   AssessedLoop benchmark = made_up_loop(400, 2);
   AssessedLoop loop = benchmark;
