@@ -64,18 +64,9 @@ void require_record(const Matrix& y, const Matrix& r, const HighOrderArxOptions&
   if (r.rows() > 0 && r.cols() != y.cols())
     throw InputError("lengths of outputs and references", fmt::format("{} and {}", y.cols(), r.cols()),
                      "equal lengths");
-  const Eigen::Index highest = *std::max_element(options.orders.begin(), options.orders.end());
-  const Eigen::Index outputs = options.outputs == ArxOutputs::all ? y.rows() : 1;
-  const Eigen::Index parameters =
-      (options.constant ? 1 : 0) + outputs * highest + r.rows() * options.input_order.value_or(highest);
-  auto estimation = static_cast<double>(y.cols() - first_sample_of(options));
-  if (options.orders.size() > 1 && options.criterion == OrderCriterion::validation_loss)
-    estimation = std::floor(estimation * (1.0 - options.validation_share));
-  if (estimation <= static_cast<double>(parameters))
-    throw InputError(
-        "samples of a high-order ARX model",
-        fmt::format("{} after {}, for {} coefficients", estimation, first_sample_of(options), parameters),
-        "more than coefficients: a longer record, lower orders or the CV's own outputs alone");
+  if (const Eigen::Index fewest = fewest_samples(options, y.rows(), r.rows()); y.cols() < fewest)
+    throw InputError("samples of a high-order ARX model", fmt::format("{}", y.cols()),
+                     fmt::format("{} or more, or lower orders, or the past of the CV alone", fewest));
   for (Eigen::Index i = 0; i < y.rows(); ++i)
     require_signal(fmt::format("output {}", i), y.row(i).transpose(), 1);
   if (!r.allFinite())
@@ -158,6 +149,18 @@ void HighOrderArxOptions::validate() const {
     throw InputError("validation share", fmt::format("{}", validation_share), "above 0 and below 1");
   if (!(rank_tolerance > 0.0 && rank_tolerance < 1.0))
     throw InputError("rank tolerance", fmt::format("{}", rank_tolerance), "above 0 and below 1");
+}
+
+Eigen::Index fewest_samples(const HighOrderArxOptions& options, Eigen::Index ny, Eigen::Index nr) {
+  const Eigen::Index highest = *std::max_element(options.orders.begin(), options.orders.end());
+  const Eigen::Index outputs = options.outputs == ArxOutputs::all ? ny : 1;
+  const Eigen::Index parameters =
+      (options.constant ? 1 : 0) + outputs * highest + nr * options.input_order.value_or(highest);
+  Eigen::Index fitted = parameters + 1;
+  if (options.orders.size() > 1 && options.criterion == OrderCriterion::validation_loss)
+    fitted =
+        static_cast<Eigen::Index>(std::ceil(static_cast<double>(fitted) / (1.0 - options.validation_share)));
+  return first_sample_of(options) + fitted;
 }
 
 HighOrderArx identify_high_order_arx(const Matrix& y, const Matrix& r, const HighOrderArxOptions& options) {

@@ -38,6 +38,10 @@ struct HighOrderArxOptions {
   void validate() const;
 };
 
+/// The shortest record of `ny` CVs and `nr` references that has more samples than each candidate has
+/// coefficients.
+Eigen::Index fewest_samples(const HighOrderArxOptions& options, Eigen::Index ny, Eigen::Index nr);
+
 /// What a high-order ARX model leaves of a record of `ny` CVs and `N` samples.
 ///
 /// | symbol | member      | shape  | meaning                                             |

@@ -160,7 +160,10 @@ TEST_CASE("high-order ARX: what cannot be meant is refused") {
   CHECK_THROWS_WITH(identify_high_order_arx(y, r, of_orders({})), Catch::Contains("found none"));
   CHECK_THROWS_WITH(identify_high_order_arx(y, r, of_orders({3, 0})), Catch::Contains("found 0"));
   CHECK_THROWS_WITH(identify_high_order_arx(y, r, of_orders({8})),
-                    Catch::Contains("found 32 after 8, for 33 coefficients"));
+                    Catch::Contains("found 40; allowed: 42 or more"));
+  const Eigen::MatrixXd more = random_steps(2, 42, 321);
+  CHECK(mpm::fewest_samples(of_orders({8}), 2, 2) == 42);
+  CHECK_NOTHROW(identify_high_order_arx(coupled_outputs(more, 322), more, of_orders({8})));
   CHECK_THROWS_WITH(identify_high_order_arx(y, r.leftCols(39), of_orders({1})), Catch::Contains("40 and 39"));
   HighOrderArxOptions fit = of_orders({1, 2});
   fit.criterion = OrderCriterion::validation_fit;
