@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "scenarios/badwe2009_options.hpp"
 
@@ -15,9 +16,35 @@ enum class AssessmentSetpoints : std::int8_t {
   optimizer = 1,   ///< the steady state that the target optimizer computes (2.32), as chapter 2 does it
 };
 
-/// Of the method of Sun et al. (2013), analysis/assessment/sun.
+/// The model of the disturbances with which one step is predicted (2.2).
+enum class SunNoise : std::int8_t {
+  integrated = 0,  ///< (1 - c q^-1)/(1 - q^-1): integrated noise seen through white noise
+  benchmark = 1,   ///< an autoregression identified in the benchmark
+  white = 2,       ///< 1: the simulation errors are the prediction errors
+};
+
+/// By what one of several orders of the ARX model is chosen.
+enum class SunCriterion : std::int8_t { aic = 0, bic = 1, validation = 2 };
+
+/// Which index of a CV is held against the tolerance.
+enum class SunIndex : std::int8_t {
+  imqi = 0,  ///< (4.3), with the root
+  mqi = 1,   ///< (2.4) of that CV alone, without it: the square
+};
+
+/// Of the method of Sun et al. (2013), analysis/assessment/sun_method.
 struct SunOptions {
   double tolerance = 0.85;  ///< MQI and iMQI below it show a poor model (2.4.2)
+  SunIndex index = SunIndex::imqi;
+  std::vector<int> orders{20};  ///< MO1 of (2.1); of several one is chosen for each CV
+  int setpoint_order = 0;       ///< MO2 of (2.1); 0: as MO1
+  SunCriterion criterion = SunCriterion::aic;
+  bool own_outputs = false;             ///< AO of (2.1) is diagonal
+  bool measured_disturbances = false;   ///< they stand beside the setpoints in (2.1)
+  bool correct_for_parameters = false;  ///< sums of squares of e^d over n - p in place of n
+  SunNoise noise = SunNoise::integrated;
+  double noise_filter = 0.7;  ///< c of `integrated`
+  int noise_order = 10;       ///< highest order of `benchmark`
 };
 
 /// By what the order of an output-error model of Badwe et al. (2010) is chosen.

@@ -1,4 +1,8 @@
 #include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "scenarios/study_file_keys.hpp"
 #include "scenarios/study_file_parts.hpp"
@@ -12,10 +16,45 @@ constexpr std::int64_t kMaxLag = 1'000'000;
 constexpr std::int64_t kMaxLength = 1000;  // of filters and lags, in samples
 constexpr std::int64_t kMaxIterations = 100'000;
 
+/// A list of whole numbers.
+std::vector<int> read_orders(const TomlTable& table, const std::vector<int>& fallback) {
+  if (!table.has("orders"))
+    return fallback;
+  std::vector<int> orders;
+  const NumberRule rule{.low = 1, .high = kMaxOrder, .low_included = true, .high_included = true};
+  for (const double order : read_numbers(table, "orders", rule, kMaxOrder)) {
+    if (order != std::floor(order))
+      table.refuse("orders", fmt::format("{}", order), "whole numbers");
+    orders.push_back(static_cast<int>(order));
+  }
+  return orders;
+}
+
 SunOptions read_sun(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("sun", study_file_keys("assessment.sun"));
   SunOptions options;
   options.tolerance = read_number_or(table, "tolerance", NumberRule::positive(), options.tolerance);
+  options.index = read_choice_or<SunIndex>(table, "index", {{"imqi", SunIndex::imqi}, {"mqi", SunIndex::mqi}},
+                                           options.index);
+  options.orders = read_orders(table, options.orders);
+  options.setpoint_order =
+      static_cast<int>(read_whole_or(table, "setpoint_order", 0, kMaxOrder, options.setpoint_order));
+  options.criterion = read_choice_or<SunCriterion>(
+      table, "criterion",
+      {{"aic", SunCriterion::aic}, {"bic", SunCriterion::bic}, {"validation", SunCriterion::validation}},
+      options.criterion);
+  options.own_outputs = read_flag_or(table, "own_outputs", options.own_outputs);
+  options.measured_disturbances = read_flag_or(table, "measured_disturbances", options.measured_disturbances);
+  options.correct_for_parameters =
+      read_flag_or(table, "correct_for_parameters", options.correct_for_parameters);
+  options.noise = read_choice_or<SunNoise>(
+      table, "noise",
+      {{"integrated", SunNoise::integrated}, {"benchmark", SunNoise::benchmark}, {"white", SunNoise::white}},
+      options.noise);
+  options.noise_filter = read_number_or(table, "noise_filter", {.low = 0, .high = 1, .low_included = true},
+                                        options.noise_filter);
+  options.noise_order =
+      static_cast<int>(read_whole_or(table, "noise_order", 0, kMaxOrder, options.noise_order));
   return options;
 }
 

@@ -10,7 +10,7 @@ namespace mpm {
 
 const std::vector<AssessmentMethodInfo>& assessment_methods() {
   static const std::vector<AssessmentMethodInfo> methods{
-      botelho_method(), badwe2009_method(), badwe2010_method(), yu_qin_method(), sse_method(),
+      botelho_method(), sun_method(), badwe2009_method(), badwe2010_method(), yu_qin_method(), sse_method(),
   };
   return methods;
 }
