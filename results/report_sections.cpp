@@ -15,13 +15,16 @@ std::vector<ReportSection> report_sections(const ReportInput& input) {
     return {run_section(input),         scenarios_section(input),
             sensitivity_section(input), s0_perturbation_section(input),
             basis_section(input),       solver_section(input)};
-  return {run_section(input),          rates_section(input),
-          variance_section(input),     location_section(input),
-          indicator_section(input),    dominance_section(input),
-          roc_section(input),          fault_size_section(input),
-          sensitivity_section(input),  s0_perturbation_section(input),
-          basis_section(input),        solver_section(input),
-          wrong_verdict_section(input)};
+  std::vector<ReportSection> sections{run_section(input),          rates_section(input),
+                                      variance_section(input),     location_section(input),
+                                      indicator_section(input),    dominance_section(input),
+                                      roc_section(input),          fault_size_section(input),
+                                      sensitivity_section(input),  s0_perturbation_section(input),
+                                      basis_section(input),        solver_section(input),
+                                      wrong_verdict_section(input)};
+  if (!input.parts.aggregate.false_alarms.empty())
+    sections.insert(sections.begin() + 2, false_alarm_section(input));
+  return sections;
 }
 
 std::string interval_title(const Study& study) {
