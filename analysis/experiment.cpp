@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "analysis/own_basis.hpp"
 #include "analysis/scenario_verdict.hpp"
 
 namespace mpm {
@@ -37,6 +38,8 @@ std::string_view to_string(ExperimentKind kind) {
       return "ud";
     case ExperimentKind::mpm_ud:
       return "mpm_ud";
+    case ExperimentKind::tuning:
+      return "tuning";
   }
   return "unknown";
 }
@@ -60,6 +63,8 @@ bool ExperimentRecord::wrong() const {
     return false;
   if (draw.named)
     return !scenario_verdict(*this).right();
+  if (is_faultless(draw.kind))
+    return true;
   const bool single_fault = draw.kind == ExperimentKind::mpm || draw.kind == ExperimentKind::ud;
   return diagnosis.predicted_cv != draw.true_cv() ||
          (single_fault && diagnosis.predicted_source != draw.kind);
@@ -83,7 +88,18 @@ ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw&
     result.loop.y_sim = estimator_.simulated(loop);
     return result;
   }
-  const NominalOutputs nominal = estimator_.estimate(loop);
+  const std::optional<OwnBasis> own = own_basis(study_, draw, factory_);
+  std::optional<NominalEstimator> own_estimator;
+  if (own) {
+    result.own_basis = own->solver;
+    result.status = experiment_status(own->basis.trajectory.status);
+    if (result.status != ExperimentStatus::ok) {
+      result.loop.y_sim = estimator_.simulated(loop);
+      return result;
+    }
+    own_estimator.emplace(own->study, own->basis.point, own->basis.sensitivity, factory_);
+  }
+  const NominalOutputs nominal = (own_estimator ? *own_estimator : estimator_).estimate(loop);
   result.loop.y_sim = nominal.y_sim;
   result.diagnosis = chain_.diagnose(loop.y, nominal, basis_.trajectory.y);
   if (draw.named)
@@ -99,6 +115,7 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
   record.status = main.status;
   record.message = main.loop.trajectory.message;
   record.solver = main.loop.trajectory.solver;
+  record.solver.add(main.own_basis);
   const Eigen::Index true_cv = record.draw.true_cv();
   if (record.draw.kind == ExperimentKind::mpm_ud && true_cv >= 0 && record.status == ExperimentStatus::ok) {
     const DiagnosedLoop mpm_alone = run_loop(record.draw.mismatch_alone(), observer);

@@ -42,6 +42,9 @@ struct LoopRecord {
 /// mismatch alone and with the disturbance alone. The diagnosis is that of the loop with both; the other two
 /// give the dominance of the mismatch on the affected CV (6.23),
 ///     dominance_MPM = Ivar_diag^MPM / (Ivar_diag^MPM + Ivar_diag^UD).
+///
+/// In an experiment with a changed tuning the diagnosis takes the S0 of own_basis(), and an experiment whose
+/// controller does not run on its own model is infeasible.
 struct ExperimentRecord {
   ExperimentDraw draw;
   ExperimentStatus status = ExperimentStatus::failed;
@@ -55,8 +58,8 @@ struct ExperimentRecord {
   std::optional<LoopRecord> loop;  ///< the loop that was diagnosed, when it was asked for
 
   /// The verdict is wrong: the experiment is impactful and the CV, or the source of a single fault, is not
-  /// the true one. Of a named scenario: a CV that is not affected is flagged, or an affected one is not, or
-  /// has the wrong source (scenario_verdict()).
+  /// the true one, or there is no fault (healthy, or a bad tuning). Of a named scenario: a CV that is not
+  /// affected is flagged, or an affected one is not, or has the wrong source (scenario_verdict()).
   bool wrong() const;
 };
 
@@ -76,6 +79,7 @@ class ExperimentRunner {
     ExperimentStatus status;
     Diagnosis diagnosis;
     LoopRecord loop;
+    SolverStatistics own_basis;  ///< of the loops that gave an S0 of its own
   };
 
   DiagnosedLoop run_loop(const ExperimentDraw& draw, const StepObserver& observer);

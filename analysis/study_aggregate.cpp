@@ -134,6 +134,21 @@ void add_change(std::vector<AggregateValue>& values, const std::string& of, cons
               change.within_band));
 }
 
+/// All shares of a kind; of one parameter that was changed the false alarms only.
+void add_false_alarms(std::vector<AggregateValue>& values, const FalseAlarms& group) {
+  const std::string name = group.name();
+  const auto add = [&](const char* quantity, const std::string& description, const Rate& share) {
+    values.push_back(of_rate(fmt::format("{}_{}", quantity, name), description, share));
+  };
+  if (!group.parameter)
+    add("infeasible", "share of infeasible experiments", group.infeasible);
+  add("false_alarm", "share of experiments with impact where model and plant agree", group.false_alarm);
+  if (group.parameter)
+    return;
+  add("false_mpm", "share of experiments in which the false alarm is a mismatch", group.false_mpm);
+  add("false_ud", "share of experiments in which the false alarm is a disturbance", group.false_ud);
+}
+
 }  // namespace
 
 SampleSummary summarise(const std::vector<double>& values, double confidence) {
@@ -175,17 +190,14 @@ StudyAggregate aggregate(const Study& study, std::span<const ExperimentRecord> r
       ++infeasible;
   }
   result.infeasible = rate(infeasible, result.experiments - result.failed, study.aggregate.confidence);
-  const std::array<std::pair<ExperimentKind, int>, 3> kinds{
-      {{ExperimentKind::mpm, study.experiments.mpm},
-       {ExperimentKind::ud, study.experiments.ud},
-       {ExperimentKind::mpm_ud, study.experiments.mpm_ud}}};
-  for (const auto& [kind, count] : kinds)
-    if (count > 0)
+  for (const ExperimentKind kind : {ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud})
+    if (study.experiments.of(kind) > 0)
       result.kinds.push_back(aggregate_kind(study, records, kind));
   if (study.experiments.mpm_ud > 0)
     result.dominance = aggregate_dominance(study, records);
   if (!study.s0_perturbation.multipliers.empty())
     result.s0_changes = s0_changes(study, records);
+  result.false_alarms = false_alarms(study, records);
   return result;
 }
 
@@ -219,6 +231,8 @@ std::vector<AggregateValue> named_values(const StudyAggregate& aggregate) {
     add_change(values, "s0_time_constant", "time constant", aggregate.s0_changes->time_constant);
     add_change(values, "s0_damping", "damping", aggregate.s0_changes->damping);
   }
+  for (const FalseAlarms& group : aggregate.false_alarms)
+    add_false_alarms(values, group);
   return values;
 }
 

@@ -10,6 +10,7 @@
 
 #include "analysis/confusion_matrix.hpp"
 #include "analysis/experiment.hpp"
+#include "analysis/false_alarms.hpp"
 #include "analysis/interval.hpp"
 #include "analysis/regression.hpp"
 #include "analysis/s0_curves.hpp"
@@ -58,10 +59,11 @@ struct StudyAggregate {
   std::int64_t experiments = 0;
   std::int64_t failed = 0;
   Rate infeasible;
-  std::vector<KindAggregate> kinds;  ///< the kinds that the study has, in the order mpm, ud, mpm_ud
+  std::vector<KindAggregate> kinds;  ///< the kinds with a fault that the study has: mpm, ud, mpm_ud
   std::vector<DominanceBin>
       dominance;  ///< edges 0, 0.3, 0.5, 0.7, 1; empty without experiments of both faults
-  std::optional<S0Changes> s0_changes;  ///< none in a study that does not perturb S0
+  std::optional<S0Changes> s0_changes;    ///< none in a study that does not perturb S0
+  std::vector<FalseAlarms> false_alarms;  ///< empty without healthy experiments and bad tunings
 };
 
 /// One number of an aggregate under the name by which studies, gates and people refer to it.
@@ -77,7 +79,7 @@ struct AggregateValue {
 StudyAggregate aggregate(const Study& study, std::span<const ExperimentRecord> records);
 
 /// The headline numbers by name, e.g. `infeasible`, `mpm.r_squared`, `ud.source_recognised`,
-/// `mpm_ud.located`.
+/// `mpm_ud.located`, `false_alarm_healthy`.
 std::vector<AggregateValue> named_values(const StudyAggregate& aggregate);
 
 /// Can the number of this name have an interval? Least and largest values never have one.

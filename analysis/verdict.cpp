@@ -28,7 +28,7 @@ Verdict location_verdict(const ExperimentRecord& record) {
     return Verdict::none;
   if (record.draw.named)
     return verdict(scenario_verdict(record).located());
-  if (!record.diagnosis.impactful)
+  if (!record.diagnosis.impactful || is_faultless(record.draw.kind))
     return Verdict::none;
   return verdict(record.diagnosis.predicted_cv == record.draw.true_cv());
 }

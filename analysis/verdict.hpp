@@ -17,7 +17,8 @@ enum class Verdict : std::int8_t {
 std::string_view to_string(Verdict verdict);
 
 /// Is the affected CV the one that Ivar_diag points at (figures 6.20, 6.23)? Asked of impactful experiments.
-/// Of a named scenario: are the affected CVs those that are flagged?
+/// Of a named scenario: are the affected CVs those that are flagged? Not asked where no CV is affected:
+/// impact is a false alarm then, wherever it is seen (analysis/false_alarms).
 Verdict location_verdict(const ExperimentRecord& record);
 
 /// The experiments over which the study counts the rates of I_MPM.

@@ -1,11 +1,13 @@
 #include "bench/command_plot.hpp"
 
+#include <optional>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "analysis/nominal_estimator.hpp"
+#include "analysis/own_basis.hpp"
 #include "bench/files.hpp"
 #include "plants/error.hpp"
 #include "results/atomic_file.hpp"
@@ -25,6 +27,17 @@ LoopRecord loop_of(const Campaign& campaign, const ExperimentRecord& record) {
   return std::move(*runner.run(record.draw.index, StorePolicy::all).loop);
 }
 
+/// y0 of the loop, from the S0 by which it was diagnosed. A loop without one of its own gets that of the
+/// study.
+NominalOutputs nominal_of(const Campaign& campaign, const ExperimentRecord& record, const LoopRecord& loop) {
+  const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
+  const std::optional<OwnBasis> own = own_basis(campaign.study, record.draw, factory);
+  const bool takes_own = own && own->basis.trajectory.status == ControlStatus::ok;
+  const Study& study = takes_own ? own->study : campaign.study;
+  const BasisCase& basis = takes_own ? own->basis : campaign.basis;
+  return NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(loop.trajectory);
+}
+
 }  // namespace
 
 ExitCode plot(const PlotCommand& command) {
@@ -39,11 +52,7 @@ ExitCode plot(const PlotCommand& command) {
         fmt::format("{}, whose closed loop has no samples ({})", command.index, to_string(record.status)),
         "an experiment that ran");
   Figure figure =
-      trajectory_figure(campaign.study, loop.trajectory,
-                        NominalEstimator(campaign.study, campaign.basis.point, campaign.basis.sensitivity,
-                                         qp_solver_factory(campaign.info.solver))
-                            .estimate(loop.trajectory),
-                        "experiment");
+      trajectory_figure(campaign.study, loop.trajectory, nominal_of(campaign, record, loop), "experiment");
   for (const std::string& line : experiment_heading(campaign.study, record))
     figure.heading.push_back(as_label(line));
   const std::string drawing = draw_figure(figure, format);

@@ -80,6 +80,9 @@ void transfer_draw(Stream& stream, Draw& draw) {
   });
   transfer_optional(stream, draw.affected_cvs,
                     [&](auto& cvs) { transfer_list(stream, cvs, [&](auto& cv) { transfer(stream, cv); }); });
+  transfer_optional(stream, draw.tuning, [&](auto& tuning) {
+    transfer_all(stream, tuning.parameter, tuning.index, tuning.factor);
+  });
 }
 
 }  // namespace mpm

@@ -36,8 +36,11 @@ void ExperimentWork::audit(ExperimentOutcome& outcome) {
   const double start = processor_seconds();
   if (!auditor_)
     auditor_.emplace(study_, qp_solver_factory("ipopt"));
+  std::optional<Auditor> own;  // weights are in the structure of a problem
+  if (outcome.record.draw.tuning)
+    own.emplace(with_tuning(study_, outcome.record.draw), qp_solver_factory("ipopt"));
   for (const AuditSample& sample : outcome.samples)
-    outcome.audited.push_back(auditor_->check(sample));
+    outcome.audited.push_back((own ? *own : *auditor_).check(sample));
   outcome.samples.clear();
   outcome.audit_seconds += processor_seconds() - start;
 }

@@ -176,6 +176,25 @@ void write_dominance(Hdf5Group& group, const std::vector<DominanceBin>& bins) {
               each<Rate>(bins, [](const auto& bin) { return bin.above_threshold; }));
 }
 
+void write_false_alarms(Hdf5Group& group, const std::vector<FalseAlarms>& groups) {
+  group.write_dimension("faultless", each<std::string>(groups, [](const auto& g) { return g.name(); }),
+                        attributes<std::string>({"faultless", "experiments in which model and plant agree"}));
+  const Names along{"faultless"};
+  write_counts(group, along, {"faultless_experiments", "number of experiments"},
+               each<std::int64_t>(groups, [](const auto& g) { return g.experiments; }));
+  write_counts(group, along, {"faultless_failed", "number of failed experiments"},
+               each<std::int64_t>(groups, [](const auto& g) { return g.failed; }));
+  const auto rates = [&](const VariableText& text, Rate FalseAlarms::*member) {
+    write_rates(group, along, text, each<Rate>(groups, [&](const FalseAlarms& g) { return g.*member; }));
+  };
+  rates({"faultless_infeasible", "share of infeasible experiments"}, &FalseAlarms::infeasible);
+  rates({"false_alarm", "share of experiments with impact among the feasible"}, &FalseAlarms::false_alarm);
+  rates({"false_mpm", "share of feasible experiments whose false alarm is a mismatch"},
+        &FalseAlarms::false_mpm);
+  rates({"false_ud", "share of feasible experiments whose false alarm is a disturbance"},
+        &FalseAlarms::false_ud);
+}
+
 }  // namespace
 
 void write_aggregate(Hdf5Group& root, const Campaign& campaign) {
@@ -192,6 +211,8 @@ void write_aggregate(Hdf5Group& root, const Campaign& campaign) {
   write_regressions(group, study, all.kinds);
   if (!all.dominance.empty())
     write_dominance(group, all.dominance);
+  if (!all.false_alarms.empty())
+    write_false_alarms(group, all.false_alarms);
 }
 
 }  // namespace mpm

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -38,10 +39,18 @@ auto solvers_of(Records& records) {
   return parts(records, [](auto& record) { return &record.solver; });
 }
 
-/// What the columns cannot see one by one: an experiment has a fault that lies somewhere, a fault with a
-/// mismatch has a channel and a parameter, and a verdict names a CV. Everything that counts takes this as
-/// given.
-void require_consistent(const ExperimentRecord& record, const std::string& file) {
+/// A changed tuning is that of a weight which the controller has.
+bool is_possible(const TuningChange& tuning, const MpcOptions& controller) {
+  if (tuning.parameter < TuningParameter::move_suppression)
+    return false;
+  const std::vector<Eigen::Index> variables = variables_with(controller, tuning.parameter);
+  return std::find(variables.begin(), variables.end(), tuning.index) != variables.end();
+}
+
+/// What the columns cannot see one by one: an experiment with a fault has it somewhere, a fault with a
+/// mismatch has a channel and a parameter, a changed tuning a weight, and a verdict names a CV. Everything
+/// that counts takes this as given.
+void require_consistent(const ExperimentRecord& record, const Study& study, const std::string& file) {
   const auto require = [&](bool condition, const char* variable, const char* allowed) {
     if (!condition)
       throw ArchiveError(fmt::format("{}: variable '{}': found none in experiment {}; allowed: {}", file,
@@ -49,8 +58,14 @@ void require_consistent(const ExperimentRecord& record, const std::string& file)
   };
   const ExperimentDraw& draw = record.draw;
   if (!draw.named) {
-    require(draw.kind != ExperimentKind::none, "kind", "mpm, ud, mpm_ud");
-    require(draw.true_cv() >= 0, "true_cv", "the CV of the fault");
+    require(draw.kind != ExperimentKind::none || study.experiments.healthy > 0, "kind",
+            "a kind that the study counts");
+    require(is_faultless(draw.kind) || draw.true_cv() >= 0, "true_cv", "the CV of the fault");
+    if (draw.tuning) {
+      require(is_possible(*draw.tuning, study.controller), "tuning_index", "a variable with this weight");
+      require(std::isfinite(draw.tuning->factor) && draw.tuning->factor > 0.0, "tuning_factor",
+              "a number > 0");
+    }
     for (const Mismatch& mismatch : draw.mismatches) {
       require(mismatch.input >= 0, "true_mv", "the MV of the mismatch");
       require(mismatch.parameter >= MismatchParameter::gain, "parameter", "the parameter of the mismatch");
@@ -136,7 +151,7 @@ std::vector<ExperimentRecord> read_experiments(const Hdf5Group& root, const Stud
   for (ExperimentRecord& record : records) {
     if (study.names_scenarios())
       take_scenario(record, study, file);
-    require_consistent(record, file);
+    require_consistent(record, study, file);
   }
   return records;
 }

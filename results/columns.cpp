@@ -42,6 +42,8 @@ void set_kind(Experiment& record, std::int8_t value) {
     draw.mismatches.emplace_back();
   if (draw.kind == ExperimentKind::ud || draw.kind == ExperimentKind::mpm_ud)
     draw.disturbances.emplace_back();
+  if (draw.kind == ExperimentKind::tuning)
+    draw.tuning.emplace();
 }
 
 /// With two random faults both are on the same CV.
@@ -105,6 +107,46 @@ ExperimentNumber of_disturbance() {
           }};
 }
 
+/// A member of the change of the tuning, `none` without one.
+template <class T, auto member>
+Access<Experiment, T> of_tuning(T none) {
+  return {
+      [none](const Experiment& r) { return r.draw.tuning ? static_cast<T>((*r.draw.tuning).*member) : none; },
+      [](Experiment& r, T value) {
+        if (r.draw.tuning)
+          (*r.draw.tuning).*member =
+              static_cast<std::remove_cvref_t<decltype((*r.draw.tuning).*member)>>(value);
+      }};
+}
+
+/// What is wrong in an experiment, the tuning of the controller included.
+VariableText kind_text(const Study& study) {
+  VariableText text{"kind", "what is wrong in the experiment", "1",
+                    "mpm: model-plant mismatch; ud: unmeasured disturbance; mpm_ud: both", kind_flags()};
+  if (study.experiments.tuning > 0) {
+    text.comment += "; tuning: a weight of the controller";
+    text.flags.values.push_back(static_cast<int>(ExperimentKind::tuning));
+    text.flags.meanings.emplace_back(to_string(ExperimentKind::tuning));
+  }
+  return text;
+}
+
+/// In a study with bad tunings only: an archive of another one stays as it was before there were any.
+void append_tuning(std::vector<Column<Experiment>>& columns) {
+  Flags parameters = enum_flags(kTuningParameters);
+  parameters.values.insert(parameters.values.begin(), -1);
+  parameters.meanings.insert(parameters.meanings.begin(), "none");
+  columns.push_back(
+      {{"tuning_parameter", "weight of the controller that is changed", "1",
+        "move_suppression, target_weight: of an MV; slack_weight, setpoint_weight: of a CV", parameters},
+       of_tuning<std::int8_t, &TuningChange::parameter>(-1)});
+  columns.push_back({{"tuning_index", "position of the MV in mv, or of the CV in cv, whose weight is changed",
+                      "1", "-1: none"},
+                     of_tuning<std::int32_t, &TuningChange::index>(-1)});
+  columns.push_back({{"tuning_factor", "factor of the weight", "1", "NaN: none"},
+                     of_tuning<double, &TuningChange::factor>(kNaN)});
+}
+
 /// A member that is in the file as it is in memory, but for its type.
 template <class T, auto member, class Owner>
 Access<Owner, T> plain() {
@@ -166,10 +208,8 @@ Flags kind_flags() {
 
 std::vector<Column<ExperimentRecord>> draw_columns(const Study& study) {
   const std::string time = unit_text(study.plant.time_unit);
-  return {
-      {{"kind", "what is wrong in the experiment", "1",
-        "mpm: model-plant mismatch; ud: unmeasured disturbance; mpm_ud: both", kind_flags()},
-       ExperimentFlag{get_kind, set_kind}},
+  std::vector<Column<ExperimentRecord>> columns{
+      {kind_text(study), ExperimentFlag{get_kind, set_kind}},
       {{"status", "how the experiment ended", "1",
         "infeasible: an MPC problem had no solution, the experiment is left out; failed: see message",
         enum_flags(std::array{ExperimentStatus::ok, ExperimentStatus::infeasible, ExperimentStatus::failed})},
@@ -195,6 +235,9 @@ std::vector<Column<ExperimentRecord>> draw_columns(const Study& study) {
         "NaN: no disturbance, or a named scenario"},
        of_disturbance<&Disturbance::time_constant>()},
   };
+  if (study.experiments.tuning > 0)
+    append_tuning(columns);
+  return columns;
 }
 
 std::vector<CvColumn<Diagnosis>> variance_columns() {

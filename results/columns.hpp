@@ -46,7 +46,7 @@ struct SignalColumn {
   Eigen::MatrixXd Trajectory::*member;
 };
 
-/// What is wrong: none, mpm, ud, mpm_ud.
+/// What a verdict may say is wrong: none, mpm, ud, mpm_ud.
 Flags kind_flags();
 
 /// What an experiment does to the loop, and how it ended. `kind` comes first: it says which faults there are.

@@ -1,5 +1,6 @@
 #include "results/experiment_text.hpp"
 
+#include <algorithm>
 #include <variant>
 
 #include <fmt/format.h>
@@ -99,6 +100,15 @@ std::string disturbance_text(const Study& study, const Disturbance& disturbance,
   return "unknown";
 }
 
+/// "move suppression of u2 x 0.3"
+std::string tuning_text(const Study& study, const TuningChange& tuning) {
+  std::string weight(to_string(tuning.parameter));
+  std::replace(weight.begin(), weight.end(), '_', ' ');
+  const auto& variables = is_of_mv(tuning.parameter) ? study.plant.mvs : study.plant.cvs;
+  return fmt::format("{} of {} x {:.3g}", weight, variables[static_cast<std::size_t>(tuning.index)].name,
+                     tuning.factor);
+}
+
 }  // namespace
 
 std::string kind_name(ExperimentKind kind) {
@@ -111,8 +121,14 @@ std::string kind_name(ExperimentKind kind) {
       return "UD";
     case ExperimentKind::mpm_ud:
       return "MPM+UD";
+    case ExperimentKind::tuning:
+      return "tuning";
   }
   return "unknown";
+}
+
+std::string experiment_kind(const ExperimentDraw& draw) {
+  return draw.kind == ExperimentKind::none ? "healthy" : kind_name(draw.kind);
 }
 
 std::string cv_name(const Study& study, Eigen::Index cv) {
@@ -128,6 +144,8 @@ std::string fault_text(const Study& study, const ExperimentDraw& draw) {
     add(parameter_text(study, change));
   for (const Disturbance& disturbance : draw.disturbances)
     add(disturbance_text(study, disturbance, draw.named));
+  if (draw.tuning)
+    add(tuning_text(study, *draw.tuning));
   return text.empty() ? "nothing" : text;
 }
 
@@ -135,7 +153,7 @@ std::string experiment_title(const Study& study, const ExperimentDraw& draw) {
   if (draw.named)
     return fmt::format("{} ({}): {}", study.scenarios[static_cast<std::size_t>(draw.index)].name,
                        kind_name(draw.kind), fault_text(study, draw));
-  return fmt::format("experiment {} ({}): {}", draw.index, kind_name(draw.kind), fault_text(study, draw));
+  return fmt::format("experiment {} ({}): {}", draw.index, experiment_kind(draw), fault_text(study, draw));
 }
 
 std::string verdict_text(const Study& study, const ExperimentRecord& record) {

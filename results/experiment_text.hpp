@@ -10,8 +10,11 @@ namespace mpm {
 
 // How reports name experiments and what is in them; plain text. Foreign names in it are as in the study.
 
-/// "MPM", "UD", "MPM+UD", "none".
+/// "MPM", "UD", "MPM+UD", "tuning", "none".
 std::string kind_name(ExperimentKind kind);
+
+/// The same for an experiment, in which "none" is "healthy".
+std::string experiment_kind(const ExperimentDraw& draw);
 
 /// The name of a CV, "none" for -1.
 std::string cv_name(const Study& study, Eigen::Index cv);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <string_view>
 #include <utility>
 
@@ -28,6 +29,23 @@ bool belongs_to(const SummaryValue& value, ExperimentKind kind) {
   return value.measured.name.rfind(std::string(to_string(kind)) + ".", 0) == 0;
 }
 
+/// A number of the experiments in which model and plant agree.
+bool is_faultless_share(const SummaryValue& value) {
+  const std::string& name = value.measured.name;
+  return name.starts_with("infeasible_") || name.starts_with("false_");
+}
+
+/// The same as a label: "false alarm, tuning move suppression".
+std::string faultless_label(std::string name) {
+  for (const char* quantity : {"infeasible", "false_alarm", "false_mpm", "false_ud"})
+    if (const std::size_t length = std::strlen(quantity); name.starts_with(std::string(quantity) + "_")) {
+      name.replace(length, 1, ",_");
+      break;
+    }
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return as_label(name);
+}
+
 /// What a reader calls the quantity, as a label.
 std::string quantity_label(const SummaryValue& value, const Study& study) {
   static constexpr std::array<std::pair<std::string_view, const char*>, 8> kLabels{
@@ -45,7 +63,8 @@ std::string quantity_label(const SummaryValue& value, const Study& study) {
   if (quantity(value) == "source_recognised")
     return fmt::format("source recognised, I_{{MPM}} {} {:g}",
                        belongs_to(value, ExperimentKind::mpm) ? ">" : "<", study.diagnosis.mpm_threshold);
-  return as_label(value.measured.description);
+  return is_faultless_share(value) ? faultless_label(value.measured.name)
+                                   : as_label(value.measured.description);
 }
 
 std::string agreement(const SummaryValue& value) {
@@ -86,6 +105,11 @@ std::string rates_table(const ReportInput& input) {
       if (belongs_to(value, kind.kind) && value.measured.name.find("_at_dominance_") == std::string::npos)
         add_row(table, value, study);
   }
+  if (!input.parts.aggregate.false_alarms.empty())
+    table.group("Model and plant agree");
+  for (const SummaryValue& value : input.parts.values)
+    if (is_faultless_share(value))
+      add_row(table, value, study);
   return table.html();
 }
 
@@ -94,7 +118,8 @@ std::vector<const SummaryValue*> headline(const ReportInput& input) {
   std::vector<const SummaryValue*> chosen;
   for (const SummaryValue& value : input.parts.values) {
     const std::string_view name = quantity(value);
-    if (value.measured.name == "infeasible" || name == "located" || name == "source_recognised")
+    if (value.measured.name == "infeasible" || name == "located" || name == "source_recognised" ||
+        name == "false_alarm_healthy" || name == "false_alarm_tuning")
       chosen.push_back(&value);
   }
   return chosen;
@@ -104,7 +129,9 @@ std::string row_name(const SummaryValue& value) {
   for (const ExperimentKind kind : {ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud})
     if (belongs_to(value, kind))
       return kind_name(kind) + (quantity(value) == "located" ? ": CV located" : ": source recognised");
-  return "infeasible";
+  if (quantity(value) == "false_alarm_healthy")
+    return "healthy: false alarm";
+  return quantity(value) == "false_alarm_tuning" ? "tuning: false alarm" : "infeasible";
 }
 
 Figure headline_figure(const ReportInput& input) {

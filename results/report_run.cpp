@@ -35,6 +35,9 @@ std::string experiments_text(const ReportInput& input) {
   std::string kinds = input.campaign.study.names_scenarios() ? "named scenarios" : "";
   for (const KindAggregate& kind : total.kinds)
     kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind.experiments, kind_name(kind.kind));
+  for (const FalseAlarms& group : total.false_alarms)
+    if (!group.parameter)
+      kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", group.experiments, group.name());
   return fmt::format("{} of {} samples<br><small>{}; {} infeasible, {} failed</small>", total.experiments,
                      input.campaign.study.simulation.samples, kinds, total.infeasible.hits, total.failed);
 }

@@ -17,6 +17,8 @@ std::vector<ReportSection> report_sections(const ReportInput& input) {
             : std::vector{run_section(input),      rates_section(input),     variance_section(input),
                           location_section(input), indicator_section(input), dominance_section(input),
                           roc_section(input),      fault_size_section(input)};
+  if (!input.parts.aggregate.false_alarms.empty())
+    sections.insert(sections.begin() + 2, false_alarm_section(input));
   if (input.campaign.comparison)
     sections.push_back(comparison_section(input));
   for (const auto& section :

@@ -40,6 +40,7 @@ struct ReportSection {
 ReportSection run_section(const ReportInput& input);              ///< what was run, and its self-check
 ReportSection scenarios_section(const ReportInput& input);        ///< named scenarios (6.11 to 6.13, 6.15)
 ReportSection rates_section(const ReportInput& input);            ///< the headline rates
+ReportSection false_alarm_section(const ReportInput& input);      ///< verdicts where model and plant agree
 ReportSection variance_section(const ReportInput& input);         ///< Ivar_basis against Ivar (6.18, 6.22)
 ReportSection location_section(const ReportInput& input);         ///< confusion matrices (6.20, 6.23)
 ReportSection indicator_section(const ReportInput& input);        ///< I_MPM by experiment (6.21)
@@ -54,9 +55,10 @@ ReportSection solver_section(const ReportInput& input);           ///< effort an
 ReportSection comparison_section(const ReportInput& input);       ///< methods of assessment, side by side
 ReportSection wrong_verdict_section(const ReportInput& input);    ///< wrong verdicts and failures, one by one
 
-/// Those that the study can have: rates and what belongs to them for random experiments, `scenarios` in their
-/// place for named ones; `comparison` in archives that have one. A later section is a function as above and a
-/// line in the list of this one.
+/// Those that the study can have: rates and what belongs to them for random experiments, false alarms after
+/// the rates where model and plant agree in some of them, and `scenarios` in their place for named ones;
+/// `comparison` in archives that have one. A later section is a function as above and a line in the list of
+/// this one.
 std::vector<ReportSection> report_sections(const ReportInput& input);
 
 /// Share of an interval in words: "95 % interval".

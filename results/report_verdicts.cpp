@@ -58,7 +58,7 @@ std::string wrong_table(const ReportInput& input) {
   for (std::size_t i = 0; i < std::min(wrong.size(), kMostRows); ++i) {
     const ExperimentRecord& record = *wrong[i];
     const Diagnosis& verdict = record.diagnosis;
-    table.row({fmt::format("{}", record.draw.index), kind_name(record.draw.kind), fault_cell(input, record),
+    table.row({fmt::format("{}", record.draw.index), experiment_kind(record.draw), fault_cell(input, record),
                html_text(cv_name(study, record.draw.true_cv())), located(study, record), source(record),
                html_number(verdict.indicator.i_mpm), of_cv(verdict.ivar, record.draw.true_cv()),
                of_cv(verdict.ivar_diag, record.draw.true_cv()),
@@ -78,7 +78,7 @@ std::string failed_table(const ReportInput& input) {
                                                {"Why", HtmlTable::Align::text}});
   const std::vector<const ExperimentRecord*>& failed = input.parts.failed;
   for (std::size_t i = 0; i < std::min(failed.size(), kMostRows); ++i)
-    table.row({fmt::format("{}", failed[i]->draw.index), kind_name(failed[i]->draw.kind),
+    table.row({fmt::format("{}", failed[i]->draw.index), experiment_kind(failed[i]->draw),
                fault_cell(input, *failed[i]), html_text(failed[i]->message)});
   return table.html();
 }
@@ -96,6 +96,8 @@ ReportSection wrong_verdict_section(const ReportInput& input) {
   std::int64_t impactful = 0;
   for (const KindAggregate& kind : input.parts.aggregate.kinds)
     impactful += kind.impactful.hits;
+  for (const FalseAlarms& group : input.parts.aggregate.false_alarms)
+    impactful += group.parameter ? 0 : group.false_alarm.hits;
   section.add(
       fmt::format("<p>{} of {} experiments with impact got a wrong verdict. <code>mpmbench plot {} INDEX -o "
                   "FILE.svg</code> draws the closed loop of one.</p>\n",

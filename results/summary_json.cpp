@@ -94,6 +94,9 @@ Json kinds_json(const StudyAggregate& aggregate) {
   Json kinds = Json::object();
   for (const KindAggregate& kind : aggregate.kinds)
     kinds[std::string(to_string(kind.kind))] = kind.experiments;
+  for (const FalseAlarms& group : aggregate.false_alarms)
+    if (!group.parameter)
+      kinds[group.name()] = group.experiments;
   return kinds;
 }
 

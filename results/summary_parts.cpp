@@ -15,6 +15,9 @@ namespace mpm {
 bool is_share(std::string_view name) {
   constexpr std::array<std::string_view, 5> kShares{"infeasible", "impactful", "located", "source_recognised",
                                                     "within_band"};
+  for (const std::string_view share : {"infeasible_", "false_alarm_", "false_mpm_", "false_ud_"})
+    if (name.starts_with(share))
+      return true;
   const std::string_view last = name.substr(name.rfind('.') + 1);  // the whole name without a '.'
   for (const std::string_view share : kShares)
     if (last == share)

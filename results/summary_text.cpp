@@ -73,6 +73,9 @@ void add_heading(SummaryLines& text, const Campaign& campaign, const SummaryPart
   std::string kinds = study.names_scenarios() ? "named scenarios" : "";
   for (const KindAggregate& kind : aggregate.kinds)
     kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind.experiments, to_string(kind.kind));
+  for (const FalseAlarms& group : aggregate.false_alarms)
+    if (!group.parameter)
+      kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", group.experiments, group.name());
   text.entry("experiments",
              fmt::format("{} ({}) of {} samples; {} infeasible, {} failed", aggregate.experiments, kinds,
                          study.simulation.samples, aggregate.infeasible.hits, aggregate.failed));
@@ -171,9 +174,12 @@ void add_wrong(SummaryLines& text, const Study& study, const std::vector<const E
   for (std::size_t i = 0; i < std::min(wrong.size(), kMostListed); ++i) {
     const ExperimentDraw& draw = wrong[i]->draw;
     const Diagnosis& verdict = wrong[i]->diagnosis;
-    text.line("  {:<{}}  # {} on {}, found {} on {}", fmt::format("mpmbench replay {} {}", file, draw.index),
-              file.size() + 22, to_string(draw.kind), cv_name(study, draw.true_cv()),
-              to_string(verdict.predicted_source), cv_name(study, verdict.predicted_cv));
+    const std::string truth = is_faultless(draw.kind) ? std::string(count_name(draw.kind))
+                                                      : fmt::format("{} on {}", to_string(draw.kind),
+                                                                    cv_name(study, draw.true_cv()));
+    text.line("  {:<{}}  # {}, found {} on {}", fmt::format("mpmbench replay {} {}", file, draw.index),
+              file.size() + 22, truth, to_string(verdict.predicted_source),
+              cv_name(study, verdict.predicted_cv));
   }
   add_more(text, wrong.size());
 }

@@ -133,6 +133,11 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
 
 Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
                                const StepObserver& observer) {
+  if (draw.tuning) {
+    ExperimentDraw rest = draw;
+    rest.tuning.reset();
+    return simulate_experiment(with_tuning(study, draw), rest, factory, observer);
+  }
   const LoopSignals signals{measured_disturbances(study), measurement_noise(study, draw.index),
                             unmeasured_disturbances(study, draw), setpoints(study),
                             disturbances_within_plant(study, draw)};

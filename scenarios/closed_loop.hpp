@@ -80,7 +80,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
                            const QpSolverFactory& factory, const StepObserver& observer = {});
 
-/// The closed loop of one experiment: its plant and its signals, from (study, draw) alone.
+/// The closed loop of one experiment: its controller, its plant and its signals, from (study, draw) alone.
 Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
                                const StepObserver& observer = {});
 

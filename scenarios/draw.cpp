@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,13 +30,19 @@ std::vector<Channel> mv_channels(const Study& study) {
   return channels;
 }
 
-MismatchParameter draw_parameter(const std::array<double, 3>& weight, RandomStream& stream) {
-  const double point = stream.uniform() * (weight[0] + weight[1] + weight[2]);
-  if (point < weight[0])
-    return MismatchParameter::gain;
-  if (point < weight[0] + weight[1])
-    return MismatchParameter::time_constant;
-  return MismatchParameter::dead_time;
+/// A place drawn with these relative frequencies.
+std::size_t draw_place(std::span<const double> weights, RandomStream& stream) {
+  const double point = stream.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
+  double sum = 0.0;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    sum += weights[i];
+    if (point < sum)
+      return i;
+    if (weights[i] > 0.0)
+      last = i;
+  }
+  return last;  // by rounding only
 }
 
 // A dead time cannot become negative: a bounded distribution is shrunk onto what is possible, so that the
@@ -55,7 +62,7 @@ Mismatch draw_mismatch(const Study& study, std::int64_t index) {
   const std::vector<Channel> channels = mv_channels(study);
   const auto [cv, mv] = channels[stream.below(channels.size())];
   const MismatchRanges& ranges = study.mismatch;
-  const MismatchParameter parameter = draw_parameter(ranges.parameter_weight, stream);
+  const auto parameter = static_cast<MismatchParameter>(draw_place(ranges.parameter_weight, stream));
   double value = 0.0;
   switch (parameter) {
     case MismatchParameter::gain:
@@ -81,6 +88,18 @@ Disturbance draw_disturbance(const Study& study, std::int64_t index) {
   const double gain = study.disturbance.gain.sample(stream);
   const double time_constant = study.disturbance.time_constant.sample(stream);
   return {cv, gain, time_constant};
+}
+
+TuningChange draw_tuning(const Study& study, std::int64_t index) {
+  RandomStream stream(study.seed, static_cast<std::uint64_t>(index), StreamId::tuning);
+  const std::array<double, 4> weights = study.tuning.weights_for(study.controller);
+  if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; }))
+    throw InputError("tuning.parameter_weights", "a weight of 0 for everything that the controller has",
+                     "at least one > 0");
+  const TuningParameter parameter = kTuningParameters[draw_place(weights, stream)];
+  const std::vector<Eigen::Index> variables = variables_with(study.controller, parameter);
+  const Eigen::Index variable = variables[stream.below(variables.size())];
+  return {parameter, variable, study.tuning.factor.sample(stream)};
 }
 
 ExperimentDraw named_experiment(const Study& study, std::int64_t index) {
@@ -142,22 +161,27 @@ ExperimentDraw ExperimentDraw::disturbance_alone() const {
 }
 
 KindSequence::KindSequence(const ExperimentCounts& counts) {
-  const std::array<std::pair<ExperimentKind, int>, 3> wanted{{{ExperimentKind::mpm, counts.mpm},
-                                                              {ExperimentKind::ud, counts.ud},
-                                                              {ExperimentKind::mpm_ud, counts.mpm_ud}}};
+  // A kind without experiments is never behind, so that adding one to the list changes no other study.
+  constexpr std::array kinds{ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud,
+                             ExperimentKind::none, ExperimentKind::tuning};
+  std::array<std::pair<ExperimentKind, int>, kinds.size()> wanted;
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    wanted[k] = {kinds[k], counts.of(kinds[k])};
   for (const auto& [kind, count] : wanted)
     if (count < 0)
       throw InputError("experiments", fmt::format("{}", count), "counts >= 0");
   if (counts.total() == 0)
     throw InputError("experiments", "no experiment at all", "at least one");
 
-  const int divisor = std::gcd(std::gcd(counts.mpm, counts.ud), counts.mpm_ud);
+  int divisor = 0;
+  for (const auto& [kind, count] : wanted)
+    divisor = std::gcd(divisor, count);
   const int length = counts.total() / divisor;
-  std::array<int, 3> placed{};
+  std::array<int, kinds.size()> placed{};
   for (int i = 0; i < length; ++i) {
     // The kind that is furthest behind its share of the first i + 1 experiments; ties go in order of kind.
     std::size_t next = 0;
-    std::array<std::int64_t, 3> behind{};
+    std::array<std::int64_t, kinds.size()> behind{};
     for (std::size_t k = 0; k < wanted.size(); ++k) {
       behind[k] = std::int64_t{wanted[k].second / divisor} * (i + 1) - std::int64_t{placed[k]} * length;
       if (behind[k] > behind[next])
@@ -180,12 +204,15 @@ ExperimentDraw draw_experiment(const Study& study, std::int64_t index) {
   ExperimentDraw draw;
   draw.index = index;
   draw.kind = KindSequence(study.experiments)[index];
-  if (draw.kind != ExperimentKind::ud)
+  const bool both = draw.kind == ExperimentKind::mpm_ud;
+  if (draw.kind == ExperimentKind::mpm || both)
     draw.mismatches = {draw_mismatch(study, index)};
-  if (draw.kind != ExperimentKind::mpm)
+  if (draw.kind == ExperimentKind::ud || both)
     draw.disturbances = {draw_disturbance(study, index)};
-  if (draw.kind == ExperimentKind::mpm_ud)
+  if (both)
     draw.disturbances.front().cv = draw.mismatches.front().cv;
+  if (draw.kind == ExperimentKind::tuning)
+    draw.tuning = draw_tuning(study, index);
   return draw;
 }
 
@@ -193,6 +220,13 @@ ExperimentDraw basis_draw() {
   ExperimentDraw draw;
   draw.index = kBasisIndex;
   return draw;
+}
+
+Study with_tuning(const Study& study, const ExperimentDraw& draw) {
+  Study changed = study;
+  if (draw.tuning)
+    changed.controller = with_tuning(std::move(changed.controller), *draw.tuning);
+  return changed;
 }
 
 }  // namespace mpm

@@ -15,8 +15,8 @@ struct AffectedCv {
   ExperimentKind by;  ///< mpm, ud, or mpm_ud for both
 };
 
-/// What one experiment does to the loop: drawn at random, with at most one fault of either sort, or a named
-/// scenario of the study.
+/// What one experiment does to the loop: drawn at random, with at most one fault of either sort or a change
+/// of the tuning, or a named scenario of the study.
 struct ExperimentDraw {
   std::int64_t index = 0;
   ExperimentKind kind = ExperimentKind::none;
@@ -26,6 +26,7 @@ struct ExperimentDraw {
   /// The CVs that a diagnosis should find, when the study says it; otherwise those with a fault.
   std::optional<std::vector<Eigen::Index>> affected_cvs = {};
   std::vector<ParameterChange> parameters = {};  ///< of a nonlinear plant; a mismatch, too
+  std::optional<TuningChange> tuning = {};       ///< of the controller; no fault of model or plant
 
   /// The CVs that are affected, in their order. A CV that has no fault of its own is affected by what is
   /// wrong in the experiment.
@@ -62,5 +63,10 @@ ExperimentDraw draw_experiment(const Study& study, std::int64_t index);
 
 /// The basis case: nothing is wrong.
 ExperimentDraw basis_draw();
+
+/// The study with the controller that runs in the experiment: `study` itself unless the draw changes its
+/// tuning. simulate_experiment() does this by itself; to pass it the result would change the tuning twice.
+/// Throws InputError for a weight that the controller has not.
+Study with_tuning(const Study& study, const ExperimentDraw& draw);
 
 }  // namespace mpm

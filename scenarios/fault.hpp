@@ -15,8 +15,14 @@
 
 namespace mpm {
 
-/// What is wrong in an experiment. `none` is the basis case.
-enum class ExperimentKind : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3 };
+/// What is wrong in an experiment. `none` is the basis case and every healthy experiment: nothing but the
+/// noise. In one of the kind `tuning` model and plant agree, and a weight of the controller is changed.
+enum class ExperimentKind : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3, tuning = 4 };
+
+/// Is there neither mismatch nor disturbance, so that every verdict of a modelling error is a false alarm?
+inline bool is_faultless(ExperimentKind kind) {
+  return kind == ExperimentKind::none || kind == ExperimentKind::tuning;
+}
 
 /// Which parameter of a channel a model-plant mismatch changes, as in table 6.4; `channel`: the plant has
 /// another transfer function in this place, as in (4.19) to (4.21).

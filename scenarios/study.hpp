@@ -13,6 +13,7 @@
 #include "scenarios/assessment_options.hpp"
 #include "scenarios/distribution.hpp"
 #include "scenarios/fault.hpp"
+#include "scenarios/tuning.hpp"
 #include "solvers/mpc_options.hpp"
 
 namespace mpm {
@@ -41,8 +42,25 @@ struct ExperimentCounts {
   int mpm = 0;
   int ud = 0;
   int mpm_ud = 0;
+  int healthy = 0;  ///< nothing is wrong: kind none
+  int tuning = 0;
 
-  int total() const { return mpm + ud + mpm_ud; }
+  int total() const { return mpm + ud + mpm_ud + healthy + tuning; }
+  int of(ExperimentKind kind) const {
+    switch (kind) {
+      case ExperimentKind::none:
+        return healthy;
+      case ExperimentKind::mpm:
+        return mpm;
+      case ExperimentKind::ud:
+        return ud;
+      case ExperimentKind::mpm_ud:
+        return mpm_ud;
+      case ExperimentKind::tuning:
+        return tuning;
+    }
+    return 0;
+  }
 };
 
 /// Ranges of the random mismatches (table 6.4). Channels are pairs of a CV and an MV with non-zero gain.
@@ -163,6 +181,7 @@ struct Study {
   std::vector<Scenario> scenarios;  ///< the experiments of a study of named scenarios, in their order
   MismatchRanges mismatch;
   DisturbanceRanges disturbance;
+  TuningRanges tuning;
   SensitivityOptions sensitivity;
   S0PerturbationOptions s0_perturbation;
   DiagnosisOptions diagnosis;

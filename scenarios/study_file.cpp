@@ -64,6 +64,7 @@ Study parse_study(std::string_view text, const std::string& file_name) {
   study.experiments = read_experiments(document, study);
   study.mismatch = read_mismatch(document, study.plant);
   study.disturbance = read_disturbance(document);
+  study.tuning = read_tuning(document, study);
   study.sensitivity = read_sensitivity(document, study.plant, study.controller);
   study.s0_perturbation = read_s0_perturbation(document, study.plant, study.controller);
   study.diagnosis = read_diagnosis(document);

@@ -57,7 +57,7 @@ void refuse_impossible_shift(const TomlTable& mismatch, const Distribution& shif
 
 ExperimentCounts read_experiments(const TomlTable& document, const Study& study) {
   if (document.has("scenario")) {
-    for (const char* random : {"experiments", "mismatch"}) {
+    for (const char* random : {"experiments", "mismatch", "tuning"}) {
       if (document.has(random)) {
         document.refuse(random, "random experiments beside named scenarios", "one of the two");
       }
@@ -68,7 +68,14 @@ ExperimentCounts read_experiments(const TomlTable& document, const Study& study)
   const auto count = [&table](const char* key) {
     return static_cast<int>(read_whole(table, key, 0, kMaxExperiments));
   };
-  const ExperimentCounts counts{.mpm = count("mpm"), .ud = count("ud"), .mpm_ud = count("mpm_ud")};
+  const auto count_or_none = [&table](const char* key) {
+    return static_cast<int>(read_whole_or(table, key, 0, kMaxExperiments, 0));
+  };
+  const ExperimentCounts counts{.mpm = count("mpm"),
+                                .ud = count("ud"),
+                                .mpm_ud = count("mpm_ud"),
+                                .healthy = count_or_none("healthy"),
+                                .tuning = count_or_none("tuning")};
   if (counts.total() == 0) {
     table.refuse("", "no experiment", "at least one of any kind");
   }
@@ -101,6 +108,27 @@ DisturbanceRanges read_disturbance(const TomlTable& document) {
       read_distribution_or(table, "time_constant", NumberRule::positive(), ranges.time_constant);
   ranges.v_standard_deviation =
       read_number_or(table, "v_standard_deviation", NumberRule::positive(), ranges.v_standard_deviation);
+  return ranges;
+}
+
+TuningRanges read_tuning(const TomlTable& document, const Study& study) {
+  const TomlTable table = document.table_or_empty("tuning", study_file_keys("tuning"));
+  TuningRanges ranges;
+  if (table.has("parameter_weights")) {
+    const TomlTable weights = table.table("parameter_weights", study_file_keys("tuning.parameter_weights"));
+    for (std::size_t p = 0; p < kTuningParameters.size(); ++p)
+      ranges.parameter_weight[p] =
+          read_number(weights, to_string(kTuningParameters[p]), NumberRule::at_least(0));
+  }
+  ranges.factor = read_distribution_or(table, "factor", NumberRule::positive(), ranges.factor);
+  ranges.sensitivity = read_choice_or<TuningSensitivity>(
+      table, "sensitivity", {{"current", TuningSensitivity::current}, {"design", TuningSensitivity::design}},
+      ranges.sensitivity);
+  const std::array<double, 4> drawn = ranges.weights_for(study.controller);
+  if (study.experiments.tuning > 0 &&
+      std::all_of(drawn.begin(), drawn.end(), [](double weight) { return weight == 0; }))
+    table.refuse("parameter_weights", "a weight of 0 for everything that the controller has",
+                 "at least one > 0");
   return ranges;
 }
 

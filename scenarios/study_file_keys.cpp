@@ -16,6 +16,9 @@ std::vector<std::string> reference_names() {
     for (const char* quantity : {"infeasible", "r_squared", "slope", "located", "source_recognised",
                                  "i_mpm_min", "i_mpm_mean", "i_mpm_max"})
       names.push_back(std::string(kind) + "." + quantity);
+  for (const char* quantity : {"infeasible", "false_alarm", "false_mpm", "false_ud"})
+    for (const char* kind : {"healthy", "tuning"})
+      names.push_back(std::string(quantity) + "_" + kind);
   return names;
 }
 
@@ -25,7 +28,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
   static const std::vector<StudyFileTable> tables{
       {"",
        {"study", "plant", "controller", "simulation", "experiments", "scenario", "mismatch", "disturbance",
-        "sensitivity", "s0_perturbation", "diagnosis", "assessment", "aggregate", "reference"}},
+        "tuning", "sensitivity", "s0_perturbation", "diagnosis", "assessment", "aggregate", "reference"}},
       {"study", {"name", "title", "seed"}},
       {"plant",
        {"catalogue", "simulated", "relative_tolerance", "absolute_tolerance", "step_limit", "name", "title",
@@ -42,7 +45,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
       {"simulation", {"samples", "noise_standard_deviation", "step", "random_steps"}},
       {"simulation.step[]", {"md", "cv", "sample", "level"}},
       {"simulation.random_steps", {"interval", "level"}},
-      {"experiments", {"mpm", "ud", "mpm_ud"}},
+      {"experiments", {"mpm", "ud", "mpm_ud", "healthy", "tuning"}},
       {"scenario[]", {"name", "description", "mismatch", "parameter", "disturbance", "affected"}},
       {"scenario[].mismatch[]",
        {"cv", "input", "gain_factor", "time_constant_factor", "dead_time_shift", "gain", "time_constant",
@@ -57,6 +60,8 @@ const std::vector<StudyFileTable>& study_file_tables() {
       {"mismatch", {"parameter_weights", "gain_factor", "time_constant_factor", "dead_time_shift"}},
       {"mismatch.parameter_weights", {"gain", "time_constant", "dead_time"}},
       {"disturbance", {"gain", "time_constant", "v_standard_deviation"}},
+      {"tuning", {"parameter_weights", "factor", "sensitivity"}},
+      {"tuning.parameter_weights", {"move_suppression", "target_weight", "slack_weight", "setpoint_weight"}},
       {"sensitivity",
        {"form", "samples", "step_size", "step_direction", "active_cvs", "fixed_mvs", "structure",
         "switching"}},

@@ -56,7 +56,7 @@ inline constexpr double kMaxDeadTimeSamples = 10000;
 /// [[scenario]] (study_file_scenarios.cpp); none when the study draws its experiments at random.
 std::vector<Scenario> read_scenarios(const TomlTable& document, const Study& study);
 
-/// [experiments] (study_file_draws.cpp), as the next two. None in a study of named scenarios.
+/// [experiments] (study_file_draws.cpp), as the next three. None in a study of named scenarios.
 ExperimentCounts read_experiments(const TomlTable& document, const Study& study);
 
 /// [mismatch]
@@ -64,6 +64,9 @@ MismatchRanges read_mismatch(const TomlTable& document, const PlantModel& plant)
 
 /// [disturbance]
 DisturbanceRanges read_disturbance(const TomlTable& document);
+
+/// [tuning]; `study` has its controller and its experiments.
+TuningRanges read_tuning(const TomlTable& document, const Study& study);
 
 /// [sensitivity] (study_file_analysis.cpp), as the next two.
 SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel& plant,

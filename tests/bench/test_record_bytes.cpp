@@ -89,6 +89,19 @@ TEST_CASE("record bytes: everything of a named scenario") {
     CHECK_THROWS_AS(record_from_bytes(std::string_view(bytes).substr(0, size)), std::runtime_error);
 }
 
+TEST_CASE("record bytes: a changed tuning") {
+  ExperimentRecord record;
+  record.draw.kind = ExperimentKind::tuning;
+  record.draw.tuning = TuningChange{TuningParameter::slack_weight, 6, 0.07};
+  const std::string bytes = to_bytes(record);
+  const ExperimentRecord again = record_from_bytes(bytes);
+  CHECK(to_bytes(again) == bytes);
+  CHECK(again.draw.kind == ExperimentKind::tuning);
+  CHECK(again.draw.tuning == record.draw.tuning);
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    CHECK_THROWS_AS(record_from_bytes(std::string_view(bytes).substr(0, size)), std::runtime_error);
+}
+
 TEST_CASE("record bytes: cut or lengthened bytes are refused") {
   const std::string bytes = to_bytes(ExperimentRecord{});
   for (std::size_t size = 0; size < bytes.size(); ++size)

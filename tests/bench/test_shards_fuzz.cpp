@@ -61,11 +61,12 @@ class Reader {
     }
   }
 
-  /// A shard of random experiments and named scenarios, and one loop.
+  /// A shard of random experiments, healthy and badly tuned ones among them, and named scenarios, and one
+  /// loop.
   std::string whole() const {
     ShardBytes bytes;
     bool has_loop = false;
-    for (const Campaign& campaign : {made_up_campaign(), scenario_campaign()})
+    for (const Campaign& campaign : {made_up_campaign(), faultless_campaign(), scenario_campaign()})
       for (const ExperimentRecord& record : campaign.records) {
         ExperimentOutcome outcome;
         outcome.record = record;

@@ -161,6 +161,30 @@ def check_scenarios(path, variables, attributes):
     subprocess.run(["ncdump", path], check=True, capture_output=True)
 
 
+def is_faultless(name):
+    """A variable that only studies with healthy experiments or bad tunings have."""
+    return re.fullmatch(r"(tuning|faultless|false)(_\w+)?", name) is not None
+
+
+def check_faultless(path, variables):
+    with h5py.File(path) as file:
+        for group in "/", "/aggregate":
+            found = {key: variable_form(item) for key, item in file[group].items() if isinstance(item, h5py.Dataset)}
+            expected = {name: form for name, form in variables[group].items() if is_faultless(name)}
+            assert expected and expected.items() <= found.items(), (group, expected.items() - found.items())
+            assert found.items() <= variables[group].items(), (group, found.items() - variables[group].items())
+            for name in found:
+                check_variable(file[group][name])
+        assert file["kind"].attrs["flag_meanings"] == "none mpm ud mpm_ud tuning"
+        assert set(file["kind"]) == {0, 1, 2, 4} and set(file["tuning_parameter"]) == {-1, 0, 1, 2, 3}
+        assert ((file["kind"][()] == 4) == (file["tuning_index"][()] >= 0)).all()
+    with xarray.open_dataset(path, group="aggregate") as aggregate:
+        names = [str(name) for name in aggregate.faultless.values]
+        assert names[:3] == ["healthy", "tuning", "tuning_move_suppression"] and len(names) == 6, names
+        assert aggregate.value.sel(name="false_alarm_tuning") == aggregate.false_alarm.sel(faultless="tuning")
+    subprocess.run(["ncdump", path], check=True, capture_output=True)
+
+
 def check_empty(path, variables):
     """A file whose dimensions have no length opens too."""
     for group in variables.keys() - {"/scenarios", "/comparison", "/audit", "/nominal_fixed", "/nominal_direct", "/s0_sensitivity", "/trajectories"}:
@@ -177,12 +201,18 @@ def main(writer, file_format):
         path = str(pathlib.Path(folder) / "sample.h5")
         subprocess.run([writer, path], check=True)
         assert seal.is_sealed(path)
-        random = {group: names for group, names in variables.items() if group not in ("/scenarios", "/nominal_direct")}
+        random = {
+            group: {name: form for name, form in names.items() if not is_faultless(name)}
+            for group, names in variables.items()
+            if group not in ("/scenarios", "/nominal_direct")
+        }
         check_h5py(path, random, attributes)
         check_xarray(path, random)
         check_ncdump(path, random)
         subprocess.run([writer, path, "scenarios"], check=True)
         check_scenarios(path, variables, attributes)
+        subprocess.run([writer, path, "faultless"], check=True)
+        check_faultless(path, variables)
         subprocess.run([writer, path, "empty"], check=True)
         check_empty(path, variables)
 

@@ -269,6 +269,24 @@ Comparison made_up_comparison(const Study& study, const std::vector<ExperimentRe
   return made;
 }
 
+Campaign faultless_campaign() {
+  Numbers numbers;
+  std::string text = with_setpoint(small_study());
+  const std::string last_count = "mpm_ud = 1\n";
+  text.replace(text.find(last_count), last_count.size(), "mpm_ud = 0\nhealthy = 3\ntuning = 8\n");
+  Campaign campaign;
+  campaign.study = parse_study(text + "\n[aggregate]\nbootstrap_replications = 200\n", "small");
+  campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
+  campaign.basis = basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}});
+  for (std::int64_t index = 0; index < 48; ++index) {
+    ExperimentRecord made = record(numbers, campaign.study, index);
+    made.draw = draw_experiment(campaign.study, index);
+    made.perturbed = {};
+    campaign.records.push_back(std::move(made));
+  }
+  return campaign;
+}
+
 Campaign empty_campaign() {
   Numbers numbers;
   std::string text = small_study();

@@ -18,6 +18,9 @@ Campaign made_up_campaign();
 /// can be empty is.
 Campaign empty_campaign();
 
+/// The same as the first one of a study that has healthy experiments and bad tunings of every parameter, too.
+Campaign faultless_campaign();
+
 /// The same as the first one of a study of five named scenarios: healthy, mismatches of an MV and an MD,
 /// whole channels, every signal, infeasible, failed; with numbers for every CV.
 Campaign scenario_campaign();

@@ -1,6 +1,9 @@
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "analysis/study_aggregate.hpp"
 #include "bench/record_bytes.hpp"
@@ -164,6 +167,51 @@ TEST_CASE("archive: a campaign without experiments, active limits and disturbanc
 TEST_CASE("archive: named scenarios come back with every CV; their faults come from the study") {
   const Campaign campaign = scenario_campaign();
   check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: healthy experiments and every change of the tuning come back bit for bit") {
+  const Campaign campaign = faultless_campaign();
+  check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: a healthy experiment or a changed weight that the study cannot have is refused") {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const Campaign& campaign) -> std::string {
+    write_archive(folder / "a.h5", campaign);
+    try {
+      read_archive(folder / "a.h5");
+      return "accepted";
+    } catch (const ArchiveError& error) {
+      return error.what();
+    }
+  };
+  using Catch::Contains;
+  Campaign healthy = made_up_campaign();
+  healthy.records[5].draw = {5};
+  CHECK_THAT(refusal(healthy),
+             Contains("'kind': found none in experiment 5; allowed: a kind that the study"));
+  Campaign tuning = made_up_campaign();
+  tuning.records[5].draw = {5, ExperimentKind::tuning};
+  CHECK_THAT(refusal(tuning), Contains("'kind': found 4; allowed: 0 to 3"));
+
+  Campaign campaign = faultless_campaign();
+  const auto changed = std::find_if(campaign.records.begin(), campaign.records.end(),
+                                    [](const ExperimentRecord& record) { return record.draw.tuning; });
+  REQUIRE(changed != campaign.records.end());
+  const TuningChange drawn = *changed->draw.tuning;
+  const std::string where = fmt::format("in experiment {}", changed->draw.index);
+  for (const Eigen::Index index : {-1, 2}) {
+    changed->draw.tuning->index = index;
+    CHECK_THAT(refusal(campaign), Contains("'tuning_index'") && Contains(where));
+  }
+  changed->draw.tuning = drawn;
+  changed->draw.tuning->parameter = static_cast<TuningParameter>(-1);
+  CHECK_THAT(refusal(campaign), Contains("'tuning_index'") && Contains(where));
+  changed->draw.tuning = drawn;
+  for (const double factor : {0.0, -1.0, std::nan(""), static_cast<double>(INFINITY)}) {
+    changed->draw.tuning->factor = factor;
+    CHECK_THAT(refusal(campaign), Contains("'tuning_factor'") && Contains(where));
+  }
 }
 
 TEST_CASE("archive: what contradicts the scenarios of its study is refused") {

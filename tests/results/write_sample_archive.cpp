@@ -1,4 +1,4 @@
-// usage: write_sample_archive FILE [empty|scenarios]
+// usage: write_sample_archive FILE [empty|scenarios|faultless]
 
 #include <cstdio>
 #include <exception>
@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
     const std::string which = argc == 2 ? "" : argv[2];
     mpm::write_archive(argv[1], which == "empty"       ? mpm::testing::empty_campaign()
                                 : which == "scenarios" ? mpm::testing::scenario_campaign()
+                                : which == "faultless" ? mpm::testing::faultless_campaign()
                                                        : campaign_sample());
     return 0;
   } catch (const std::exception& error) {
