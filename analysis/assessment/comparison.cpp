@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/assessment/method_table.hpp"
+#include "analysis/own_basis.hpp"
 
 namespace mpm {
 namespace {
@@ -44,6 +45,16 @@ MethodVerdict verdict_of(Assessor& assessor, const AssessedLoop& loop, std::stri
   return verdict;
 }
 
+ComparedLoop verdicts(std::int64_t experiment, const AssessedLoop& loop, std::vector<Assessor>& assessors,
+                      std::vector<std::string>& reasons) {
+  ComparedLoop compared;
+  compared.experiment = experiment;
+  reasons.resize(assessors.size());
+  for (std::size_t m = 0; m < assessors.size(); ++m)
+    compared.verdicts.push_back(verdict_of(assessors[m], loop, reasons[m]));
+  return compared;
+}
+
 }  // namespace
 
 MethodPanel::MethodPanel(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,
@@ -53,19 +64,29 @@ MethodPanel::MethodPanel(const Study& study, const BasisCase& basis, const std::
       factory_(std::move(factory)),
       context_(assessment_context(study, basis, factory_)) {
   for (const std::string& method : methods)
-    assessors_.emplace_back(assessment_method(method), context_);
+    methods_.push_back(assessment_method(method));
+  assessors_ = assessors_for(context_);
+}
+
+std::vector<Assessor> MethodPanel::assessors_for(const AssessmentContext& context) const {
+  std::vector<Assessor> assessors;
+  for (const AssessmentMethodInfo& method : methods_)
+    assessors.emplace_back(method, context);
+  return assessors;
 }
 
 ComparedLoop MethodPanel::assess(const ExperimentRecord& record, std::vector<std::string>& reasons) {
-  const AssessedLoop loop = assessed_loop(
-      study_, basis_.point,
-      record.loop ? record.loop->trajectory : simulate_experiment(study_, record.draw, factory_));
-  ComparedLoop compared;
-  compared.experiment = record.draw.index;
-  reasons.resize(assessors_.size());
-  for (std::size_t m = 0; m < assessors_.size(); ++m)
-    compared.verdicts.push_back(verdict_of(assessors_[m], loop, reasons[m]));
-  return compared;
+  const Trajectory trajectory =
+      record.loop ? record.loop->trajectory : simulate_experiment(study_, record.draw, factory_);
+  const std::optional<OwnBasis> own = own_basis(study_, record.draw, factory_);
+  if (!own)
+    return verdicts(record.draw.index, assessed_loop(study_, basis_.point, trajectory), assessors_, reasons);
+  // The controller is another one, and its S0 with it; the benchmark is still what the study was designed
+  // for.
+  const AssessmentContext context{own->study, own->basis, factory_, context_.benchmark};
+  std::vector<Assessor> assessors = assessors_for(context);
+  return verdicts(record.draw.index, assessed_loop(own->study, own->basis.point, trajectory), assessors,
+                  reasons);
 }
 
 }  // namespace mpm

@@ -49,15 +49,19 @@ class MethodPanel {
   MethodPanel& operator=(const MethodPanel&) = delete;
 
   /// What each method says of the experiment, whose status is ok: of its stored loop, or of the loop run
-  /// again. `reasons[m]` is why method m gave no answer, empty when it did.
+  /// again. Where the experiment changes the tuning the methods know the S0 of the controller that runs, as
+  /// own_basis() has it. `reasons[m]` is why method m gave no answer, empty when it did.
   ComparedLoop assess(const ExperimentRecord& record, std::vector<std::string>& reasons);
 
  private:
+  std::vector<Assessor> assessors_for(const AssessmentContext& context) const;
+
   const Study& study_;
   const BasisCase& basis_;
   QpSolverFactory factory_;
   AssessmentContext context_;
-  std::vector<Assessor> assessors_;
+  std::vector<AssessmentMethodInfo> methods_;
+  std::vector<Assessor> assessors_;  ///< of loops under the controller of the study
 };
 
 }  // namespace mpm

@@ -36,8 +36,7 @@ Truths truths_of(const Comparison& comparison, std::span<const ExperimentRecord>
 }
 
 bool has_fault(const ExperimentRecord& record) {
-  const ExperimentKind kind = record.draw.kind;
-  return kind == ExperimentKind::mpm || kind == ExperimentKind::ud || kind == ExperimentKind::mpm_ud;
+  return !is_faultless(record.draw.kind);
 }
 
 bool has_impact(const ExperimentRecord& record, const Study& study) {
@@ -77,6 +76,10 @@ struct Counts {
       return;
     if (!std::isnan(verdict.seconds))  // it would break the order for the median
       milliseconds.push_back(1e3 * verdict.seconds);
+    if (truth.draw.kind == ExperimentKind::tuning) {
+      false_alarm_tuning.add(verdict.flagged);
+      return;
+    }
     if (!has_fault(truth)) {
       healthy_scores.push_back(verdict.score);
       false_alarm_healthy.add(verdict.flagged);
