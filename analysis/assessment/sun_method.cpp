@@ -7,7 +7,6 @@
 
 #include "analysis/assessment/methods.hpp"
 #include "analysis/assessment/model_quality.hpp"
-#include "plants/error.hpp"
 
 namespace mpm {
 namespace {
@@ -81,7 +80,10 @@ class Sun final : public AssessmentMethod {
     if (!noise_)
       return Assessment::not_applicable("its noise model comes from a benchmark period, and none is known");
     const Eigen::MatrixXd r = references_of(loop, sun_.measured_disturbances);
-    require_samples(loop, r.rows());
+    if (const Eigen::Index fewest = fewest_samples(options_.arx, loop.y.rows(), r.rows());
+        loop.samples() < fewest)
+      return Assessment::not_applicable(
+          fmt::format("its ARX models need {} samples or more, or other [assessment.sun] orders", fewest));
     const ModelQuality quality = model_quality(loop.y, r, loop.y_sim, weights_, *noise_, options_);
     Assessment assessment;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
@@ -91,15 +93,6 @@ class Sun final : public AssessmentMethod {
   }
 
  private:
-  void require_samples(const AssessedLoop& loop, Eigen::Index references) const {
-    const Eigen::Index fewest = fewest_samples(options_.arx, loop.y.rows(), references);
-    if (loop.samples() < fewest)
-      throw InputError(
-          "assessment.sun.orders", fmt::format("{} for {} samples", sun_.orders.back(), loop.samples()),
-          fmt::format("orders that {} samples determine ({} would be enough for these), or own_outputs",
-                      loop.samples(), fewest));
-  }
-
   /// A CV that is held in a range has no setpoint that its moves could follow: nothing is said of it.
   void add_cv(Eigen::Index cv, bool has_setpoint, const ModelQuality& quality, Assessment& assessment) const {
     const double imqi = quality.imqi(cv);
