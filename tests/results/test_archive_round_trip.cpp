@@ -187,11 +187,13 @@ TEST_CASE("archive: a healthy experiment or a changed weight that the study cann
   };
   using Catch::Contains;
   Campaign healthy = made_up_campaign();
-  healthy.records[5].draw = {5};
+  healthy.records[5].draw = basis_draw();
+  healthy.records[5].draw.index = 5;
   CHECK_THAT(refusal(healthy),
              Contains("'kind': found none in experiment 5; allowed: a kind that the study"));
   Campaign tuning = made_up_campaign();
-  tuning.records[5].draw = {5, ExperimentKind::tuning};
+  tuning.records[5].draw = healthy.records[5].draw;
+  tuning.records[5].draw.kind = ExperimentKind::tuning;
   CHECK_THAT(refusal(tuning), Contains("'kind': found 4; allowed: 0 to 3"));
 
   Campaign campaign = faultless_campaign();
