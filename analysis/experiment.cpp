@@ -84,6 +84,7 @@ ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw&
   result.loop.trajectory = simulate_experiment(study_, draw, factory_, observer);
   const Trajectory& loop = result.loop.trajectory;
   result.status = experiment_status(loop.status);
+  result.message = loop.message;
   if (result.status != ExperimentStatus::ok) {
     result.loop.y_sim = estimator_.simulated(loop);
     return result;
@@ -94,6 +95,8 @@ ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw&
     result.own_basis = own->solver;
     result.status = experiment_status(own->basis.trajectory.status);
     if (result.status != ExperimentStatus::ok) {
+      if (result.status == ExperimentStatus::failed)
+        result.message = "no S0 of its own: " + own->basis.explanation;
       result.loop.y_sim = estimator_.simulated(loop);
       return result;
     }
@@ -113,7 +116,7 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
 
   DiagnosedLoop main = run_loop(record.draw, observer);
   record.status = main.status;
-  record.message = main.loop.trajectory.message;
+  record.message = main.message;
   record.solver = main.loop.trajectory.solver;
   record.solver.add(main.own_basis);
   const Eigen::Index true_cv = record.draw.true_cv();
@@ -124,7 +127,7 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
       record.solver.add(part->loop.trajectory.solver);
       record.status = std::max(record.status, part->status);
       if (record.message.empty())
-        record.message = part->loop.trajectory.message;
+        record.message = part->message;
     }
     if (record.status == ExperimentStatus::ok) {
       record.ivar_diag_mpm_alone = mpm_alone.diagnosis.ivar_diag(true_cv);

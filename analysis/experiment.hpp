@@ -79,6 +79,7 @@ class ExperimentRunner {
     ExperimentStatus status;
     Diagnosis diagnosis;
     LoopRecord loop;
+    std::string message;         ///< why it failed; empty otherwise
     SolverStatistics own_basis;  ///< of the loops that gave an S0 of its own
   };
 
