@@ -141,6 +141,31 @@ TEST_CASE("report: methods stand side by side when the archive has a comparison,
   CHECK_THAT(report_html(campaign, "f.h5"), !Contains("Assessment methods compared"));
 }
 
+TEST_CASE("report: false alarms have a section and rows where model and plant agree in some experiments") {
+  Campaign campaign = faultless_campaign();
+  for (ExperimentRecord& record : campaign.records)
+    record.diagnosis.impactful = is_faultless(record.draw.kind);
+  const SummaryParts parts = summary_parts(campaign);
+  const ReportSection section = false_alarm_section({campaign, parts, "f"});
+  CHECK(has_figure(section));
+  CHECK_THAT(html_of(section),
+             Contains("healthy") && Contains("&emsp;setpoint weight") && Contains("100.0&nbsp;%") &&
+                 Contains("S0 of an experiment with a bad tuning is that of the controller"));
+  CHECK_THAT(html_of(rates_section({campaign, parts, "f"})),
+             Contains("Model and plant agree") && Contains("false alarm, tuning slack weight"));
+  CHECK_THAT(html_of(wrong_verdict_section({campaign, parts, "f"})),
+             Contains("healthy") && Contains("tuning"));
+
+  const auto has_section = [](const Campaign& of) {
+    const SummaryParts of_parts = summary_parts(of);
+    const auto sections = report_sections({of, of_parts, "f"});
+    return std::any_of(sections.begin(), sections.end(),
+                       [](const ReportSection& found) { return found.id == "false-alarms"; });
+  };
+  CHECK(has_section(campaign));
+  CHECK_FALSE(has_section(made_up_campaign()));
+}
+
 TEST_CASE("report: awkward numbers and foreign texts make no broken page") {
   Campaign campaign = made_up_campaign();
   campaign.study.title = "<script>alert(1)</script> `id` '\"&";

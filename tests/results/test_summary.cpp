@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -186,6 +187,29 @@ TEST_CASE("summary: a study of named scenarios shows each with its truth and its
   CHECK(found["cvs"][1]["source"] == "none");
   CHECK(json["scenarios"][3]["tsse"].is_null());
   CHECK(nlohmann::json::parse(summary_json(sample()))["scenarios"].empty());
+}
+
+TEST_CASE("summary: healthy experiments and bad tunings are counted, and their alarms are wrong verdicts") {
+  Campaign campaign = faultless_campaign();
+  for (ExperimentRecord& record : campaign.records)
+    record.diagnosis.impactful = false;
+  ExperimentRecord& healthy =
+      *std::find_if(campaign.records.begin(), campaign.records.end(), [](const auto& record) {
+        return record.draw.kind == ExperimentKind::none && record.status == ExperimentStatus::ok;
+      });
+  healthy.diagnosis.impactful = true;
+  healthy.diagnosis.predicted_cv = 1;
+  healthy.diagnosis.predicted_source = ExperimentKind::mpm;
+  const std::string text = summary_text(campaign, "out.h5");
+  CHECK_THAT(line_of_text(text, "experiments"), Contains("9 mpm, 6 ud, 9 healthy, 24 tuning"));
+  CHECK_THAT(text, Contains("1 experiment with impact got a wrong verdict") &&
+                       Contains("# healthy, found mpm on heat"));
+  const nlohmann::json json = nlohmann::json::parse(summary_json(campaign));
+  CHECK(json["kinds"] == nlohmann::json{{"mpm", 9}, {"ud", 6}, {"healthy", 9}, {"tuning", 24}});
+  CHECK(json["wrong_verdicts"] == nlohmann::json{healthy.draw.index});
+  for (const auto& value : json["aggregates"])
+    if (value["name"] == "false_mpm_healthy")
+      CHECK(value["value"].get<double>() == Approx(1.0 / value["count"].get<double>()));
 }
 
 TEST_CASE("summary: infinite and missing numbers and broken texts still make valid JSON") {
