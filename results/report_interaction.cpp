@@ -33,7 +33,7 @@ Panel rpn_panel(const Study& study, const LoopInteraction& interaction) {
 
 Panel rga_panel(const Study& study, const LoopInteraction& interaction) {
   PanelScript panel("rga", "diagonal of the RGA, magnitudes", frequency_axis(study),
-                    {.label = "magnitude", .logarithmic = true});
+                    {.label = "magnitude", .lower = 0.0});
   panel.upright(interaction.rpn_frequency, kPeak);
   for (std::size_t i = 0; i < interaction.cvs.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
