@@ -55,6 +55,16 @@ double refined_maximum(const Eigen::VectorXd& grid, Eigen::Index at, const auto&
   return weight(refined) > weight(grid(at)) ? refined : grid(at);
 }
 
+/// Whether sums and products of the numbers of T0 are sure to be finite. An archive may have others, and what
+/// it holds beside them is still to be reported.
+bool has_weight(const NominalSensitivity& sensitivity) {
+  const double largest = 1e100;
+  return std::all_of(sensitivity.step_response.begin(), sensitivity.step_response.end(),
+                     [largest](const Eigen::MatrixXd& response) {
+                       return (response.array().abs() < largest).all();  // not so of NaN
+                     });
+}
+
 }  // namespace
 
 Eigen::MatrixXcd active_frequency_response(const NominalSensitivity& sensitivity, double frequency,
@@ -87,7 +97,7 @@ LoopInteraction loop_interaction(const Study& study, const OperatingPoint& point
   LoopInteraction result;
   for (const ActiveReference& reference : sensitivity.active)
     result.cvs.push_back(reference.cv);
-  if (result.cvs.empty() || sensitivity.step_response.front().cols() == 0)
+  if (result.cvs.empty() || sensitivity.step_response.front().cols() == 0 || !has_weight(sensitivity))
     return result;
   const double sample_time = study.controller.sample_time;
   const auto samples = static_cast<double>(sensitivity.step_response.front().cols());

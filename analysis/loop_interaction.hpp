@@ -71,6 +71,7 @@ struct LoopInteraction {
 /// is refined between them.
 ///
 /// G0 with its exact frequency response, the dead times as they are, and not as the controller samples it.
+/// A T0 with numbers that are not finite, or above 1e100, has no RPN: all but `cvs` is empty.
 /// @throws InputError for fewer than 2 frequencies
 LoopInteraction loop_interaction(const Study& study, const OperatingPoint& point,
                                  const NominalSensitivity& sensitivity, Eigen::Index count = 200);

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 
 #include <fmt/format.h>
 
@@ -63,20 +63,10 @@ std::vector<MethodRateInfo> counted_rates(const Methods& methods) {
 }
 
 /// A value over its interval and what it rests on, both small.
-std::string cell(const std::string& value, const std::string& interval, std::int64_t count) {
-  return fmt::format("{}<br><small>{}<br>of {}</small>", value, interval, count);
-}
-
 std::string rate_cell(const Rate& rate) {
-  return rate.total == 0
-             ? html_number(NAN)
-             : cell(html_number(rate.value, true), html_interval(rate.interval, true), rate.total);
-}
-
-std::string area_cell(const MethodRates& method) {
-  return method.roc.defined() ? cell(html_number(method.roc.area), html_interval(method.roc_area),
-                                     method.roc.positives + method.roc.negatives)
-                              : html_number(NAN);
+  return rate.total == 0 ? html_number(NAN)
+                         : fmt::format("{}<br><small>{}<br>of {}</small>", html_number(rate.value, true),
+                                       html_interval(rate.interval, true), rate.total);
 }
 
 std::string rates_table(const Study& study, const Methods& methods) {
@@ -84,7 +74,6 @@ std::string rates_table(const Study& study, const Methods& methods) {
   std::vector<HtmlTable::Column> columns{{"Method", HtmlTable::Align::left}};
   for (const MethodRateInfo& info : rates)
     columns.push_back({html_text(info.title)});
-  columns.push_back({"area under ROC"});
   HtmlTable table(fmt::format("Shares of loops with their {}, and the number of loops looked at. "
                               "Rates that no loop was counted for are left out.",
                               interval_title(study)),
@@ -93,7 +82,6 @@ std::string rates_table(const Study& study, const Methods& methods) {
     std::vector<std::string> cells{html_text(method.method)};
     for (const MethodRateInfo& info : rates)
       cells.push_back(rate_cell(method.*info.rate));
-    cells.push_back(area_cell(method));
     table.row(cells);
   }
   return table.html();
@@ -107,25 +95,39 @@ std::string rates_legend() {
   return html + "</small></p>\n";
 }
 
+/// The places of the methods that gave some verdict; the others would be empty rows.
+std::vector<std::size_t> answering(const Methods& methods) {
+  std::vector<std::size_t> places;
+  for (std::size_t m = 0; m < methods.size(); ++m)
+    if (methods[m].answered.hits > 0)
+      places.push_back(m);
+  return places;
+}
+
+Whisker rate_whisker(const MethodRates& method, const Rate& rate, double at) {
+  const double value = 100.0 * rate.value;
+  const double lower = 100.0 * rate.interval.lower, upper = 100.0 * rate.interval.upper;
+  return {at, value, lower, upper,
+          fmt::format("{}: {:.1f} %, interval {:.1f} to {:.1f} %, {} of {} loops", method.method, value,
+                      lower, upper, rate.hits, rate.total)};
+}
+
 Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
-  const auto rows = static_cast<double>(methods.size());
+  const std::vector<std::size_t> places = answering(methods);
+  const auto rows = static_cast<double>(places.size());
   Axis y{.label = "", .lower = -0.6, .upper = rows - 0.4};
-  for (auto method = methods.rbegin(); method != methods.rend(); ++method)
-    y.words.push_back(method->method);  // the first one on top
+  for (auto place = places.rbegin(); place != places.rend(); ++place)
+    y.words.push_back(methods[*place].method);  // the first one on top
   PanelScript panel(
       info.name, info.title,
       {.label = "share of loops (%)", .lower = -2, .upper = 102, .ticks = {0, 20, 40, 60, 80, 100}}, y);
   panel.left_margin(13);
-  for (std::size_t m = 0; m < methods.size(); ++m) {
-    const Rate& rate = methods[m].*info.rate;
-    if (rate.total == 0)
-      continue;
-    panel.level_whiskers({{rows - 1.0 - static_cast<double>(m), 100.0 * rate.value,
-                           100.0 * rate.interval.lower, 100.0 * rate.interval.upper,
-                           fmt::format("{}: {:.1f} %, interval {:.1f} to {:.1f} %, {} of {} loops",
-                                       methods[m].method, 100.0 * rate.value, 100.0 * rate.interval.lower,
-                                       100.0 * rate.interval.upper, rate.hits, rate.total)}},
-                         whisker_pen(m));
+  double at = rows;
+  for (const std::size_t place : places) {
+    const Rate& rate = methods[place].*info.rate;
+    at -= 1.0;
+    if (rate.total > 0)
+      panel.level_whiskers({rate_whisker(methods[place], rate, at)}, whisker_pen(place));
   }
   return panel.finish(fmt::format("Share of loops with its interval, one row a method: {}.", info.meaning),
                       70.0 + 28.0 * rows);
@@ -136,7 +138,7 @@ Figure rates_figure(const Study& study, const Methods& methods) {
   Figure figure;
   figure.name = "comparison-rates";
   figure.caption = fmt::format(
-      "How often each method is right, with {:g} % intervals: shares of false alarms are "
+      "How often each method that gave a verdict is right, with {:g} % intervals: shares of false alarms are "
       "good on the left, all others on the right.",
       100.0 * study.aggregate.confidence);
   for (const MethodRateInfo& info : counted_rates(methods))

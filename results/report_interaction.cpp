@@ -74,7 +74,8 @@ ReportSection interaction_section(const ReportInput& input) {
   const LoopInteraction interaction = loop_interaction(study, basis.point, basis.sensitivity);
   ReportSection section{"interaction", "How strongly do the loops interact?", {}};
   if (interaction.frequency.size() == 0) {
-    section.leave_out("no CV is at a setpoint or a soft limit, so T_0 is zero.");
+    section.leave_out(interaction.cvs.empty() ? "no CV is at a setpoint or a soft limit, so T_0 is zero."
+                                              : "T_0 has numbers that are not finite.");
     return section;
   }
   Figure figure;

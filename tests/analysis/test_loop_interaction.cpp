@@ -158,3 +158,15 @@ TEST_CASE("interaction: no relative gains without as many MVs as active CVs, not
   CHECK(std::isnan(none.rpn_frequency));
   CHECK_THROWS_AS(loop_interaction(study, {}, sensitivity, 1), mpm::InputError);
 }
+
+TEST_CASE("interaction: a T0 that is not finite, or overflows, has none, and is no error") {
+  const Study study = find_study("chapter4-column");
+  for (const double value : {std::nan(""), HUGE_VAL, -1e308}) {
+    NominalSensitivity sensitivity = first_order_loops(2, 0.9, 100);
+    sensitivity.step_response[1](0, 7) = value;
+    const LoopInteraction none = loop_interaction(study, {}, sensitivity);
+    CHECK(none.cvs.size() == 2);
+    CHECK(none.frequency.size() == 0);
+    CHECK(std::isnan(none.rpn_maximum));
+  }
+}

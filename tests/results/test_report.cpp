@@ -88,7 +88,7 @@ TEST_CASE("report: a section without data says in one sentence why it is left ou
     CHECK_THAT(html_of(section), Contains("Left out: ") && Contains("."));
     ++left_out;
   }
-  CHECK(left_out == 11);
+  CHECK(left_out == 12);
   CHECK_THAT(report_html(campaign, "f.h5"),
              Contains("Left out: it needs experiments with impact of both kinds; "
                       "there are 0 with an MPM and 0 with a UD."));
@@ -100,8 +100,8 @@ TEST_CASE("report: a study of named scenarios has their section in place of rate
   std::vector<std::string> ids;
   for (const ReportSection& section : report_sections({campaign, parts, "f"}))
     ids.push_back(section.id);
-  CHECK(ids == std::vector<std::string>{"run", "scenarios", "comparison", "sensitivity", "s0-perturbation",
-                                        "basis", "solver"});
+  CHECK(ids == std::vector<std::string>{"run", "scenarios", "comparison", "sensitivity", "interaction",
+                                        "s0-perturbation", "basis", "solver"});
   const ReportSection section = scenarios_section({campaign, parts, "a b.h5"});
   CHECK(has_figure(section));
   const std::string html = html_of(section);
@@ -179,7 +179,7 @@ TEST_CASE("report: awkward numbers and foreign texts make no broken page") {
 TEST_CASE("report: the same figures as files, and a folder that cannot be made") {
   const TemporaryFolder folder;
   const auto files = write_figures(sample(), folder / "figures", FigureFormat::svg);
-  CHECK(files.size() == 12);
+  CHECK(files.size() == 13);
   for (const auto& file : files)
     CHECK_THAT(file_content(file), Contains("<svg ") && Contains("</svg>"));
   make_file(folder / "file", "");

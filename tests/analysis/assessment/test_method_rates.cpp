@@ -107,6 +107,24 @@ TEST_CASE("rates of a method: every loop is counted where it belongs", "[method_
   CHECK(rates.detected.interval.upper == wilson.upper);
 }
 
+TEST_CASE("rates of a method: a loop with bad tuning is no healthy one, and not on the ROC curve",
+          "[method_rates]") {
+  Case made;
+  made.add(kMpm, verdict(true, 2.0));
+  made.add(kNone, verdict(false, 1.0));
+  for (const bool flagged : {true, true, false}) {
+    ExperimentRecord tuned = healthy_record(static_cast<std::int64_t>(made.records.size()));
+    tuned.draw.kind = ExperimentKind::tuning;
+    made.add(tuned, verdict(flagged, 3.0), verdict(false));
+  }
+  const MethodRates rates = made.rates();
+  check_rate(rates.false_alarm_tuning, 2, 3);
+  check_rate(rates.false_alarm_healthy, 0, 1);
+  check_rate(rates.detected, 1, 1);
+  CHECK(rates.roc.area == 1.0);
+  CHECK(rates.roc.negatives == 1);
+}
+
 TEST_CASE("rates of a method: a flagged loop with several affected CVs has no one to be located",
           "[method_rates]") {
   Case made;
