@@ -124,6 +124,16 @@ void add_reproduce(CLI::App& app, ReproduceCommand& reproduce) {
       ->check(CLI::IsMember(qp_solver_names()))
       ->capture_default_str();
   app.add_flag("--json", reproduce.json, "As JSON");
+  app.add_option("--set", reproduce.changes,
+                 "A key of the study of every table with another value, KEY=VALUE; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--seeds", reproduce.seeds,
+                 "Run each table with N seeds, and report medians and the share of seeds that agree")
+      ->check(CLI::Range(1, 100000));
+  reproduce.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  app.add_option("--jobs", reproduce.jobs, "How many tables run at once, with --solver active-set")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
 }
 
 }  // namespace

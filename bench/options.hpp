@@ -83,12 +83,15 @@ struct CompareCommand {
   bool quiet = false;
 };
 
-/// `mpmbench reproduce [TABLES] [--json] [-o PAGE.html]`
+/// `mpmbench reproduce [TABLES] [--set KEY=VALUE]... [--seeds N] [--json] [-o PAGE.html]`
 struct ReproduceCommand {
   std::string tables = "all";
   std::string output;  ///< no page when empty
   std::string solver = "active-set";
   bool json = false;
+  std::vector<std::string> changes;  ///< --set, each KEY=VALUE
+  std::optional<int> seeds;          ///< none: each table once, with the seeds of its studies
+  int jobs = 1;
 };
 
 /// `mpmbench list`

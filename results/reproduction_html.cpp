@@ -1,47 +1,22 @@
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "results/html_page.hpp"
 #include "results/html_table.hpp"
 #include "results/plot_text.hpp"
 #include "results/reproduction.hpp"
+#include "results/reproduction_parts.hpp"
 
 namespace mpm {
 namespace {
 
-std::string number_html(double value) {
-  return std::isnan(value) ? "&ndash;" : fmt::format("{:.3g}", value);
-}
-
 std::string cell_html(const ReproducedCell& cell) {
-  std::string html = number_html(cell.ours);
+  std::string html = three_digits(cell.ours, "&ndash;");
   if (cell.cell.thesis)
     html += fmt::format(" <small>({:g})</small>", *cell.cell.thesis);
   if (cell.agrees() == false)
     html = fmt::format("<strong>{} &#10007;</strong><br><small>{}, thesis: {}</small>", html,
                        html_text(cell.our_verdict.value_or("no verdict")), html_text(*cell.thesis_verdict));
   return html;
-}
-
-std::string rule_text(const VerdictRule& rule) {
-  std::string quantities;
-  for (const std::string& quantity : rule.quantities)
-    quantities += (quantities.empty() ? "" : ", ") + quantity;
-  switch (rule.kind) {
-    case RuleKind::any_above:
-      return fmt::format("{}: {} when some number of the row is above {:g}, else {}; {}", quantities,
-                         rule.yes, rule.lower, rule.no, rule.source);
-    case RuleKind::any_within:
-      return fmt::format("{}: {} when some number of the row lies within {:g} to {:g}, else {}; {}",
-                         quantities, rule.yes, rule.lower, rule.upper, rule.no, rule.source);
-    case RuleKind::rank:
-      return fmt::format("{}: the place in the column, from the smallest on; {}", quantities, rule.source);
-    case RuleKind::outside:
-      break;
-  }
-  return fmt::format("{}: {} outside of {:g} to {:g}, else {}; {}", quantities, rule.yes, rule.lower,
-                     rule.upper, rule.no, rule.source);
 }
 
 std::string table_html(const ReproducedTable& table, std::size_t index) {
@@ -57,15 +32,7 @@ std::string table_html(const ReproducedTable& table, std::size_t index) {
       cells.push_back(cell_html(cell));
     html.row(cells);
   }
-  std::string text;
-  for (const VerdictRule& rule : table.table.rules)
-    text += "<p>Verdict from " + html_text(rule_text(rule)) + ".</p>\n";
-  if (!table.table.note.empty())
-    text += "<p>" + html_text(table.table.note) + "</p>\n";
-  return fmt::format(
-      "<section id=\"table-{0}\" aria-labelledby=\"table-{0}-title\">\n<h2 id=\"table-{0}-title\"><span "
-      "class=\"index\">{1}</span>{5}: {2}</h2>\n{3}{4}</section>\n",
-      table.table.name(), index, html_text(table.table.title), html.html(), text, table.table.label());
+  return table_section_html(table.table, html.html(), index);
 }
 
 std::string agreement_html(const std::vector<ReproducedTable>& tables) {
@@ -85,12 +52,13 @@ std::string agreement_html(const std::vector<ReproducedTable>& tables) {
 
 }  // namespace
 
-std::string reproduction_html(const std::vector<ReproducedTable>& tables, const std::string& version) {
+std::string reproduction_html(const std::vector<ReproducedTable>& tables, const std::string& version,
+                              const std::vector<std::string>& changes) {
   std::string body = agreement_html(tables);
   for (std::size_t i = 0; i < tables.size(); ++i)
     body += table_html(tables[i], i + 1);
   return html_page({"the tables of the thesis", "The tables of the thesis, cell by cell",
-                    "<p>Botelho (UFRGS, 2015): ours beside the thesis's.</p>\n",
+                    "<p>Botelho (UFRGS, 2015): ours beside the thesis's.</p>\n" + changes_html(changes),
                     "Made by <code>mpmbench reproduce</code>.", version},
                    body);
 }

@@ -1,49 +1,31 @@
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "results/reproduction.hpp"
+#include "results/reproduction_parts.hpp"
 
 namespace mpm {
 namespace {
 
 using nlohmann::ordered_json;
 
-std::string number_text(double value) {
-  return std::isnan(value) ? "-" : fmt::format("{:.3g}", value);
-}
-
 std::string cell_text(const ReproducedCell& cell) {
-  return fmt::format("{}{}{}", number_text(cell.ours),
+  return fmt::format("{}{}{}", three_digits(cell.ours, "-"),
                      cell.cell.thesis ? fmt::format(" ({:g})", *cell.cell.thesis) : "",
                      cell.agrees() == false ? " x" : "  ");
 }
 
 std::string table_text(const ReproducedTable& table) {
-  std::size_t label_width = 0;
-  for (const ReproducedRow& row : table.rows)
-    label_width = std::max(label_width, row.label.size());
-  std::vector<std::size_t> widths;
-  for (const std::string& head : table.table.heads)
-    widths.push_back(head.size());
-  for (const ReproducedRow& row : table.rows)
-    for (std::size_t i = 0; i < row.cells.size(); ++i)
-      widths[i] = std::max(widths[i], cell_text(row.cells[i]).size());
-
-  std::string text = fmt::format("{}: {}\n{:<{}}", table.table.label(), table.table.title, "", label_width);
-  for (std::size_t i = 0; i < widths.size(); ++i)
-    text += fmt::format("  {:>{}}", table.table.heads[i], widths[i]);
-  text += '\n';
+  std::vector<TextRow> rows;
   for (const ReproducedRow& row : table.rows) {
-    text += fmt::format("{:<{}}", row.label, label_width);
-    for (std::size_t i = 0; i < widths.size(); ++i)
-      text += fmt::format("  {:>{}}", cell_text(row.cells[i]), widths[i]);
-    text += row.remark.empty() ? "\n" : "  " + row.remark + "\n";
+    rows.push_back({row.label, {}, row.remark});
+    for (const ReproducedCell& cell : row.cells)
+      rows.back().cells.push_back(cell_text(cell));
   }
   const auto [agreeing, judged] = table.agreement();
-  return text + fmt::format("{} of {} verdicts agree\n\n", agreeing, judged);
+  return table_rows_text(table.table, rows) + fmt::format("{} of {} verdicts agree\n\n", agreeing, judged);
 }
 
 template <class Value>
@@ -84,8 +66,10 @@ ordered_json table_json(const ReproducedTable& table) {
 
 }  // namespace
 
-std::string reproduction_text(const std::vector<ReproducedTable>& tables) {
-  std::string text = "In each cell ours, the thesis's in brackets, x where another verdict follows.\n\n";
+std::string reproduction_text(const std::vector<ReproducedTable>& tables,
+                              const std::vector<std::string>& changes) {
+  std::string text = changes_text(changes) +
+                     "In each cell ours, the thesis's in brackets, x where another verdict follows.\n\n";
   Agreement total;
   for (const ReproducedTable& table : tables) {
     text += table_text(table);
@@ -98,15 +82,21 @@ std::string reproduction_text(const std::vector<ReproducedTable>& tables) {
   return text + fmt::format("{:<12} {:>3} of {:>3} verdicts agree\n", "total", total.agreeing, total.judged);
 }
 
-std::string reproduction_json(const std::vector<ReproducedTable>& tables) {
+std::string reproduction_json(const std::vector<ReproducedTable>& tables,
+                              const std::vector<std::string>& changes) {
   ordered_json list = ordered_json::array();
   Agreement total;
   for (const ReproducedTable& table : tables) {
     list.push_back(table_json(table));
     total.add(table.agreement());
   }
-  return ordered_json{{"tables", list}, {"agreeing", total.agreeing}, {"judged", total.judged}}.dump(2) +
-         "\n";
+  ordered_json json;
+  if (!changes.empty())
+    json["set"] = changes;
+  json["tables"] = list;
+  json["agreeing"] = total.agreeing;
+  json["judged"] = total.judged;
+  return json.dump(2) + "\n";
 }
 
 }  // namespace mpm

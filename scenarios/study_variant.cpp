@@ -11,17 +11,6 @@
 namespace mpm {
 namespace {
 
-/// Lays `changes` over `target`: tables key by key, everything else as a whole.
-void lay_over(toml::table& target, const toml::table& changes) {
-  for (const auto& [key, value] : changes) {
-    toml::table* const inner = target.get_as<toml::table>(key.str());
-    if (inner != nullptr && value.is_table())
-      lay_over(*inner, *value.as_table());
-    else
-      target.insert_or_assign(key.str(), value);
-  }
-}
-
 /// Takes out the value under a dotted key; false when there is none.
 bool take_out(toml::table& table, const std::string& dotted_key) {
   const std::size_t dot = dotted_key.rfind('.');
@@ -47,6 +36,16 @@ std::vector<std::string> removed_keys(const TomlTable& variant) {
 }
 
 }  // namespace
+
+void lay_over(toml::table& target, const toml::table& changes) {
+  for (const auto& [key, value] : changes) {
+    toml::table* const inner = target.get_as<toml::table>(key.str());
+    if (inner != nullptr && value.is_table())
+      lay_over(*inner, *value.as_table());
+    else
+      target.insert_or_assign(key.str(), value);
+  }
+}
 
 Study read_base_study(const TomlTable& heading, const std::filesystem::path& folder) {
   const std::string name = read_text(heading, "study");

@@ -10,6 +10,9 @@
 
 namespace mpm {
 
+/// Lays `changes` over `target`: tables key by key, everything else as a whole.
+void lay_over(toml::table& target, const toml::table& changes);
+
 /// The study that the key `study` of `heading` names: a shipped one, or a file relative to `folder`. Errors:
 /// InputError as find_study(), with the place of the key in front.
 Study read_base_study(const TomlTable& heading, const std::filesystem::path& folder);

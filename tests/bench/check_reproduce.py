@@ -56,6 +56,55 @@ def main(program, root, chromium=""):
         assert f"total {found['agreeing']:>10} of {found['judged']:>3} verdicts agree" in text, text
         assert "()" not in text
 
+        # Another value of a key: that of a run of the same study, and back where it was nothing has changed.
+        key = "simulation.noise_standard_deviation"
+        noise = strict_json(run("reproduce", "4.5", "--set", key + "=0.1", "--json"))
+        assert noise["set"] == [key + "=0.1"]
+        changed = folder / "changed.toml"
+        study = (root / "scenarios/studies/chapter4-shell.toml").read_text(encoding="utf-8")
+        loud, count = re.subn(r"noise_standard_deviation = [0-9.]+", "noise_standard_deviation = 0.1", study)
+        assert count == 1, count
+        changed.write_text(loud, encoding="utf-8")
+        run("run", changed, "-o", folder / "c.h5", "--experiments", 2, "--solver", "active-set", "--quiet",
+            "--allow-unhealthy-basis")
+        with h5py.File(folder / "c.h5") as file:
+            ours = [cell["ours"] for row in noise["tables"][0]["rows"] if row["label"] == "Ivar"
+                    for cell in row["cells"]]
+            assert ours == list(file["ivar"][1]), (ours, file["ivar"][1])
+        assert noise["tables"] != found["tables"]
+        message = run("reproduce", "4.5", "--set", key + "s=0.1", code=2)
+        assert "Table 4.5 with --set" in message and "'noise_standard_deviations'" in message, message
+        assert "KEY=VALUE" in run("reproduce", "4.5", "--set", "noise", code=2)
+
+        # Several seeds: whatever the number of threads; of one seed the median is the number itself, and the second
+        # seed is that of the study plus one.
+        seeds = run("reproduce", "4.5", "--seeds", 3, "--json", "--jobs", 1)
+        assert seeds == run("reproduce", "4.5", "--seeds", 3, "--json", "--jobs", 2)
+        assert run("reproduce", "4.5", "--json", "--jobs", 2) == run("reproduce", "4.5", "--json", "--jobs", 1)
+        seeds = strict_json(seeds)
+        assert seeds["seeds"] == 3 and len(seeds["tables"][0]["agreeing"]) == 3
+        one = strict_json(run("reproduce", "4.5", "--seeds", 1, "--json"))
+        pairs = [(a, b) for x, y in zip(found["tables"][0]["rows"], one["tables"][0]["rows"])
+                 for a, b in zip(x["cells"], y["cells"])]
+        assert all(a["ours"] == b["median"] and b["numbers"] == 1 for a, b in pairs)
+        assert all(b["share"] == (None if a["agrees"] is None else float(a["agrees"])) for a, b in pairs)
+        seed = int(re.search(r"^seed = (\d+)", study, re.MULTILINE).group(1))
+        numbers = []
+        for offset in range(3):
+            numbers.append([cell["ours"] for row in strict_json(
+                run("reproduce", "4.5", "--set", f"study.seed={seed + offset}", "--json"))["tables"][0]["rows"]
+                for cell in row["cells"]])
+        medians = [cell["median"] for row in seeds["tables"][0]["rows"] for cell in row["cells"]]
+        assert medians == [sorted(triple)[1] for triple in zip(*numbers)]
+        assert len(set(map(tuple, numbers))) == 3
+        seeded_page = folder / "seeds.html"
+        text = run("reproduce", "4.5", "--seeds", 2, "--set", key + "=0.1", "-o", seeded_page)
+        assert f"With {key}=0.1." in text and "over 2 seeds" in text, text
+        parsed = Page(seeded_page.read_text(encoding="utf-8"))
+        assert not parsed.loads
+        assert [a["id"] for tag, a in parsed.elements if tag == "section"] == ["table-4.5"]
+        assert f"<code>{key}=0.1</code>" in seeded_page.read_text(encoding="utf-8")
+
         # The page needs nothing else and opens without complaint.
         html = page.read_text(encoding="utf-8")
         parsed = Page(html)
@@ -71,7 +120,6 @@ def main(program, root, chromium=""):
         studies, tables = folder / "studies", folder / "tables"
         studies.mkdir()
         tables.mkdir()
-        study = (root / "scenarios/studies/chapter4-shell.toml").read_text(encoding="utf-8")
         stopped, count = re.subn(r"hard = \[-inf, inf\]", "hard = [-0.01, 0.01]", study)
         assert count == 3, count
         (studies / "chapter4-shell.toml").write_text(stopped, encoding="utf-8")

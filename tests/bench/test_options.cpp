@@ -64,6 +64,17 @@ TEST_CASE("options: report and plot") {
   CHECK(std::get<PlotCommand>(other).output == "x.png");
 }
 
+TEST_CASE("options: reproduce with changes and seeds") {
+  const Command command =
+      parse({"reproduce", "--set", "a.b=1", "--set", "c=[1, 2]", "2.5", "--seeds", "7", "--jobs", "3"});
+  const ReproduceCommand& reproduce = std::get<ReproduceCommand>(command);
+  CHECK(reproduce.changes == std::vector<std::string>{"a.b=1", "c=[1, 2]"});
+  CHECK(reproduce.tables == "2.5");
+  CHECK(reproduce.seeds == 7);
+  CHECK(reproduce.jobs == 3);
+  CHECK_FALSE(std::get<ReproduceCommand>(parse({"reproduce"})).seeds);
+}
+
 TEST_CASE("options: wrong usage has exit code 2, help has 0") {
   const std::vector<std::vector<const char*>> wrong{{},
                                                     {"dance"},
@@ -76,6 +87,8 @@ TEST_CASE("options: wrong usage has exit code 2, help has 0") {
                                                     {"run", "chapter6", "-o", "x", "--resume", "--discard"},
                                                     {"run", "chapter6", "-o", "x", "--shard-interval", "-1"},
                                                     {"sweep", "chapter6"},
+                                                    {"reproduce", "2.5", "--seeds", "0"},
+                                                    {"reproduce", "2.5", "--set"},
                                                     {"check", "x.h5"},
                                                     {"replay", "x.h5", "-1"},
                                                     {"report", "x.h5"},

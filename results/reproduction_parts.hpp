@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/table_file.hpp"
+
+// What the tables of one run and of several seeds have in common as text and as HTML.
+
+namespace mpm {
+
+/// Three significant digits; `none` for NaN.
+std::string three_digits(double value, const std::string& none);
+
+/// A row as text: its label, its cells, and what is said behind them.
+struct TextRow {
+  std::string label;
+  std::vector<std::string> cells;
+  std::string remark;
+};
+
+/// Number, title, heads and rows of a table, in columns as wide as they have to be.
+std::string table_rows_text(const ThesisTable& table, const std::vector<TextRow>& rows);
+
+/// A section of a page: the title of the table, `html_table`, its rules and its note. `index` is its number
+/// on the page.
+std::string table_section_html(const ThesisTable& table, const std::string& html_table, std::size_t index);
+
+/// "With A, B." and a blank line; nothing without changes.
+std::string changes_text(const std::vector<std::string>& changes);
+/// The same as a paragraph.
+std::string changes_html(const std::vector<std::string>& changes);
+
+}  // namespace mpm
