@@ -130,7 +130,8 @@ def main(program, root, chromium=""):
         rows = found["tables"][0]["rows"]
         assert all(row["remark"] for row in rows), rows
         assert all(cell["ours"] is None and cell["ratio"] is None for row in rows for cell in row["cells"]), rows
-        assert found["judged"] == 6 and found["agreeing"] == 0
+        assert found["judged"] == sum(cell["agrees"] is not None for row in rows for cell in row["cells"]) > 0
+        assert found["agreeing"] == 0
         assert "nan" not in page.read_text(encoding="utf-8")
         assert "- (4.54)" in run("reproduce", **there)  # a verdict that differs is a result: done
 
