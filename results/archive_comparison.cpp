@@ -142,7 +142,7 @@ void write_pairs(Hdf5Group& group, const ComparisonSummary& summary) {
   std::vector<std::int32_t> numbers(pairs.size());
   std::iota(numbers.begin(), numbers.end(), 0);
   group.write_dimension("pair", numbers, attributes<std::int32_t>({"pair", "two methods on the same loops"}));
-  std::vector<std::string> first, second;
+  std::vector<std::string> first, second, truth;
   Variable<std::int64_t> loops({"pair_loops", "loops that both gave a verdict on"});
   Variable<std::int64_t> lost({"first_alone", "loops that only the first one is right on"});
   Variable<std::int64_t> gained({"second_alone", "loops that only the second one is right on"});
@@ -151,6 +151,7 @@ void write_pairs(Hdf5Group& group, const ComparisonSummary& summary) {
   for (const MethodPair& pair : pairs) {
     first.push_back(summary.methods[pair.first].method);
     second.push_back(summary.methods[pair.second].method);
+    truth.emplace_back(to_string(pair.truth));
     loops.add(pair.loops);
     lost.add(pair.test.lost);
     gained.add(pair.test.gained);
@@ -159,6 +160,10 @@ void write_pairs(Hdf5Group& group, const ComparisonSummary& summary) {
   }
   group.write("first", {"pair"}, first, attributes<std::string>({"first", "first method of the pair"}));
   group.write("second", {"pair"}, second, attributes<std::string>({"second", "second method of the pair"}));
+  group.write("truth", {"pair"}, truth,
+              attributes<std::string>({"truth",
+                                       "which loops are to be flagged: those with a fault, or those "
+                                       "with a fault that has an impact"}));
   for (const Variable<std::int64_t>& variable : {loops, lost, gained})
     variable.write(group, {"pair"});
   for (const Variable<double>& variable : {two_sided, worse})

@@ -61,7 +61,8 @@ Json method_json(const MethodRates& method) {
 }
 
 Json pair_json(const ComparisonSummary& summary, const MethodPair& pair) {
-  return {{"first", summary.methods[pair.first].method},
+  return {{"truth", to_string(pair.truth)},
+          {"first", summary.methods[pair.first].method},
           {"second", summary.methods[pair.second].method},
           {"loops", pair.loops},
           {"first_alone", pair.test.lost},

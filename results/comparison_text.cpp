@@ -63,20 +63,21 @@ std::string reasons_text(const std::vector<MethodRates>& methods) {
 
 std::string pairs_text(const ComparisonSummary& summary) {
   TextTable table;
-  table.add({"pair", "loops", "right: first alone", "second alone", "p"});
+  table.add({"pair", "truth", "loops", "right: first alone", "second alone", "p"});
   for (const MethodPair& pair : summary.pairs)
     if (pair.loops > 0)
       table.add(
           {fmt::format("{} / {}", summary.methods[pair.first].method, summary.methods[pair.second].method),
-           fmt::format("{}", pair.loops), fmt::format("{}", pair.test.lost),
-           fmt::format("{}", pair.test.gained), fmt::format("{:.2g}", pair.test.p_two_sided)});
+           std::string(to_string(pair.truth)), fmt::format("{}", pair.loops),
+           fmt::format("{}", pair.test.lost), fmt::format("{}", pair.test.gained),
+           fmt::format("{:.2g}", pair.test.p_two_sided)});
   const bool none = std::none_of(summary.pairs.begin(), summary.pairs.end(),
                                  [](const MethodPair& pair) { return pair.loops > 0; });
   if (none)
     return "";
   return fmt::format(
-      "\n{}(right: a loop with a fault is flagged, one without is not; p: McNemar's exact test,\n"
-      "two-sided, over the loops that both gave a verdict on)\n",
+      "\n{}(right: a loop with a fault, or with one that has an impact, is flagged and no other;\n"
+      "p: McNemar's exact test, two-sided, over the loops that both gave a verdict on)\n",
       table.text());
 }
 

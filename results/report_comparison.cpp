@@ -212,10 +212,12 @@ void add_roc(ReportSection& section, const Methods& methods) {
 
 std::string pairs_table(const ComparisonSummary& summary) {
   HtmlTable table(
-      "Two methods on the loops that both gave a verdict on. Right is a loop with a fault that is "
-      "flagged, or one without that is not; p is that of McNemar&rsquo;s exact test, two-sided.",
+      "Two methods on the loops that both gave a verdict on. Right is to flag the loops with a fault, "
+      "or those with a fault that has an impact, and no others; p is that of McNemar&rsquo;s exact test, "
+      "two-sided.",
       {{"First", HtmlTable::Align::left},
        {"Second", HtmlTable::Align::left},
+       {"To be flagged", HtmlTable::Align::left},
        {"Loops"},
        {"First alone right"},
        {"Second alone right"},
@@ -223,9 +225,9 @@ std::string pairs_table(const ComparisonSummary& summary) {
   for (const MethodPair& pair : summary.pairs)
     if (pair.loops > 0)
       table.row({html_text(summary.methods[pair.first].method),
-                 html_text(summary.methods[pair.second].method), fmt::format("{}", pair.loops),
-                 fmt::format("{}", pair.test.lost), fmt::format("{}", pair.test.gained),
-                 fmt::format("{:.2g}", pair.test.p_two_sided)});
+                 html_text(summary.methods[pair.second].method), std::string(to_string(pair.truth)),
+                 fmt::format("{}", pair.loops), fmt::format("{}", pair.test.lost),
+                 fmt::format("{}", pair.test.gained), fmt::format("{:.2g}", pair.test.p_two_sided)});
   return table.html();
 }
 

@@ -65,8 +65,8 @@ std::optional<Channel> mismatched_channel(const ExperimentRecord& record, const 
 }
 
 struct Counts {
-  Count answered, detected, detected_impact, false_alarm_healthy, false_alarm_tuning, located, source,
-      channel;
+  Count answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
+      false_alarm_healthy, false_alarm_tuning, located, source, channel;
   std::vector<double> fault_scores, healthy_scores, milliseconds;
 
   void add(const MethodVerdict& verdict, const ExperimentRecord& truth, const Study& study,
@@ -87,8 +87,11 @@ struct Counts {
     }
     fault_scores.push_back(verdict.score);
     detected.add(verdict.flagged);
-    if (has_impact(truth, study))
-      detected_impact.add(verdict.flagged);
+    if (truth.draw.kind == ExperimentKind::mpm)
+      detected_mpm.add(verdict.flagged);
+    if (truth.draw.kind == ExperimentKind::ud)
+      detected_ud.add(verdict.flagged);
+    (has_impact(truth, study) ? detected_impact : flagged_without_impact).add(verdict.flagged);
     if (verdict.flagged)
       add_diagnosis(verdict, truth, study, method);
   }
@@ -117,7 +120,10 @@ MethodRates rates_of(std::size_t method, const Comparison& comparison, const Tru
                     .reason = comparison.reasons[method],
                     .answered = counts.answered.rate(confidence),
                     .detected = counts.detected.rate(confidence),
+                    .detected_mpm = counts.detected_mpm.rate(confidence),
+                    .detected_ud = counts.detected_ud.rate(confidence),
                     .detected_impact = counts.detected_impact.rate(confidence),
+                    .flagged_without_impact = counts.flagged_without_impact.rate(confidence),
                     .false_alarm_healthy = counts.false_alarm_healthy.rate(confidence),
                     .false_alarm_tuning = counts.false_alarm_tuning.rate(confidence),
                     .located = counts.located.rate(confidence),
@@ -135,28 +141,40 @@ MethodRates rates_of(std::size_t method, const Comparison& comparison, const Tru
   return rates;
 }
 
-MethodPair paired(std::size_t first, std::size_t second, const Comparison& comparison, const Truths& truths) {
-  MethodPair pair{first, second, 0, {}};
+bool to_be_flagged(const ExperimentRecord& record, FlagTruth truth, const Study& study) {
+  return has_fault(record) && (truth == FlagTruth::fault || has_impact(record, study));
+}
+
+MethodPair paired(FlagTruth truth, std::size_t first, std::size_t second, const Comparison& comparison,
+                  const Truths& truths, const Study& study) {
+  MethodPair pair{truth, first, second, 0, {}};
   std::int64_t lost = 0, gained = 0;
   for (std::size_t i = 0; i < truths.size(); ++i) {
     const MethodVerdict& a = comparison.loops[i].verdicts[first];
     const MethodVerdict& b = comparison.loops[i].verdicts[second];
     if (a.status != AssessmentStatus::ok || b.status != AssessmentStatus::ok)
       continue;
-    const bool truth = has_fault(*truths[i]);
+    const bool right = to_be_flagged(*truths[i], truth, study);
     ++pair.loops;
-    lost += a.flagged == truth && b.flagged != truth ? 1 : 0;
-    gained += a.flagged != truth && b.flagged == truth ? 1 : 0;
+    lost += a.flagged == right && b.flagged != right ? 1 : 0;
+    gained += a.flagged != right && b.flagged == right ? 1 : 0;
   }
   pair.test = mcnemar_test(lost, gained);
   return pair;
 }
 
-constexpr std::array<MethodRateInfo, 8> kRates{{
+constexpr std::array<MethodRateInfo, 11> kRates{{
     {"answered", "answered", "of all loops those on which the method gave a verdict", &MethodRates::answered},
     {"detected", "detected", "of the loops with a fault those that are flagged", &MethodRates::detected},
+    {"detected_mpm", "detected, mismatch", "of the loops with a mismatch alone those that are flagged",
+     &MethodRates::detected_mpm},
+    {"detected_ud", "detected, disturbance", "of the loops with a disturbance alone those that are flagged",
+     &MethodRates::detected_ud},
     {"detected_impact", "detected, with impact",
      "of the loops with a fault that has an impact those that are flagged", &MethodRates::detected_impact},
+    {"flagged_without_impact", "flagged, no impact",
+     "of the loops with a fault that has no impact those that are flagged",
+     &MethodRates::flagged_without_impact},
     {"false_alarm_healthy", "false alarms, healthy",
      "of the loops without a fault and with the tuning of the design those that are flagged",
      &MethodRates::false_alarm_healthy},
@@ -177,6 +195,10 @@ constexpr std::array<MethodRateInfo, 8> kRates{{
 
 }  // namespace
 
+std::string_view to_string(FlagTruth truth) {
+  return truth == FlagTruth::fault ? "fault" : "impact";
+}
+
 std::span<const MethodRateInfo> method_rate_infos() {
   return kRates;
 }
@@ -187,9 +209,10 @@ ComparisonSummary summarise(const Comparison& comparison, std::span<const Experi
   ComparisonSummary summary;
   for (std::size_t method = 0; method < comparison.methods.size(); ++method)
     summary.methods.push_back(rates_of(method, comparison, truths, study));
-  for (std::size_t first = 0; first < comparison.methods.size(); ++first)
-    for (std::size_t second = first + 1; second < comparison.methods.size(); ++second)
-      summary.pairs.push_back(paired(first, second, comparison, truths));
+  for (const FlagTruth truth : {FlagTruth::fault, FlagTruth::impact})
+    for (std::size_t first = 0; first < comparison.methods.size(); ++first)
+      for (std::size_t second = first + 1; second < comparison.methods.size(); ++second)
+        summary.pairs.push_back(paired(truth, first, second, comparison, truths, study));
   return summary;
 }
 

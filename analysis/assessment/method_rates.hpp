@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/assessment/comparison.hpp"
@@ -22,7 +24,8 @@ namespace mpm {
 struct MethodRates {
   std::string method;
   std::string reason;  ///< why there was no verdict, where there was none
-  Rate answered, detected, detected_impact, false_alarm_healthy, false_alarm_tuning, located, source, channel;
+  Rate answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
+      false_alarm_healthy, false_alarm_tuning, located, source, channel;
   RocCurve roc;         ///< of the score, loops with a fault against healthy ones
   Interval roc_area;    ///< of roc.area; NaN when there is no curve
   double milliseconds;  ///< median processor time a loop, of those answered; NaN without
@@ -40,9 +43,20 @@ struct MethodRateInfo {
 /// Every rate of MethodRates once, in the order in which people read them.
 std::span<const MethodRateInfo> method_rate_infos();
 
-/// Two methods on the same loops: is one right where the other is wrong? Right is a flagged loop with a fault
-/// and a loop without one that is not flagged; counted are the loops that both gave a verdict on.
+/// Which loops a method is right to flag, and no others.
+enum class FlagTruth : std::int8_t {
+  fault = 0,  ///< those with a fault: what a monitor of the model should see
+  impact =
+      1,  ///< those with a fault that has an impact: what a monitor of the control performance should see
+};
+
+/// "fault", "impact"
+std::string_view to_string(FlagTruth truth);
+
+/// Two methods on the same loops: is one right where the other is wrong? Counted are the loops that both gave
+/// a verdict on.
 struct MethodPair {
+  FlagTruth truth;
   std::size_t first, second;  ///< places in Comparison::methods
   std::int64_t loops = 0;
   McNemarTest test;  ///< lost: right by the first alone
@@ -50,7 +64,7 @@ struct MethodPair {
 
 struct ComparisonSummary {
   std::vector<MethodRates> methods;
-  std::vector<MethodPair> pairs;  ///< every pair once
+  std::vector<MethodPair> pairs;  ///< every pair once for each truth, all of the first truth first
 };
 
 /// The rates of every method, from its verdicts and the truth in `records`, which have every experiment of

@@ -108,7 +108,9 @@ TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the 
   CHECK(json["methods"][0]["roc"]["area"] == summary.methods[0].roc.area);
   CHECK(json["methods"][0]["roc"]["threshold"][0].is_null());  // infinity
   CHECK(json["methods"][0]["milliseconds"] == summary.methods[0].milliseconds);
-  REQUIRE(json["pairs"].size() == 6);
+  REQUIRE(json["pairs"].size() == 12);
+  CHECK(json["pairs"][0]["truth"] == "fault");
+  CHECK(json["pairs"][6]["truth"] == "impact");
   CHECK(json["pairs"][0]["second"] == summary.methods[1].method);
   CHECK(json["pairs"][0]["loops"] == summary.pairs[0].loops);
   CHECK(json["pairs"][0]["first_alone"] == summary.pairs[0].test.lost);

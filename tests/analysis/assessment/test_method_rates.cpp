@@ -96,7 +96,10 @@ TEST_CASE("rates of a method: every loop is counted where it belongs", "[method_
   const MethodRates rates = made.rates();
   check_rate(rates.answered, 11, 13);
   check_rate(rates.detected, 6, 9);
+  check_rate(rates.detected_mpm, 3, 4);
+  check_rate(rates.detected_ud, 2, 4);
   check_rate(rates.detected_impact, 6, 8);
+  check_rate(rates.flagged_without_impact, 0, 1);
   check_rate(rates.false_alarm_healthy, 1, 2);
   check_rate(rates.false_alarm_tuning, 0, 0);
   check_rate(rates.located, 5, 6);
@@ -217,13 +220,31 @@ TEST_CASE("paired methods: right is a flagged fault or a quiet healthy loop, on 
   made.add(kNone, verdict(true), verdict(true));   // neither
   made.add(kMpm, {}, verdict(true));               // no verdict of the first
   const ComparisonSummary summary = made.summary();
-  REQUIRE(summary.pairs.size() == 1);
+  REQUIRE(summary.pairs.size() == 2);
   const MethodPair& pair = summary.pairs[0];
+  CHECK(pair.truth == FlagTruth::fault);
   CHECK(pair.loops == 6);
   CHECK(pair.test.lost == 1);
   CHECK(pair.test.gained == 3);
   CHECK(pair.test.p_two_sided == Approx(2.0 * 5.0 / 16.0).epsilon(1e-12));  // P(X >= 3), X ~ B(4, 1/2)
   CHECK(pair.test.p_worse == Approx(15.0 / 16.0).epsilon(1e-12));           // P(X >= 1)
+}
+
+TEST_CASE("paired methods: a fault without impact is to be flagged by the one truth and not by the other",
+          "[method_rates]") {
+  Case made;
+  ExperimentRecord quiet = made_up_record(0, kMpm, 1, 0.2);
+  quiet.diagnosis.ivar_basis.setOnes();
+  made.add(quiet, verdict(true), verdict(false));
+  made.add(kMpm, verdict(true), verdict(false));
+  const ComparisonSummary summary = made.summary();
+  REQUIRE(summary.pairs.size() == 2);
+  CHECK(summary.pairs[0].truth == FlagTruth::fault);
+  CHECK(summary.pairs[0].test.lost == 2);
+  CHECK(summary.pairs[0].test.gained == 0);
+  CHECK(summary.pairs[1].truth == FlagTruth::impact);
+  CHECK(summary.pairs[1].test.lost == 1);
+  CHECK(summary.pairs[1].test.gained == 1);
 }
 
 TEST_CASE("a comparison with loops that are not in the campaign, or not in its order, is refused",
