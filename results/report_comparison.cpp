@@ -69,18 +69,18 @@ std::string rate_cell(const Rate& rate) {
                                        html_interval(rate.interval, true), rate.total);
 }
 
+/// One row a rate, one column a method: there are more rates than a page is wide.
 std::string rates_table(const Study& study, const Methods& methods) {
-  const std::vector<MethodRateInfo> rates = counted_rates(methods);
-  std::vector<HtmlTable::Column> columns{{"Method", HtmlTable::Align::left}};
-  for (const MethodRateInfo& info : rates)
-    columns.push_back({html_text(info.title)});
+  std::vector<HtmlTable::Column> columns{{"Share of loops", HtmlTable::Align::left}};
+  for (const MethodRates& method : methods)
+    columns.push_back({html_text(method.method)});
   HtmlTable table(fmt::format("Shares of loops with their {}, and the number of loops looked at. "
                               "Rates that no loop was counted for are left out.",
                               interval_title(study)),
                   columns);
-  for (const MethodRates& method : methods) {
-    std::vector<std::string> cells{html_text(method.method)};
-    for (const MethodRateInfo& info : rates)
+  for (const MethodRateInfo& info : counted_rates(methods)) {
+    std::vector<std::string> cells{html_text(info.title)};
+    for (const MethodRates& method : methods)
       cells.push_back(rate_cell(method.*info.rate));
     table.row(cells);
   }
@@ -138,8 +138,8 @@ Figure rates_figure(const Study& study, const Methods& methods) {
   Figure figure;
   figure.name = "comparison-rates";
   figure.caption = fmt::format(
-      "How often each method that gave a verdict is right, with {:g} % intervals: shares of false alarms are "
-      "good on the left, all others on the right.",
+      "How often each method that gave a verdict is right, with {:g} % intervals: false alarms and flags "
+      "without impact are good on the left, all others on the right.",
       100.0 * study.aggregate.confidence);
   for (const MethodRateInfo& info : counted_rates(methods))
     if (info.rate != &MethodRates::answered)

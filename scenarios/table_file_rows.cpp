@@ -64,7 +64,7 @@ std::string joined_quantity(const std::string& of_row, const std::string& of_col
 /// The one of `known` that the column names, or else the row under `key`.
 std::string read_cell_name(const TomlTable& table, const char* key, const std::string& of_column,
                            const TableColumn& column, const std::vector<std::string>& known) {
-  const std::string name = of_column.empty() ? read_text_or(table, key, "") : of_column;
+  std::string name = of_column.empty() ? read_text_or(table, key, "") : of_column;
   if (name.empty())
     table.refuse("", fmt::format("no {} for column '{}'", key, column.head),
                  "one in the row or in the column");
