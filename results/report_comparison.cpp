@@ -116,8 +116,9 @@ Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
   const std::vector<std::size_t> places = answering(methods);
   const auto rows = static_cast<double>(places.size());
   Axis y{.label = "", .lower = -0.6, .upper = rows - 0.4};
-  for (auto place = places.rbegin(); place != places.rend(); ++place)
-    y.words.push_back(methods[*place].method);  // the first one on top
+  for (const std::size_t place : places)
+    y.words.push_back(methods[place].method);
+  std::reverse(y.words.begin(), y.words.end());  // the first one on top
   PanelScript panel(
       info.name, info.title,
       {.label = "share of loops (%)", .lower = -2, .upper = 102, .ticks = {0, 20, 40, 60, 80, 100}}, y);
