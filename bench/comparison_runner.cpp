@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <mutex>
 
 #include <omp.h>
 
@@ -22,6 +23,12 @@ Records compared_records(const Campaign& campaign, const std::optional<std::int6
       records.push_back(&record);
   }
   return records;
+}
+
+/// The loop was not stored, or a changed tuning has an S0 of its own.
+bool runs_loops(const Study& study, const ExperimentRecord& record) {
+  const bool own_basis = record.draw.tuning && study.tuning.sensitivity != TuningSensitivity::design;
+  return !record.loop || own_basis;
 }
 
 /// Ipopt answered some problem of this experiment, when it did not run as a whole.
@@ -56,30 +63,32 @@ Comparison run_comparison(const Campaign& campaign, const ComparisonOptions& opt
   for (int thread = 0; thread < threads; ++thread)
     panels.push_back(panel_of("active-set"));
   const std::unique_ptr<MethodPanel> reference = panel_of(campaign.info.solver);
-  std::exception_ptr failure;
-  std::atomic<bool> failed{false};
+  std::vector<std::exception_ptr> failures(records.size());  // none may leave a thread
+  std::atomic<std::size_t> first_failure{records.size()};    // only loops before it can still matter
+  std::mutex ipopt, done;  // not critical regions: an exception must not leave one
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (failed)
+    if (i > first_failure)
       continue;
     try {
-      if (!records[i]->loop && needs_ipopt(campaign, *records[i])) {
-#pragma omp critical(mpm_ipopt)
+      if (runs_loops(campaign.study, *records[i]) && needs_ipopt(campaign, *records[i])) {
+        const std::lock_guard alone(ipopt);
         assess(*reference, i);
       } else {
         assess(*panels[static_cast<std::size_t>(omp_get_thread_num())], i);
       }
-#pragma omp critical(mpm_compared)
+      const std::lock_guard one_at_a_time(done);
       if (options.on_done)
         options.on_done();
     } catch (...) {
-#pragma omp critical(mpm_compared)
-      failure = std::current_exception();
-      failed = true;
+      failures[i] = std::current_exception();
+      std::size_t first = first_failure;
+      while (i < first && !first_failure.compare_exchange_weak(first, i)) {
+      }
     }
   }
-  if (failure)
-    std::rethrow_exception(failure);
+  if (first_failure < records.size())
+    std::rethrow_exception(failures[first_failure]);
   for (const std::vector<std::string>& of_loop : reasons)
     for (std::size_t method = 0; method < of_loop.size(); ++method)
       if (comparison.reasons[method].empty())

@@ -24,7 +24,7 @@ std::int64_t compared_loops(const Campaign& campaign, const std::optional<std::i
 /// Assesses every experiment with status ok in OpenMP threads; the same answer for any number of them, but
 /// for the processor times. A loop that was not stored is run again by the solver of the campaign, where that
 /// is Ipopt one at a time: its linear solver does not bear two threads.
-/// @throws InputError for an unknown method
+/// @throws InputError for an unknown method, or options that do not fit the study: that of its first loop
 Comparison run_comparison(const Campaign& campaign, const ComparisonOptions& options);
 
 }  // namespace mpm

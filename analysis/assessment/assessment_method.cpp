@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "plants/error.hpp"
+
 namespace mpm {
 namespace {
 
@@ -41,9 +43,13 @@ Assessment Assessor::assess(const AssessedLoop& loop) {
     return Assessment::not_applicable(*unmet);
   if (!method_)
     method_ = make_(context_);
-  Assessment assessment = method_->assess(loop);
-  assert(assessment.cvs.empty() || static_cast<Eigen::Index>(assessment.cvs.size()) == loop.y.rows());
-  return assessment;
+  try {
+    Assessment assessment = method_->assess(loop);
+    assert(assessment.cvs.empty() || static_cast<Eigen::Index>(assessment.cvs.size()) == loop.y.rows());
+    return assessment;
+  } catch (const InputError& error) {
+    return Assessment::failed(error.what());
+  }
 }
 
 }  // namespace mpm

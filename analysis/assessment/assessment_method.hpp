@@ -42,7 +42,8 @@ class AssessmentMethod {
   AssessmentMethod& operator=(const AssessmentMethod&) = delete;
   virtual ~AssessmentMethod() = default;
 
-  /// The verdict on a loop that meets the requirements of the method.
+  /// The verdict on a loop that meets the requirements of the method. Throws InputError for records that it
+  /// cannot compute with.
   virtual Assessment assess(const AssessedLoop& loop) = 0;
 };
 
@@ -70,7 +71,9 @@ class Assessor {
   /// `context` must outlive the assessor.
   Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context);
 
-  /// The verdict on a loop of the study of the context.
+  /// The verdict on a loop of the study of the context: `failed` with what the method refuses of this loop,
+  /// so that one odd loop does not cost the verdicts on the others. Throws InputError as
+  /// AssessmentMethodInfo::make.
   Assessment assess(const AssessedLoop& loop);
 
  private:

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -10,7 +11,6 @@
 #include "analysis/assessment/methods.hpp"
 #include "analysis/diagnosis.hpp"
 #include "analysis/variance.hpp"
-#include "plants/error.hpp"
 
 namespace mpm {
 namespace {
@@ -26,18 +26,20 @@ DesignedOutputOptions options_of(const Badwe2010Options& study) {
   return options;
 }
 
-/// Refuses a largest order with more coefficients than the samples of any loop of the study.
-void require_long_records(const Study& study, const DesignedOutputOptions& options) {
+/// Why models of the largest order cannot be identified in the record of `cvs` CVs; none: they can.
+std::optional<std::string> too_short(Eigen::Index samples, Eigen::Index cvs,
+                                     const DesignedOutputOptions& options) {
   const Eigen::Index largest = options.orders.back();
-  const Eigen::Index coefficients = static_cast<Eigen::Index>(study.plant.cvs.size()) * (2 * largest + 1);
-  const double estimated =
+  const Eigen::Index coefficients = cvs * (2 * largest + 1);
+  const double share =
       options.criterion == DesignedOrderCriterion::validation_fit ? 1.0 - options.validation_share : 1.0;
-  const double samples = estimated * static_cast<double>(study.simulation.samples);
-  if (samples < static_cast<double>(coefficients + 1))
-    throw InputError(
-        "assessment.badwe2010.largest_order",
-        fmt::format("{}, which makes {} coefficients for {} samples", largest, coefficients, samples),
-        "fewer coefficients than samples");
+  const double estimated = share * static_cast<double>(samples);
+  if (estimated >= static_cast<double>(coefficients + 1))
+    return std::nullopt;
+  return fmt::format(
+      "its models of order {} have {} coefficients for {:g} samples: a smaller [assessment.badwe2010] "
+      "largest_order may do",
+      largest, coefficients, estimated);
 }
 
 class Badwe2010 final : public AssessmentMethod {
@@ -45,12 +47,12 @@ class Badwe2010 final : public AssessmentMethod {
   explicit Badwe2010(const AssessmentContext& context)
       : diagnosis_(context.study.diagnosis),
         y_basis_(context.basis.trajectory.y),
-        options_(options_of(context.study.assessment.badwe2010)) {
-    require_long_records(context.study, options_);
-  }
+        options_(options_of(context.study.assessment.badwe2010)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     const std::vector<Eigen::Index> cvs = loop.setpoint_cvs();
+    if (const auto reason = too_short(loop.samples(), static_cast<Eigen::Index>(cvs.size()), options_))
+      return Assessment::not_applicable(*reason);
     const Eigen::MatrixXd y = loop.y(cvs, Eigen::all);
     const Eigen::MatrixXd y_set = loop.y_set(cvs, Eigen::all);
     const DesignedOutput designed = designed_output(y, loop.y_sim(cvs, Eigen::all), y_set, options_);

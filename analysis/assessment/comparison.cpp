@@ -55,6 +55,13 @@ ComparedLoop verdicts(std::int64_t experiment, const AssessedLoop& loop, std::ve
   return compared;
 }
 
+/// What there is to say of a loop that no method can look at.
+ComparedLoop unanswered(std::int64_t experiment, std::size_t methods, const std::string& reason,
+                        std::vector<std::string>& reasons) {
+  reasons.assign(methods, reason);
+  return {experiment, std::vector<MethodVerdict>(methods)};
+}
+
 }  // namespace
 
 MethodPanel::MethodPanel(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,
@@ -78,7 +85,12 @@ std::vector<Assessor> MethodPanel::assessors_for(const AssessmentContext& contex
 ComparedLoop MethodPanel::assess(const ExperimentRecord& record, std::vector<std::string>& reasons) {
   const Trajectory trajectory =
       record.loop ? record.loop->trajectory : simulate_experiment(study_, record.draw, factory_);
+  if (trajectory.status != ControlStatus::ok)
+    return unanswered(record.draw.index, methods_.size(), "the loop does not run to its end", reasons);
   const std::optional<OwnBasis> own = own_basis(study_, record.draw, factory_);
+  if (own && own->basis.trajectory.status != ControlStatus::ok)
+    return unanswered(record.draw.index, methods_.size(),
+                      "its controller has no S0 of its own: " + own->basis.explanation, reasons);
   if (!own)
     return verdicts(record.draw.index, assessed_loop(study_, basis_.point, trajectory), assessors_, reasons);
   // The controller is another one, and its S0 with it; the benchmark is still what the study was designed

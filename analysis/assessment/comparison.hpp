@@ -50,7 +50,8 @@ class MethodPanel {
 
   /// What each method says of the experiment, whose status is ok: of its stored loop, or of the loop run
   /// again. Where the experiment changes the tuning the methods know the S0 of the controller that runs, as
-  /// own_basis() has it. `reasons[m]` is why method m gave no answer, empty when it did.
+  /// own_basis() has it. Every method failed where the loop, run again, does not reach its end, or where its
+  /// controller has no S0. `reasons[m]` is why method m gave no answer, empty when it did.
   ComparedLoop assess(const ExperimentRecord& record, std::vector<std::string>& reasons);
 
  private:

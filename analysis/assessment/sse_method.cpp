@@ -1,17 +1,25 @@
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "analysis/assessment/methods.hpp"
+#include "analysis/signal_check.hpp"
 #include "analysis/simulation_error.hpp"
 #include "analysis/variance.hpp"
+#include "plants/error.hpp"
 
 namespace mpm {
 namespace {
 
-/// SSE_i of (4.17) divided by the square root of the length, which periods of different lengths share.
-Eigen::VectorXd root_mean_square_errors(const AssessedLoop& loop) {
-  return simulation_errors(loop.y, loop.y_sim) / std::sqrt(static_cast<double>(loop.samples()));
+/// Mean squares of y - y_sim; 0 for a model that is exact up to the rounding of y.
+Eigen::VectorXd mean_squared_errors(const AssessedLoop& loop) {
+  const Eigen::VectorXd errors = simulation_errors(loop.y, loop.y_sim);
+  if (!errors.allFinite())
+    throw InputError("simulation errors", "a value that is not finite", "finite values only");
+  Eigen::VectorXd squares = errors.cwiseAbs2() / static_cast<double>(loop.samples());
+  for (Eigen::Index cv = 0; cv < squares.size(); ++cv)
+    if (squares(cv) <= variance_floor(loop.y.row(cv).transpose()))
+      squares(cv) = 0.0;
+  return squares;
 }
 
 /// What a monitor of the prediction error says, which does not ask whether the error reaches the control.
@@ -20,16 +28,17 @@ class SimulationErrorMonitor final : public AssessmentMethod {
   /// The requirements of the method say that there is a benchmark.
   explicit SimulationErrorMonitor(const AssessmentContext& context)
       : threshold_(context.study.assessment.sse.threshold),
-        benchmark_(root_mean_square_errors(*context.benchmark)) {}
+        benchmark_(mean_squared_errors(*context.benchmark)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     const Eigen::VectorXd sse = simulation_errors(loop.y, loop.y_sim);
-    const Eigen::VectorXd errors = root_mean_square_errors(loop);
+    const Eigen::VectorXd squares = mean_squared_errors(loop);
     Assessment assessment;
     assessment.score = 0.0;
     assessment.numbers.push_back({"tsse", sse.sum()});
-    for (Eigen::Index cv = 0; cv < errors.size(); ++cv) {
-      const double ratio = variance_ratio(errors(cv) * errors(cv), benchmark_(cv) * benchmark_(cv));
+    for (Eigen::Index cv = 0; cv < squares.size(); ++cv) {
+      const bool exact = squares(cv) == 0.0 && benchmark_(cv) == 0.0;
+      const double ratio = exact ? 1.0 : variance_ratio(squares(cv), benchmark_(cv));
       const bool flagged = ratio > threshold_;
       assessment.cvs.push_back({flagged, ratio});
       assessment.flagged = assessment.flagged || flagged;

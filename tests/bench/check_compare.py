@@ -148,6 +148,17 @@ def check_no_loop(compare):
     assert not (compare.folder / "out.h5").exists()
 
 
+def check_unfit_options(compare):
+    """Options that do not fit the study are refused, not an end of the program, also where loops run by Ipopt."""
+    source = pathlib.Path(__file__).parents[2] / "scenarios" / "studies" / "wood-berry-mixed.toml"
+    study, archive = compare.folder / "odd.toml", compare.folder / "odd.h5"
+    study.write_text(source.read_text(encoding="utf-8") + "\n[assessment.yu-qin]\nfirst_sample = 900000\n", encoding="utf-8")
+    compare.run("run", study, "-o", archive, "--experiments", 2, "--solver", "ipopt", "--quiet")
+    for jobs in (1, 2):
+        message = compare.run("compare", archive, "--methods", "yu-qin", "--jobs", jobs, "--quiet", code=2)
+        assert "assessment.yu-qin.first_sample: found 900000" in message, message
+
+
 def main(program):
     with tempfile.TemporaryDirectory() as name:
         compare = Compare(program, pathlib.Path(name))
@@ -157,6 +168,7 @@ def main(program):
         check_other_commands(compare, archive, output)
         check_refusals(compare, archive)
         check_no_loop(compare)
+        check_unfit_options(compare)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@
 #include "analysis/assessment/assessed_loop.hpp"
 #include "analysis/assessment/assessment_method.hpp"
 #include "analysis/assessment/comparison.hpp"
+#include "analysis/assessment/method_table.hpp"
 #include "analysis/nominal_output.hpp"
 #include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
@@ -169,6 +170,43 @@ TEST_CASE("a method is made for the first loop to which it applies, and once", "
     CHECK(assessor.assess(loop).flagged);
   CHECK(tally.made == 1);
   CHECK(tally.asked == 3);
+}
+
+TEST_CASE("a loop that a method refuses has failed, with what it refused, and the next one is assessed",
+          "[assessed_loop]") {
+  const Study study = find_study("chapter6");
+  const BasisCase basis = run_basis_case(study, kFactory);
+  const AssessmentContext context = assessment_context(study, basis, kFactory);
+  const AssessedLoop& healthy = *context.benchmark;
+  AssessedLoop odd = healthy;
+  odd.y(2, 7) = std::nan("");
+  for (const AssessmentMethodInfo& method : assessment_methods()) {
+    INFO(method.name);
+    Assessor assessor(method, context);
+    const Assessment refused = assessor.assess(odd);
+    CHECK(refused.status != AssessmentStatus::ok);
+    CHECK_FALSE(refused.flagged);
+    CHECK_FALSE(refused.reason.empty());
+    if (method.name == "botelho")
+      CHECK(refused.status == AssessmentStatus::failed);
+    CHECK(assessor.assess(healthy).status == Assessor(method, context).assess(healthy).status);
+  }
+}
+
+TEST_CASE("a stored loop that did not reach its end gives no verdict, whatever the method",
+          "[assessed_loop]") {
+  const Study study = find_study("chapter6");
+  const BasisCase basis = run_basis_case(study, kFactory);
+  ExperimentRecord record = ExperimentRunner(study, basis, kFactory).run(0, StorePolicy::all);
+  record.loop->trajectory.status = ControlStatus::infeasible;
+  MethodPanel panel(study, basis, {"botelho", "sse"}, kFactory);
+  std::vector<std::string> reasons;
+  for (const MethodVerdict& verdict : panel.assess(record, reasons).verdicts) {
+    CHECK(verdict.status == AssessmentStatus::failed);
+    CHECK_FALSE(verdict.flagged);
+  }
+  REQUIRE(reasons.size() == 2);
+  CHECK_THAT(reasons[1], Contains("does not run to its end"));
 }
 
 TEST_CASE("a panel gives a stored loop and the same loop run again the same verdicts", "[assessed_loop]") {

@@ -165,6 +165,12 @@ TEST_CASE("sse: threshold, exact models, and no benchmark") {
   AssessedLoop exact = benchmark;
   exact.y_sim = exact.y;
   CHECK(std::isinf(Setting(exact).assess("sse", loop).score));
-  CHECK_FALSE(Setting(exact).assess("sse", exact).flagged);
+  const Assessment perfect = Setting(exact).assess("sse", exact);
+  CHECK_FALSE(perfect.flagged);
+  CHECK(perfect.cvs[0].score == 1.0);  // the same errors
+  AssessedLoop rounded = exact;        // one unit in the last place of some 5, which is no error of a model
+  rounded.y_sim.array() += 8.9e-16;
+  CHECK(Setting(exact).assess("sse", rounded).score == 1.0);
+  CHECK(Setting(rounded).assess("sse", exact).score == 1.0);
   CHECK(Setting(std::nullopt).assess("sse", loop).status == AssessmentStatus::not_applicable);
 }
