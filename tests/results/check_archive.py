@@ -123,7 +123,8 @@ def check_xarray(path, variables):
         assert (flagged == rate.hits).all() and (answered == rate.total).all()
         assert (rate.lower <= rate.value).all() and (rate.value <= rate.upper).all()
         assert comparison.flagged_channel.dims == ("assessment_method", "experiment", "cv", "mv")
-        assert comparison.sizes["pair"] == comparison.sizes["assessment_method"] * (comparison.sizes["assessment_method"] - 1) / 2
+        methods = comparison.sizes["assessment_method"]
+        assert comparison.sizes["pair"] == methods * (methods - 1)  # every pair once for each of two truths
     with xarray.open_dataset(path, group="aggregate") as aggregate:
         assert aggregate.reference.sel(name="infeasible") == 0.04
         assert list(aggregate.kind.values) == ["mpm", "ud", "mpm_ud"]
