@@ -7,6 +7,7 @@
 
 #include "analysis/assessment/methods.hpp"
 #include "analysis/assessment/model_quality.hpp"
+#include "plants/error.hpp"
 
 namespace mpm {
 namespace {
@@ -41,6 +42,14 @@ Eigen::VectorXd weights_of(const MpcOptions& controller) {
              : controller.setpoint_weight;
 }
 
+/// An autoregression of this order needs three times as many samples (autoregressive_noise()).
+void require_long_benchmark(Eigen::Index samples, int order) {
+  if (samples < 3 * order)
+    throw InputError("assessment.sun.noise_order",
+                     fmt::format("{} for a benchmark of {} samples", order, samples),
+                     fmt::format("at most {}, a third of them", samples / 3));
+}
+
 /// G_d0 of each CV; none when it should come from a benchmark that is not known.
 std::optional<std::vector<NoiseModel>> noise_models(const SunOptions& sun, const AssessmentContext& context) {
   std::vector<NoiseModel> models(static_cast<std::size_t>(context.study.cv_count()));
@@ -49,6 +58,7 @@ std::optional<std::vector<NoiseModel>> noise_models(const SunOptions& sun, const
   if (sun.noise == SunNoise::benchmark) {
     if (!context.benchmark)
       return std::nullopt;
+    require_long_benchmark(context.benchmark->samples(), sun.noise_order);
     const Eigen::MatrixXd v = context.benchmark->y - context.benchmark->y_sim;
     for (std::size_t i = 0; i < models.size(); ++i)
       models[i] = autoregressive_noise(v.row(static_cast<Eigen::Index>(i)).transpose(), sun.noise_order);

@@ -174,17 +174,19 @@ TEST_CASE("archive: healthy experiments and every change of the tuning come back
   check_same(there_and_back(campaign), campaign);
 }
 
-TEST_CASE("archive: a healthy experiment or a changed weight that the study cannot have is refused") {
+/// What the reader says of an archive of this campaign.
+std::string refusal(const Campaign& campaign) {
   const TemporaryFolder folder;
-  const auto refusal = [&](const Campaign& campaign) -> std::string {
-    write_archive(folder / "a.h5", campaign);
-    try {
-      read_archive(folder / "a.h5");
-      return "accepted";
-    } catch (const ArchiveError& error) {
-      return error.what();
-    }
-  };
+  write_archive(folder / "a.h5", campaign);
+  try {
+    read_archive(folder / "a.h5");
+    return "accepted";
+  } catch (const ArchiveError& error) {
+    return error.what();
+  }
+}
+
+TEST_CASE("archive: a healthy experiment or a changed weight that the study cannot have is refused") {
   using Catch::Contains;
   Campaign healthy = made_up_campaign();
   healthy.records[5].draw = basis_draw();
@@ -217,16 +219,6 @@ TEST_CASE("archive: a healthy experiment or a changed weight that the study cann
 }
 
 TEST_CASE("archive: what contradicts the scenarios of its study is refused") {
-  const TemporaryFolder folder;
-  const auto refusal = [&](const Campaign& campaign) -> std::string {
-    write_archive(folder / "a.h5", campaign);
-    try {
-      read_archive(folder / "a.h5");
-      return "accepted";
-    } catch (const ArchiveError& error) {
-      return error.what();
-    }
-  };
   using Catch::Contains;
   Campaign kind = scenario_campaign();
   kind.records[1].draw.kind = ExperimentKind::ud;
