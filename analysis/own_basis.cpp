@@ -41,9 +41,13 @@ class StepCounter {
 
 }  // namespace
 
+bool has_own_basis(const Study& study, const ExperimentDraw& draw) {
+  return draw.tuning && study.tuning.sensitivity != TuningSensitivity::design;
+}
+
 std::optional<OwnBasis> own_basis(const Study& study, const ExperimentDraw& draw,
                                   const QpSolverFactory& factory) {
-  if (!draw.tuning || study.tuning.sensitivity == TuningSensitivity::design)
+  if (!has_own_basis(study, draw))
     return std::nullopt;
   OwnBasis own{with_tuning(study, draw), {}, {}};
   own.study.s0_perturbation = {};

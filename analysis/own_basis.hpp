@@ -18,9 +18,12 @@ struct OwnBasis {
   SolverStatistics solver;  ///< of all its loops, those that give T0 among them
 };
 
+/// Is the loop of this experiment diagnosed with a basis case of its own? It is when its tuning differs from
+/// that of the study, unless the study says that nobody noticed the change (TuningSensitivity::design).
+bool has_own_basis(const Study& study, const ExperimentDraw& draw);
+
 /// The basis case with which the loop of this experiment is to be diagnosed: S0 belongs to the controller and
-/// is determined anew when its tuning changes (appendix A2). None where that of the study serves: the tuning
-/// is that of the study, or the study says that nobody noticed the change (TuningSensitivity::design).
+/// is determined anew when its tuning changes (appendix A2). None without has_own_basis().
 ///
 /// Only S0 and the operating point are the experiment's own. The benchmark of Ivar_basis (6.22) stays the
 /// basis case of the study, against which a bad tuning is to show.

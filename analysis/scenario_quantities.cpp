@@ -58,11 +58,13 @@ std::vector<TableQuantity> all_quantities() {
 }
 
 void refuse_unknown(const std::string& name) {
+  const std::vector<TableQuantity>& known = ScenarioQuantities::known();
+  if (std::any_of(known.begin(), known.end(), [&](const TableQuantity& each) { return each.name == name; }))
+    return;
   std::vector<std::string> names;
-  for (const TableQuantity& quantity : ScenarioQuantities::known())
+  for (const TableQuantity& quantity : known)
     names.push_back(quantity.name);
-  if (std::find(names.begin(), names.end(), name) == names.end())
-    throw InputError("quantity", fmt::format("'{}'", name), fmt::format("{}", fmt::join(names, ", ")));
+  throw InputError("quantity", fmt::format("'{}'", name), fmt::format("{}", fmt::join(names, ", ")));
 }
 
 double cv_flag(const Assessment& assessment, Eigen::Index cv) {
@@ -143,9 +145,9 @@ const Assessment& ScenarioQuantities::assessment(const std::string& method) {
   const auto found = assessments_.find(method);
   if (found != assessments_.end())
     return found->second;
-  return assessments_
-      .emplace(method, Assessor(assessment_method(method), context_)
-                           .assess(assessed_loop(context_.study, context_.basis.point, loop_)))
+  if (!assessed_)
+    assessed_ = assessed_loop(context_.study, context_.basis.point, loop_);
+  return assessments_.emplace(method, Assessor(assessment_method(method), context_).assess(*assessed_))
       .first->second;
 }
 

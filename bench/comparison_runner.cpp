@@ -8,6 +8,7 @@
 
 #include <omp.h>
 
+#include "analysis/own_basis.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {
@@ -25,10 +26,9 @@ Records compared_records(const Campaign& campaign, const std::optional<std::int6
   return records;
 }
 
-/// The loop was not stored, or a changed tuning has an S0 of its own.
+/// The loop was not stored, or its S0 has to be determined.
 bool runs_loops(const Study& study, const ExperimentRecord& record) {
-  const bool own_basis = record.draw.tuning && study.tuning.sensitivity != TuningSensitivity::design;
-  return !record.loop || own_basis;
+  return !record.loop || has_own_basis(study, record.draw);
 }
 
 /// Ipopt answered some problem of this experiment, when it did not run as a whole.

@@ -30,6 +30,11 @@ std::vector<int> read_orders(const TomlTable& table, const std::vector<int>& fal
   return orders;
 }
 
+int read_int_or(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high,
+                int fallback) {
+  return static_cast<int>(read_whole_or(table, key, low, high, fallback));
+}
+
 SunOptions read_sun(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("sun", study_file_keys("assessment.sun"));
   SunOptions options;
@@ -37,8 +42,7 @@ SunOptions read_sun(const TomlTable& assessment) {
   options.index = read_choice_or<SunIndex>(table, "index", {{"imqi", SunIndex::imqi}, {"mqi", SunIndex::mqi}},
                                            options.index);
   options.orders = read_orders(table, options.orders);
-  options.setpoint_order =
-      static_cast<int>(read_whole_or(table, "setpoint_order", 0, kMaxOrder, options.setpoint_order));
+  options.setpoint_order = read_int_or(table, "setpoint_order", 0, kMaxOrder, options.setpoint_order);
   options.criterion = read_choice_or<SunCriterion>(
       table, "criterion",
       {{"aic", SunCriterion::aic}, {"bic", SunCriterion::bic}, {"validation", SunCriterion::validation}},
@@ -53,13 +57,8 @@ SunOptions read_sun(const TomlTable& assessment) {
       options.noise);
   options.noise_filter = read_number_or(table, "noise_filter", {.low = 0, .high = 1, .low_included = true},
                                         options.noise_filter);
-  options.noise_order =
-      static_cast<int>(read_whole_or(table, "noise_order", 0, kMaxOrder, options.noise_order));
+  options.noise_order = read_int_or(table, "noise_order", 0, kMaxOrder, options.noise_order);
   return options;
-}
-
-int read_int_or(const TomlTable& table, std::string_view key, std::int64_t low, int fallback) {
-  return static_cast<int>(read_whole_or(table, key, low, kMaxLength, fallback));
 }
 
 void read_badwe2009_models(const TomlTable& table, Badwe2009Options& options) {
@@ -70,22 +69,22 @@ void read_badwe2009_models(const TomlTable& table, Badwe2009Options& options) {
                                                 {"first-order", NoiseFilter::first_order},
                                                 {"external", NoiseFilter::external}},
                                                options.filter);
-  options.filter_length = read_int_or(table, "filter_length", 1, options.filter_length);
+  options.filter_length = read_int_or(table, "filter_length", 1, kMaxLength, options.filter_length);
   options.model = read_choice_or<DecorrelationModel>(
       table, "model", {{"fir", DecorrelationModel::fir}, {"output-error", DecorrelationModel::output_error}},
       options.model);
-  options.nb = read_int_or(table, "nb", 1, options.nb);
-  options.nf = read_int_or(table, "nf", 0, options.nf);
-  options.fir_length = read_int_or(table, "fir_length", 1, options.fir_length);
+  options.nb = read_int_or(table, "nb", 1, kMaxLength, options.nb);
+  options.nf = read_int_or(table, "nf", 0, kMaxLength, options.nf);
+  options.fir_length = read_int_or(table, "fir_length", 1, kMaxLength, options.fir_length);
   options.fir_pole =
       read_number_or(table, "fir_pole", {.low = 0, .high = 1, .low_included = true}, options.fir_pole);
 }
 
 void read_badwe2009_verdict(const TomlTable& table, Badwe2009Options& options) {
   const NumberRule share{.low = 0, .high = 1, .low_included = true, .high_included = true};
-  options.min_lag = read_int_or(table, "min_lag", 0, options.min_lag);
+  options.min_lag = read_int_or(table, "min_lag", 0, kMaxLength, options.min_lag);
   options.max_lag =
-      read_int_or(table, "max_lag", options.min_lag, std::max(options.min_lag, options.max_lag));
+      read_int_or(table, "max_lag", options.min_lag, kMaxLength, std::max(options.min_lag, options.max_lag));
   options.confidence = read_number_or(table, "confidence", NumberRule::inside(0, 1), options.confidence);
   options.multiplicity = read_choice_or<Multiplicity>(
       table, "multiplicity",
@@ -110,19 +109,16 @@ Badwe2009Options read_badwe2009(const TomlTable& assessment) {
 Badwe2010Options read_badwe2010(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("badwe2010", study_file_keys("assessment.badwe2010"));
   Badwe2010Options options;
-  options.smallest_order =
-      static_cast<int>(read_whole_or(table, "smallest_order", 1, kMaxOrder, options.smallest_order));
-  options.largest_order =
-      static_cast<int>(read_whole_or(table, "largest_order", options.smallest_order, kMaxOrder,
-                                     std::max(options.smallest_order, options.largest_order)));
+  options.smallest_order = read_int_or(table, "smallest_order", 1, kMaxOrder, options.smallest_order);
+  options.largest_order = read_int_or(table, "largest_order", options.smallest_order, kMaxOrder,
+                                      std::max(options.smallest_order, options.largest_order));
   options.criterion =
       read_choice_or<DesignedOrderCriterion>(table, "criterion",
                                              {{"record-fit", DesignedOrderCriterion::record_fit},
                                               {"validation-fit", DesignedOrderCriterion::validation_fit},
                                               {"bic", DesignedOrderCriterion::bic}},
                                              options.criterion);
-  options.max_iterations =
-      static_cast<int>(read_whole_or(table, "max_iterations", 1, kMaxIterations, options.max_iterations));
+  options.max_iterations = read_int_or(table, "max_iterations", 1, kMaxIterations, options.max_iterations);
   return options;
 }
 
@@ -130,10 +126,8 @@ YuQinOptions read_yu_qin(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("yu-qin", study_file_keys("assessment.yu-qin"));
   YuQinOptions options;
   options.confidence = read_number_or(table, "confidence", NumberRule::inside(0, 1), options.confidence);
-  options.largest_lag =
-      static_cast<int>(read_whole_or(table, "largest_lag", 0, kMaxLag, options.largest_lag));
-  options.first_sample =
-      static_cast<int>(read_whole_or(table, "first_sample", 0, kMaxLag, options.first_sample));
+  options.largest_lag = read_int_or(table, "largest_lag", 0, kMaxLag, options.largest_lag);
+  options.first_sample = read_int_or(table, "first_sample", 0, kMaxLag, options.first_sample);
   return options;
 }
 

@@ -31,10 +31,12 @@ class Botelho final : public AssessmentMethod {
     for (Eigen::Index cv = 0; cv < diagnosis.ivar.size(); ++cv) {
       assessment.score = std::max(assessment.score, distance(diagnosis.ivar(cv)));
       const bool flagged = options_.has_impact(diagnosis.ivar_diag(cv));
-      const bool looked_at = flagged || cv == diagnosis.predicted_cv;
-      const MpmIndicator indicator = looked_at ? chain_.indicator_of(cv, loop.y, nominal) : MpmIndicator{};
+      const bool predicted = cv == diagnosis.predicted_cv;  // diagnose() has its indicator already
+      const MpmIndicator indicator = predicted ? diagnosis.indicator
+                                     : flagged ? chain_.indicator_of(cv, loop.y, nominal)
+                                               : MpmIndicator{};
       assessment.cvs.push_back({flagged, distance(diagnosis.ivar_diag(cv)),
-                                looked_at ? chain_.source_of(indicator) : ExperimentKind::none});
+                                predicted || flagged ? chain_.source_of(indicator) : ExperimentKind::none});
       assessment.numbers.push_back({"ivar", diagnosis.ivar(cv), cv});
       assessment.numbers.push_back({"ivar_diag", diagnosis.ivar_diag(cv), cv});
       assessment.numbers.push_back({"i_mpm", indicator.i_mpm, cv});

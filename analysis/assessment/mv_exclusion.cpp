@@ -1,17 +1,16 @@
 #include "analysis/assessment/mv_exclusion.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 #include <fmt/format.h>
 
+#include "analysis/active_limit.hpp"
 #include "analysis/signal_check.hpp"
 #include "analysis/variance.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr double kAtLimit = 1e-6;
 
 void require_limits(const Eigen::Ref<const Eigen::MatrixXd>& u, const MvLimits& limits) {
   if (limits.lower.size() != u.rows() || limits.upper.size() != u.rows())
@@ -45,11 +44,10 @@ Eigen::VectorXd saturated_shares(const Eigen::Ref<const Eigen::MatrixXd>& u, con
   require_limits(u, limits);
   Eigen::VectorXd shares(u.rows());
   for (Eigen::Index i = 0; i < u.rows(); ++i) {
-    const double distance = limits.upper(i) - limits.lower(i);
-    const double near = kAtLimit * (std::isfinite(distance) ? distance : 1.0);
-    const auto at_limit =
-        u.row(i).array() <= limits.lower(i) + near || u.row(i).array() >= limits.upper(i) - near;
-    shares(i) = static_cast<double>(at_limit.count()) / static_cast<double>(u.cols());
+    const auto at_limits = std::count_if(u.row(i).begin(), u.row(i).end(), [&](double value) {
+      return at_or_below(value, limits.lower(i)) || at_or_above(value, limits.upper(i));
+    });
+    shares(i) = static_cast<double>(at_limits) / static_cast<double>(u.cols());
   }
   return shares;
 }

@@ -25,8 +25,7 @@ struct MvLimits {
   Eigen::VectorXd upper;
 };
 
-/// Share of samples at which each MV is at a limit, within 1e-6 of the distance of its limits (of 1 when
-/// either is infinite).
+/// Share of samples at which each MV (nu x N, unit of the MV) is at a limit or beyond it (active_limit.hpp).
 /// @throws InputError for limits other than one an MV, or a lower limit above the upper one
 Eigen::VectorXd saturated_shares(const Eigen::Ref<const Eigen::MatrixXd>& u, const MvLimits& limits);
 

@@ -11,8 +11,8 @@ namespace mpm {
 namespace {
 
 /// Mean squares of y - y_sim; 0 for a model that is exact up to the rounding of y.
-Eigen::VectorXd mean_squared_errors(const AssessedLoop& loop) {
-  const Eigen::VectorXd errors = simulation_errors(loop.y, loop.y_sim);
+/// `errors` are the simulation_errors() of the loop.
+Eigen::VectorXd mean_squared_errors(const AssessedLoop& loop, const Eigen::VectorXd& errors) {
   if (!errors.allFinite())
     throw InputError("simulation errors", "a value that is not finite", "finite values only");
   Eigen::VectorXd squares = errors.cwiseAbs2() / static_cast<double>(loop.samples());
@@ -28,11 +28,12 @@ class SimulationErrorMonitor final : public AssessmentMethod {
   /// The requirements of the method say that there is a benchmark.
   explicit SimulationErrorMonitor(const AssessmentContext& context)
       : threshold_(context.study.assessment.sse.threshold),
-        benchmark_(mean_squared_errors(*context.benchmark)) {}
+        benchmark_(mean_squared_errors(*context.benchmark,
+                                       simulation_errors(context.benchmark->y, context.benchmark->y_sim))) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     const Eigen::VectorXd sse = simulation_errors(loop.y, loop.y_sim);
-    const Eigen::VectorXd squares = mean_squared_errors(loop);
+    const Eigen::VectorXd squares = mean_squared_errors(loop, sse);
     Assessment assessment;
     assessment.score = 0.0;
     assessment.numbers.push_back({"tsse", sse.sum()});
