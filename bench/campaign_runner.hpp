@@ -6,11 +6,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "analysis/experiment.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "bench/experiment_execution.hpp"
 #include "bench/shard_store.hpp"
 #include "plants/error.hpp"
-#include "results/campaign.hpp"
+#include "results/archive/campaign.hpp"
 
 namespace mpm {
 

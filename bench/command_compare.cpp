@@ -9,8 +9,8 @@
 #include "bench/progress.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
-#include "results/archive.hpp"
-#include "results/comparison.hpp"
+#include "results/archive/archive.hpp"
+#include "results/summary/comparison.hpp"
 
 namespace mpm {
 

@@ -6,15 +6,15 @@
 
 #include <fmt/format.h>
 
-#include "analysis/nominal_estimator.hpp"
-#include "analysis/own_basis.hpp"
+#include "analysis/basis/own_basis.hpp"
+#include "analysis/sensitivity/nominal_estimator.hpp"
 #include "bench/files.hpp"
 #include "plants/error.hpp"
-#include "results/atomic_file.hpp"
-#include "results/experiment_text.hpp"
-#include "results/figure_drawing.hpp"
-#include "results/plot_text.hpp"
-#include "results/trajectory_figure.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/plot/figure_drawing.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/plot/trajectory_figure.hpp"
+#include "results/text/experiment_text.hpp"
 
 namespace mpm {
 namespace {

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "bench/files.hpp"
-#include "results/atomic_file.hpp"
-#include "results/report.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/report/report.hpp"
 
 namespace mpm {
 

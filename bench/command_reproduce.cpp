@@ -4,14 +4,14 @@
 
 #include <fmt/format.h>
 
-#include "analysis/scenario_quantities.hpp"
-#include "analysis/seeded_reproduction.hpp"
+#include "analysis/reproduction/scenario_quantities.hpp"
+#include "analysis/reproduction/seeded_reproduction.hpp"
 #include "bench/files.hpp"
 #include "bench/reproduction_runs.hpp"
 #include "bench/version.hpp"
-#include "results/atomic_file.hpp"
-#include "results/reproduction.hpp"
-#include "results/seeded_reproduction.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/reproduction/reproduction.hpp"
+#include "results/reproduction/seeded_reproduction.hpp"
 #include "scenarios/study_change.hpp"
 
 namespace mpm {

@@ -13,9 +13,9 @@
 #include "bench/shard_folder.hpp"
 #include "bench/stop_signals.hpp"
 #include "plants/error.hpp"
-#include "results/archive.hpp"
-#include "results/atomic_file.hpp"
-#include "results/summary.hpp"
+#include "results/archive/archive.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/study_library.hpp"
 
 namespace mpm {

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/study_aggregate.hpp"
+#include "analysis/findings/study_aggregate.hpp"
 #include "bench/command_compare.hpp"
 #include "bench/command_plot.hpp"
 #include "bench/command_report.hpp"
@@ -21,14 +21,14 @@
 #include "bench/record_bytes.hpp"
 #include "bench/sweep_command.hpp"
 #include "plants/error.hpp"
-#include "results/archive.hpp"
-#include "results/archive_error.hpp"
-#include "results/atomic_file.hpp"
-#include "results/experiment_text.hpp"
-#include "results/gate_check.hpp"
-#include "results/gate_file.hpp"
-#include "results/gate_report.hpp"
-#include "results/summary.hpp"
+#include "results/archive/archive.hpp"
+#include "results/files/archive_error.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/gates/gate_check.hpp"
+#include "results/gates/gate_file.hpp"
+#include "results/gates/gate_report.hpp"
+#include "results/summary/summary.hpp"
+#include "results/text/experiment_text.hpp"
 #include "scenarios/study_library.hpp"
 
 namespace mpm {

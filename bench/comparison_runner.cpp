@@ -8,7 +8,7 @@
 
 #include <omp.h>
 
-#include "analysis/own_basis.hpp"
+#include "analysis/basis/own_basis.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

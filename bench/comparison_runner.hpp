@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/assessment/comparison.hpp"
-#include "results/campaign.hpp"
+#include "analysis/findings/comparison.hpp"
+#include "results/archive/campaign.hpp"
 
 namespace mpm {
 

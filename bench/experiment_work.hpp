@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/experiment.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "scenarios/audit.hpp"
 
 namespace mpm {

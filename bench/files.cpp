@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include "plants/error.hpp"
-#include "results/archive.hpp"
-#include "results/archive_error.hpp"
+#include "results/archive/archive.hpp"
+#include "results/files/archive_error.hpp"
 
 namespace mpm {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "results/campaign.hpp"
+#include "results/archive/campaign.hpp"
 
 namespace mpm {
 

@@ -6,9 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "analysis/assessment/method_table.hpp"
+#include "analysis/methods/method_table.hpp"
 #include "bench/version.hpp"
-#include "results/figure_format.hpp"
+#include "results/plot/figure_format.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

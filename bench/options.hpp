@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/experiment.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "bench/campaign_runner.hpp"
 
 namespace mpm {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "bench/experiment_work.hpp"
-#include "results/campaign.hpp"
+#include "results/archive/campaign.hpp"
 
 namespace mpm {
 

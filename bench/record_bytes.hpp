@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/experiment.hpp"
+#include "analysis/experiment/experiment.hpp"
 
 namespace mpm {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "analysis/seeded_reproduction.hpp"
+#include "analysis/reproduction/seeded_reproduction.hpp"
 
 namespace mpm {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/table_reproduction.hpp"
+#include "analysis/reproduction/table_reproduction.hpp"
 
 namespace mpm {
 

@@ -11,8 +11,8 @@
 #include "bench/byte_stream.hpp"
 #include "bench/outcome_bytes.hpp"
 #include "plants/error.hpp"
-#include "results/atomic_file.hpp"
-#include "results/file_seal.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/files/file_seal.hpp"
 
 namespace mpm {
 namespace {

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "plants/error.hpp"
-#include "results/archive_error.hpp"
+#include "results/files/archive_error.hpp"
 
 namespace mpm {
 namespace {

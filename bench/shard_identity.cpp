@@ -10,7 +10,7 @@
 
 #include "bench/version.hpp"
 #include "plants/error.hpp"
-#include "results/sha256.hpp"
+#include "results/files/sha256.hpp"
 
 namespace mpm {
 namespace {

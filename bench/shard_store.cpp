@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
-#include "results/archive_error.hpp"
+#include "results/files/archive_error.hpp"
 
 namespace mpm {
 namespace {

@@ -9,11 +9,11 @@
 
 #include "bench/campaign_runner.hpp"
 #include "bench/progress.hpp"
-#include "results/archive.hpp"
-#include "results/archive_error.hpp"
-#include "results/atomic_file.hpp"
-#include "results/summary_parts.hpp"
-#include "results/sweep_table.hpp"
+#include "results/archive/archive.hpp"
+#include "results/files/archive_error.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/summary/summary_parts.hpp"
+#include "results/summary/sweep_table.hpp"
 #include "scenarios/sweep_file.hpp"
 
 namespace mpm {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/experiment.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "plants/error.hpp"
 #include "scenarios/closed_loop.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "analysis/quantile.hpp"
+#include "analysis/statistics/quantile.hpp"
 #include "bench/perf/thread_clock.hpp"
 
 namespace mpm {

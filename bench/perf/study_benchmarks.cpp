@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "analysis/basis_case.hpp"
+#include "analysis/basis/basis_case.hpp"
 #include "bench/campaign_runner.hpp"
 #include "bench/perf/benchmarks.hpp"
 #include "plants/error.hpp"

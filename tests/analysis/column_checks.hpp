@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "analysis/number_column.hpp"
+#include "analysis/indicators/number_column.hpp"
 
 namespace mpm::testing {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "analysis/experiment.hpp"
+#include "analysis/experiment/experiment.hpp"
 
 namespace mpm::testing {
 

@@ -5,7 +5,7 @@
 
 #include "bench/campaign_runner.hpp"
 #include "bench/record_bytes.hpp"
-#include "results/archive_error.hpp"
+#include "results/files/archive_error.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 

@@ -9,9 +9,9 @@
 #include "bench/outcome_bytes.hpp"
 #include "bench/shard_store.hpp"
 #include "plants/error.hpp"
-#include "results/archive_error.hpp"
-#include "results/atomic_file.hpp"
-#include "results/file_seal.hpp"
+#include "results/files/archive_error.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/files/file_seal.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

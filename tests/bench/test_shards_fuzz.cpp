@@ -10,7 +10,7 @@
 #include "bench/outcome_bytes.hpp"
 #include "bench/shard_store.hpp"
 #include "plants/error.hpp"
-#include "results/file_seal.hpp"
+#include "results/files/file_seal.hpp"
 #include "tests/results/made_up_campaign.hpp"
 #include "tests/scenarios/mutator.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "results/campaign.hpp"
+#include "results/archive/campaign.hpp"
 
 /// A short campaign of the chapter 6 study with made-up records beside it: an infeasible and a failed
 /// experiment, NaN, infinity, a message that is not ASCII, and a comparison of methods.

@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "analysis/assessment/method_table.hpp"
+#include "analysis/methods/method_table.hpp"
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study_file.hpp"
 

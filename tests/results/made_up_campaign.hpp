@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "results/campaign.hpp"
+#include "results/archive/campaign.hpp"
 
 namespace mpm::testing {
 

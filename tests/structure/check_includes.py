@@ -1,7 +1,8 @@
 """Checks the direction of includes between the rooms, and where third-party headers stand.
 
 Rooms are named from left to right; a file includes only its own room and rooms to its left, by the path from
-the root of the repository. Files in tests/ may include everything. The headers of Ceres, Ipopt, HDF5 and
+the root of the repository. The folders of a room are ordered in the same way, where it has any: a file in the
+room itself may include all of them. Files in tests/ may include everything. The headers of Ceres, Ipopt, HDF5 and
 SUNDIALS stand in one .cpp each at most, and never in a header.
 """
 
@@ -41,6 +42,21 @@ def room_complaint(root, room, name, quoted):
     return None
 
 
+def folder_complaint(relative, name):
+    """What is wrong with including `name` from the file `relative` of the same room, or None."""
+    room = relative.parts[0]
+    order = tree.FOLDERS.get(room, [])
+    target = name.split("/")
+    if target[0] != room or len(relative.parts) == 2 or not order:
+        return None
+    for folder in (relative.parts[1], target[1]):
+        if folder not in order:
+            return f"{room}/{folder} is no folder of tree.FOLDERS"
+    if order.index(target[1]) > order.index(relative.parts[1]):
+        return f'{room}/{relative.parts[1]} must not include {room}/{target[1]}: "{name}"'
+    return None
+
+
 def check(root):
     complaints = []
     users = {library: {} for library in CONFINED}  # library -> {.cpp file -> where it first includes it}
@@ -52,7 +68,7 @@ def check(root):
             continue
         for number, name, quoted in includes(path):
             where = f"{relative}:{number}"
-            complaint = room_complaint(root, room, name, quoted)
+            complaint = room_complaint(root, room, name, quoted) or folder_complaint(relative, name)
             if complaint:
                 complaints.append(f"{where}: {complaint}")
             for library, pattern in CONFINED.items():

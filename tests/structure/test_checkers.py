@@ -64,6 +64,20 @@ class Includes(CheckerTest):
             self.assert_one(check_includes, {f"{left}/a.cpp": f'#include "{right}/b.hpp"\n', f"{right}/b.hpp": HEADER},
                             f"{left}/a.cpp:1:", f"{left} must not include {right}")
 
+    def test_each_folder_refuses_the_next_one(self):
+        for room, folders in check_includes.tree.FOLDERS.items():
+            for left, right in zip(folders, folders[1:]):
+                self.assert_one(check_includes, {f"{room}/{left}/a.cpp": f'#include "{room}/{right}/b.hpp"\n',
+                                                 f"{room}/{right}/b.hpp": HEADER},
+                                f"{room}/{left}/a.cpp:1:", f"{room}/{left} must not include {room}/{right}")
+                self.assert_clean(check_includes, {f"{room}/{right}/a.cpp": f'#include "{room}/{left}/b.hpp"\n',
+                                                   f"{room}/{left}/b.hpp": HEADER})
+
+    def test_a_folder_without_a_place_in_the_order_is_refused(self):
+        self.assert_one(check_includes, {"results/odd/a.cpp": '#include "results/odd/b.hpp"\n',
+                                         "results/odd/b.hpp": HEADER},
+                        "results/odd/a.cpp:1:", "no folder of tree.FOLDERS")
+
     def test_tests_include_everything_but_are_included_by_no_room(self):
         self.assert_clean(check_includes, {
             "bench/b.hpp": HEADER, "tests/t.hpp": HEADER,

@@ -7,6 +7,13 @@ from pathlib import Path
 # From left to right: a file includes only its own room and rooms to its left.
 ROOMS = ["plants", "solvers", "scenarios", "analysis", "results", "bench"]
 
+# The folders of a room, in the same way: a file includes only its own folder and folders to its left.
+FOLDERS = {
+    "analysis": ["statistics", "identification", "sensitivity", "indicators", "basis", "methods", "experiment",
+                 "findings", "reproduction"],
+    "results": ["files", "archive", "text", "plot", "summary", "gates", "report", "reproduction"],
+}
+
 # At the root: what .gitignore names and what tools leave there.
 SKIPPED_AT_ROOT = {".git", ".cache", ".idea", ".vscode", "build", "compile_commands.json", "out"}
 

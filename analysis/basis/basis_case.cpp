@@ -1,0 +1,90 @@
+#include "analysis/basis/basis_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
+#include "analysis/sensitivity/nominal_estimator.hpp"
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+void check_health(const Study& study, BasisCase& basis) {
+  const DiagnosisOptions& options = study.diagnosis;
+  if (basis.trajectory.failure == LoopFailure::plant) {
+    basis.explanation = fmt::format("the nominal loop fails at sample {}: {}", basis.trajectory.samples_done,
+                                    basis.trajectory.message);
+    return;
+  }
+  if (basis.trajectory.status != ControlStatus::ok) {
+    basis.explanation =
+        fmt::format("the nominal loop is {} at sample {}: its excitation is too strong for its limits",
+                    to_string(basis.trajectory.status), basis.trajectory.samples_done);
+    return;
+  }
+  const Eigen::VectorXd& ivar = basis.diagnosis.ivar;
+  Eigen::Index worst = 0;
+  (ivar.array() - 1.0).abs().maxCoeff(&worst);
+  basis.healthy =
+      (ivar.array() >= options.self_check_lower && ivar.array() <= options.self_check_upper).all();
+  const std::string& name = study.plant.cvs[static_cast<std::size_t>(worst)].name;
+  basis.explanation =
+      basis.healthy
+          ? fmt::format(
+                "Ivar of the nominal loop lies within [{}, {}] for every CV; farthest from 1: {} with {:.3f}",
+                options.self_check_lower, options.self_check_upper, name, ivar(worst))
+          : fmt::format(
+                "Ivar of the nominal loop is {:.3f} for {}, outside [{}, {}]: noise outweighs the "
+                "excitation, and every verdict of this study would be unreliable",
+                ivar(worst), name, options.self_check_lower, options.self_check_upper);
+}
+
+/// A CV without an active limit has T0 = 0, which no multiplier changes.
+void require_active(const Study& study, const NominalSensitivity& sensitivity) {
+  for (const Eigen::Index cv : study.s0_perturbation.cvs)
+    if (std::none_of(sensitivity.active.begin(), sensitivity.active.end(),
+                     [cv](const ActiveReference& reference) { return reference.cv == cv; }))
+      throw InputError("s0_perturbation.cvs",
+                       fmt::format("'{}', which is at no setpoint and no soft limit",
+                                   study.plant.cvs[static_cast<std::size_t>(cv)].name),
+                       "CVs at a setpoint or an active soft limit");
+}
+
+/// Without a fault, a plant that cannot rest where the loops begin is the study's.
+void require_start(const Trajectory& loop) {
+  if (loop.failure == LoopFailure::no_steady_state)
+    throw InputError("the study's loop without a fault", loop.message,
+                     "a plant with a steady state at the first setpoints and limits");
+}
+
+}  // namespace
+
+BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, const StepObserver& observer) {
+  BasisCase basis;
+  basis.point = operating_point(study, factory);
+  const bool identified = study.sensitivity.form == SensitivityForm::box_jenkins;
+  const auto sensitivity = identified ? box_jenkins_sensitivity : nominal_sensitivity;
+  basis.sensitivity = sensitivity(study, basis.point, factory, observer);
+  if (identified)
+    basis.sensitivity_direct = nominal_sensitivity(study, basis.point, factory, observer);
+  require_active(study, basis.sensitivity);
+  if (!study.s0_perturbation.fixed_mvs.empty())
+    basis.sensitivity_fixed = sensitivity(study, with_fixed_mvs(study, basis.point), factory, observer);
+  basis.trajectory = simulate_experiment(study, basis_draw(), factory, observer);
+  require_start(basis.trajectory);
+  if (basis.trajectory.status == ControlStatus::ok) {
+    basis.nominal =
+        NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);
+    DiagnosisChain chain(study);
+    basis.diagnosis = chain.diagnose(basis.trajectory.y, basis.nominal, basis.trajectory.y);
+    if (study.names_scenarios())
+      basis.acf = chain.compare_each(basis.trajectory.y, basis.nominal);
+  }
+  check_health(study, basis);
+  return basis;
+}
+
+}  // namespace mpm

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/indicators/diagnosis.hpp"
+#include "analysis/sensitivity/nominal_sensitivity.hpp"
+#include "scenarios/closed_loop.hpp"
+
+namespace mpm {
+
+/// The run without mismatch and disturbance, against which every experiment is held, and whether the chain
+/// itself calls it healthy.
+///
+/// With too little excitation the variances of the active CVs are mostly noise, which S0 filters out of y0,
+/// and Ivar of a perfect model is far from 1: every experiment would then count as impactful and the location
+/// of the CV would be chance. A study must therefore pass this check first.
+struct BasisCase {
+  OperatingPoint point;
+  NominalSensitivity sensitivity;
+  /// The direct step responses beside an identified `sensitivity`; none unless the study wants it identified.
+  std::optional<NominalSensitivity> sensitivity_direct;
+  /// T0 with the MVs of `study.s0_perturbation.fixed_mvs` held; none when the study names none.
+  std::optional<NominalSensitivity> sensitivity_fixed;
+  Trajectory trajectory;
+  NominalOutputs nominal;
+  Diagnosis diagnosis;
+  /// One a CV; empty unless the study names scenarios and the loop ran to its end.
+  std::vector<AcfComparison> acf = {};
+  bool healthy = false;
+  std::string explanation;  ///< one sentence for people, also when healthy
+};
+
+/// Runs the basis case of the study. `observer` sees each step of its loops, those that give T0 among them;
+/// an exception from it ends the basis case and is passed on. Throws InputError when the sensitivity cannot
+/// be determined, or the plant has no steady state where the loops begin.
+BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory,
+                         const StepObserver& observer = {});
+
+}  // namespace mpm

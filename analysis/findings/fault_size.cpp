@@ -1,0 +1,103 @@
+#include "analysis/findings/fault_size.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "analysis/statistics/quantile.hpp"
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+MismatchParameter parameter_of(FaultSize size) {
+  switch (size) {
+    case FaultSize::time_constant_factor:
+      return MismatchParameter::time_constant;
+    case FaultSize::dead_time_shift:
+      return MismatchParameter::dead_time;
+    default:
+      return MismatchParameter::gain;
+  }
+}
+
+/// The size of the only fault of a random experiment; none when it is of another sort.
+std::optional<double> size_of(const Study& study, const ExperimentDraw& draw, FaultSize size) {
+  if (size == FaultSize::disturbance_deviation) {
+    if (draw.kind != ExperimentKind::ud || draw.named)
+      return std::nullopt;
+    return disturbance_deviation(draw.disturbances.front(), study.disturbance.v_standard_deviation,
+                                 study.controller.sample_time);
+  }
+  if (draw.kind != ExperimentKind::mpm || draw.named ||
+      draw.mismatches.front().parameter != parameter_of(size))
+    return std::nullopt;
+  return draw.mismatches.front().value;
+}
+
+SizeBin bin_of(std::span<const SizedFault> faults, double confidence) {
+  std::vector<double> sizes;
+  std::int64_t impactful = 0, diagnosed = 0;
+  for (const SizedFault& fault : faults) {
+    sizes.push_back(fault.size);
+    impactful += fault.impactful ? 1 : 0;
+    diagnosed += fault.diagnosed ? 1 : 0;
+  }
+  const auto total = static_cast<std::int64_t>(faults.size());
+  return {sizes.front(), sorted_quantile(sizes, 0.5), sizes.back(), rate(impactful, total, confidence),
+          rate(diagnosed, total, confidence)};
+}
+
+}  // namespace
+
+std::string_view to_string(FaultSize size) {
+  switch (size) {
+    case FaultSize::gain_factor:
+      return "gain_factor";
+    case FaultSize::time_constant_factor:
+      return "time_constant_factor";
+    case FaultSize::dead_time_shift:
+      return "dead_time_shift";
+    case FaultSize::disturbance_deviation:
+      return "disturbance_deviation";
+  }
+  return "unknown";
+}
+
+double disturbance_deviation(const Disturbance& disturbance, double v_deviation, double sample_time) {
+  // (1 - a)/(1 + a) = tanh(Ts/2 tau), without the cancellation in 1 - a for slow disturbances.
+  return std::abs(disturbance.gain) * v_deviation *
+         std::sqrt(std::tanh(0.5 * sample_time / disturbance.time_constant));
+}
+
+std::vector<SizedFault> faults_by_size(const Study& study, std::span<const ExperimentRecord> records,
+                                       FaultSize size) {
+  std::vector<SizedFault> faults;
+  for (const ExperimentRecord& record : records) {
+    const std::optional<double> found = size_of(study, record.draw, size);
+    if (record.status != ExperimentStatus::ok || !found || !std::isfinite(*found))
+      continue;
+    const bool impactful = record.diagnosis.impactful;
+    faults.push_back({&record, *found, impactful, impactful && !record.wrong()});
+  }
+  std::stable_sort(faults.begin(), faults.end(),
+                   [](const SizedFault& a, const SizedFault& b) { return a.size < b.size; });
+  return faults;
+}
+
+std::vector<SizeBin> size_bins(std::span<const SizedFault> faults, int bins, double confidence) {
+  if (bins < 1)
+    throw InputError("number of bins", fmt::format("{}", bins), "1 or more");
+  const std::size_t count = std::min(static_cast<std::size_t>(bins), faults.size());
+  std::vector<SizeBin> result;
+  for (std::size_t b = 0; b < count; ++b) {
+    const std::size_t first = b * faults.size() / count;
+    const std::size_t end = (b + 1) * faults.size() / count;
+    result.push_back(bin_of(faults.subspan(first, end - first), confidence));
+  }
+  return result;
+}
+
+}  // namespace mpm

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "analysis/experiment/experiment.hpp"
+#include "analysis/statistics/interval.hpp"
+
+namespace mpm {
+
+/// The measures of how large a fault is.
+enum class FaultSize {
+  gain_factor,            ///< of the mismatched channel, 1: none
+  time_constant_factor,   ///< of the mismatched channel, 1: none
+  dead_time_shift,        ///< of the mismatched channel, in the time unit of the plant, 0: none
+  disturbance_deviation,  ///< standard deviation of the unmeasured disturbance, in the unit of the CV
+};
+
+std::string_view to_string(FaultSize size);
+
+/// Stationary standard deviation of y_d = gain / (time_constant s + 1) v, for white v of standard deviation
+/// `v_deviation` held over each sample:
+///
+///   sigma = |gain| v_deviation sqrt((1 - a)/(1 + a)),   a = exp(-Ts/time_constant)
+double disturbance_deviation(const Disturbance& disturbance, double v_deviation, double sample_time);
+
+/// One feasible experiment with a single fault: how large the fault is and what came of it.
+struct SizedFault {
+  const ExperimentRecord* record;
+  double size;
+  bool impactful;  ///< some Ivar lies outside the band of impact: the fault is seen
+  bool diagnosed;  ///< seen, and both the CV and the source are right
+};
+
+/// The feasible experiments whose only fault is measured by `size`, smallest first. Points into `records`.
+std::vector<SizedFault> faults_by_size(const Study& study, std::span<const ExperimentRecord> records,
+                                       FaultSize size);
+
+/// Faults of similar size, with the share of them that is seen and the share that is diagnosed rightly, both
+/// of all of them.
+struct SizeBin {
+  double smallest, median, largest;
+  Rate impactful;
+  Rate diagnosed;
+};
+
+/// Cuts `faults` (in ascending order) into `bins` parts of equal number as near as can be: each share then
+/// has about the same uncertainty, whatever the distribution of the sizes. Fewer parts when there are fewer
+/// faults.
+/// @throws InputError unless bins >= 1 and 0 < confidence < 1
+std::vector<SizeBin> size_bins(std::span<const SizedFault> faults, int bins, double confidence);
+
+}  // namespace mpm

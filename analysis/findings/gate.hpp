@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "analysis/findings/study_aggregate.hpp"
+
+namespace mpm {
+
+/// A claim about one number of a study: minimum <= number <= maximum.
+struct Gate {
+  std::string name;  ///< of the number, as in named_values()
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
+  bool with_confidence = false;    ///< judged by the interval of the number instead of the number itself
+  std::int64_t minimum_count = 1;  ///< fewer experiments behind the number show nothing
+  std::string reason = {};         ///< why the limits stand where they do
+};
+
+/// Whether the claim was shown to hold, shown not to hold, or neither.
+enum class GateOutcome : std::int8_t { pass, fail, inconclusive };
+
+std::string_view to_string(GateOutcome outcome);
+
+/// Why a gate is inconclusive.
+enum class GateDoubt : std::int8_t {
+  none,
+  no_value,     ///< nothing was measured, or no finite number
+  too_few,      ///< less than minimum_count
+  no_interval,  ///< judged by an interval that the number does not have
+  straddles,    ///< part of the interval keeps to the limits, and part does not
+};
+
+struct GateResult {
+  Gate gate;
+  AggregateValue measured;
+  GateOutcome outcome = GateOutcome::inconclusive;
+  GateDoubt doubt = GateDoubt::none;
+  /// How far the number or interval is from changing the outcome, in units of the number; NaN without one.
+  /// Positive for a gate that passes: the distance to the nearest limit. Negative otherwise: by how much a
+  /// value, a whole interval, or (inconclusive) one end of an interval is beyond its limit.
+  double margin = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Judges `measured`, with [a, b] its interval, or a = b = its value without `with_confidence`:
+///
+/// | outcome      | when                                  | margin                         |
+/// |--------------|---------------------------------------|--------------------------------|
+/// | pass         | minimum <= a and b <= maximum         | min(a - minimum, maximum - b)  |
+/// | fail         | b < minimum or maximum < a            | min(b - minimum, maximum - a)  |
+/// | inconclusive | neither, or nothing to be judged      | min(a - minimum, maximum - b)  |
+GateResult judge(const Gate& gate, const AggregateValue& measured);
+
+}  // namespace mpm

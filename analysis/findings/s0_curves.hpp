@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "analysis/experiment/experiment.hpp"
+#include "analysis/statistics/interval.hpp"
+
+// What the modified models of s0_perturbation.hpp do to Ivar_diag over the experiments of a study.
+
+namespace mpm {
+
+/// Five numbers of Ivar_diag(modified)/Ivar_diag(true) over experiments.
+struct RatioSpread {
+  double least, lower_quartile, median, upper_quartile, largest;
+};
+
+/// How far Ivar_diag moves while the multiplier stays within the tolerance of the study.
+struct S0Change {
+  /// Largest |ratio - 1| over experiments and multipliers.
+  double largest = std::numeric_limits<double>::quiet_NaN();
+  /// Experiments whose ratio stays within the band of impact.
+  Rate within_band;
+};
+
+/// The ratios of the experiments whose affected CV is `cv`, multiplier by multiplier (figures 6.27 to 6.29).
+struct S0Curve {
+  Eigen::Index cv;
+  std::int64_t experiments = 0;
+  std::vector<RatioSpread> time_constant, damping;  ///< one a multiplier of the study
+  S0Change time_constant_change, damping_change;
+};
+
+/// The curves of the CVs with such experiments, in the order of the CVs. Ratios that are not finite are left
+/// out.
+std::vector<S0Curve> s0_curves(const Study& study, std::span<const ExperimentRecord> records);
+
+/// The same change over the experiments of all CVs.
+struct S0Changes {
+  S0Change time_constant, damping;
+};
+S0Changes s0_changes(const Study& study, std::span<const ExperimentRecord> records);
+
+}  // namespace mpm

@@ -1,0 +1,146 @@
+#include "analysis/identification/prediction_error_fit.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "analysis/identification/identification_check.hpp"
+#include "analysis/identification/least_squares.hpp"
+#include "analysis/identification/prediction_error.hpp"
+#include "analysis/identification/prediction_error_search.hpp"
+#include "analysis/identification/prediction_error_start.hpp"
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kConverged = 1e-8;    // squared relative offset
+constexpr double kNoiseFree = 1e-18;   // of the sum of squares of the output
+constexpr double kNearlyExact = 1e-8;  // of it: worth a search without a noise model first
+
+/// The data of one identification.
+struct Data {
+  const Eigen::Ref<const Eigen::VectorXd>& y;
+  const Eigen::Ref<const Eigen::MatrixXd>& u;
+  const PredictionErrorOptions& options;
+
+  Eigen::Index samples() const { return y.size() - options.first_sample; }
+  Eigen::VectorXd errors(const PolynomialModel& model) const {
+    return prediction_errors(model, y, u, options.start).tail(samples());
+  }
+  Eigen::MatrixXd gradient(const PolynomialModel& model) const {
+    return prediction_error_gradient(model, y, u, options.start).bottomRows(samples());
+  }
+  double size() const { return y.tail(samples()).squaredNorm(); }
+};
+
+PolynomialModel without_noise_model(PolynomialModel model) {
+  model.C = model.D = Eigen::VectorXd::Ones(1);
+  return model;
+}
+
+/// Status, loss and covariance of a model at which a search ended.
+Identification assess(const Data& data, const PolynomialModel& model, int iterations) {
+  Identification result;
+  result.model = model;
+  result.iterations = iterations;
+  result.samples = data.samples();
+  result.first_sample = data.options.first_sample;
+  const Eigen::VectorXd e = data.errors(model);
+  const Eigen::Index p = model.order().parameter_count();
+  const double sum = e.squaredNorm();
+  result.loss = sum / static_cast<double>(result.samples);
+  result.model.noise_variance = sum / static_cast<double>(result.samples - p);
+
+  const LeastSquares step = least_squares(data.gradient(model), e, data.options.rank_tolerance);
+  if (step.rank < p) {
+    result.status = IdentificationStatus::rank_deficient;
+    return result;
+  }
+  result.covariance = result.model.noise_variance * step.inverse;
+  const double border = 1.0 - 2.0 * (1.0 - data.options.largest_radius);
+  if (search_radius(model) > border)
+    result.status = IdentificationStatus::at_stability_limit;
+  else if (sum <= kNoiseFree * data.size() || sum - step.residual_sum <= kConverged * sum)
+    result.status = IdentificationStatus::ok;
+  return result;
+}
+
+/// The answer for data without noise: a model without C and D, put into the wanted order.
+Identification noise_free_result(const Identification& exact, const ModelOrder& order) {
+  Identification result = exact;
+  const Eigen::Index p = order.parameter_count();
+  const Eigen::Index of_inputs = p - order.nc - order.nd;
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(p);
+  theta.head(of_inputs) = exact.model.parameters();
+  const double variance = exact.model.noise_variance;
+  result.model = model_from_parameters(order, theta);
+  result.model.noise_variance = variance;
+  result.covariance = Eigen::MatrixXd::Zero(p, p);
+  result.covariance.topLeftCorner(of_inputs, of_inputs) = exact.covariance;
+  result.status = IdentificationStatus::noise_free;
+  return result;
+}
+
+bool leaves_at_most(const Data& data, const PolynomialModel& model, double share) {
+  return data.errors(model).squaredNorm() <= share * data.size();
+}
+
+Identification search_from(const Data& data, const PolynomialModel& start) {
+  const ModelOrder order = start.order();
+  if (order.nc + order.nd > 0 && leaves_at_most(data, without_noise_model(start), kNearlyExact)) {
+    const PredictionErrorSearch plain =
+        search_prediction_error(without_noise_model(start), data.y, data.u, data.options);
+    const Identification exact = assess(data, plain.model, plain.iterations);
+    if (leaves_at_most(data, plain.model, kNoiseFree) && exact.status == IdentificationStatus::ok)
+      return noise_free_result(exact, order);
+  }
+  const PredictionErrorSearch search = search_prediction_error(start, data.y, data.u, data.options);
+  return assess(data, search.model, search.iterations);
+}
+
+bool is_minimum(IdentificationStatus status) {
+  return status == IdentificationStatus::ok || status == IdentificationStatus::noise_free;
+}
+
+}  // namespace
+
+Identification identify_prediction_error(const Eigen::Ref<const Eigen::VectorXd>& y,
+                                         const Eigen::Ref<const Eigen::MatrixXd>& u, const ModelOrder& order,
+                                         const PredictionErrorOptions& options) {
+  options.validate();
+  require_identification_data(y, u, order, options.first_sample);
+  if (order.na > 0)
+    throw InputError("orders of an output-error or Box-Jenkins model", order.to_string(), "na 0");
+  const Data data{y, u, options};
+  Identification best;
+  best.model = model_from_parameters(order, Eigen::VectorXd::Zero(order.parameter_count()));
+  bool found = false;
+  int searches = 0;
+  for (const PolynomialModel& start : prediction_error_starts(y, u, order, options)) {
+    if (++searches > options.max_starts)
+      break;
+    Identification result = search_from(data, start);
+    const bool minimum = is_minimum(result.status);
+    if (!found || minimum || result.loss < best.loss)
+      best = result;
+    found = true;
+    if (minimum)
+      break;
+  }
+  return best;
+}
+
+Identification identify(const Eigen::Ref<const Eigen::VectorXd>& y,
+                        const Eigen::Ref<const Eigen::MatrixXd>& u, const ModelOrder& order,
+                        const PredictionErrorOptions& options) {
+  bool regression = order.nc == 0 && order.nd == 0;
+  for (const PathOrder& path : order.inputs)
+    regression = regression && path.nf == 0;
+  if (!regression)
+    return identify_prediction_error(y, u, order, options);
+  options.validate();
+  return identify_arx(y, u, order, {std::max(options.first_sample, order.memory()), options.rank_tolerance});
+}
+
+}  // namespace mpm

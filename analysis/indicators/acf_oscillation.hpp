@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+#include "analysis/statistics/autocorrelation.hpp"
+
+namespace mpm {
+
+/// Whether a signal oscillates.
+enum class Oscillation : std::int8_t {
+  undetermined,  ///< no autocorrelation: the signal stands still
+  absent,
+  present,
+};
+
+std::string_view to_string(Oscillation oscillation);
+
+/// What the autocorrelation function says of an oscillation.
+struct AcfOscillation {
+  Oscillation verdict = Oscillation::undetermined;
+  /// Decay ratio R of the function over half a period, 0 ... about 1; NaN without two minima and a maximum.
+  double decay_ratio = std::numeric_limits<double>::quiet_NaN();
+  /// Lag from the first minimum to the second; NaN without them. Unit: samples.
+  double period = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Decay ratio and verdict after Miao and Seborg (1999, Automatic detection of excessively oscillatory
+/// feedback control loops):
+///
+///   R = a/b,   a: height of the first maximum above the line through the first two minima
+///              b: depth of the first minimum below the line from (0, 1) to the first maximum
+///
+/// Lines instead of the axis, so that a slow drift under the oscillation does not matter. For the function of
+/// a second-order system under white noise, with w_d = w sqrt(1 - zeta^2),
+///
+///   r_l = exp(-zeta w l) (cos(w_d l) + zeta/sqrt(1 - zeta^2) sin(w_d l)),
+///
+/// R is exactly exp(-pi zeta/sqrt(1 - zeta^2)), its decay over half a period; the usual threshold 0.5 is
+/// quarter-amplitude decay over a period, zeta = 0.215.
+///
+/// A turning point is one from which the function goes back by more than the white band, so that small
+/// ripples make none. The sample function of a signal without oscillation swings too; `present` therefore
+/// needs, besides R >= threshold,
+///
+/// - an a above Bartlett's half band at the lag of the maximum, and
+/// - three half periods (0 to minimum, to maximum, to second minimum) of which none is longer than twice
+/// another.
+///
+/// An oscillation whose second minimum lies beyond the last lag is `absent`: give one and a half periods of
+/// lags and some more.
+/// @throws InputError unless 0 < threshold < 1
+AcfOscillation acf_oscillation(const Autocorrelation& acf, double threshold = 0.5);
+
+}  // namespace mpm

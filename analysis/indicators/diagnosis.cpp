@@ -1,0 +1,130 @@
+#include "analysis/indicators/diagnosis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/indicators/simulation_error.hpp"
+#include "analysis/statistics/variance.hpp"
+#include "scenarios/signals.hpp"
+
+namespace mpm {
+namespace {
+
+SetpointTrajectories centres(const Study& study) {
+  const Eigen::MatrixXd y_set = setpoints(study);
+  if (y_set.size() == 0 || study.diagnosis.variance_centre == VarianceCentre::mean)
+    return {};
+  SetpointTrajectories trajectories(static_cast<std::size_t>(study.cv_count()));
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    if (study.controller.has_setpoint(cv))
+      trajectories[static_cast<std::size_t>(cv)] = y_set.row(cv).transpose();
+  return trajectories;
+}
+
+/// The window length of the ellipses (5.3.1): the prediction horizon, or the nearest that the record has room
+/// for.
+int one_window(const Study& study) {
+  const auto longest = static_cast<int>(study.simulation.samples - kFewestCorrelatedPairs);
+  return std::clamp(static_cast<int>(study.controller.prediction_horizon), 3, std::max(3, longest));
+}
+
+}  // namespace
+
+WindowScan window_scan(const Study& study) {
+  const double hp = study.controller.prediction_horizon;
+  WindowScan scan;
+  // Half a sample is rounded up, as in default_window_scan.
+  scan.shortest = static_cast<int>(std::ceil(study.diagnosis.shortest_window * hp));
+  scan.longest = static_cast<int>(std::floor(study.diagnosis.longest_window * hp));
+  scan.stride = study.diagnosis.window_stride;
+  scan.validate();
+  return scan;
+}
+
+double distance_from_one(double ivar, LocationDistance distance) {
+  return distance == LocationDistance::linear ? std::abs(ivar - 1.0) : std::abs(std::log(ivar));
+}
+
+Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag,
+                               LocationDistance distance) {
+  Eigen::Index farthest = -1;
+  double largest = -1.0;
+  for (Eigen::Index i = 0; i < ivar_diag.size(); ++i) {
+    const double away = distance_from_one(ivar_diag(i), distance);
+    if (away > largest) {
+      largest = away;
+      farthest = i;
+    }
+  }
+  return farthest;
+}
+
+DiagnosisChain::DiagnosisChain(const Study& study)
+    : options_(study.diagnosis),
+      y_set_(centres(study)),
+      windows_(window_scan(study)),
+      scanner_(study.simulation.samples),
+      window_(one_window(study)),
+      distribution_scanner_(study.simulation.samples) {}
+
+Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& y_basis) {
+  Diagnosis diagnosis;
+  diagnosis.ivar = variance_indices(y, nominal.y0, y_set_);
+  diagnosis.ivar_diag = variance_indices(y, nominal.y0_diag, y_set_);
+  diagnosis.ivar_basis = variance_indices(y, y_basis, y_set_);
+  diagnosis.impactful = (diagnosis.ivar.array() < options_.impact_lower).any() ||
+                        (diagnosis.ivar.array() > options_.impact_upper).any();
+  diagnosis.predicted_cv = farthest_from_one(diagnosis.ivar_diag, options_.location_distance);
+  if (diagnosis.predicted_cv < 0)
+    return diagnosis;
+  diagnosis.indicator = indicator_of(diagnosis.predicted_cv, y, nominal);
+  diagnosis.predicted_source = source_of(diagnosis.indicator);
+  return diagnosis;
+}
+
+std::vector<AcfComparison> DiagnosisChain::compare_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                                        const NominalOutputs& nominal) const {
+  std::vector<AcfComparison> cvs;
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+    std::optional<Eigen::VectorXd> y_set;
+    if (!y_set_.empty())
+      y_set = y_set_[static_cast<std::size_t>(cv)];
+    cvs.push_back(compare_autocorrelations(y.row(cv).transpose(), nominal.y0.row(cv).transpose(),
+                                           nominal.y0_diag.row(cv).transpose(), y_set));
+  }
+  return cvs;
+}
+
+std::vector<CvDiagnosis> DiagnosisChain::diagnose_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                                       const NominalOutputs& nominal,
+                                                       const Eigen::Ref<const Eigen::VectorXd>& ivar_diag) {
+  const Eigen::VectorXd sse = simulation_errors(y, nominal.y_sim);
+  const std::vector<AcfComparison> acf = compare_each(y, nominal);
+  std::vector<CvDiagnosis> cvs;
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+    CvDiagnosis of_cv;
+    of_cv.flagged = options_.has_impact(ivar_diag(cv));
+    of_cv.distribution =
+        distribution_scanner_.compute(y.row(cv).transpose(), nominal.y0.row(cv).transpose(),
+                                      nominal.y0_diag.row(cv).transpose(), windows_, window_);
+    of_cv.acf = acf[static_cast<std::size_t>(cv)];
+    of_cv.source = of_cv.flagged ? source_of(of_cv.distribution.mpm) : ExperimentKind::none;
+    of_cv.sse = sse(cv);
+    cvs.push_back(of_cv);
+  }
+  return cvs;
+}
+
+MpmIndicator DiagnosisChain::indicator_of(Eigen::Index cv, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                          const NominalOutputs& nominal) {
+  const Eigen::VectorXd y0_diag = nominal.y0_diag.row(cv);
+  const Eigen::VectorXd e0_diag = y0_diag - y.row(cv).transpose();  // (6.9)
+  return scanner_.scan(y0_diag, e0_diag, windows_);
+}
+
+ExperimentKind DiagnosisChain::source_of(const MpmIndicator& indicator) const {
+  return indicator.i_mpm > options_.mpm_threshold ? ExperimentKind::mpm : ExperimentKind::ud;
+}
+
+}  // namespace mpm

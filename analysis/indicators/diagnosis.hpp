@@ -1,0 +1,91 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/indicators/acf_comparison.hpp"
+#include "analysis/indicators/distribution_indicators.hpp"
+#include "analysis/indicators/mpm_indicator.hpp"
+#include "analysis/sensitivity/nominal_output.hpp"
+#include "analysis/statistics/variance.hpp"
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// What the chain says of one CV of a named scenario, in which several CVs may be affected.
+struct CvDiagnosis {
+  bool flagged = false;                          ///< Ivar_diag lies outside the band of impact
+  ExperimentKind source = ExperimentKind::none;  ///< of a flagged CV: mpm when I_MPM exceeds its threshold
+  /// Chapters 2, 5 and 6; `mpm` of it is (6.13) to (6.15). One window length is the prediction horizon.
+  DistributionIndicators distribution;
+  AcfComparison acf;  ///< M2 and M3: about the setpoint where the CV has one
+  double sse = std::numeric_limits<double>::quiet_NaN();  ///< (4.17), CV unit
+};
+
+/// What the chain of the thesis says of one closed loop (appendix A2).
+///
+/// | symbol     | member     | shape | definition                                            |
+/// |------------|------------|-------|-------------------------------------------------------|
+/// | Ivar       | ivar       | ny    | var y / var y0                           (3.24, 6.7)  |
+/// | Ivar_diag  | ivar_diag  | ny    | var y / var y0_diag                      (4.14, 6.8)  |
+/// | Ivar_basis | ivar_basis | ny    | var y / var y of the basis case                (6.22) |
+///
+/// The variances of a CV with a setpoint are taken about it, unless the study wants them about the mean.
+struct Diagnosis {
+  Eigen::VectorXd ivar, ivar_diag, ivar_basis;
+  bool impactful = false;                                  ///< some Ivar lies outside the band of impact
+  Eigen::Index predicted_cv = -1;                          ///< the CV whose Ivar_diag is farthest from 1
+  MpmIndicator indicator;                                  ///< of the predicted CV, (6.13) to (6.15)
+  ExperimentKind predicted_source = ExperimentKind::none;  ///< mpm when I_MPM exceeds its threshold, else ud
+  /// Every CV on its own, for named scenarios; empty for random experiments, which look at one CV.
+  std::vector<CvDiagnosis> cvs = {};
+};
+
+/// The window lengths of (6.13) for this study, in samples.
+WindowScan window_scan(const Study& study);
+
+/// |ivar - 1|, or |log ivar|.
+double distance_from_one(double ivar, LocationDistance distance);
+
+/// Index of the CV that `ivar_diag` points at. Ties go to the first CV; a CV whose index is NaN is passed
+/// over.
+Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, LocationDistance distance);
+
+/// Runs the chain on records y (ny x N); keeps the workspace of the indicators between calls. One a thread.
+class DiagnosisChain {
+ public:
+  explicit DiagnosisChain(const Study& study);
+
+  /// `y_basis` is the record of the basis case, of the same shape as y.
+  Diagnosis diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal,
+                     const Eigen::Ref<const Eigen::MatrixXd>& y_basis);
+
+  /// The autocorrelation functions of every CV of the record y, about the centres of the variances.
+  std::vector<AcfComparison> compare_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                          const NominalOutputs& nominal) const;
+
+  /// Every CV of the record y on its own; `ivar_diag` is that of diagnose().
+  std::vector<CvDiagnosis> diagnose_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                         const NominalOutputs& nominal,
+                                         const Eigen::Ref<const Eigen::VectorXd>& ivar_diag);
+
+  /// I_MPM (6.15) of one CV of the record y.
+  MpmIndicator indicator_of(Eigen::Index cv, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                            const NominalOutputs& nominal);
+
+  /// mpm or ud, by the threshold of I_MPM.
+  ExperimentKind source_of(const MpmIndicator& indicator) const;
+
+ private:
+  DiagnosisOptions options_;
+  SetpointTrajectories y_set_;  ///< what the variances are taken about; empty: the means of all CVs
+  WindowScan windows_;
+  MpmScanner scanner_;
+  int window_;  ///< of the ellipses, samples
+  /// For named scenarios, which look at more than the two correlations.
+  DistributionScanner distribution_scanner_;
+};
+
+}  // namespace mpm

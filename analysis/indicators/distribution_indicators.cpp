@@ -1,0 +1,206 @@
+#include "analysis/indicators/distribution_indicators.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "analysis/indicators/scatter_ellipse.hpp"
+#include "analysis/statistics/signal_check.hpp"
+
+namespace mpm {
+namespace {
+
+using Signal = Eigen::Ref<const Eigen::VectorXd>;
+
+double correlation(const CentredSums& sums) {
+  return pearson_correlation(sums, kFewestCorrelatedPairs, kMomentResolution);
+}
+
+/// Adds up `ScatterMeans`.
+class ScatterSum {
+ public:
+  void add(const CentredSums& sums) {
+    const double r = correlation(sums);
+    if (std::isnan(r)) {
+      return;
+    }
+    const PrincipalAxes axes = principal_axes(sums);
+    const double folded = folded_angle(axes.angle);
+    const double ratio = axes.minor / axes.major;
+    sum_.co += std::abs(r);
+    sum_.ce += folded / 45.0 * std::sqrt(1.0 - ratio);
+    sum_.angle += folded;
+    sum_.unfolded_angle += std::abs(axes.angle);
+    sum_.minor_to_major += ratio;
+    ++sum_.used;
+  }
+
+  ScatterMeans mean() const {
+    if (sum_.used == 0) {
+      return {};
+    }
+    const double n = sum_.used;
+    return {sum_.co / n, sum_.ce / n, sum_.angle / n, sum_.unfolded_angle / n, sum_.minor_to_major / n,
+            sum_.used};
+  }
+
+ private:
+  ScatterMeans sum_{0.0, 0.0, 0.0, 0.0, 0.0, 0};
+};
+
+/// `map` of each statistic.
+template <class To, class From, class Map>
+PerStatistic<To> transformed(const PerStatistic<From>& from, Map map) {
+  return {map(from.kts), map(from.skn), map(from.dkts), map(from.dskn)};
+}
+
+template <class Part>
+struct Statistic {
+  const char* name;
+  const char* meaning;
+  Part PerStatistic<Part>::*member;
+};
+
+template <class Part>
+constexpr std::array<Statistic<Part>, 4> kStatistics{{
+    {"kts", "the moving kurtosis", &PerStatistic<Part>::kts},
+    {"skn", "the moving skewness", &PerStatistic<Part>::skn},
+    {"dkts", "the differences of the moving kurtosis", &PerStatistic<Part>::dkts},
+    {"dskn", "the differences of the moving skewness", &PerStatistic<Part>::dskn},
+}};
+
+template <class Part>
+struct Quantity {
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  double Part::*member;
+};
+
+constexpr std::array<Quantity<ScatterMeans>, 5> kMeans{{
+    {"co", "1", "mean absolute correlation (5.15), (5.21)", &ScatterMeans::co},
+    {"ce", "1", "mean ellipse indicator (5.18), (5.22)", &ScatterMeans::ce},
+    {"angle", "degrees", "mean ellipse angle folded into 0 to 45 (5.16), (5.19)", &ScatterMeans::angle},
+    {"unfolded_angle", "degrees", "mean ellipse angle, 0 to 90", &ScatterMeans::unfolded_angle},
+    {"minor_to_major", "1", "mean diameter ratio b/a (5.17), (5.20)", &ScatterMeans::minor_to_major},
+}};
+
+constexpr std::array<Quantity<ScatterShape>, 4> kShapes{{
+    {"inclination", "degrees", "ellipse inclination at one window length", &ScatterShape::inclination},
+    {"major_to_minor", "1", "diameter ratio a/b at one window length", &ScatterShape::major_to_minor},
+    {"regression_angle", "degrees", "angle of the line of e0 on y0 at one window length",
+     &ScatterShape::regression_angle},
+    {"log_r_squared", "1", "|ln R^2| of that line", &ScatterShape::log_r_squared},
+}};
+
+constexpr std::array<Quantity<CentredSums>, 5> kSums{{
+    {"scatter_mean_y0", "1", "mean over the nominal output", &CentredSums::mean_x},
+    {"scatter_mean_e0", "1", "mean over the nominal error", &CentredSums::mean_y},
+    {"scatter_y0_y0", "1", "sum of squares over the nominal output", &CentredSums::xx},
+    {"scatter_y0_e0", "1", "sum of products of nominal output and error", &CentredSums::xy},
+    {"scatter_e0_e0", "1", "sum of squares over the nominal error", &CentredSums::yy},
+}};
+
+constexpr double kMostPairs = 1e15;  // exact as a double
+
+using Columns = std::vector<NumberColumn<DistributionIndicators>>;
+
+/// The means of the correlations stand twice: `MpmMeans` and `ScatterSum` add up the same numbers.
+void copy_correlations(DistributionIndicators& indicators) {
+  indicators.mpm.co_kts = indicators.means.kts.co;
+  indicators.mpm.co_skn = indicators.means.skn.co;
+  indicators.mpm.co_dkts = indicators.means.dkts.co;
+  indicators.mpm.co_dskn = indicators.means.dskn.co;
+}
+
+/// A column for each quantity of each statistic of one part of the indicators.
+template <class Part, std::size_t n>
+void append(Columns& columns, PerStatistic<Part> DistributionIndicators::*part,
+            const std::array<Quantity<Part>, n>& quantities) {
+  for (const Statistic<Part>& statistic : kStatistics<Part>) {
+    for (const Quantity<Part>& quantity : quantities) {
+      columns.push_back(
+          {std::string(quantity.name) + "_" + statistic.name, quantity.unit,
+           std::string(quantity.meaning) + ", of " + statistic.meaning,
+           [part, z = statistic.member, number = quantity.member](const DistributionIndicators& indicators) {
+             return indicators.*part.*z.*number;
+           },
+           [part, z = statistic.member, number = quantity.member](DistributionIndicators& indicators,
+                                                                  double value) {
+             indicators.*part.*z.*number = value;
+             copy_correlations(indicators);
+           }});
+    }
+  }
+}
+
+}  // namespace
+
+ScatterShape scatter_shape(const CentredSums& sums) {
+  const double r = correlation(sums);
+  if (std::isnan(r)) {
+    return {};
+  }
+  const PrincipalAxes axes = principal_axes(sums);
+  ScatterShape shape;
+  shape.inclination = std::abs(axes.angle);
+  shape.major_to_minor = axes.major / axes.minor;
+  shape.regression_angle = std::abs(std::atan(sums.xy / sums.xx)) * 180.0 / std::numbers::pi;
+  shape.log_r_squared = std::abs(2.0 * std::log(std::abs(r)));
+  return shape;
+}
+
+DistributionIndicators DistributionScanner::compute(const Signal& y, const Signal& y0, const Signal& y0_diag,
+                                                    const WindowScan& windows, int window) {
+  require_same_length("y", y, "y0", y0);
+  require_same_length("y", y, "y0_diag", y0_diag);
+  DistributionIndicators result;
+  e0_ = y0 - y;  // (2.21)
+  result.shape = transformed<ScatterShape>(scatter_.at(y0, e0_, window), scatter_shape);
+
+  e0_ = y0_diag - y;  // (5.11)
+  result.scatter_diag = scatter_.at(y0_diag, e0_, window);
+  MpmMeans mpm;
+  PerStatistic<ScatterSum> sum;
+  scatter_.scan(y0_diag, e0_, windows, [&](const PerStatistic<CentredSums>& sums) {
+    mpm.add(sums);
+    sum.kts.add(sums.kts);
+    sum.skn.add(sums.skn);
+    sum.dkts.add(sums.dkts);
+    sum.dskn.add(sums.dskn);
+  });
+  result.mpm = mpm.result();
+  result.means = transformed<ScatterMeans>(sum, [](const ScatterSum& part) { return part.mean(); });
+  return result;
+}
+
+std::vector<NumberColumn<DistributionIndicators>> distribution_columns() {
+  Columns columns;
+  append(columns, &DistributionIndicators::means, kMeans);
+  append(columns, &DistributionIndicators::shape, kShapes);
+  columns.push_back({"i_mpm", "1", "I_MPM = max(co_dkts, co_dskn) (6.15)",
+                     [](const DistributionIndicators& indicators) { return indicators.mpm.i_mpm; },
+                     [](DistributionIndicators& indicators, double value) { indicators.mpm.i_mpm = value; }});
+  return columns;
+}
+
+std::vector<NumberColumn<DistributionIndicators>> scatter_columns() {
+  Columns columns;
+  for (const Statistic<CentredSums>& statistic : kStatistics<CentredSums>) {
+    columns.push_back({std::string("scatter_pairs_") + statistic.name, "1",
+                       std::string("number of windows behind the ellipse, of ") + statistic.meaning,
+                       [z = statistic.member](const DistributionIndicators& indicators) {
+                         return static_cast<double>((indicators.scatter_diag.*z).pairs);
+                       },
+                       [z = statistic.member](DistributionIndicators& indicators, double value) {
+                         // What no count can be (a damaged file) is no windows.
+                         const bool count = value >= 0.0 && value <= kMostPairs;
+                         (indicators.scatter_diag.*z).pairs = count ? static_cast<Eigen::Index>(value) : 0;
+                       }});
+  }
+  append(columns, &DistributionIndicators::scatter_diag, kSums);
+  return columns;
+}
+
+}  // namespace mpm

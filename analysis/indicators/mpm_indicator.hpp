@@ -1,0 +1,96 @@
+#pragma once
+
+#include <limits>
+
+#include <Eigen/Core>
+
+#include "analysis/indicators/moment_scatter.hpp"
+#include "analysis/indicators/window_scan.hpp"
+
+namespace mpm {
+
+/// How alike the distributions of nominal output and nominal error change with time.
+///
+/// | symbol  | meaning | range |
+/// |---------|---------|-------|
+/// | co_dkts | mean |corr| of the first differences of the moving kurtosis, (6.13) | 0 ... 1 or NaN |
+/// | co_dskn | the same of the moving skewness, (6.14) | 0 ... 1 or NaN |
+/// | i_mpm   | I_MPM = max(co_dkts, co_dskn), (6.15); of a number and a NaN, the number | 0 ... 1 or NaN |
+/// | co_kts, co_skn | the same means without differentiation, (5.15) | 0 ... 1 or NaN |
+struct MpmIndicator {
+  double co_dkts = std::numeric_limits<double>::quiet_NaN();
+  double co_dskn = std::numeric_limits<double>::quiet_NaN();
+  double i_mpm = std::numeric_limits<double>::quiet_NaN();
+  double co_kts = std::numeric_limits<double>::quiet_NaN();
+  double co_skn = std::numeric_limits<double>::quiet_NaN();
+  /// Number of window lengths scanned.
+  int scanned = 0;
+  /// Number of window lengths behind the mean that rests on the fewest; less than `scanned` where signals
+  /// stand still.
+  int used = 0;
+};
+
+/// The means of `MpmIndicator`, added up window length by window length.
+class MpmMeans {
+ public:
+  /// Takes the scatter of one window length into the means.
+  void add(const PerStatistic<CentredSums>& sums);
+  /// The indicator of what was added so far.
+  MpmIndicator result() const;
+
+ private:
+  /// The mean of those |correlations| that exist.
+  class Magnitude {
+   public:
+    void add(const CentredSums& sums);
+    int count() const { return count_; }
+    double value() const;
+
+   private:
+    double sum_ = 0.0;
+    int count_ = 0;
+  };
+
+  PerStatistic<Magnitude> co_;
+  int scanned_ = 0;
+};
+
+/// Computes `MpmIndicator` for signals of one length; holds the memory for it, so that a computation
+/// allocates nothing. One scanner a thread.
+class MpmScanner {
+ public:
+  /// @throws InputError when `samples` is below 3 + kFewestCorrelatedPairs, the shortest usable record
+  explicit MpmScanner(Eigen::Index samples) : scatter_(samples) {}
+
+  /// The indicators of one controlled variable, (6.13) to (6.15) with the signals that the text means (the
+  /// print of (6.13) has lost the subscript diag):
+  ///
+  ///   co_dZ = (1/n_MW) sum over MW of |corr(d/dt Z^MW of e0_diag, d/dt Z^MW of y0_diag)|,   Z = kts, skn
+  ///
+  /// The derivative is the first difference; its factor 1/Ts cancels in the correlation.
+  ///
+  /// Windows in which either signal stands still have no moments, and the pairs that contain them are left
+  /// out. A window length has no correlation, and is left out of the mean, when fewer than
+  /// kFewestCorrelatedPairs pairs are left or when a moment varies by no more than its numerical error. A
+  /// mean over no window length is NaN.
+  ///
+  /// | symbol  | meaning | shape | unit |
+  /// |---------|---------|-------|------|
+  /// | y0_diag | nominal diagonal output, one controlled variable | N | any |
+  /// | e0_diag | nominal error y0_diag - y, (6.9) | N | the same |
+  ///
+  /// @throws InputError for signals of another length than `samples` or with values that are not finite, for
+  /// an
+  ///   invalid scan, and for longest > N - kFewestCorrelatedPairs
+  MpmIndicator scan(const Eigen::Ref<const Eigen::VectorXd>& y0_diag,
+                    const Eigen::Ref<const Eigen::VectorXd>& e0_diag, const WindowScan& windows);
+
+ private:
+  MomentScatter scatter_;
+};
+
+/// `MpmScanner::scan` for a single use.
+MpmIndicator mpm_indicator(const Eigen::Ref<const Eigen::VectorXd>& y0_diag,
+                           const Eigen::Ref<const Eigen::VectorXd>& e0_diag, const WindowScan& windows);
+
+}  // namespace mpm

@@ -1,0 +1,63 @@
+#include "analysis/indicators/scatter_ellipse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/Eigenvalues>
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include "analysis/statistics/signal_check.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+
+/// Angle of a line through the origin, above -90 up to 90 degrees: v and -v are the same line.
+double line_angle(const Eigen::Vector2d& v) {
+  const double angle = std::atan2(v.y(), v.x()) * kDegreesPerRadian;
+  if (angle > 90.0) {
+    return angle - 180.0;
+  }
+  return angle <= -90.0 ? angle + 180.0 : angle;
+}
+
+}  // namespace
+
+PrincipalAxes principal_axes(const CentredSums& sums) {
+  if (sums.pairs < 2) {
+    return {kNan, kNan, kNan};
+  }
+  const double degrees_of_freedom = static_cast<double>(sums.pairs - 1);
+  Eigen::Matrix2d covariance;
+  covariance << sums.xx, sums.xy, sums.xy, sums.yy;
+  covariance /= degrees_of_freedom;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance);  // eigenvalues in ascending order
+  const Eigen::Vector2d deviations = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();  // -0 of a straight line
+  return {line_angle(eigen.eigenvectors().col(1)), deviations[1], deviations[0]};
+}
+
+double folded_angle(double angle) {
+  const double magnitude = std::abs(angle);
+  return magnitude > 45.0 ? 90.0 - magnitude : magnitude;
+}
+
+bool ConfidenceEllipse::contains(double x, double y) const {
+  const double cosine = std::cos(angle / kDegreesPerRadian);
+  const double sine = std::sin(angle / kDegreesPerRadian);
+  const double along = cosine * (x - centre_x) + sine * (y - centre_y);
+  const double across = cosine * (y - centre_y) - sine * (x - centre_x);
+  return std::hypot(along / semi_major, across / semi_minor) <= 1.0;
+}
+
+ConfidenceEllipse confidence_ellipse(const CentredSums& sums, double probability) {
+  require_confidence(probability);
+  const double factor = std::sqrt(boost::math::quantile(boost::math::chi_squared(2.0), probability));
+  const PrincipalAxes axes = principal_axes(sums);
+  return {sums.mean_x, sums.mean_y, axes.angle, factor * axes.major, factor * axes.minor};
+}
+
+}  // namespace mpm

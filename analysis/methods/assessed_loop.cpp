@@ -1,0 +1,42 @@
+#include "analysis/methods/assessed_loop.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "analysis/sensitivity/control_structure.hpp"
+#include "analysis/sensitivity/nominal_output.hpp"
+
+namespace mpm {
+
+bool AssessedLoop::has_setpoint(Eigen::Index cv) const {
+  return y_set.cols() > 0 && !std::isnan(y_set(cv, 0));
+}
+
+std::vector<Eigen::Index> AssessedLoop::setpoint_cvs() const {
+  std::vector<Eigen::Index> cvs;
+  for (Eigen::Index cv = 0; cv < y_set.rows(); ++cv)
+    if (has_setpoint(cv))
+      cvs.push_back(cv);
+  return cvs;
+}
+
+AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop) {
+  const Eigen::MatrixXd y_sim =
+      simulated_output(study.plant.G, study.controller.sample_time, point.u, loop.u, loop.d);
+  AssessedLoop assessed{loop.y, loop.u, loop.u_target, loop.d, y_sim, {}};
+  assessed.y_set =
+      study.assessment.setpoints == AssessmentSetpoints::optimizer && study.controller.has_targets()
+          ? optimizer_steady_state(study, loop, y_sim)
+          : Eigen::MatrixXd::Constant(loop.y.rows(), loop.y.cols(), std::numeric_limits<double>::quiet_NaN());
+  for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
+    if (study.controller.has_setpoint(cv))
+      assessed.y_set.row(cv) = loop.y_set.row(cv);
+  return assessed;
+}
+
+AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory) {
+  return {study, basis, std::move(factory), assessed_loop(study, basis.point, basis.trajectory)};
+}
+
+}  // namespace mpm

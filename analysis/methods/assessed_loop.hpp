@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/basis/basis_case.hpp"
+#include "scenarios/closed_loop.hpp"
+#include "scenarios/study.hpp"
+#include "solvers/qp_solver.hpp"
+
+namespace mpm {
+
+/// The records of one closed loop, as a method of assessment sees them: what a historian of the plant keeps,
+/// and what follows from it and the nominal model.
+///
+/// | symbol | member | shape  | meaning                                                       |
+/// |--------|--------|--------|---------------------------------------------------------------|
+/// | y      | y      | ny x N | measured CVs                                                  |
+/// | u      | u      | nu x N | MVs, u(k) acts from sample k on                               |
+/// | u_target | u_target | nu x N | targets of the optimizer; zero without one               |
+/// | d      | d      | nd x N | measured disturbances, d(k) acts from sample k on             |
+/// | y_sim  | y_sim  | ny x N | G0 (u, d)                                              (6.4)  |
+/// | y_set  | y_set  | ny x N | setpoints; NaN for a CV without one, see AssessmentSetpoints  |
+struct AssessedLoop {
+  Eigen::MatrixXd y, u, u_target, d, y_sim, y_set;
+
+  Eigen::Index samples() const { return y.cols(); }
+  bool has_setpoint(Eigen::Index cv) const;
+  /// The CVs with a setpoint, in their order.
+  std::vector<Eigen::Index> setpoint_cvs() const;
+};
+
+/// The records of a loop of `study` that ran to its end and starts at the operating point `point`. The
+/// setpoint of a CV in a range is, where `study.assessment.setpoints` wants that of the optimizer,
+/// optimizer_steady_state(); NaN when it does not, or when the controller has no targets.
+AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop);
+
+/// What a method may know besides the records of the loop that it assesses. `study` and `basis` must outlive
+/// it.
+struct AssessmentContext {
+  const Study& study;      ///< the nominal model, the controller and the options of the methods
+  const BasisCase& basis;  ///< the operating point and T0
+  QpSolverFactory factory;
+  /// A period in which the controller did what it was designed for; none known: no such period.
+  std::optional<AssessedLoop> benchmark = {};
+};
+
+/// The context of the loops of `study`, whose benchmark is the basis case: nothing is wrong in it.
+AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory);
+
+}  // namespace mpm

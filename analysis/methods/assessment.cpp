@@ -1,0 +1,51 @@
+#include "analysis/methods/assessment.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace mpm {
+
+std::string_view to_string(AssessmentStatus status) {
+  switch (status) {
+    case AssessmentStatus::ok:
+      return "ok";
+    case AssessmentStatus::not_applicable:
+      return "not applicable";
+    case AssessmentStatus::failed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+std::optional<Eigen::Index> Assessment::worst_cv() const {
+  std::optional<Eigen::Index> worst;
+  for (std::size_t i = 0; i < cvs.size(); ++i) {
+    const bool worse = !worst || cvs[i].score > cvs[static_cast<std::size_t>(*worst)].score;
+    if (!std::isnan(cvs[i].score) && worse)
+      worst = static_cast<Eigen::Index>(i);
+  }
+  return worst;
+}
+
+double Assessment::number(std::string_view name, Eigen::Index cv, Eigen::Index mv) const {
+  for (const AssessmentNumber& number : numbers)
+    if (number.name == name && number.cv == cv && number.mv == mv)
+      return number.value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+Assessment Assessment::not_applicable(std::string reason) {
+  Assessment assessment;
+  assessment.status = AssessmentStatus::not_applicable;
+  assessment.reason = std::move(reason);
+  return assessment;
+}
+
+Assessment Assessment::failed(std::string reason) {
+  Assessment assessment;
+  assessment.status = AssessmentStatus::failed;
+  assessment.reason = std::move(reason);
+  return assessment;
+}
+
+}  // namespace mpm

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/assessment.hpp"
+
+// The one interface of all methods that assess a loop, the chain of the thesis among them. A method is one
+// file that implements AssessmentMethod and describes it by an AssessmentMethodInfo, and one line in
+// method_table.cpp.
+
+namespace mpm {
+
+/// What a method needs of a loop. Where something is missing it does not apply, and says so.
+struct AssessmentRequirements {
+  bool setpoints = false;         ///< some CV has a setpoint
+  bool moving_setpoints = false;  ///< some setpoint changes during the record
+  bool benchmark = false;         ///< a period in which the controller did what it was designed for
+  bool moving_mvs = false;        ///< some MV moves during the record
+};
+
+/// Of what a number of a method is one.
+enum class NumberScope { loop, cv, channel };
+
+/// A number that a method gives besides its verdicts.
+struct AssessmentNumberInfo {
+  std::string name;  ///< as in table files, after the name of the method and a dot
+  NumberScope scope = NumberScope::cv;
+  std::string meaning;  ///< one line, with its equation
+};
+
+/// A method that has learnt what it may know and now assesses loops, one after the other. Keeps workspaces
+/// between them: one a thread. An answer depends on the loop alone, not on those before.
+class AssessmentMethod {
+ public:
+  AssessmentMethod() = default;
+  AssessmentMethod(const AssessmentMethod&) = delete;
+  AssessmentMethod& operator=(const AssessmentMethod&) = delete;
+  virtual ~AssessmentMethod() = default;
+
+  /// The verdict on a loop that meets the requirements of the method. Throws InputError for records that it
+  /// cannot compute with.
+  virtual Assessment assess(const AssessedLoop& loop) = 0;
+};
+
+/// All that others need to know of a method without knowing it.
+struct AssessmentMethodInfo {
+  std::string name;     ///< on the command line and in table files: "sun"
+  std::string title;    ///< "Sun et al. (2013)"
+  std::string verdict;  ///< what a flagged loop is, in one line
+  AssessmentRequirements requirements;
+  bool locates_cvs = false;     ///< Assessment::cvs has verdicts
+  bool names_channels = false;  ///< Assessment::flagged_channels
+  bool tells_sources = false;   ///< CvAssessment::source
+  std::vector<AssessmentNumberInfo> numbers;
+  /// `context` must outlive the method. Throws InputError for options that do not fit the study.
+  std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext& context)> make;
+};
+
+/// Which requirement the loop or what is known of it does not meet, in one sentence; none: all are met.
+std::optional<std::string> unmet_requirement(const AssessmentRequirements& requirements,
+                                             const AssessmentContext& context, const AssessedLoop& loop);
+
+/// A method with its context: asks first whether it applies.
+class Assessor {
+ public:
+  /// `context` must outlive the assessor.
+  Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context);
+
+  /// The verdict on a loop of the study of the context: `failed` with what the method refuses of this loop,
+  /// so that one odd loop does not cost the verdicts on the others. Throws InputError as
+  /// AssessmentMethodInfo::make.
+  Assessment assess(const AssessedLoop& loop);
+
+ private:
+  AssessmentRequirements requirements_;
+  const AssessmentContext& context_;
+  std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext&)> make_;
+  std::unique_ptr<AssessmentMethod> method_;  ///< made for the first loop to which it applies
+};
+
+}  // namespace mpm

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/mv_exclusion.hpp"
+#include "analysis/methods/partial_correlation.hpp"
+#include "scenarios/badwe2009_options.hpp"
+
+namespace mpm {
+
+/// The record of a loop, and the output of the nominal model on it.
+///
+/// | symbol | member   | shape  | meaning                                                  |
+/// |--------|----------|--------|----------------------------------------------------------|
+/// | y      | y        | ny x N | measured CVs                                             |
+/// | y_sim  | y_sim    | ny x N | G0 (u, d), the prediction of A1.2, step 2                |
+/// | u      | u        | nu x N | MVs                                                      |
+/// | r      | external | nr x N | setpoints, measured disturbances; for the filter `external` only |
+/// |        | limits   | nu     | of the MVs                                               |
+struct Badwe2009Record {
+  Eigen::MatrixXd y, y_sim, u, external;
+  MvLimits limits;
+
+  /// @throws InputError for shapes that do not fit, no sample, CV or MV, or values that are not finite
+  void validate() const;
+};
+
+/// One submodel, CV against MV, and whether it is named.
+struct ChannelAssessment {
+  PartialCorrelation correlation;  ///< without values when the MV is not evaluated
+  bool mismatch = false;           ///< the correlation is strong
+};
+
+/// What came out of the method.
+enum class Badwe2009Status : std::int8_t {
+  ok = 0,
+  no_mv = 1,  ///< no MV is left that could be evaluated: the record says nothing
+};
+
+/// | member   | shape   | meaning                                                                 |
+/// |----------|---------|-------------------------------------------------------------------------|
+/// | mv_use   | nu      | which MVs were evaluated, and why the others were not                   |
+/// | channels | ny x nu | by rows, see `channel`                                                  |
+/// | filter   |         | the one that was used, none or external for automatic                   |
+/// | unusable |         | output-error models without a usable status, which served as they were  |
+struct Badwe2009Result {
+  Badwe2009Status status = Badwe2009Status::ok;
+  std::vector<MvUse> mv_use;
+  std::vector<ChannelAssessment> channels;
+  NoiseFilter filter = NoiseFilter::none;
+  Eigen::Index unusable = 0;
+
+  /// The channel of a CV and an MV.
+  const ChannelAssessment& channel(Eigen::Index cv, Eigen::Index mv) const;
+};
+
+/// The method of Badwe et al. (2009) as in section 2.2.2 and appendix A1.2 of the thesis: names the channels
+/// of the model with a mismatch. With the prediction error e = y_sim - y = (G0 - G) u - v, correlation of e_j
+/// with u_i alone would name every MV that moves together with one whose channel is wrong. The
+/// correlation is therefore taken of what the other MVs U^i leave of both:
+///
+///   u_i(k) = V1_i  U^i(k) + eps1_i    (2.5), (A1.5)
+///   e_j(k) = V2_ij U^i(k) + eps2_ij   (2.6), (A1.6)
+///
+/// (`decorrelate`; among MVs without delay, as the controller moves them together, to errors from lag 1 on).
+/// A strong correlation of eps1_i and eps2_ij (`partial_correlation`) names channel u_i x y_j.
+///
+/// Noise is removed by `options.filter` first. MVs that are saturated or stand still take part neither as
+/// u_i nor in U^i (2.4.2); one of which nothing is left by (2.5) is `dependent` and not evaluated.
+///
+/// @throws InputError for an invalid record or options, and as `decorrelate` and `partial_correlation`
+Badwe2009Result assess_badwe2009(const Badwe2009Record& record, const Badwe2009Options& options = {});
+
+}  // namespace mpm

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "analysis/identification/prediction_error_options.hpp"
+#include "scenarios/badwe2009_options.hpp"
+
+namespace mpm {
+
+/// Orders of the models of `decorrelate`.
+struct DecorrelationOptions {
+  DecorrelationModel model = DecorrelationModel::fir;
+  /// Orders of B and F of each path of an output-error model.
+  Eigen::Index nb = 2;
+  Eigen::Index nf = 2;
+  /// Filters an input, one of them direct, of the regression.
+  Eigen::Index fir_length = 20;
+  /// Pole of its Laguerre filters, in [0, 1).
+  double fir_pole = 0.9;
+  /// How the output-error models are searched.
+  PredictionErrorOptions search{StartState::held, 0, 60};
+
+  /// @throws InputError for nb or fir_length below 1, nf below 0, a pole outside [0, 1) or invalid options of
+  ///   the search
+  void validate() const;
+};
+
+/// What signals have left when the effect of others is taken away.
+struct Decorrelation {
+  Eigen::MatrixXd residuals;    ///< m x N, about their means
+  Eigen::Index parameters = 0;  ///< fitted coefficients a signal
+  Eigen::Index unusable = 0;    ///< output-error models without a usable status (`is_usable`)
+};
+
+/// The residuals eps = x - V U of each signal x, in deviations from the means and from the steady state of
+/// the first sample, where V U is
+///
+///   output_error:  sum_j (B_j/F_j) u_j, B_j from lag `delay` on (2.5), (2.6)
+///   fir:           c + sum_j sum_{i=0}^{n-1} h_ji L_i u_j,  L_0 = 1,
+///                  L_i = sqrt(1 - a^2) q^-1/(1 - a q^-1) ((q^-1 - a)/(1 - a q^-1))^(i-1)
+///
+/// Laguerre filters (Wahlberg 1991) reach as far back as a long impulse response with few coefficients; a = 0
+/// gives L_i = q^-i. The regression is the orthogonal projection, so that its residuals are orthogonal to
+/// every filtered input, and every signal costs one more right-hand side. Without inputs the residuals are
+/// the deviations from the means. The model of a search without a usable status serves as it is: its
+/// residuals are those of a stable model, though perhaps not of the best one; they are counted.
+///
+/// | symbol | name    | shape | meaning                          |
+/// |--------|---------|-------|----------------------------------|
+/// | x      | signals | m x N | signals to be freed              |
+/// | u      | inputs  | n x N | what they are freed of           |
+///
+/// @throws InputError for different lengths, values that are not finite, no more samples than coefficients,
+///   or invalid options
+Decorrelation decorrelate(const Eigen::Ref<const Eigen::MatrixXd>& signals,
+                          const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index delay,
+                          const DecorrelationOptions& options);
+
+/// The responses of the filters L_0 ... L_(n-1) to each input in turn, N x (inputs n), from the steady state
+/// of the first sample.
+Eigen::MatrixXd laguerre_responses(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index length,
+                                   double pole);
+
+}  // namespace mpm

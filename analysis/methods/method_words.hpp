@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/methods/assessment_method.hpp"
+
+namespace mpm {
+
+/// What a method needs of a loop in words: "setpoints that move, a benchmark period"; "nothing else" of one
+/// that can do with records of any loop.
+std::string needs_text(const AssessmentMethodInfo& method);
+
+/// What a method tells of a loop besides its verdict, in words: "the CV, the source"; "nothing else".
+std::string answers_text(const AssessmentMethodInfo& method);
+
+}  // namespace mpm

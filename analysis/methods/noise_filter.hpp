@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "analysis/methods/decorrelation.hpp"
+#include "scenarios/badwe2009_options.hpp"
+
+namespace mpm {
+
+/// Each row of a record (m x N) through the same filter of length n samples, from the steady state of the
+/// first column. The filters are linear and the same for all rows, so that e = Delta G u holds for the
+/// filtered signals as for the measured ones. `external` and `automatic` are no filters of each signal
+/// alone: they leave the signals as they are, as `none` does (see `externally_driven`).
+/// @throws InputError for a record without samples, values that are not finite, or n below 1
+Eigen::MatrixXd noise_filtered(const Eigen::Ref<const Eigen::MatrixXd>& signals, NoiseFilter filter,
+                               Eigen::Index length);
+
+/// The rows of signals that move.
+Eigen::MatrixXd moving_rows(const Eigen::Ref<const Eigen::MatrixXd>& signals);
+
+/// The part of each MV that signals from outside of the loop make it do, u - eps with eps = u - V r
+/// (`decorrelate`, without delay). What the MVs do in answer to unmeasured disturbances is left out with
+/// their noise: r does not depend on the disturbances, so neither does V r, whereas u is correlated with the
+/// prediction error by the feedback alone, mismatch or not.
+///
+/// | symbol | name     | shape  | meaning                            |
+/// |--------|----------|--------|------------------------------------|
+/// | u      | u        | nu x N | MVs                                |
+/// | r      | external | nr x N | setpoints, measured disturbances; rows that stand still are left out |
+///
+/// Without a row that moves the result stands still as well.
+/// @throws InputError as `decorrelate`
+Eigen::MatrixXd externally_driven(const Eigen::Ref<const Eigen::MatrixXd>& u,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& external,
+                                  const DecorrelationOptions& options);
+
+}  // namespace mpm

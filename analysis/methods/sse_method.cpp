@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <memory>
+
+#include "analysis/indicators/simulation_error.hpp"
+#include "analysis/methods/methods.hpp"
+#include "analysis/statistics/signal_check.hpp"
+#include "analysis/statistics/variance.hpp"
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+/// Mean squares of y - y_sim; 0 for a model that is exact up to the rounding of y.
+/// `errors` are the simulation_errors() of the loop.
+Eigen::VectorXd mean_squared_errors(const AssessedLoop& loop, const Eigen::VectorXd& errors) {
+  if (!errors.allFinite())
+    throw InputError("simulation errors", "a value that is not finite", "finite values only");
+  Eigen::VectorXd squares = errors.cwiseAbs2() / static_cast<double>(loop.samples());
+  for (Eigen::Index cv = 0; cv < squares.size(); ++cv)
+    if (squares(cv) <= variance_floor(loop.y.row(cv).transpose()))
+      squares(cv) = 0.0;
+  return squares;
+}
+
+/// What a monitor of the prediction error says, which does not ask whether the error reaches the control.
+class SimulationErrorMonitor final : public AssessmentMethod {
+ public:
+  /// The requirements of the method say that there is a benchmark.
+  explicit SimulationErrorMonitor(const AssessmentContext& context)
+      : threshold_(context.study.assessment.sse.threshold),
+        benchmark_(mean_squared_errors(*context.benchmark,
+                                       simulation_errors(context.benchmark->y, context.benchmark->y_sim))) {}
+
+  Assessment assess(const AssessedLoop& loop) override {
+    const Eigen::VectorXd sse = simulation_errors(loop.y, loop.y_sim);
+    const Eigen::VectorXd squares = mean_squared_errors(loop, sse);
+    Assessment assessment;
+    assessment.score = 0.0;
+    assessment.numbers.push_back({"tsse", sse.sum()});
+    for (Eigen::Index cv = 0; cv < squares.size(); ++cv) {
+      const bool exact = squares(cv) == 0.0 && benchmark_(cv) == 0.0;
+      const double ratio = exact ? 1.0 : variance_ratio(squares(cv), benchmark_(cv));
+      const bool flagged = ratio > threshold_;
+      assessment.cvs.push_back({flagged, ratio});
+      assessment.flagged = assessment.flagged || flagged;
+      assessment.score = std::max(assessment.score, ratio);
+      assessment.numbers.push_back({"sse", sse(cv), cv});
+      assessment.numbers.push_back({"ratio", ratio, cv});
+    }
+    return assessment;
+  }
+
+ private:
+  double threshold_;
+  Eigen::VectorXd benchmark_;
+};
+
+}  // namespace
+
+AssessmentMethodInfo sse_method() {
+  return {.name = "sse",
+          .title = "simulation errors (SSE)",
+          .verdict = "the mean squared simulation error of some CV is above that of the benchmark",
+          .requirements = {.benchmark = true},
+          .locates_cvs = true,
+          .numbers = {{"tsse", NumberScope::loop, "sum of the SSE of all CVs (6.21)"},
+                      {"sse", NumberScope::cv, "norm of y - y_sim (4.17)"},
+                      {"ratio", NumberScope::cv,
+                       "mean square of y - y_sim over that of the benchmark; 1 for the same errors"}},
+          .make = [](const AssessmentContext& context) {
+            return std::make_unique<SimulationErrorMonitor>(context);
+          }};
+}
+
+}  // namespace mpm

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "analysis/statistics/interval.hpp"
+
+namespace mpm {
+
+/// By how much the autocorrelation of a signal raises the variance of its sample variance, against white
+/// noise (2.9), (A1.9), after Desborough and Harris (1992):
+///
+///   f = 1 + 2 sum_{j=1}^{L} (1 - j/n) r_j^2
+///
+/// | symbol | meaning                                                                  | shape | unit |
+/// |--------|--------------------------------------------------------------------------|-------|------|
+/// | n      | length of the signal                                                     | 1     | -    |
+/// | L      | `largest_lag`; 0 or n and more: n - 1, all lags, as the thesis prints it | 1     | -    |
+/// | r_j    | sample autocorrelation about the mean (`autocorrelation`)                | L     | -    |
+///
+/// The squares of sample autocorrelations do not average out: with all lags f of white noise is about 5/3
+/// instead of 1, and with L lags too large by some 2L/n of itself.
+///
+/// A signal that stands still has no autocorrelation: 1.
+/// @throws InputError for fewer than 2 samples, values that are not finite or a negative largest lag
+double autocorrelation_factor(const Eigen::Ref<const Eigen::VectorXd>& signal, Eigen::Index largest_lag = 0);
+
+/// A sample variance with what its confidence limits need.
+struct VarianceSample {
+  Eigen::Index samples = 0;
+  double autocorrelation_factor = 1.0;  ///< f of (2.9)
+};
+
+/// Confidence limits of the ratio mu of the sample variance of `monitored` to that of `benchmark` (2.10),
+/// (2.11):
+///
+///   mu/(1 + h) <= true ratio <= mu/(1 - h),   h = z sqrt(2 (f_I/(n_I - 1) + f_II/(n_II - 1)))
+///
+/// with z the two-sided normal quantile of `confidence`. With h >= 1 the records are too short to bound the
+/// ratio from above: the upper limit is +infinity (the formula as printed would give a negative number).
+/// @throws InputError unless mu >= 0, both samples have 2 values or more and 0 < confidence < 1
+Interval variance_ratio_limits(double mu, const VarianceSample& benchmark, const VarianceSample& monitored,
+                               double confidence);
+
+}  // namespace mpm

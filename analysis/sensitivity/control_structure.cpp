@@ -1,0 +1,40 @@
+#include "analysis/sensitivity/control_structure.hpp"
+
+#include "analysis/sensitivity/active_limit.hpp"
+
+namespace mpm {
+
+Eigen::MatrixXd optimizer_steady_state(const Study& study, const Trajectory& loop,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
+  const Eigen::MatrixXd gain = study.plant.G.static_gain();
+  return gain.leftCols(study.mv_count()) * loop.u_target + gain.rightCols(study.md_count()) * loop.d +
+         loop.y - y_sim;
+}
+
+std::vector<ControlStructure> control_structures(const Study& study, const Trajectory& loop,
+                                                 const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
+  const MpcOptions& options = study.controller;
+  // What decides whether a CV in a range is active.
+  const Eigen::MatrixXd y = options.has_targets() ? optimizer_steady_state(study, loop, y_sim) : loop.y;
+  const Eigen::MatrixXd& u = options.has_targets() ? loop.u_target : loop.u;
+  std::vector<ControlStructure> structures(static_cast<std::size_t>(y.cols()));
+  for (Eigen::Index k = 0; k < y.cols(); ++k) {
+    ControlStructure& structure = structures[static_cast<std::size_t>(k)];
+    for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+      const double lower = options.cv_soft.lower(cv), upper = options.cv_soft.upper(cv);
+      if (options.has_setpoint(cv))
+        structure.active.push_back({cv, ReferenceKind::setpoint});
+      else if (at_or_above(y(cv, k), upper))
+        structure.active.push_back({cv, ReferenceKind::upper_limit});
+      else if (at_or_below(y(cv, k), lower))
+        structure.active.push_back({cv, ReferenceKind::lower_limit});
+    }
+    for (Eigen::Index mv = 0; mv < u.rows(); ++mv)
+      if (at_or_below(u(mv, k), options.mv_hard.lower(mv)) ||
+          at_or_above(u(mv, k), options.mv_hard.upper(mv)))
+        structure.fixed_mvs.push_back(mv);
+  }
+  return structures;
+}
+
+}  // namespace mpm

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <compare>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/sensitivity/nominal_sensitivity.hpp"
+#include "scenarios/closed_loop.hpp"
+
+namespace mpm {
+
+/// Which constraints a controller works at: it is linear as long as they stay the same, and has an S0 of its
+/// own for each set (3.3.3, 6.3).
+struct ControlStructure {
+  std::vector<ActiveReference> active;  ///< CVs at a setpoint or a soft limit, in their order
+  std::vector<Eigen::Index> fixed_mvs;  ///< MVs at a hard limit, in their order
+
+  auto operator<=>(const ControlStructure&) const = default;
+};
+
+/// The steady state of the CVs at which the target optimizer aims (2.32, 6.19), ny x N:
+///
+///     K u_target(k) + K_d d(k) + y(k) - y_sim(k)
+///
+/// with the static gains K of the MVs and K_d of the MDs, and the output bias of the controller.
+Eigen::MatrixXd optimizer_steady_state(const Study& study, const Trajectory& loop,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& y_sim);
+
+/// The structure at each sample of a loop, from its data alone. A CV with a setpoint is always active; a CV
+/// in a range is active where a deciding output is at or over a limit, and an MV is fixed where a deciding
+/// input is at a limit:
+///
+/// | controller      | deciding inputs | deciding outputs                                  |
+/// |-----------------|-----------------|---------------------------------------------------|
+/// | with targets    | u_target        | optimizer_steady_state()                          |
+/// | without targets | u               | y (3.3.5)                                         |
+///
+/// `y_sim` (ny x N) is that of the loop.
+std::vector<ControlStructure> control_structures(const Study& study, const Trajectory& loop,
+                                                 const Eigen::Ref<const Eigen::MatrixXd>& y_sim);
+
+}  // namespace mpm

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/sensitivity/nominal_sensitivity.hpp"
+#include "analysis/sensitivity/second_order_fit.hpp"
+#include "scenarios/study.hpp"
+
+// What an error in S0 costs ("Sensitivity of S0" in 6.5.2, figures 6.25 to 6.29): the diagonal of S0 is
+// modified in time constant or damping, and Ivar_diag (6.8) is computed again.
+
+namespace mpm {
+
+/// (6.24) fitted to the diagonal element of one active CV.
+struct DiagonalFit {
+  Eigen::Index cv;
+  SecondOrderFit fit;
+};
+
+/// The fits of all active CVs of T0, in their order.
+std::vector<DiagonalFit> diagonal_fits(const NominalSensitivity& sensitivity, double sample_time);
+
+/// Ivar_diag of the affected CV of one experiment, one value a multiplier of the study; empty for an
+/// experiment that is not looked at.
+struct PerturbedIvar {
+  Eigen::VectorXd time_constant;  ///< tau of (6.24) multiplied
+  Eigen::VectorXd damping;        ///< xi of (6.24) multiplied
+};
+
+/// The modified models of a study. For the diagonal element T0 with the fit T of (6.24),
+///
+///   T0_modified = T0 + T(m tau, xi) - T(tau, xi)   or   T0 + T(tau, m xi) - T(tau, xi).
+///
+/// What the second order cannot describe (the dead time, above all) thus stays as it is, and a multiplier of
+/// 1 gives T0 itself, bit for bit.
+class S0Perturbation {
+ public:
+  /// Without multipliers in the study, or for a T0 that cannot be fitted, there is no modified model.
+  S0Perturbation(const Study& study, const NominalSensitivity& sensitivity);
+
+  /// Ivar_diag of `cv` (6.8) from its record y and model output y_sim (N samples each) with each modified
+  /// model; empty for a CV without one. Throws InputError when the lengths differ.
+  PerturbedIvar ivar_diag(Eigen::Index cv, const Eigen::Ref<const Eigen::RowVectorXd>& y,
+                          const Eigen::Ref<const Eigen::RowVectorXd>& y_sim) const;
+
+ private:
+  struct Models {
+    Eigen::Index cv;
+    std::vector<Eigen::RowVectorXd> time_constant, damping;  ///< step responses, one a multiplier
+  };
+  std::vector<Models> models_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,71 @@
+#include "analysis/statistics/interval.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <fmt/format.h>
+
+#include "analysis/statistics/signal_check.hpp"
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+void require_counts(std::int64_t hits, std::int64_t total) {
+  if (total < 0) {
+    throw InputError("number of trials", fmt::format("{}", total), "0 or more");
+  }
+  if (hits < 0 || hits > total) {
+    throw InputError("number of hits", fmt::format("{}", hits), fmt::format("0 to {} (the trials)", total));
+  }
+}
+
+/// The p for which Beta(a, b) has the weight `probability` below p.
+double beta_quantile(std::int64_t a, std::int64_t b, double probability) {
+  return boost::math::quantile(
+      boost::math::beta_distribution<>(static_cast<double>(a), static_cast<double>(b)), probability);
+}
+
+}  // namespace
+
+double two_sided_normal_quantile(double confidence) {
+  require_confidence(confidence);
+  // Through the upper tail: 1 - alpha/2 would round for a confidence near 1.
+  return boost::math::quantile(boost::math::complement(boost::math::normal(), (1.0 - confidence) / 2.0));
+}
+
+Interval wilson_interval(std::int64_t hits, std::int64_t total, double confidence) {
+  require_counts(hits, total);
+  const double z = two_sided_normal_quantile(confidence);
+  if (total == 0) {
+    return {0.0, 1.0};
+  }
+  const double n = static_cast<double>(total);
+  const double p = static_cast<double>(hits) / n;
+  const double zz = z * z / n;
+  const double middle = (p + zz / 2.0) / (1.0 + zz);
+  const double half_width = std::sqrt(zz * p * (1.0 - p) + zz * zz / 4.0) / (1.0 + zz);
+  // At the ends the formula gives 0 or 1 only to rounding.
+  return {hits == 0 ? 0.0 : std::max(0.0, middle - half_width),
+          hits == total ? 1.0 : std::min(1.0, middle + half_width)};
+}
+
+Interval clopper_pearson_interval(std::int64_t hits, std::int64_t total, double confidence) {
+  require_counts(hits, total);
+  require_confidence(confidence);
+  const double tail = (1.0 - confidence) / 2.0;
+  return {hits == 0 ? 0.0 : beta_quantile(hits, total - hits + 1, tail),
+          hits == total ? 1.0 : beta_quantile(hits + 1, total - hits, 1.0 - tail)};
+}
+
+Rate rate(std::int64_t hits, std::int64_t total, double confidence) {
+  const Interval interval = wilson_interval(hits, total, confidence);
+  const double value = total > 0 ? static_cast<double>(hits) / static_cast<double>(total)
+                                 : std::numeric_limits<double>::quiet_NaN();
+  return {hits, total, value, interval};
+}
+
+}  // namespace mpm

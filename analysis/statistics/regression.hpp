@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "analysis/statistics/interval.hpp"
+#include "scenarios/random_stream.hpp"
+
+namespace mpm {
+
+/// A least-squares line y = intercept + slope x.
+struct LinearFit {
+  double slope = std::numeric_limits<double>::quiet_NaN();
+  double intercept = std::numeric_limits<double>::quiet_NaN();
+  /// Coefficient of determination, the share of the variance of y that the line explains; with one regressor
+  /// the square of Pearson's correlation.
+  double r_squared = std::numeric_limits<double>::quiet_NaN();
+  /// Number of pairs in the fit.
+  Eigen::Index pairs = 0;
+  /// Number of pairs left out because a member is NaN or infinite.
+  Eigen::Index left_out = 0;
+};
+
+/// Ordinary least squares,
+///
+///   slope = Sxy/Sxx,   intercept = mean y - slope mean x,   R^2 = Sxy^2/(Sxx Syy)
+///
+/// with the centred sums Sxx, Sxy, Syy. Pairs with a NaN or an infinity (an index without a denominator) are
+/// left out and counted. All three results are NaN for fewer than 3 pairs or when x has no variance to
+/// rounding; R^2 alone is NaN when y has none.
+/// @throws InputError when the lengths differ
+LinearFit linear_fit(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& y);
+
+/// Options of `cluster_bootstrap`.
+struct ClusterBootstrapOptions {
+  /// Number of resamples.
+  int replications = 2000;
+  /// Confidence level of the intervals.
+  double confidence = 0.95;
+
+  /// @throws InputError unless replications >= 100 and 0 < confidence < 1
+  void validate() const;
+};
+
+/// A fit with percentile intervals.
+struct LinearFitIntervals {
+  LinearFit fit;
+  Interval slope;
+  Interval intercept;
+  Interval r_squared;
+  /// Number of clusters with at least one pair in the fit.
+  Eigen::Index clusters = 0;
+  /// Number of resamples that gave a line and an R^2; the intervals rest on these.
+  int replications_used = 0;
+};
+
+/// `linear_fit` with intervals by the cluster bootstrap (Davison and Hinkley 1997, section 3.8): whole
+/// clusters are drawn with replacement, as many as there are, and the line is fitted to their pairs; the
+/// interval lies between the quantiles (1 - confidence)/2 and (1 + confidence)/2 of the results (interpolated
+/// between order statistics). Clusters are the experiments, because the controlled variables of one
+/// experiment share its mismatch and disturbance and are no independent pairs.
+///
+/// The pairs of a cluster enter through their sums only, so that a resample costs O(clusters). The result
+/// depends on the numbers of `stream` and on the order of the pairs within a cluster, not on the order of the
+/// clusters.
+///
+/// | symbol  | meaning | shape | unit |
+/// |---------|---------|-------|------|
+/// | x, y    | pairs   | n     | any  |
+/// | cluster | number of the experiment that a pair belongs to | n | - |
+///
+/// Resamples without a line or an R^2 are left out and counted. With fewer than 2 clusters, or when more than
+/// half of the resamples are left out, the ends of the intervals are NaN.
+/// @throws InputError when the lengths differ or the options are invalid
+LinearFitIntervals cluster_bootstrap(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                     const Eigen::Ref<const Eigen::VectorXd>& y,
+                                     std::span<const std::int64_t> cluster, RandomStream& stream,
+                                     const ClusterBootstrapOptions& options = {});
+
+}  // namespace mpm

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "analysis/statistics/interval.hpp"
+#include "scenarios/random_stream.hpp"
+
+namespace mpm {
+
+/// What the rule "positive when the score exceeds `threshold`" does.
+///
+/// | member              | meaning                                          | range        |
+/// |---------------------|--------------------------------------------------|--------------|
+/// | true_positive_rate  | share of the positives above the threshold (recall) | 0 ... 1   |
+/// | false_positive_rate | share of the negatives above the threshold       | 0 ... 1      |
+/// | precision           | share of positives among all above the threshold | 0 ... 1, NaN when none is above
+/// |
+struct RocPoint {
+  double threshold;
+  double true_positive_rate;
+  double false_positive_rate;
+  double precision;
+
+  /// Youden's J = true positive rate - false positive rate; 0 for chance, 1 for no error (Youden 1950).
+  double youden() const { return true_positive_rate - false_positive_rate; }
+};
+
+/// Receiver operating characteristic of a score, and precision against recall.
+struct RocCurve {
+  /// One point for each way in which a threshold can part the scores, from +infinity (nothing is positive) to
+  /// -infinity (everything is). The thresholds between lie halfway between neighbouring scores.
+  std::vector<RocPoint> points;
+  std::int64_t positives = 0;
+  std::int64_t negatives = 0;
+  std::int64_t left_out = 0;  ///< scores that are NaN
+  /// Area under the curve: the probability that a positive scores above a negative, ties counting half
+  /// (Mann-Whitney); NaN when there is no score on one side.
+  double area = std::numeric_limits<double>::quiet_NaN();
+  /// Sum of precision times the step of recall, without interpolation; NaN as above.
+  double average_precision = std::numeric_limits<double>::quiet_NaN();
+  std::size_t best =
+      0;  ///< the point with the largest J, with the fewest false positives when there are more
+
+  /// Whether there are scores on both sides.
+  bool defined() const { return positives > 0 && negatives > 0; }
+};
+
+/// The curve of these scores; NaNs are left out and counted. Without a score on one side only `positives`,
+/// `negatives` and `left_out` say something.
+RocCurve roc_curve(std::span<const double> positive_scores, std::span<const double> negative_scores);
+
+/// The rule "positive when the score exceeds `threshold`" on these scores, NaNs left out. Rates are NaN
+/// without scores.
+RocPoint roc_point(std::span<const double> positive_scores, std::span<const double> negative_scores,
+                   double threshold);
+
+/// Interval of an area under the curve by Newcombe (2006, method 5): all A with |A - area| <= z sqrt(V(A)),
+///
+///   V(A) = A (1 - A)/(m n) (1 + (N - 1) ((1 - A)/(2 - A) + A/(1 + A))),   N = (m + n)/2
+///
+/// with m positives and n negatives: Hanley and McNeil's variance at A itself, as Wilson's interval does it
+/// for a rate. It stays within [0, 1] and does not shrink to a point at an area of 0 or 1.
+/// @throws InputError unless 0 <= area <= 1, positives and negatives are 1 or more and 0 < confidence < 1
+Interval area_interval(double area, std::int64_t positives, std::int64_t negatives, double confidence = 0.95);
+
+/// Options of `best_threshold_interval`.
+struct ThresholdBootstrapOptions {
+  int replications = 2000;   ///< number of resamples
+  double confidence = 0.95;  ///< level of the interval
+
+  /// @throws InputError unless replications >= 100 and 0 < confidence < 1
+  void validate() const;
+};
+
+/// Percentile interval of the threshold with the largest J: positives and negatives are each drawn again with
+/// replacement, and the threshold is chosen anew. A threshold at infinity (no J above 0) is left out; the
+/// ends are NaN when a side has no score or more than half of the resamples are left out.
+/// @throws InputError for invalid options
+Interval best_threshold_interval(std::span<const double> positive_scores,
+                                 std::span<const double> negative_scores, RandomStream& stream,
+                                 const ThresholdBootstrapOptions& options = {});
+
+}  // namespace mpm

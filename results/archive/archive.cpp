@@ -1,0 +1,68 @@
+#include "results/archive/archive.hpp"
+
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "results/archive/archive_groups.hpp"
+#include "results/files/archive_error.hpp"
+#include "results/files/atomic_file.hpp"
+
+namespace mpm {
+namespace {
+
+Campaign read_groups(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const Hdf5Group root = Hdf5File::open(path).root();
+  Campaign campaign = read_heading(root, file);
+  const Study& study = campaign.study;
+  campaign.records = read_experiments(root, study, file);
+  read_scenarios(root, study, campaign.records, file);
+  read_trajectories(root, study, campaign.records, file);
+  read_s0_sensitivity(root, study, campaign.records, file);
+  campaign.audit = read_audit(root, file);
+  read_comparison(root, campaign, file);
+  campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
+  read_basis_acf(root, study, campaign.basis, file);
+  campaign.basis.sensitivity_direct = read_nominal_direct(root, study, campaign.basis.sensitivity, file);
+  campaign.basis.sensitivity_fixed = read_nominal_fixed(root, study, file);
+  return campaign;
+}
+
+[[noreturn]] void refuse_size(const std::filesystem::path& path) {
+  throw ArchiveError(fmt::format("{}: it, or a variable in it, does not fit into the memory", path.string()));
+}
+
+}  // namespace
+
+void write_archive(const std::filesystem::path& path, const Campaign& campaign) {
+  const Hdf5File file = Hdf5File::create(path.string());
+  Hdf5Group root = file.root();
+  write_heading(root, campaign);
+  write_experiments(root, campaign);
+  write_scenarios(root, campaign);
+  write_basis(root, campaign.study, campaign.basis);
+  write_nominal(root, campaign.study, campaign.basis.sensitivity);
+  write_nominal_direct(root, campaign.study, campaign.basis);
+  write_nominal_fixed(root, campaign.study, campaign.basis.sensitivity_fixed);
+  write_trajectories(root, campaign);
+  write_s0_sensitivity(root, campaign);
+  write_audit(root, campaign.audit);
+  write_aggregate(root, campaign);
+  write_comparison(root, campaign);
+  write_file_atomically(path, file.image());
+}
+
+Campaign read_archive(const std::filesystem::path& path) {
+  try {
+    return read_groups(path);
+  } catch (const std::bad_alloc&) {
+    refuse_size(path);
+  } catch (const std::length_error&) {
+    refuse_size(path);
+  }
+}
+
+}  // namespace mpm

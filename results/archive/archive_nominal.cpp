@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
+#include "results/archive/archive_groups.hpp"
+#include "results/archive/dimensions.hpp"
+#include "results/archive/matrix_io.hpp"
+#include "results/archive/variable_text.hpp"
+#include "results/files/archive_error.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* kGroup = "nominal";
+constexpr const char* kFixedGroup = "nominal_fixed";
+constexpr const char* kDirectGroup = "nominal_direct";
+constexpr const char* kResponse = "t0_step_response";
+
+VariableText side_text() {
+  return {"side",
+          "soft limit or setpoint that the CV is at",
+          "1",
+          "",
+          {{0, 1, 2}, {"lower", "upper", "setpoint"}}};
+}
+
+Eigen::Index position(const Study& study, const std::string& name, const char* group,
+                      const std::string& file) {
+  const auto& cvs = study.plant.cvs;
+  const auto found = std::find_if(cvs.begin(), cvs.end(), [&](const auto& cv) { return cv.name == name; });
+  if (found == cvs.end())
+    throw ArchiveError(fmt::format("{}: dimension '/{}/active_cv': found '{}', which is no CV of the study",
+                                   file, group, name));
+  return found - cvs.begin();
+}
+
+ReferenceKind reference_kind(std::int8_t side, const char* group, const std::string& file) {
+  if (side < 0 || side > static_cast<std::int8_t>(ReferenceKind::setpoint))
+    throw ArchiveError(fmt::format("{}: '/{}/side': found {}; allowed: 0, 1 or 2", file, group, side));
+  return static_cast<ReferenceKind>(side);
+}
+
+void write_sensitivity(Hdf5Group& group, const std::string& title, const Study& study,
+                       const NominalSensitivity& sensitivity) {
+  group.write_attribute("title", title);
+  std::vector<PlantModel::Variable> active;
+  std::vector<std::int8_t> side;
+  std::vector<const Eigen::MatrixXd*> responses;
+  for (std::size_t a = 0; a < sensitivity.active.size(); ++a) {
+    active.push_back(study.plant.cvs[static_cast<std::size_t>(sensitivity.active[a].cv)]);
+    side.push_back(static_cast<std::int8_t>(sensitivity.active[a].kind));
+    responses.push_back(&sensitivity.step_response[a]);
+  }
+  const Eigen::Index lags = responses.empty() ? study.sensitivity.samples : responses.front()->cols();
+  write_variable_dimension(group, "active_cv", "CV at a soft limit or a setpoint, which is stepped", active);
+  write_variable_dimension(group, "cv", "controlled variable", study.plant.cvs);
+  write_sample_dimension(group, "lag", "samples after the step", "time", study, 1, lags);
+  group.write("side", {"active_cv"}, side, attributes<std::int8_t>(side_text()));
+  write_matrices(group, {"active_cv", "cv", "lag"},
+                 {kResponse,
+                  "response of cv to a unit step of the limit or setpoint of active_cv",
+                  "1",
+                  "in the unit of cv per unit of active_cv; stays at its last value",
+                  {},
+                  "time"},
+                 responses, study.cv_count(), lags);
+}
+
+NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, const Study& study,
+                                    const std::string& file) {
+  const Hdf5Group group = root.group(name);
+  const std::vector<std::string> active = group.read_list<std::string>("active_cv");
+  const std::vector<std::int8_t> side = group.read<std::int8_t>("side", {active.size()});
+  const auto lags = static_cast<Eigen::Index>(group.read_list<std::int32_t>("lag").size());
+  NominalSensitivity sensitivity;
+  sensitivity.cv_count = study.cv_count();
+  sensitivity.step_response.resize(active.size());
+  std::vector<Eigen::MatrixXd*> responses;
+  for (std::size_t a = 0; a < active.size(); ++a) {
+    sensitivity.active.push_back(
+        {position(study, active[a], name, file), reference_kind(side[a], name, file)});
+    responses.push_back(&sensitivity.step_response[a]);
+  }
+  read_matrices(group, kResponse, true, responses, study.cv_count(), lags);
+  return sensitivity;
+}
+
+}  // namespace
+
+void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity) {
+  Hdf5Group group = root.create_group(kGroup);
+  write_sensitivity(group, "Nominal complementary sensitivity T0; S0 = I - T0, and T0 = 0 from other CVs",
+                    study, sensitivity);
+}
+
+NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file) {
+  return read_sensitivity(root, kGroup, study, file);
+}
+
+void write_nominal_fixed(Hdf5Group& root, const Study& study,
+                         const std::optional<NominalSensitivity>& sensitivity) {
+  if (!sensitivity)
+    return;
+  Hdf5Group group = root.create_group(kFixedGroup);
+  write_sensitivity(group, "T0 with the fixed MVs of s0_perturbation held", study, *sensitivity);
+}
+
+void write_nominal_direct(Hdf5Group& root, const Study& study, const BasisCase& basis) {
+  if (!basis.sensitivity_direct)
+    return;
+  Hdf5Group group = root.create_group(kDirectGroup);
+  write_sensitivity(group, "T0 as direct step responses, beside the identified one of /nominal", study,
+                    *basis.sensitivity_direct);
+  const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
+  write_vectors(group, {"active_cv"},
+                {"largest_difference", "largest difference of identified and direct step responses", "1",
+                 "in the units of t0_step_response"},
+                {&largest}, largest.size());
+}
+
+std::optional<NominalSensitivity> read_nominal_direct(const Hdf5Group& root, const Study& study,
+                                                      const NominalSensitivity& identified,
+                                                      const std::string& file) {
+  if (study.sensitivity.form != SensitivityForm::box_jenkins)
+    return std::nullopt;
+  NominalSensitivity direct = read_sensitivity(root, kDirectGroup, study, file);
+  const auto shape = [](const NominalSensitivity& sensitivity) {
+    const auto& responses = sensitivity.step_response;
+    return std::pair(sensitivity.active, responses.empty() ? 0 : responses.front().cols());
+  };
+  if (shape(direct) != shape(identified))
+    throw ArchiveError(fmt::format("{}: '/{}': found other references or lags; allowed: those of '/{}'", file,
+                                   kDirectGroup, kGroup));
+  return direct;
+}
+
+std::optional<NominalSensitivity> read_nominal_fixed(const Hdf5Group& root, const Study& study,
+                                                     const std::string& file) {
+  if (study.s0_perturbation.fixed_mvs.empty())
+    return std::nullopt;
+  return read_sensitivity(root, kFixedGroup, study, file);
+}
+
+}  // namespace mpm

@@ -1,0 +1,486 @@
+#include "results/archive/hdf5_file.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <type_traits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include "results/files/archive_error.hpp"
+#include "results/files/file_seal.hpp"
+#include "results/files/utf8.hpp"
+
+namespace mpm {
+namespace {
+
+// --- Handles and errors -----------------------------------------------------------------------------------
+
+/// The library's own account of its last failure, from the place nearest to the cause.
+std::string last_error() {
+  std::string text;
+  const auto keep = [](unsigned, const H5E_error2_t* error, void* data) -> herr_t {
+    auto& kept = *static_cast<std::string*>(data);
+    if (kept.empty() && error->desc != nullptr)
+      kept = error->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep, &text);
+  return text.empty() ? "no reason given" : text;
+}
+
+/// A HDF5 identifier that is closed when it goes out of scope.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() {
+    if (id_ >= 0)
+      close_(id_);
+  }
+
+  hid_t get() const { return id_; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+/// The object at hand, for messages and for the library: `name` in the group with the path `parent`.
+struct Place {
+  std::string file, what, parent, name;
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw ArchiveError(fmt::format("{}: {} '{}{}': {}", file, what, parent, name, problem));
+  }
+  void check(herr_t result, const char* action) const {
+    if (result < 0)
+      fail(fmt::format("cannot {} ({})", action, last_error()));
+  }
+  Handle own(hid_t id, Handle::Close close, const char* action) const {
+    if (id < 0)
+      fail(fmt::format("cannot {} ({})", action, last_error()));
+    return {id, close};
+  }
+};
+
+/// Our messages take the place of the library's.
+void silence_library() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+// --- Types ------------------------------------------------------------------------------------------------
+
+Handle string_type(const Place& place) {
+  Handle type = place.own(H5Tcopy(H5T_C_S1), H5Tclose, "make a type");
+  place.check(H5Tset_size(type.get(), H5T_VARIABLE), "make a type");
+  place.check(H5Tset_cset(type.get(), H5T_CSET_UTF8), "make a type");
+  return type;
+}
+
+template <class T>
+Handle type_of(const Place& place) {
+  if constexpr (std::is_same_v<T, std::string>)
+    return string_type(place);
+  const hid_t type = std::is_same_v<T, double>          ? H5T_IEEE_F64LE
+                     : std::is_same_v<T, std::int8_t>   ? H5T_STD_I8LE
+                     : std::is_same_v<T, std::int32_t>  ? H5T_STD_I32LE
+                     : std::is_same_v<T, std::int64_t>  ? H5T_STD_I64LE
+                     : std::is_same_v<T, std::uint64_t> ? H5T_STD_U64LE
+                                                        : H5I_INVALID_HID;
+  return place.own(H5Tcopy(type), H5Tclose, "make a type");
+}
+
+template <class T>
+void require_type(const Place& place, hid_t found) {
+  bool same = false;
+  if constexpr (std::is_same_v<T, std::string>)
+    same = H5Tget_class(found) == H5T_STRING && H5Tis_variable_str(found) > 0;
+  else
+    same = H5Tequal(found, type_of<T>(place).get()) > 0;
+  if (!same)
+    place.fail("another type of values than expected");
+}
+
+// --- Values -----------------------------------------------------------------------------------------------
+
+/// Calls write(buffer) with the values as the library takes them.
+template <class T, class Write>
+void with_buffer(const std::vector<T>& values, Write write) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    std::vector<std::string> texts(values.size());
+    std::transform(values.begin(), values.end(), texts.begin(), proper_utf8);
+    std::vector<const char*> pointers(values.size());
+    std::transform(texts.begin(), texts.end(), pointers.begin(),
+                   [](const std::string& text) { return text.c_str(); });
+    write(pointers.data());
+  } else {
+    write(values.data());
+  }
+}
+
+/// `count` values, which read(buffer) gets from the library in memory that it may allocate.
+template <class T, class Read>
+std::vector<T> from_buffer(std::size_t count, hid_t type, hid_t space, Read read) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    struct Texts {
+      hid_t type, space;
+      std::vector<char*> pointers;
+      ~Texts() { H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers.data()); }
+    } texts{type, space, std::vector<char*>(count, nullptr)};
+    read(texts.pointers.data());
+    std::vector<std::string> values(count);
+    std::transform(texts.pointers.begin(), texts.pointers.end(), values.begin(),
+                   [](const char* text) { return text == nullptr ? std::string() : std::string(text); });
+    return values;
+  } else {
+    std::vector<T> values(count);
+    read(values.data());
+    return values;
+  }
+}
+
+using Shape = std::vector<hsize_t>;
+
+std::size_t product(const Shape& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+Handle make_space(const Place& place, const Shape& shape) {
+  return place.own(shape.empty() ? H5Screate(H5S_SCALAR)
+                                 : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                   H5Sclose, "make a space");
+}
+
+Shape shape_of(const Place& place, hid_t space) {
+  const int rank = H5Sget_simple_extent_ndims(space);
+  place.check(rank, "read the shape");
+  Shape shape(static_cast<std::size_t>(rank));
+  place.check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read the shape");
+  return shape;
+}
+
+// --- Attributes -------------------------------------------------------------------------------------------
+
+template <class T>
+void write_attribute_values(const Place& place, hid_t object, const Shape& shape,
+                            const std::vector<T>& values) {
+  const Handle type = type_of<T>(place);
+  const Handle space = make_space(place, shape);
+  const Handle attribute =
+      place.own(H5Acreate2(object, place.name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                H5Aclose, "create it");
+  if (!values.empty())
+    with_buffer(values, [&](const void* buffer) {
+      place.check(H5Awrite(attribute.get(), type.get(), buffer), "write it");
+    });
+}
+
+void write_attribute_to(const Place& place, hid_t object, const AttributeValue& value) {
+  std::visit(
+      [&]<class V>(const V& v) {
+        if constexpr (std::is_arithmetic_v<V> || std::is_same_v<V, std::string>)
+          write_attribute_values<V>(place, object, {}, {v});
+        else
+          write_attribute_values(place, object, {v.size()}, v);
+      },
+      value);
+}
+
+template <class T>
+std::vector<T> read_attribute_values(const Place& place, hid_t object) {
+  if (H5Aexists(object, place.name.c_str()) <= 0)
+    place.fail("missing");
+  const Handle attribute = place.own(H5Aopen(object, place.name.c_str(), H5P_DEFAULT), H5Aclose, "open it");
+  const Handle type = place.own(H5Aget_type(attribute.get()), H5Tclose, "read its type");
+  require_type<T>(place, type.get());
+  const Handle space = place.own(H5Aget_space(attribute.get()), H5Sclose, "read its shape");
+  const std::size_t count = product(shape_of(place, space.get()));
+  return from_buffer<T>(count, type.get(), space.get(), [&](void* buffer) {
+    if (count > 0)
+      place.check(H5Aread(attribute.get(), type.get(), buffer), "read it");
+  });
+}
+
+// --- Variables --------------------------------------------------------------------------------------------
+
+constexpr unsigned kTrackOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+constexpr double kFillValue = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kCompressFromBytes = 4096;
+constexpr hsize_t kChunkValues = 65536;
+constexpr unsigned kCompressionLevel = 4;
+
+/// Whole rows of the first dimension, as many as give a chunk of about kChunkValues values.
+Shape chunk_shape(const Shape& shape) {
+  Shape chunk = shape;
+  const hsize_t row = std::max<hsize_t>(1, product(shape) / shape.front());
+  chunk.front() = std::clamp<hsize_t>(kChunkValues / row, 1, shape.front());
+  return chunk;
+}
+
+template <class T>
+Handle creation_properties(const Place& place, const Shape& shape, bool fill) {
+  Handle properties = place.own(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make properties");
+  const hid_t id = properties.get();
+  place.check(H5Pset_obj_track_times(id, false), "make properties");
+  place.check(H5Pset_attr_creation_order(id, kTrackOrder), "make properties");
+  // Texts are stored apart from the variable, where compression does not reach.
+  if (!std::is_same_v<T, std::string> && !shape.empty() && product(shape) * sizeof(T) >= kCompressFromBytes) {
+    const Shape chunk = chunk_shape(shape);
+    place.check(H5Pset_chunk(id, static_cast<int>(chunk.size()), chunk.data()), "make properties");
+    place.check(H5Pset_shuffle(id), "make properties");
+    place.check(H5Pset_deflate(id, kCompressionLevel), "make properties");
+  }
+  if (fill)
+    place.check(H5Pset_fill_value(id, H5T_NATIVE_DOUBLE, &kFillValue), "make properties");
+  return properties;
+}
+
+template <class T>
+Handle write_dataset(const Place& place, hid_t group, const Shape& shape, const std::vector<T>& values,
+                     const Attributes& attributes, bool is_dimension) {
+  assert(values.size() == product(shape));
+  const bool fill = std::is_same_v<T, double> && !is_dimension;
+  const Handle type = type_of<T>(place);
+  const Handle space = make_space(place, shape);
+  const Handle properties = creation_properties<T>(place, shape, fill);
+  Handle dataset = place.own(H5Dcreate2(group, place.name.c_str(), type.get(), space.get(), H5P_DEFAULT,
+                                        properties.get(), H5P_DEFAULT),
+                             H5Dclose, "create it");
+  if (!values.empty()) {
+    with_buffer(values, [&](const void* buffer) {
+      place.check(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer), "write it");
+    });
+  }
+  if (fill)
+    write_attribute_to({place.file, "attribute", place.parent + place.name + "/", "_FillValue"},
+                       dataset.get(), kFillValue);
+  for (const auto& [name, value] : attributes)
+    write_attribute_to({place.file, "attribute", place.parent + place.name + "/", name}, dataset.get(),
+                       value);
+  return dataset;
+}
+
+/// Of a group, or of a file for its root group. Without times, so that the same content is the same bytes.
+void set_group_properties(const Place& place, hid_t properties) {
+  place.check(H5Pset_obj_track_times(properties, false), "make properties");
+  place.check(H5Pset_link_creation_order(properties, kTrackOrder), "make properties");
+  place.check(H5Pset_attr_creation_order(properties, kTrackOrder), "make properties");
+}
+
+Handle open_dataset(const Place& place, hid_t group) {
+  if (H5Lexists(group, place.name.c_str(), H5P_DEFAULT) <= 0)
+    place.fail("missing");
+  return place.own(H5Dopen2(group, place.name.c_str(), H5P_DEFAULT), H5Dclose, "open it");
+}
+
+Shape shape_of_dataset(const Place& place, const Handle& dataset) {
+  const Handle space = place.own(H5Dget_space(dataset.get()), H5Sclose, "read its shape");
+  return shape_of(place, space.get());
+}
+
+template <class T>
+std::vector<T> read_dataset(const Place& place, const Handle& dataset) {
+  const Handle type = place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type");
+  require_type<T>(place, type.get());
+  const Handle space = place.own(H5Dget_space(dataset.get()), H5Sclose, "read its shape");
+  const std::size_t count = product(shape_of(place, space.get()));
+  return from_buffer<T>(count, type.get(), space.get(), [&](void* buffer) {
+    if (count > 0)
+      place.check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer), "read it");
+  });
+}
+
+}  // namespace
+
+// --- Groups -----------------------------------------------------------------------------------------------
+
+/// The library keeps a file open while a group of it is, so that the root group stands for the file.
+struct Hdf5Group::State {
+  Handle group;
+  std::string file;
+  std::string path;  ///< ends with "/"
+
+  Place place(const char* what, const std::string& name) const { return {file, what, path, name}; }
+};
+
+Hdf5Group Hdf5Group::create_group(const std::string& name) {
+  const Place place = state_->place("group", name);
+  const Handle properties = place.own(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "make properties");
+  set_group_properties(place, properties.get());
+  return Hdf5Group(std::make_shared<const State>(State{
+      place.own(H5Gcreate2(state_->group.get(), name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                H5Gclose, "create it"),
+      state_->file, state_->path + name + "/"}));
+}
+
+void Hdf5Group::write_attribute(const std::string& name, const AttributeValue& value) {
+  write_attribute_to(state_->place("attribute", name), state_->group.get(), value);
+}
+
+template <class T>
+void Hdf5Group::write_dimension(const std::string& name, const std::vector<T>& coordinates,
+                                const Attributes& attributes) {
+  const Place place = state_->place("dimension", name);
+  const Handle dataset =
+      write_dataset(place, state_->group.get(), {coordinates.size()}, coordinates, attributes, true);
+  place.check(H5DSset_scale(dataset.get(), name.c_str()), "make it a dimension");
+}
+
+template <class T>
+void Hdf5Group::write(const std::string& name, const std::vector<std::string>& dimensions,
+                      const std::vector<T>& values, const Attributes& attributes) {
+  const Place place = state_->place("variable", name);
+  std::vector<Handle> scales;
+  Shape shape;
+  for (const std::string& dimension : dimensions) {
+    const Place scale = state_->place("dimension", dimension);
+    scales.push_back(open_dataset(scale, state_->group.get()));
+    shape.push_back(shape_of_dataset(scale, scales.back()).at(0));
+  }
+  const Handle dataset = write_dataset(place, state_->group.get(), shape, values, attributes, false);
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    place.check(H5DSattach_scale(dataset.get(), scales[i].get(), static_cast<unsigned>(i)),
+                "attach its dimensions");
+}
+
+bool Hdf5Group::has_group(const std::string& name) const {
+  return H5Lexists(state_->group.get(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+Hdf5Group Hdf5Group::group(const std::string& name) const {
+  const Place place = state_->place("group", name);
+  if (!has_group(name))
+    place.fail("missing");
+  return Hdf5Group(std::make_shared<const State>(
+      State{place.own(H5Gopen2(state_->group.get(), name.c_str(), H5P_DEFAULT), H5Gclose, "open it"),
+            state_->file, state_->path + name + "/"}));
+}
+
+template <class T>
+T Hdf5Group::attribute(const std::string& name) const {
+  const Place place = state_->place("attribute", name);
+  if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+    const std::vector<T> values = read_attribute_values<T>(place, state_->group.get());
+    if (values.size() != 1)
+      place.fail(fmt::format("{} values where one is expected", values.size()));
+    return values.front();
+  } else {
+    return read_attribute_values<typename T::value_type>(place, state_->group.get());
+  }
+}
+
+template <class T>
+std::vector<T> Hdf5Group::read(const std::string& name, const std::vector<std::size_t>& shape) const {
+  const Place place = state_->place("variable", name);
+  const Handle dataset = open_dataset(place, state_->group.get());
+  const Shape found = shape_of_dataset(place, dataset);
+  if (!std::equal(found.begin(), found.end(), shape.begin(), shape.end()))
+    place.fail(
+        fmt::format("shape ({}) where ({}) is expected", fmt::join(found, ", "), fmt::join(shape, ", ")));
+  return read_dataset<T>(place, dataset);
+}
+
+template <class T>
+std::vector<T> Hdf5Group::read_list(const std::string& name) const {
+  const Place place = state_->place("variable", name);
+  const Handle dataset = open_dataset(place, state_->group.get());
+  const Shape found = shape_of_dataset(place, dataset);
+  if (found.size() != 1)
+    place.fail(fmt::format("{} dimensions where one is expected", found.size()));
+  return read_dataset<T>(place, dataset);
+}
+
+// --- Files ------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// In memory, in the format of HDF5 1.8 at most, which netCDF-4 takes. Tracked objects get checksums by it.
+/// The superblock must be the earliest one: of a later one H5Fget_file_image (1.10.8) spoils the checksum,
+/// because it resets a flag below it.
+Handle memory_access(const Place& place) {
+  constexpr std::size_t kGrowth = std::size_t{1} << 22;
+  Handle access = place.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
+  place.check(H5Pset_fapl_core(access.get(), kGrowth, false), "make properties");
+  place.check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "make properties");
+  return access;
+}
+
+Handle open_root(const Place& place, const Handle& file) {
+  return place.own(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose, "open the root group");
+}
+
+}  // namespace
+
+Hdf5File Hdf5File::create(const std::string& name) {
+  silence_library();
+  const Place place{name, "group", "/", ""};
+  const Handle creation = place.own(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make properties");
+  set_group_properties(place, creation.get());
+  const Handle access = memory_access(place);
+  const Handle file = place.own(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()),
+                                H5Fclose, "create a file in memory");
+  return Hdf5File(std::make_shared<const Hdf5Group::State>(
+      Hdf5Group::State{open_root(place, file), place.file, place.parent}));
+}
+
+Hdf5File Hdf5File::open(const std::filesystem::path& path) {
+  silence_library();
+  const Place place{path.string(), "group", "/", ""};
+  std::vector<std::byte> content = read_sealed_file(path);
+  constexpr unsigned kReadOnlyCopy = 0;
+  const Handle file(H5LTopen_file_image(content.data(), content.size(), kReadOnlyCopy), H5Fclose);
+  if (file.get() < 0)
+    throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one ({})", path.string(), last_error()));
+  return Hdf5File(std::make_shared<const Hdf5Group::State>(
+      Hdf5Group::State{open_root(place, file), place.file, place.parent}));
+}
+
+Hdf5Group Hdf5File::root() const {
+  return Hdf5Group(root_);
+}
+
+std::vector<std::byte> Hdf5File::image() const {
+  const Place place = root_->place("group", "");
+  const Handle file = place.own(H5Iget_file_id(root_->group.get()), H5Fclose, "find its file");
+  place.check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "finish the file");
+  const ssize_t size = H5Fget_file_image(file.get(), nullptr, 0);
+  place.check(size < 0 ? -1 : 0, "measure the file");
+  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+  place.check(H5Fget_file_image(file.get(), bytes.data(), bytes.size()) < 0 ? -1 : 0, "copy the file");
+  return sealed(std::move(bytes));
+}
+
+// --- The types of values that there are -------------------------------------------------------------------
+
+#define MPM_INSTANTIATE_VARIABLE(T)                                                                          \
+  template void Hdf5Group::write_dimension<T>(const std::string&, const std::vector<T>&, const Attributes&); \
+  template void Hdf5Group::write<T>(const std::string&, const std::vector<std::string>&,                     \
+                                    const std::vector<T>&, const Attributes&);                               \
+  template std::vector<T> Hdf5Group::read<T>(const std::string&, const std::vector<std::size_t>&) const;     \
+  template std::vector<T> Hdf5Group::read_list<T>(const std::string&) const
+
+MPM_INSTANTIATE_VARIABLE(std::int8_t);
+MPM_INSTANTIATE_VARIABLE(std::int32_t);
+MPM_INSTANTIATE_VARIABLE(std::int64_t);
+MPM_INSTANTIATE_VARIABLE(double);
+MPM_INSTANTIATE_VARIABLE(std::string);
+
+template std::string Hdf5Group::attribute<std::string>(const std::string&) const;
+template double Hdf5Group::attribute<double>(const std::string&) const;
+template std::int32_t Hdf5Group::attribute<std::int32_t>(const std::string&) const;
+template std::int64_t Hdf5Group::attribute<std::int64_t>(const std::string&) const;
+template std::uint64_t Hdf5Group::attribute<std::uint64_t>(const std::string&) const;
+template std::vector<std::int32_t> Hdf5Group::attribute<std::vector<std::int32_t>>(const std::string&) const;
+
+}  // namespace mpm

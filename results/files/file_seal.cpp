@@ -1,0 +1,105 @@
+#include "results/files/file_seal.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "results/files/archive_error.hpp"
+#include "results/files/sha256.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::string_view kSealBegin = "\nmpmbench sha256 ";
+constexpr std::string_view kSealEnd = "\n";
+constexpr std::string_view kHdf5Signature = "\x89HDF\r\n\x1A\n";
+constexpr std::size_t kHashDigits = 64;
+static_assert(kSealBytes == kSealBegin.size() + kHashDigits + kSealEnd.size());
+
+bool is_seal(std::string_view text) {
+  return text.size() == kSealBytes && text.starts_with(kSealBegin) && text.ends_with(kSealEnd);
+}
+
+/// A file that is read piece by piece.
+class InputFile {
+ public:
+  explicit InputFile(const std::filesystem::path& path) : name_(path.string()) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+      refuse("no such file");
+    if (!std::filesystem::is_regular_file(path, error))
+      refuse("no HDF5 file, but a folder or a device");
+    size_ = static_cast<std::size_t>(std::filesystem::file_size(path, error));
+    file_.open(path, std::ios::binary);
+    if (error || !file_)
+      refuse("cannot be read");
+  }
+
+  std::size_t size() const { return size_; }
+  [[noreturn]] void refuse(const char* why) const { throw ArchiveError(fmt::format("{}: {}", name_, why)); }
+
+  /// `length` bytes from `begin` on, or as many as there are.
+  template <class Bytes>
+  Bytes read(std::size_t begin, std::size_t length) {
+    Bytes bytes(std::min(length, size_ - std::min(begin, size_)), typename Bytes::value_type{});
+    file_.seekg(static_cast<std::streamoff>(begin));
+    file_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (!file_)
+      refuse("cannot be read to its end");
+    return bytes;
+  }
+
+ private:
+  std::string name_;
+  std::size_t size_ = 0;
+  std::ifstream file_;
+};
+
+/// The hash in the seal at the end of the file.
+std::string read_seal(InputFile& file) {
+  const std::size_t begin = file.size() - std::min(file.size(), kSealBytes);
+  const auto seal = file.read<std::string>(begin, kSealBytes);
+  if (is_seal(seal))
+    return seal.substr(kSealBegin.size(), kHashDigits);
+  if (file.read<std::string>(0, kHdf5Signature.size()) != kHdf5Signature)
+    file.refuse("no HDF5 file, or not a whole one");
+  file.refuse(
+      "no checksum at its end: the file is not a whole one, was changed by another program, or comes from an "
+      "early version of mpmbench; take a copy of it, or run its study again");
+}
+
+}  // namespace
+
+std::vector<std::byte> sealed(std::vector<std::byte> content) {
+  const std::string seal = fmt::format("{}{}{}", kSealBegin, sha256(content), kSealEnd);
+  const auto bytes = std::as_bytes(std::span(seal));
+  content.insert(content.end(), bytes.begin(), bytes.end());
+  return content;
+}
+
+std::optional<std::string_view> unsealed(std::string_view file) {
+  const std::string_view content = file.substr(0, file.size() - std::min(file.size(), kSealBytes));
+  const std::string_view seal = file.substr(content.size());
+  if (!is_seal(seal) ||
+      seal.substr(kSealBegin.size(), kHashDigits) != sha256(std::as_bytes(std::span(content))))
+    return std::nullopt;
+  return content;
+}
+
+std::vector<std::byte> read_sealed_file(const std::filesystem::path& path) {
+  InputFile file(path);
+  const std::string hash = read_seal(file);  // first, because what has none may be longer than the memory
+  auto content = file.read<std::vector<std::byte>>(0, file.size() - kSealBytes);
+  if (sha256(content) != hash)
+    file.refuse(
+        "the file is damaged: its SHA-256 differs from the one at its end; take a copy of it, or run its "
+        "study "
+        "again");
+  return content;
+}
+
+}  // namespace mpm

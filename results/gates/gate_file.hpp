@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/findings/gate.hpp"
+#include "scenarios/study_file_keys.hpp"
+
+namespace mpm {
+
+/// Whether a gate that is neither shown to hold nor to fail lets a campaign through.
+enum class InconclusivePolicy { fail, pass };
+
+/// [baseline]: an earlier campaign, and how far the verdicts may fall behind it.
+struct BaselineLimits {
+  std::filesystem::path archive;
+  /// Smallest exact p-value (McNemarTest::p_worse) of lost and gained verdicts that is no regression.
+  double significance = 0.05;
+  std::optional<std::int64_t> maximum_lost;  ///< verdicts of each question; no limit without it
+};
+
+/// A gate file (docs/gates.md).
+struct GateFile {
+  InconclusivePolicy inconclusive = InconclusivePolicy::fail;
+  std::optional<double> confidence;  ///< of the intervals; without it that of the study
+  std::int64_t maximum_failed = 0;   ///< experiments without a result
+  std::int64_t minimum_experiments = 1;
+  std::vector<Gate> gates;
+  std::optional<BaselineLimits> baseline;
+};
+
+/// All tables of the gate file with their keys; docs/gates.md says what they mean, and a test compares. Named
+/// as those of the study file.
+const std::vector<StudyFileTable>& gate_file_tables();
+
+/// Reads gates on the numbers `names` from the text of a gate file. `file_name` is for messages, and a
+/// relative path in the text is relative to its folder.
+///
+/// Errors: InputError as parse_study().
+GateFile parse_gates(std::string_view text, const std::string& file_name,
+                     const std::vector<std::string>& names);
+
+/// Reads a gate file. Errors: as parse_gates(), and InputError for a file that cannot be read.
+GateFile load_gates(const std::filesystem::path& path, const std::vector<std::string>& names);
+
+}  // namespace mpm

@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "results/gates/gate_report.hpp"
+#include "results/gates/gate_words.hpp"
+#include "results/text/text_table.hpp"
+
+namespace mpm {
+namespace {
+
+std::string gate_table(const GateCheck& check) {
+  TextTable table;
+  table.add({"gate", "limit", "judged by", "measured",
+             fmt::format("{:g} % interval", 100.0 * check.confidence), "count", "margin", "outcome"});
+  for (const GateResult& result : check.results)
+    table.add({result.gate.name, limit_text(result.gate), result.gate.with_confidence ? "interval" : "value",
+               measured_text(result), interval_text(result), fmt::format("{}", result.measured.count),
+               margin_text(result), std::string(to_string(result.outcome))});
+  return table.text(TextTable::LastColumn::words);
+}
+
+std::string changes_heading(const char* question, const VerdictChanges& changes) {
+  return fmt::format("{}: {} lost, {} gained among {} experiments, p = {:.3g} (two-sided {:.3g})\n", question,
+                     changes.lost.size(), changes.gained.size(), changes.pairs, changes.test.p_worse,
+                     changes.test.p_two_sided);
+}
+
+std::string baseline_text(const BaselineComparison& baseline) {
+  return fmt::format("\nagainst the baseline {} (mpmbench {} ({}), solver {}):\n", baseline.archive,
+                     baseline.info.mpmbench_version,
+                     baseline.info.git_sha.empty() ? "unknown revision" : baseline.info.git_sha,
+                     baseline.info.solver) +
+         changes_heading("located", baseline.located) + changes_text(baseline.located) +
+         changes_heading("source recognised", baseline.source_recognised) +
+         changes_text(baseline.source_recognised);
+}
+
+std::string verdict_line(const GateCheck& check) {
+  const auto count = [&](GateOutcome outcome) {
+    return std::count_if(check.results.begin(), check.results.end(),
+                         [outcome](const GateResult& result) { return result.outcome == outcome; });
+  };
+  const auto inconclusive = count(GateOutcome::inconclusive);
+  const char* counts_as =
+      check.inconclusive == InconclusivePolicy::fail ? "fails the check" : "is let through";
+  return fmt::format("\n{}: {} of {} gates pass, {} fail, {} inconclusive{}\n",
+                     check.passed() ? "PASSED" : "FAILED", count(GateOutcome::pass), check.results.size(),
+                     count(GateOutcome::fail), inconclusive,
+                     inconclusive > 0 ? fmt::format(", which {}", counts_as) : "");
+}
+
+}  // namespace
+
+std::string gates_text(const GateCheck& check) {
+  std::string text = gate_table(check);
+  std::string reasons;
+  for (const GateResult& result : check.results)
+    if (result.outcome != GateOutcome::pass)
+      reasons += explanation(result, check.confidence) + "\n";
+  if (!reasons.empty())
+    text += "\n" + reasons;
+  if (check.baseline)
+    text += baseline_text(*check.baseline);
+  return text + verdict_line(check);
+}
+
+}  // namespace mpm

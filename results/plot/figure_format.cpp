@@ -1,0 +1,56 @@
+#include "results/plot/figure_format.hpp"
+
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::array<FigureFormat, 3> kFormats{FigureFormat::svg, FigureFormat::pdf, FigureFormat::png};
+
+}  // namespace
+
+std::string_view to_string(FigureFormat format) {
+  switch (format) {
+    case FigureFormat::svg:
+      return "svg";
+    case FigureFormat::pdf:
+      return "pdf";
+    case FigureFormat::png:
+      return "png";
+  }
+  return "unknown";
+}
+
+const std::vector<std::string>& figure_format_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const FigureFormat format : kFormats)
+      list.emplace_back(to_string(format));
+    return list;
+  }();
+  return names;
+}
+
+FigureFormat figure_format(const std::string& name) {
+  for (const FigureFormat format : kFormats)
+    if (name == to_string(format))
+      return format;
+  throw InputError("format of a figure", "'" + name + "'",
+                   fmt::format("{}", fmt::join(figure_format_names(), ", ")));
+}
+
+FigureFormat figure_format_of(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  for (const FigureFormat format : kFormats)
+    if (extension == fmt::format(".{}", to_string(format)))
+      return format;
+  throw InputError("file of a figure", "'" + file.string() + "'",
+                   fmt::format("a name that ends with .{}", fmt::join(figure_format_names(), ", .")));
+}
+
+}  // namespace mpm

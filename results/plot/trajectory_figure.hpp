@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/sensitivity/nominal_output.hpp"
+#include "results/plot/figure.hpp"
+#include "scenarios/closed_loop.hpp"
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// One closed loop as a figure, one panel a variable (6.7 to 6.9 of the thesis): CVs y with their nominal
+/// outputs y0 and their soft and hard limits, MVs with their targets and hard limits, measured disturbances.
+/// Only the samples that the controller finished are drawn.
+///
+/// `name` becomes that of the figure; `nominal.y0` has the shape of `loop.y`.
+Figure trajectory_figure(const Study& study, const Trajectory& loop, const NominalOutputs& nominal,
+                         const std::string& name);
+
+}  // namespace mpm

@@ -1,0 +1,160 @@
+#include "results/report/comparison_figures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "results/plot/panel_script.hpp"
+
+namespace mpm {
+namespace {
+
+/// Of the methods, in their order; neighbours differ in dash as well.
+constexpr std::array<Pen, 7> kPens{{
+    {colour::kBlue, Dash::solid, Mark::dot, 2.0, 0.8},
+    {colour::kVermillion, Dash::dashed, Mark::square, 2.0, 0.8},
+    {colour::kGreen, Dash::solid, Mark::triangle, 2.0, 0.9},
+    {colour::kPurple, Dash::dashed, Mark::diamond, 2.0, 1.0},
+    {colour::kOrange, Dash::solid, Mark::circle, 2.0, 0.8},
+    {colour::kSky, Dash::dotted, Mark::hollow_diamond, 2.0, 1.0},
+    {colour::kBlack, Dash::dashed, Mark::circle, 1.5, 0.8},
+}};
+const Pen kChance{colour::kGrey, Dash::dotted, Mark::none, 1.2};
+
+using Methods = std::vector<MethodRates>;
+
+/// A curve in the pen of its method.
+Pen curve_pen(std::size_t method) {
+  Pen pen = kPens[method % kPens.size()];
+  pen.mark = Mark::none;
+  return pen;
+}
+
+/// Whiskers in the colour of their method, solid so that short ones can be seen.
+Pen whisker_pen(std::size_t method) {
+  Pen pen = kPens[method % kPens.size()];
+  pen.dash = Dash::solid;
+  return pen;
+}
+
+/// The places of the methods that gave some verdict; the others would be empty rows.
+std::vector<std::size_t> answering(const Methods& methods) {
+  std::vector<std::size_t> places;
+  for (std::size_t m = 0; m < methods.size(); ++m)
+    if (methods[m].answered.hits > 0)
+      places.push_back(m);
+  return places;
+}
+
+Whisker rate_whisker(const MethodRates& method, const Rate& rate, double at) {
+  const double value = 100.0 * rate.value;
+  const double lower = 100.0 * rate.interval.lower, upper = 100.0 * rate.interval.upper;
+  return {at, value, lower, upper,
+          fmt::format("{}: {:.1f} %, interval {:.1f} to {:.1f} %, {} of {} loops", method.method, value,
+                      lower, upper, rate.hits, rate.total)};
+}
+
+Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
+  const std::vector<std::size_t> places = answering(methods);
+  const auto rows = static_cast<double>(places.size());
+  Axis y{.label = "", .lower = -0.6, .upper = rows - 0.4};
+  for (const std::size_t place : places)
+    y.words.push_back(methods[place].method);
+  std::reverse(y.words.begin(), y.words.end());  // the first one on top
+  PanelScript panel(
+      info.name, info.title,
+      {.label = "share of loops (%)", .lower = -2, .upper = 102, .ticks = {0, 20, 40, 60, 80, 100}}, y);
+  panel.left_margin(13);
+  double at = rows;
+  for (const std::size_t place : places) {
+    const Rate& rate = methods[place].*info.rate;
+    at -= 1.0;
+    if (rate.total > 0)
+      panel.level_whiskers({rate_whisker(methods[place], rate, at)}, whisker_pen(place));
+  }
+  return panel.finish(fmt::format("Share of loops with its interval, one row a method: {}.", info.meaning),
+                      70.0 + 28.0 * rows);
+}
+
+/// The curve with at most kMostPoints points, of which the first and the last are always there.
+void draw_curve(PanelScript& panel, const RocCurve& roc, const Pen& pen) {
+  std::vector<double> x, y;
+  const std::size_t stride = roc.points.size() / kMostPoints + 1;
+  for (std::size_t i = 0; i < roc.points.size(); ++i) {
+    if (i % stride != 0 && i + 1 != roc.points.size())
+      continue;
+    x.push_back(100.0 * roc.points[i].false_positive_rate);
+    y.push_back(100.0 * roc.points[i].true_positive_rate);
+  }
+  panel.line(x, y, pen);
+}
+
+/// Where the method itself draws the line: what it flags of both kinds of loops.
+NamedPoint verdict_point(const MethodRates& method) {
+  const double x = 100.0 * method.false_alarm_healthy.value, y = 100.0 * method.detected.value;
+  return {x, y,
+          fmt::format("{}: {:.1f} % of the faults detected, {:.1f} % false alarms", method.method, y, x)};
+}
+
+}  // namespace
+
+std::vector<MethodRateInfo> counted_rates(const Methods& methods) {
+  std::vector<MethodRateInfo> counted;
+  for (const MethodRateInfo& info : method_rate_infos())
+    if (std::any_of(methods.begin(), methods.end(),
+                    [&](const MethodRates& m) { return (m.*info.rate).total > 0; }))
+      counted.push_back(info);
+  return counted;
+}
+
+Figure comparison_rates_figure(const Study& study, const Methods& methods) {
+  Figure figure;
+  figure.name = "comparison-rates";
+  figure.caption = fmt::format(
+      "How often each method that gave a verdict is right, with {:g} % intervals: false alarms and flags "
+      "without impact are good on the left, all others on the right.",
+      100.0 * study.aggregate.confidence);
+  for (const MethodRateInfo& info : counted_rates(methods))
+    if (info.rate != &MethodRates::answered)
+      figure.panels.push_back(rate_panel(info, methods));
+  return figure;
+}
+
+Figure comparison_roc_figure(const Methods& methods) {
+  PanelScript panel(
+      "comparison_roc", "",
+      {.label = "healthy loops flagged (%)", .lower = 0, .upper = 100, .ticks = {0, 20, 40, 60, 80, 100}},
+      {.label = "loops with a fault flagged (%)",
+       .lower = 0,
+       .upper = 101,
+       .ticks = {0, 20, 40, 60, 80, 100}});
+  panel.line({0, 100}, {0, 100}, kChance);
+  Figure figure;
+  figure.name = "comparison-roc";
+  figure.caption =
+      "Each method with any threshold on its score; the mark is its own verdict, which need not lie on the "
+      "curve of a method that flags by more than one number.";
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    if (!methods[m].roc.defined())
+      continue;
+    draw_curve(panel, methods[m].roc, curve_pen(m));
+    figure.legend.push_back(
+        {fmt::format("{}, area {:.3f} ({:.3f} to {:.3f})", methods[m].method, methods[m].roc.area,
+                     methods[m].roc_area.lower, methods[m].roc_area.upper),
+         kPens[m % kPens.size()]});
+  }
+  for (std::size_t m = 0; m < methods.size(); ++m)
+    if (methods[m].roc.defined())
+      panel.points({verdict_point(methods[m])}, kPens[m % kPens.size()]);
+  figure.legend.push_back({"chance", kChance});
+  figure.panels = {
+      panel.finish("Receiver operating characteristics of the scores of the methods, loops with a "
+                   "fault against healthy ones.",
+                   360)};
+  return figure;
+}
+
+}  // namespace mpm

@@ -1,0 +1,114 @@
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/scenario_sections.hpp"
+#include "results/text/scenario_text.hpp"
+
+namespace mpm {
+namespace {
+
+const Pen kY{colour::kBlack, Dash::solid, Mark::none, 1.5};
+const Pen kY0{colour::kBlue, Dash::dashed, Mark::none, 1.8};
+const Pen kY0Diag{colour::kVermillion, Dash::dotted, Mark::none, 2.0};
+const Pen kBand{colour::kLightGrey, Dash::solid, Mark::none, 1.0};
+
+constexpr std::size_t kFewCvs = 3;  // of so many CVs all are drawn
+
+/// The comparisons of one loop under its name.
+struct Loop {
+  std::string id;
+  std::string name;
+  std::vector<std::pair<std::size_t, const AcfComparison*>> cvs;  ///< all of them
+  std::vector<std::size_t> drawn;                                 ///< which of these are drawn
+};
+
+std::vector<Loop> loops_of(const Campaign& campaign) {
+  std::vector<Loop> loops;
+  if (!campaign.basis.acf.empty()) {
+    Loop basis{"basis", "basis case", {}, {}};
+    for (std::size_t cv = 0; cv < campaign.basis.acf.size(); ++cv) {
+      basis.cvs.emplace_back(cv, &campaign.basis.acf[cv]);
+      basis.drawn.push_back(cv);
+    }
+    loops.push_back(std::move(basis));
+  }
+  for (const ExperimentRecord& record : campaign.records) {
+    Loop loop{fmt::format("{}", record.draw.index), scenario_name(campaign.study, record), {}, {}};
+    for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv) {
+      loop.cvs.emplace_back(cv, &record.diagnosis.cvs[cv].acf);
+      if (record.diagnosis.cvs[cv].flagged || record.diagnosis.cvs.size() <= kFewCvs)
+        loop.drawn.push_back(cv);
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+Panel acf_panel(const Study& study, std::size_t cv, const AcfComparison& acf) {
+  const std::string& name = study.plant.cvs[cv].name;
+  std::vector<double> lags;
+  for (Eigen::Index lag = 0; lag < acf.y.values.size(); ++lag)
+    lags.push_back(static_cast<double>(lag));
+  PanelScript panel(fmt::format("acf_{}", cv), fmt::format("{}: {}", as_label(name), as_label(acf_text(acf))),
+                    {.label = "lag (samples)", .lower = 0.0},
+                    {.label = "autocorrelation", .lower = -1.0, .upper = 1.0});
+  panel.across(acf.white_band, kBand);
+  panel.across(-acf.white_band, kBand);
+  for (const auto& [values, pen] : {std::pair{&acf.y.values, &kY}, std::pair{&acf.y0.values, &kY0},
+                                    std::pair{&acf.y0_diag.values, &kY0Diag}})
+    panel.line(lags, std::vector<double>(values->begin(), values->end()), *pen);
+  return panel.finish(fmt::format("Autocorrelation of y, y0 and y0_diag of {}.", name), 240);
+}
+
+Figure acf_figure(const Study& study, const Loop& loop) {
+  Figure figure;
+  figure.name = "scenario-acf-" + loop.id;
+  figure.caption = fmt::format(
+      "{}: autocorrelation about the setpoint, or the mean of a CV without one, with the band of white "
+      "noise; section 3.2 of the thesis, figure A2.1.",
+      as_label(loop.name));
+  figure.legend = {{"y", kY}, {"y_{0}", kY0}, {"y_{0 diag}", kY0Diag}, {"white noise", kBand}};
+  for (const std::size_t cv : loop.drawn)
+    figure.panels.push_back(acf_panel(study, cv, *loop.cvs[cv].second));
+  return figure;
+}
+
+std::string acf_table(const Study& study, const std::vector<Loop>& loops) {
+  HtmlTable table(
+      "Verdicts of the autocorrelation functions: the loop against its nominal output. Only CVs that differ "
+      "from it.",
+      {{"Scenario", HtmlTable::Align::left},
+       {"CV", HtmlTable::Align::left},
+       {"Verdict", HtmlTable::Align::left},
+       {"Decay lag of y"},
+       {"of y<sub>0</sub>"},
+       {"Ratio"},
+       {"Own share"}});
+  bool any = false;
+  for (const Loop& loop : loops)
+    for (const auto& [cv, acf] : loop.cvs)
+      if (acf_differs(*acf)) {
+        any = true;
+        table.row({html_text(loop.name), html_text(study.plant.cvs[cv].name), html_text(acf_text(*acf)),
+                   html_number(acf->y.decay_lag), html_number(acf->y0.decay_lag),
+                   html_number(acf->decay_lag_ratio), html_number(acf->own_share)});
+      }
+  return any ? table.html()
+             : "<p>The autocorrelation functions of no CV differ from those of its nominal output.</p>\n";
+}
+
+}  // namespace
+
+void add_autocorrelations(ReportSection& section, const Campaign& campaign) {
+  const std::vector<Loop> loops = loops_of(campaign);
+  section.add(acf_table(campaign.study, loops));
+  for (const Loop& loop : loops)
+    if (!loop.drawn.empty())
+      section.add(acf_figure(campaign.study, loop));
+}
+
+}  // namespace mpm

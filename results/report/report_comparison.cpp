@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "analysis/findings/method_rates.hpp"
+#include "analysis/methods/method_table.hpp"
+#include "analysis/methods/method_words.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/comparison_figures.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/report_sections.hpp"
+
+namespace mpm {
+namespace {
+
+using Methods = std::vector<MethodRates>;
+
+std::string introduction(const Campaign& campaign) {
+  return fmt::format(
+      "<p>Every method has assessed the same {} of {} experiments, those that ran to their end, and has seen "
+      "of each what a historian would have kept. Judge detection and false alarms together, for a method "
+      "that flags every loop detects every fault; a rate that is missing had no loop to be counted on.</p>\n",
+      campaign.comparison->loops.size(), campaign.records.size());
+}
+
+/// A value over its interval and what it rests on, both small.
+std::string rate_cell(const Rate& rate) {
+  return rate.total == 0 ? html_number(NAN)
+                         : fmt::format("{}<br><small>{}<br>of {}</small>", html_number(rate.value, true),
+                                       html_interval(rate.interval, true), rate.total);
+}
+
+/// One row a rate, one column a method: there are more rates than a page is wide.
+std::string rates_table(const Study& study, const Methods& methods) {
+  std::vector<HtmlTable::Column> columns{{"Share of loops", HtmlTable::Align::left}};
+  for (const MethodRates& method : methods)
+    columns.push_back({html_text(method.method)});
+  HtmlTable table(fmt::format("Shares of loops with their {}, and the number of loops looked at. "
+                              "Rates that no loop was counted for are left out.",
+                              interval_title(study)),
+                  columns);
+  for (const MethodRateInfo& info : counted_rates(methods)) {
+    std::vector<std::string> cells{html_text(info.title)};
+    for (const MethodRates& method : methods)
+      cells.push_back(rate_cell(method.*info.rate));
+    table.row(cells);
+  }
+  return table.html();
+}
+
+/// What each rate counts.
+std::string rates_legend() {
+  std::string html = "<p><small>";
+  for (const MethodRateInfo& info : method_rate_infos())
+    html += fmt::format("<strong>{}</strong>: {}. ", html_text(info.title), html_text(info.meaning));
+  return html + "</small></p>\n";
+}
+
+void add_roc(ReportSection& section, const Methods& methods) {
+  if (std::any_of(methods.begin(), methods.end(), [](const MethodRates& m) { return m.roc.defined(); }))
+    section.add(comparison_roc_figure(methods));
+  else
+    section.add(
+        "<p class=\"absent\">ROC curves are left out: they need loops with a fault and healthy ones "
+        "that a method has scored.</p>\n");
+}
+
+std::string pairs_table(const ComparisonSummary& summary) {
+  HtmlTable table(
+      "Two methods on the loops that both gave a verdict on. Right is to flag the loops with a fault, "
+      "or those with a fault that has an impact, and no others; p is that of McNemar&rsquo;s exact test, "
+      "two-sided.",
+      {{"First", HtmlTable::Align::left},
+       {"Second", HtmlTable::Align::left},
+       {"To be flagged", HtmlTable::Align::left},
+       {"Loops"},
+       {"First alone right"},
+       {"Second alone right"},
+       {"p"}});
+  for (const MethodPair& pair : summary.pairs)
+    if (pair.loops > 0)
+      table.row({html_text(summary.methods[pair.first].method),
+                 html_text(summary.methods[pair.second].method), std::string(to_string(pair.truth)),
+                 fmt::format("{}", pair.loops), fmt::format("{}", pair.test.lost),
+                 fmt::format("{}", pair.test.gained), fmt::format("{:.2g}", pair.test.p_two_sided)});
+  return table.html();
+}
+
+/// Why some loops have no verdict of the method.
+std::string reason_cell(const MethodRates& method) {
+  if (method.reason.empty())
+    return "";
+  return fmt::format("{} of {} loops: {}", method.answered.total - method.answered.hits,
+                     method.answered.total, html_text(method.reason));
+}
+
+std::string methods_table(const Methods& methods) {
+  HtmlTable table(
+      "What a method needs of a loop and tells of it, its median processor time, and why it gave no "
+      "verdict.",
+      {{"Method", HtmlTable::Align::left},
+       {"A flagged loop", HtmlTable::Align::text},
+       {"Needs", HtmlTable::Align::left},
+       {"Tells besides", HtmlTable::Align::left},
+       {"ms a loop"},
+       {"No verdict on", HtmlTable::Align::text}});
+  for (const MethodRates& method : methods) {
+    const AssessmentMethodInfo& info = assessment_method(method.method);
+    table.row(
+        {fmt::format("{}<br><small>{}</small>", html_text(info.name), html_text(info.title)),
+         html_text(info.verdict), html_text(needs_text(info)), html_text(answers_text(info)),
+         std::isnan(method.milliseconds) ? html_number(NAN) : fmt::format("{:.2f}", method.milliseconds),
+         reason_cell(method)});
+  }
+  return table.html();
+}
+
+}  // namespace
+
+ReportSection comparison_section(const ReportInput& input) {
+  const Campaign& campaign = input.campaign;
+  ReportSection section{"comparison", "Assessment methods compared", {}};
+  const ComparisonSummary summary = summarise(*campaign.comparison, campaign.records, campaign.study);
+  section.add(introduction(campaign));
+  Figure rates = comparison_rates_figure(campaign.study, summary.methods);
+  if (!rates.panels.empty())
+    section.add(std::move(rates));
+  section.add(rates_table(campaign.study, summary.methods));
+  section.add(rates_legend());
+  add_roc(section, summary.methods);
+  const bool paired = std::any_of(summary.pairs.begin(), summary.pairs.end(),
+                                  [](const MethodPair& pair) { return pair.loops > 0; });
+  if (paired)
+    section.add(pairs_table(summary));
+  section.add(methods_table(summary.methods));
+  return section;
+}
+
+}  // namespace mpm

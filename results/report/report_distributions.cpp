@@ -1,0 +1,119 @@
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "analysis/indicators/scatter_ellipse.hpp"
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/scenario_sections.hpp"
+#include "results/text/scenario_text.hpp"
+
+namespace mpm {
+namespace {
+
+const Pen kKurtosis{colour::kBlue, Dash::solid, Mark::none, 1.8};
+const Pen kSkewness{colour::kVermillion, Dash::dashed, Mark::none, 1.8};
+
+constexpr double kProbability = 0.95;
+constexpr int kCorners = 72;  // of the polygon that stands for an ellipse
+
+template <class Part>
+struct Statistic {
+  const char* label;
+  Part PerStatistic<Part>::*member;
+};
+
+template <class Part>
+constexpr std::array<Statistic<Part>, 4> kStatistics{{{"kts", &PerStatistic<Part>::kts},
+                                                      {"skn", &PerStatistic<Part>::skn},
+                                                      {"dkts", &PerStatistic<Part>::dkts},
+                                                      {"dskn", &PerStatistic<Part>::dskn}}};
+
+void draw_ellipse(PanelScript& panel, const CentredSums& sums, const Pen& pen) {
+  const ConfidenceEllipse ellipse = confidence_ellipse(sums, kProbability);
+  const double angle = ellipse.angle * std::numbers::pi / 180.0;
+  std::vector<double> x, y;
+  for (int corner = 0; corner <= kCorners; ++corner) {
+    const double phase = 2.0 * std::numbers::pi * corner / kCorners;
+    const double along = ellipse.semi_major * std::cos(phase);
+    const double across = ellipse.semi_minor * std::sin(phase);
+    x.push_back(ellipse.centre_x + along * std::cos(angle) - across * std::sin(angle));
+    y.push_back(ellipse.centre_y + along * std::sin(angle) + across * std::cos(angle));
+  }
+  panel.line(x, y, pen);
+}
+
+/// The ellipses of one CV: of the moments, or of their differences.
+Panel ellipse_panel(const std::string& name, const std::string& cv, const PerStatistic<CentredSums>& scatter,
+                    bool differences) {
+  const char* what = differences ? "differences" : "moments";
+  PanelScript panel(name, fmt::format("{}: {}", as_label(cv), what), {.label = "of y_{0 diag}"},
+                    {.label = "of e_{0 diag}"});
+  draw_ellipse(panel, differences ? scatter.dkts : scatter.kts, kKurtosis);
+  draw_ellipse(panel, differences ? scatter.dskn : scatter.skn, kSkewness);
+  return panel.finish(
+      fmt::format("Confidence ellipses of moving kurtosis and skewness, {}, of {}.", what, cv), 240);
+}
+
+/// Calls `visit(name of the CV, what was found of it)` for each flagged CV.
+template <class Visit>
+void for_each_flagged(const Campaign& campaign, Visit visit) {
+  for (const ExperimentRecord& record : campaign.records)
+    for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv)
+      if (record.diagnosis.cvs[cv].flagged)
+        visit(scenario_name(campaign.study, record) + " " + campaign.study.plant.cvs[cv].name,
+              record.diagnosis.cvs[cv]);
+}
+
+Figure ellipse_figure(const Campaign& campaign) {
+  Figure figure;
+  figure.name = "scenario-ellipses";
+  figure.caption = fmt::format(
+      "{:g} % confidence ellipses of moving kurtosis and skewness of the nominal error against those of the "
+      "nominal output, at a window of one prediction horizon; beside them those of their differences; thesis "
+      "figures 5.11 and 5.19. Flat and along an axis: a disturbance; inclined: a mismatch.",
+      100.0 * kProbability);
+  figure.legend = {{"kurtosis", kKurtosis}, {"skewness", kSkewness}};
+  for_each_flagged(campaign, [&](const std::string& cv, const CvDiagnosis& found) {
+    for (const bool differences : {false, true})
+      figure.panels.push_back(ellipse_panel(fmt::format("ellipse_{}", figure.panels.size()), cv,
+                                            found.distribution.scatter_diag, differences));
+  });
+  return figure;
+}
+
+std::string distribution_table(const Campaign& campaign) {
+  HtmlTable table(
+      "Indicators of chapter 5 for the flagged CVs: means over the window lengths, of moving kurtosis (kts) "
+      "and skewness (skn) and of their differences (dkts, dskn).",
+      {{"Scenario, CV", HtmlTable::Align::left},
+       {"Of", HtmlTable::Align::left},
+       {"co"},
+       {"ce"},
+       {"Angle (degrees)"},
+       {"b/a"}});
+  for_each_flagged(campaign, [&](const std::string& cv, const CvDiagnosis& found) {
+    for (const auto& statistic : kStatistics<ScatterMeans>) {
+      const ScatterMeans& means = found.distribution.means.*statistic.member;
+      const bool first = statistic.member == &PerStatistic<ScatterMeans>::kts;
+      table.row({first ? html_text(cv) : "", statistic.label, html_number(means.co), html_number(means.ce),
+                 html_number(means.angle), html_number(means.minor_to_major)});
+    }
+  });
+  return table.html();
+}
+
+}  // namespace
+
+void add_distributions(ReportSection& section, const Campaign& campaign) {
+  Figure figure = ellipse_figure(campaign);
+  if (figure.panels.empty())
+    return;
+  section.add(std::move(figure));
+  section.add(distribution_table(campaign));
+}
+
+}  // namespace mpm

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+const Pen kQuiet{colour::kBlue, Dash::none, Mark::dot, 1.0, 0.5};
+const Pen kAlarm{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.6};
+const Pen kCost{colour::kGrey, Dash::none, Mark::circle, 1.0, 0.5};
+const Pen kBand{colour::kBlack, Dash::dashed, Mark::none, 1.2};
+
+/// "healthy", "tuning", "move suppression".
+std::string words(const FalseAlarms& group) {
+  std::string text(group.parameter ? to_string(*group.parameter) : count_name(group.kind));
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+bool belongs_to(const ExperimentDraw& draw, const FalseAlarms& group) {
+  return draw.kind == group.kind &&
+         (!group.parameter || (draw.tuning && draw.tuning->parameter == *group.parameter));
+}
+
+/// Numbers of a logarithmic axis that a reader can take in, between these values.
+std::vector<double> round_numbers(double least, double largest) {
+  std::vector<double> ticks;
+  for (const double number :
+       {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 0.8, 1.0, 1.2, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
+    if (number >= least && number <= largest)
+      ticks.push_back(number);
+  return ticks;
+}
+
+/// The indices of an experiment that are farthest from 1, against the factor of the weight or the number.
+Panel group_panel(const Campaign& campaign, const FalseAlarms& group) {
+  const Study& study = campaign.study;
+  double least = study.diagnosis.impact_lower, largest = study.diagnosis.impact_upper;
+  std::vector<NamedPoint> quiet, alarms, costs;
+  for (const ExperimentRecord& record : campaign.records) {
+    if (record.status != ExperimentStatus::ok || !belongs_to(record.draw, group))
+      continue;
+    const double x = group.parameter ? record.draw.tuning->factor : static_cast<double>(record.draw.index);
+    const auto farthest = [&](const char* index, const Eigen::VectorXd& values) -> NamedPoint {
+      const Eigen::Index cv = farthest_from_one(values, study.diagnosis.location_distance);
+      const double value = cv < 0 ? NAN : values(cv);
+      if (value > 0.0 && std::isfinite(value)) {
+        least = std::min(least, value);
+        largest = std::max(largest, value);
+      }
+      return {x, value,
+              fmt::format("{}; {} of {} {:.3g}", experiment_line(study, record), index, cv_name(study, cv),
+                          value)};
+    };
+    costs.push_back(farthest("Ivar_basis", record.diagnosis.ivar_basis));
+    (record.diagnosis.impactful ? alarms : quiet).push_back(farthest("Ivar", record.diagnosis.ivar));
+  }
+  const Rate& rate = group.false_alarm;
+  PanelScript panel("alarm_" + group.name(),
+                    fmt::format("{}: {} of {} false alarms", words(group), rate.hits, rate.total),
+                    group.parameter ? Axis{.label = "factor of the weight (-)", .logarithmic = true}
+                                    : Axis{.label = "experiment"},
+                    {.label = "index farthest from 1 (-)",
+                     .logarithmic = true,
+                     .ticks = round_numbers(least / 1.05, largest * 1.05)});
+  panel.across(study.diagnosis.impact_lower, kBand);
+  panel.across(study.diagnosis.impact_upper, kBand);
+  panel.points(costs, kCost);
+  panel.points(quiet, kQuiet);
+  panel.points(alarms, kAlarm);
+  return panel.finish(fmt::format(
+      "Ivar farthest from 1 of the experiments of the group {}, with the band of impact.", words(group)));
+}
+
+std::string rates_table(const ReportInput& input) {
+  HtmlTable table(
+      "Experiments in which model and plant agree: shares of the feasible ones that the chain calls a "
+      "modelling error with impact, and which source it names.",
+      {{"Experiments", HtmlTable::Align::left},
+       {"Infeasible"},
+       {"False alarms"},
+       {interval_title(input.campaign.study)},
+       {"as MPM"},
+       {"as UD"},
+       {"Feasible"}});
+  for (const FalseAlarms& group : input.parts.aggregate.false_alarms)
+    table.row({(group.parameter ? "&emsp;" : "") + words(group), html_number(group.infeasible.value, true),
+               html_number(group.false_alarm.value, true), html_interval(group.false_alarm.interval, true),
+               html_number(group.false_mpm.value, true), html_number(group.false_ud.value, true),
+               fmt::format("{}", group.false_alarm.total)});
+  return table.html();
+}
+
+std::string sensitivity_sentence(const Study& study) {
+  if (study.experiments.tuning == 0)
+    return "";
+  return study.tuning.sensitivity == TuningSensitivity::current
+             ? "<p>S0 of an experiment with a bad tuning is that of the controller with this tuning.</p>\n"
+             : "<p>S0 of an experiment with a bad tuning is that of the controller of the study: nobody "
+               "noticed "
+               "the change.</p>\n";
+}
+
+}  // namespace
+
+ReportSection false_alarm_section(const ReportInput& input) {
+  ReportSection section{"false-alarms", "Are there alarms where the model is right?", {}};
+  const std::vector<FalseAlarms>& groups = input.parts.aggregate.false_alarms;
+  Figure figure;
+  figure.name = "false-alarms";
+  figure.caption =
+      "The Ivar of an experiment that is farthest from 1, one point an experiment: of healthy ones by their "
+      "number, of bad tunings against the factor of the weight. Outside the band the chain sees a modelling "
+      "error where there is none. Ivar_{basis} says what the noise or the tuning really does to the variance "
+      "of some CV.";
+  figure.legend = {{"Ivar: no alarm", kQuiet},
+                   {"Ivar: false alarm", kAlarm},
+                   {"Ivar_{basis}", kCost},
+                   {"band of impact", kBand}};
+  for (const FalseAlarms& group : groups)
+    if ((group.parameter || group.kind == ExperimentKind::none) && group.false_alarm.total > 0)
+      figure.panels.push_back(group_panel(input.campaign, group));
+  if (!figure.panels.empty())
+    section.add(std::move(figure));
+  section.add(sensitivity_sentence(input.campaign.study));
+  section.add(rates_table(input));
+  return section;
+}
+
+}  // namespace mpm

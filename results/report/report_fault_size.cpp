@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include "analysis/findings/fault_size.hpp"
+#include "results/archive/variable_text.hpp"
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int kBins = 6;
+
+const Pen kSeen{colour::kSky, Dash::solid, Mark::circle, 5.0, 0.7};
+const Pen kDiagnosed{colour::kBlue, Dash::solid, Mark::dot, 1.6, 0.55};
+const Pen kMissed{colour::kGrey, Dash::none, Mark::circle, 1.0, 0.35};
+const Pen kWrong{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.5};
+const Pen kNoFault{colour::kGrey, Dash::dashed, Mark::none, 1.2};
+
+/// How the panel of a measure is labelled.
+struct Labels {
+  std::string title, axis;
+};
+
+Labels labels(FaultSize size, const Study& study) {
+  switch (size) {
+    case FaultSize::gain_factor:
+      return {"MPM in a gain", "factor of the gain (-)"};
+    case FaultSize::time_constant_factor:
+      return {"MPM in a time constant", "factor of the time constant (-)"};
+    case FaultSize::dead_time_shift:
+      return {"MPM in a dead time",
+              "shift of the dead time (" + as_label(unit_text(study.plant.time_unit)) + ")"};
+    case FaultSize::disturbance_deviation:
+      return {"UD", "standard deviation of the disturbance (CV unit)"};
+  }
+  return {};
+}
+
+std::vector<Whisker> whiskers(const std::vector<SizeBin>& bins, Rate SizeBin::*rate, const char* what) {
+  std::vector<Whisker> list;
+  for (const SizeBin& bin : bins) {
+    const Rate& share = bin.*rate;
+    list.push_back({bin.median, 100.0 * share.value, 100.0 * share.interval.lower,
+                    100.0 * share.interval.upper,
+                    fmt::format("{:.3g} to {:.3g}: {} of {} {}", bin.smallest, bin.largest, share.hits,
+                                share.total, what)});
+  }
+  return list;
+}
+
+void add_curve(PanelScript& panel, const std::vector<Whisker>& list, const Pen& pen) {
+  std::vector<double> x, y;
+  for (const Whisker& whisker : list) {
+    x.push_back(whisker.at);
+    y.push_back(whisker.value);
+  }
+  Pen thin = pen;
+  thin.width = 1.0;
+  panel.line(x, y, thin);
+  panel.upright_whiskers(list, pen);
+}
+
+Panel size_panel(const Study& study, FaultSize size, const std::vector<SizedFault>& faults) {
+  constexpr double kMissedRow = -7, kWrongRow = -15;  // below the shares, one mark an experiment
+  const std::vector<SizeBin> bins = size_bins(faults, kBins, study.aggregate.confidence);
+  std::vector<NamedPoint> missed, wrong;
+  for (const SizedFault& fault : faults)
+    if (!fault.diagnosed)
+      (fault.impactful ? wrong : missed)
+          .push_back(
+              {fault.size, fault.impactful ? kWrongRow : kMissedRow, experiment_line(study, *fault.record)});
+  const Labels text = labels(size, study);
+  PanelScript panel(std::string(to_string(size)),
+                    fmt::format("{}: {} experiments", text.title, faults.size()), {.label = text.axis},
+                    {.label = "share (%)", .lower = -20, .upper = 102, .ticks = {0, 20, 40, 60, 80, 100}});
+  if (size == FaultSize::dead_time_shift)
+    panel.upright(0.0, kNoFault);
+  else if (size != FaultSize::disturbance_deviation)
+    panel.upright(1.0, kNoFault);
+  add_curve(panel, whiskers(bins, &SizeBin::impactful, "have an impact"), kSeen);
+  add_curve(panel, whiskers(bins, &SizeBin::diagnosed, "are diagnosed rightly"), kDiagnosed);
+  panel.points(missed, kMissed);
+  panel.points(wrong, kWrong);
+  return panel.finish(
+      fmt::format("Share of faults with impact and share diagnosed rightly against the size of "
+                  "the fault: {}.",
+                  text.title));
+}
+
+}  // namespace
+
+ReportSection fault_size_section(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  ReportSection section{"fault-size", "Which small faults are missed?", {}};
+  Figure figure;
+  figure.name = "fault-size";
+  figure.caption = fmt::format(
+      "Share of feasible experiments with a single fault that has an impact, and share with CV and source "
+      "right as well, against the size of the fault: {} groups of equal number at their medians, {:g} % "
+      "intervals. Below them one mark for each experiment without impact and each wrong verdict.",
+      kBins, 100.0 * study.aggregate.confidence);
+  figure.legend = {{"has an impact", kSeen},
+                   {"CV and source right", kDiagnosed},
+                   {"without impact", kMissed},
+                   {"wrong verdict", kWrong},
+                   {"no fault", kNoFault}};
+  for (const FaultSize size : {FaultSize::gain_factor, FaultSize::time_constant_factor,
+                               FaultSize::dead_time_shift, FaultSize::disturbance_deviation}) {
+    const std::vector<SizedFault> faults = faults_by_size(study, input.campaign.records, size);
+    if (!faults.empty())
+      figure.panels.push_back(size_panel(study, size, faults));
+  }
+  if (figure.panels.empty())
+    section.leave_out("there is no feasible experiment with a single fault.");
+  else
+    section.add(std::move(figure));
+  return section;
+}
+
+}  // namespace mpm

@@ -1,0 +1,150 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+const Pen kRight{colour::kBlue, Dash::none, Mark::dot, 1.0, 0.5};
+const Pen kWrong{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.6};
+const Pen kBoth{colour::kGreen, Dash::none, Mark::dot, 1.0, 0.5};
+const Pen kMean{colour::kBlack, Dash::solid, Mark::square, 2.0, 0.6};
+const Pen kThreshold{colour::kBlack, Dash::dashed, Mark::none, 1.2};
+
+/// The experiments that rates of I_MPM are counted over, as in the aggregates.
+bool judged(const Study& study, const ExperimentRecord& record) {
+  return record.status == ExperimentStatus::ok &&
+         (record.diagnosis.impactful || study.diagnosis.source_population == SourcePopulation::feasible) &&
+         std::isfinite(record.diagnosis.indicator.i_mpm);
+}
+
+std::string population(const Study& study) {
+  return study.diagnosis.source_population == SourcePopulation::impactful ? "with impact" : "feasible";
+}
+
+double highest_indicator(const Campaign& campaign) {
+  double highest = campaign.study.diagnosis.mpm_threshold;
+  for (const ExperimentRecord& record : campaign.records)
+    if (judged(campaign.study, record))
+      highest = std::max(highest, record.diagnosis.indicator.i_mpm);
+  return 1.05 * highest;
+}
+
+Axis indicator_axis(const Campaign& campaign) {
+  return {.label = "I_{MPM} (-)", .lower = 0.0, .upper = highest_indicator(campaign)};
+}
+
+Panel kind_panel(const Campaign& campaign, const KindAggregate& kind) {
+  const Study& study = campaign.study;
+  std::vector<NamedPoint> right, wrong;
+  for (const ExperimentRecord& record : campaign.records) {
+    if (record.draw.kind != kind.kind || !judged(study, record))
+      continue;
+    (record.diagnosis.predicted_source == kind.kind ? right : wrong)
+        .push_back({static_cast<double>(record.draw.index), record.diagnosis.indicator.i_mpm,
+                    experiment_line(study, record)});
+  }
+  const Rate& rate = kind.source_recognised;
+  PanelScript panel(fmt::format("impm_{}", to_string(kind.kind)),
+                    fmt::format("{}: {} of {} recognised", kind_name(kind.kind), rate.hits, rate.total),
+                    {.label = "experiment"}, indicator_axis(campaign));
+  panel.across(study.diagnosis.mpm_threshold, kThreshold);
+  panel.points(right, kRight);
+  panel.points(wrong, kWrong);
+  return panel.finish(
+      fmt::format("I_MPM of the {} experiments by number, with the threshold.", kind_name(kind.kind)));
+}
+
+Panel dominance_panel(const Campaign& campaign, const std::vector<DominanceBin>& bins) {
+  const Study& study = campaign.study;
+  std::vector<NamedPoint> points;
+  for (const ExperimentRecord& record : campaign.records)
+    if (record.draw.kind == ExperimentKind::mpm_ud && judged(study, record))
+      points.push_back(
+          {record.dominance_mpm, record.diagnosis.indicator.i_mpm,
+           experiment_line(study, record) + fmt::format(", dominance {:.2f}", record.dominance_mpm)});
+  std::vector<Whisker> means;
+  for (const DominanceBin& bin : bins)
+    means.push_back({0.5 * (bin.lower + bin.upper), bin.i_mpm.mean, bin.i_mpm.mean_interval.lower,
+                     bin.i_mpm.mean_interval.upper,
+                     fmt::format("dominance {:g} to {:g}: mean {:.3f} of {} experiments", bin.lower,
+                                 bin.upper, bin.i_mpm.mean, bin.i_mpm.count)});
+  PanelScript panel("dominance", "", {.label = "dominance_{MPM} (-)", .lower = 0.0, .upper = 1.0},
+                    indicator_axis(campaign));
+  panel.across(study.diagnosis.mpm_threshold, kThreshold);
+  panel.points(points, kBoth);
+  panel.upright_whiskers(means, kMean);
+  return panel.finish(
+      "I_MPM of the experiments with both faults against the dominance of the mismatch, with "
+      "means of four bins.");
+}
+
+std::string dominance_table(const Study& study, const std::vector<DominanceBin>& bins) {
+  HtmlTable table("I<sub>MPM</sub> by dominance of the mismatch.",
+                  {{"Dominance", HtmlTable::Align::left},
+                   {"Mean"},
+                   {interval_title(study)},
+                   {fmt::format("Share &gt; {:g}", study.diagnosis.mpm_threshold)},
+                   {interval_title(study)},
+                   {"Count"}});
+  for (const DominanceBin& bin : bins)
+    table.row({fmt::format("{:g} to {:g}", bin.lower, bin.upper), html_number(bin.i_mpm.mean),
+               html_interval(bin.i_mpm.mean_interval), html_number(bin.above_threshold.value, true),
+               html_interval(bin.above_threshold.interval, true), fmt::format("{}", bin.i_mpm.count)});
+  return table.html();
+}
+
+}  // namespace
+
+ReportSection indicator_section(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  ReportSection section{"indicator", "Is the source found? I_{MPM} by experiment", {}};
+  Figure figure;
+  figure.name = "i-mpm";
+  figure.caption = fmt::format(
+      "I_{{MPM}} of the located CV, experiments {}; thesis figure 6.21. Above the threshold {:g} the verdict "
+      "is MPM, below it UD.",
+      population(study), study.diagnosis.mpm_threshold);
+  figure.legend = {{"source right", kRight}, {"source wrong", kWrong}, {"threshold", kThreshold}};
+  for (const KindAggregate& kind : input.parts.aggregate.kinds)
+    if (kind.kind != ExperimentKind::mpm_ud && kind.i_mpm.count > 0)
+      figure.panels.push_back(kind_panel(input.campaign, kind));
+  if (figure.panels.empty())
+    section.leave_out("no experiment with a single fault has an I_MPM to judge.");
+  else
+    section.add(std::move(figure));
+  return section;
+}
+
+ReportSection dominance_section(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  const std::vector<DominanceBin>& bins = input.parts.aggregate.dominance;
+  ReportSection section{"dominance", "Which of two faults does I_{MPM} point at?", {}};
+  std::int64_t count = 0;
+  for (const DominanceBin& bin : bins)
+    count += bin.i_mpm.count;
+  if (count == 0) {
+    section.leave_out("no experiment with both faults has a dominance and an I_MPM.");
+    return section;
+  }
+  Figure figure;
+  figure.name = "dominance";
+  figure.caption = fmt::format(
+      "I_{{MPM}} against dominance_{{MPM}}, the share of the mismatch in Ivar_{{diag}} "
+      "(6.23); experiments with both faults, {}; thesis figure 6.24.",
+      population(study));
+  figure.legend = {
+      {"experiment", kBoth}, {"mean of a bin with its interval", kMean}, {"threshold", kThreshold}};
+  figure.panels = {dominance_panel(input.campaign, bins)};
+  section.add(std::move(figure));
+  section.add(dominance_table(study, bins));
+  return section;
+}
+
+}  // namespace mpm

@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+/// How deep the colour of a field is that has this share of its row.
+double depth(double share) {
+  return 0.15 + 0.65 * share;
+}
+
+/// A cell of a heat map: blue for right verdicts, orange for wrong ones, deeper for a larger share of the
+/// row.
+std::string cell(std::int64_t count, std::int64_t of_row, bool right) {
+  if (count == 0)
+    return "<td class=\"number zero\">0</td>";
+  const double share = static_cast<double>(count) / static_cast<double>(of_row);
+  return fmt::format("<td class=\"number heat\" style=\"background:rgba({},{:.2f})\">{}</td>",
+                     right ? "86,180,233" : "230,159,0", depth(share), count);
+}
+
+/// A few experiments a row carry no decimals.
+std::string whole_percents(const Interval& interval) {
+  return fmt::format("<span class=\"interval\">{:.0f} to {:.0f}&nbsp;%</span>", 100.0 * interval.lower,
+                     100.0 * interval.upper);
+}
+
+std::string matrix_table(const Study& study, const KindAggregate& kind) {
+  const ConfusionMatrix& confusion = kind.confusion;
+  std::string head;
+  for (const PlantModel::Variable& cv : study.plant.cvs)
+    head += fmt::format("<th scope=\"col\" class=\"number\">{}</th>", html_text(cv.name));
+  std::string rows;
+  for (Eigen::Index truth = 0; truth < confusion.classes(); ++truth) {
+    const std::int64_t of_row = confusion.counts().row(truth).sum();
+    rows += fmt::format("<tr><th scope=\"row\">{}</th>", html_text(cv_name(study, truth)));
+    for (Eigen::Index found = 0; found < confusion.classes(); ++found)
+      rows += cell(confusion.counts()(truth, found), of_row, truth == found);
+    const Rate recall = confusion.recall(truth, study.aggregate.confidence);
+    rows += fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
+                        html_number(recall.value, true),
+                        of_row > 0 ? whole_percents(recall.interval) : html_number(NAN));
+  }
+  const Rate all = confusion.accuracy(study.aggregate.confidence);
+  rows += fmt::format(
+      "<tr class=\"sum\"><th scope=\"row\">all</th><td class=\"number\" colspan=\"{}\">{} of {} located</td>"
+      "<td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
+      confusion.classes(), all.hits, all.total, html_number(all.value, true), whole_percents(all.interval));
+  return scrolling_table(
+      kind_name(kind.kind),
+      fmt::format("<table class=\"matrix\" aria-label=\"Confusion matrix, {}\">\n"
+                  "<thead><tr><th scope=\"col\">true</th>{}<th scope=\"col\" class=\"number\">located</th>"
+                  "<th scope=\"col\" class=\"number\">{}</th></tr></thead>\n<tbody>\n{}</tbody></table>",
+                  kind_name(kind.kind), head, interval_title(study), rows));
+}
+
+/// The matrix as a heat map, true CVs from top to bottom.
+Panel matrix_panel(const Study& study, const KindAggregate& kind) {
+  const ConfusionMatrix& confusion = kind.confusion;
+  const Eigen::Index classes = confusion.classes();
+  const double last = static_cast<double>(classes) - 1.0;
+  Axis located{.label = "CV located", .lower = -0.5, .upper = last + 0.5};
+  Axis truth{.label = "CV with the fault", .lower = -0.5, .upper = last + 0.5};
+  for (Eigen::Index cv = 0; cv < classes; ++cv) {
+    located.words.push_back(as_label(cv_name(study, cv)));
+    truth.words.push_back(as_label(cv_name(study, classes - 1 - cv)));
+  }
+  std::size_t longest = 0;
+  for (const PlantModel::Variable& cv : study.plant.cvs)
+    longest = std::max(longest, cv.name.size());
+  const Rate all = confusion.accuracy(study.aggregate.confidence);
+  PanelScript panel(fmt::format("confusion_{}", to_string(kind.kind)),
+                    fmt::format("{}: {} of {} located", kind_name(kind.kind), all.hits, all.total), located,
+                    truth);
+  panel.left_margin(static_cast<int>(std::min<std::size_t>(longest + 5, 24)));
+  for (Eigen::Index row = 0; row < classes; ++row) {
+    const auto of_row = static_cast<double>(confusion.counts().row(row).sum());
+    for (Eigen::Index column = 0; column < classes; ++column)
+      if (const std::int64_t count = confusion.counts()(row, column); count > 0)
+        panel.field(static_cast<double>(column), last - static_cast<double>(row),
+                    row == column ? colour::kSky : colour::kOrange,
+                    depth(static_cast<double>(count) / of_row), fmt::format("{}", count));
+  }
+  return panel.finish(
+      fmt::format("Confusion matrix of the {} experiments with impact.", kind_name(kind.kind)), 380);
+}
+
+}  // namespace
+
+ReportSection location_section(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  ReportSection section{"location", "Is the right CV found?", {}};
+  std::string tables;
+  std::string without;
+  Figure figure;
+  figure.name = "confusion";
+  figure.caption = "CV with the fault against CV located, experiments with impact.";
+  for (const KindAggregate& kind : input.parts.aggregate.kinds) {
+    if (kind.confusion.total() > 0) {
+      tables += matrix_table(study, kind);
+      figure.panels.push_back(matrix_panel(study, kind));
+    } else {
+      without += (without.empty() ? "" : ", ") + kind_name(kind.kind);
+    }
+  }
+  if (!figure.panels.empty())
+    section.file_figures.push_back(std::move(figure));
+  if (!tables.empty())
+    section.add(
+        "<p>Experiments with impact: the CV that the fault is on (rows) against the CV whose "
+        "Ivar<sub>diag</sub> is farthest from 1 (columns); thesis figures 6.20 and 6.23. Blue is "
+        "right, orange is wrong, deeper is a larger share of the row.</p>\n<div class=\"matrices\">\n" +
+        tables + "</div>\n");
+  if (tables.empty() || !without.empty())
+    section.leave_out(fmt::format("no experiment{}{} has an impact, so no CV is to be located.",
+                                  without.empty() ? "" : " of kind ", without));
+  return section;
+}
+
+}  // namespace mpm

@@ -1,0 +1,145 @@
+#include <span>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "results/files/archive_error.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/plot/figure_drawing.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_page.hpp"
+#include "results/report/report.hpp"
+#include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+/// The mark of a pen in the middle of a drawing of 30 x 14 pixels.
+std::string mark_svg(const Pen& pen) {
+  const auto shape = [&](const char* points) {
+    return fmt::format("<polygon points=\"{}\" fill=\"{}\"/>", points, pen.colour);
+  };
+  switch (pen.mark) {
+    case Mark::none:
+      return {};
+    case Mark::dot:
+      return fmt::format("<circle cx=\"15\" cy=\"7\" r=\"4\" fill=\"{}\"/>", pen.colour);
+    case Mark::circle:
+      return fmt::format(
+          "<circle cx=\"15\" cy=\"7\" r=\"3.5\" fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.5\"/>",
+          pen.colour);
+    case Mark::triangle:
+      return shape("15,2 20,11 10,11");
+    case Mark::square:
+      return shape("11,3 19,3 19,11 11,11");
+    case Mark::hollow_diamond:
+      return fmt::format(
+          "<polygon points=\"15,1.5 20.5,7 15,12.5 9.5,7\" fill=\"#fff\" stroke=\"{}\" "
+          "stroke-width=\"1.5\"/>",
+          pen.colour);
+    case Mark::diamond:
+      return shape("15,1.5 20.5,7 15,12.5 9.5,7");
+  }
+  return {};
+}
+
+std::string legend_html(const std::vector<LegendEntry>& legend) {
+  std::string items;
+  for (const LegendEntry& entry : legend) {
+    const Pen& pen = entry.pen;
+    const char* dash = pen.dash == Dash::dashed ? "7 4" : pen.dash == Dash::dotted ? "2 3" : "none";
+    const std::string line =
+        pen.dash == Dash::none
+            ? ""
+            : fmt::format("<path d=\"M1,7H29\" stroke=\"{}\" stroke-width=\"{}\" stroke-dasharray=\"{}\"/>",
+                          pen.colour, pen.width, dash);
+    items +=
+        fmt::format("<li><svg viewBox=\"0 0 30 14\" aria-hidden=\"true\">{}{}</svg><span>{}</span></li>\n",
+                    line, mark_svg(pen), html_label(entry.label));
+  }
+  return items.empty() ? items : "<ul class=\"legend\">\n" + items + "</ul>\n";
+}
+
+std::string figure_html(const Figure& figure) {
+  std::string html = fmt::format("<figure id=\"figure-{}\">\n{}<div class=\"panels{}\">\n", figure.name,
+                                 legend_html(figure.legend), figure.panels.size() == 1 ? " one" : "");
+  for (std::size_t i = 0; i < figure.panels.size(); ++i)
+    html += draw_panel(figure.panels[i], fmt::format("{}-{}", figure.name, i));
+  html += "</div>\n";
+  if (!figure.caption.empty())
+    html += "<figcaption>" + html_label(figure.caption) + "</figcaption>\n";
+  return html + "</figure>\n";
+}
+
+std::string section_html(const ReportSection& section, std::size_t number) {
+  std::string html = fmt::format(
+      "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\"><span "
+      "class=\"index\">{1}</span>{2}</h2>\n",
+      section.id, number, html_label(section.title));
+  for (const auto& piece : section.content)
+    html += std::holds_alternative<Html>(piece) ? std::get<Html>(piece).text
+                                                : figure_html(std::get<Figure>(piece));
+  return html + "</section>\n";
+}
+
+std::string contents_html(const std::vector<ReportSection>& sections) {
+  std::string items;
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    items += fmt::format("<li><span>{}</span><a href=\"#{}\">{}</a></li>\n", i + 1, sections[i].id,
+                         html_label(sections[i].title));
+  return "<nav aria-label=\"Contents\"><ol>\n" + items + "</ol></nav>\n";
+}
+
+std::vector<Figure> all_figures(const ReportSection& section) {
+  std::vector<Figure> figures;
+  for (const auto& piece : section.content)
+    if (const Figure* const figure = std::get_if<Figure>(&piece))
+      figures.push_back(*figure);
+  figures.insert(figures.end(), section.file_figures.begin(), section.file_figures.end());
+  return figures;
+}
+
+}  // namespace
+
+std::string report_html(const Campaign& campaign, const std::filesystem::path& file) {
+  const SummaryParts parts = summary_parts(campaign);
+  const std::vector<ReportSection> sections = report_sections({campaign, parts, file.filename().string()});
+  std::string body;
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    body += section_html(sections[i], i + 1);
+  const std::string file_name = html_text(file.filename().string());
+  const std::string study = html_text(campaign.study.name);
+  return html_page(
+      {campaign.study.name, html_text(campaign.study.title),
+       fmt::format(
+           "<p>Study <strong>{}</strong>, archive <code>{}</code>. <span class=\"hint\">Rest a mouse on "
+           "a point to see its experiment.</span></p>\n{}",
+           study, file_name, contents_html(sections)),
+       fmt::format("Made by <code>mpmbench report</code> from {}; written by mpmbench {}. Intervals have a "
+                   "confidence level of {:g}&nbsp;%.",
+                   file_name, html_text(campaign.info.mpmbench_version),
+                   100.0 * campaign.study.aggregate.confidence),
+       campaign.info.mpmbench_version},
+      body);
+}
+
+std::vector<std::filesystem::path> write_figures(const Campaign& campaign,
+                                                 const std::filesystem::path& folder, FigureFormat format) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (!std::filesystem::is_directory(folder))
+    throw ArchiveError(fmt::format("{}: cannot make the folder for the figures{}{}", folder.string(),
+                                   error ? ": " : "", error ? error.message() : ""));
+  const SummaryParts parts = summary_parts(campaign);
+  std::vector<std::filesystem::path> files;
+  for (const ReportSection& section : report_sections({campaign, parts, ""}))
+    for (const Figure& figure : all_figures(section)) {
+      files.push_back(folder / fmt::format("{}.{}", figure.name, to_string(format)));
+      const std::string drawing = draw_figure(figure, format);
+      write_file_atomically(files.back(), std::as_bytes(std::span(drawing)));
+    }
+  return files;
+}
+
+}  // namespace mpm

@@ -1,0 +1,205 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "results/archive/variable_text.hpp"
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+const Pen kMedian{colour::kBlue, Dash::solid, Mark::none, 2.5};
+const Pen kQuartiles{colour::kSky, Dash::solid, Mark::none, 1.5};
+const Pen kExtremes{colour::kGrey, Dash::dashed, Mark::none, 1.2};
+const Pen kBand{colour::kVermillion, Dash::dotted, Mark::none, 1.2};
+const Pen kAvailable{colour::kBlue, Dash::solid, Mark::none, 2.5};
+const Pen kFixed{colour::kVermillion, Dash::solid, Mark::none, 2.5};
+const Pen kFit{colour::kGrey, Dash::dashed, Mark::none, 1.2};
+
+/// Ratios of one CV and one parameter, multiplier by multiplier.
+Panel ratio_panel(const Study& study, const S0Curve& curve, const std::string& parameter,
+                  const std::vector<RatioSpread>& spreads) {
+  const S0PerturbationOptions& options = study.s0_perturbation;
+  const std::string cv = cv_name(study, curve.cv);
+  PanelScript panel(fmt::format("s0_{}_{}", parameter == "damping" ? "damping" : "time", curve.cv),
+                    fmt::format("{}: {} ({} experiments)", as_label(cv), parameter, curve.experiments),
+                    {.label = "multiplier of the " + parameter},
+                    {.label = "Ivar_{diag} modified / true", .logarithmic = true});
+  panel.upright_band(options.tolerance_lower, options.tolerance_upper);
+  panel.across(study.diagnosis.impact_lower, kBand);
+  panel.across(study.diagnosis.impact_upper, kBand);
+  const auto draw = [&](double RatioSpread::*value, const Pen& pen) {
+    std::vector<double> y;
+    for (const RatioSpread& spread : spreads)
+      y.push_back(spread.*value);
+    panel.line(options.multipliers, y, pen);
+  };
+  draw(&RatioSpread::least, kExtremes);
+  draw(&RatioSpread::largest, kExtremes);
+  draw(&RatioSpread::lower_quartile, kQuartiles);
+  draw(&RatioSpread::upper_quartile, kQuartiles);
+  draw(&RatioSpread::median, kMedian);
+  return panel.finish(fmt::format(
+      "Ivar_diag of {} with a modified S0 over that with the true one, against the multiplier of the {}: "
+      "median, quartiles, least and largest over the experiments whose fault is on it.",
+      cv, parameter));
+}
+
+Figure ratio_figure(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  Figure figure;
+  figure.name = "s0-perturbation";
+  figure.caption = fmt::format(
+      "Ivar_{{diag}} with a modified S_{{0}} over that with the true one, over the experiments whose fault "
+      "is on the CV; shaded: multipliers {:g} to {:g}. Thesis figures 6.27 to 6.29.",
+      study.s0_perturbation.tolerance_lower, study.s0_perturbation.tolerance_upper);
+  figure.legend = {{"median", kMedian},
+                   {"quartiles", kQuartiles},
+                   {"least and largest", kExtremes},
+                   {"band of impact", kBand}};
+  for (const S0Curve& curve : input.parts.s0_curves) {
+    figure.panels.push_back(ratio_panel(study, curve, "time constant", curve.time_constant));
+    figure.panels.push_back(ratio_panel(study, curve, "damping", curve.damping));
+  }
+  return figure;
+}
+
+std::string change_table(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  HtmlTable table(
+      fmt::format("Fit of (6.24) to the diagonal of T<sub>0</sub>, and what multipliers from {:g} to {:g} do "
+                  "to Ivar<sub>diag</sub>: largest |ratio &minus; 1|, and the share of experiments whose "
+                  "ratio stays in the band of impact.",
+                  study.s0_perturbation.tolerance_lower, study.s0_perturbation.tolerance_upper),
+      {{"CV", HtmlTable::Align::left},
+       {"Time constant (" + html_text(study.plant.time_unit) + ")"},
+       {"Damping"},
+       {"RMS error"},
+       {"Largest change, time constant"},
+       {"In band"},
+       {"Largest change, damping"},
+       {"In band"},
+       {"Experiments"}});
+  for (const DiagonalFit& fit : input.parts.s0_fits) {
+    std::vector<std::string> cells{html_text(cv_name(study, fit.cv)),
+                                   html_number(fit.fit.model.time_constant),
+                                   html_number(fit.fit.model.damping), html_number(fit.fit.rms_error)};
+    for (const S0Curve& curve : input.parts.s0_curves)
+      if (curve.cv == fit.cv)
+        cells.insert(cells.end(), {html_number(curve.time_constant_change.largest),
+                                   html_number(curve.time_constant_change.within_band.value, true),
+                                   html_number(curve.damping_change.largest),
+                                   html_number(curve.damping_change.within_band.value, true),
+                                   fmt::format("{}", curve.experiments)});
+    table.row(cells);
+  }
+  return table.html();
+}
+
+std::string fixed_names(const Study& study) {
+  std::string names;
+  for (const Eigen::Index mv : study.s0_perturbation.fixed_mvs)
+    names += (names.empty() ? "" : ", ") + study.plant.mvs[static_cast<std::size_t>(mv)].name;
+  return names;
+}
+
+std::string structure_table(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  HtmlTable table("Fit of (6.24) with all MVs available and with " + html_text(fixed_names(study)) +
+                      " fixed, and the multipliers between the two.",
+                  {{"CV", HtmlTable::Align::left},
+                   {"Time constant"},
+                   {"Damping"},
+                   {"Time constant, fixed"},
+                   {"Damping, fixed"},
+                   {"Multiplier of the time constant"},
+                   {"Multiplier of the damping"}});
+  for (const StructureFit& fit : input.parts.structure_fits)
+    table.row({html_text(cv_name(study, fit.cv)), html_number(fit.available.model.time_constant),
+               html_number(fit.available.model.damping), html_number(fit.fixed.model.time_constant),
+               html_number(fit.fixed.model.damping), html_number(fit.time_constant_multiplier),
+               html_number(fit.damping_multiplier)});
+  return table.html();
+}
+
+/// The diagonal step response of `cv` in T0, with 0 before the first sample.
+std::vector<double> diagonal_response(const NominalSensitivity& sensitivity, Eigen::Index cv) {
+  std::vector<double> response{0.0};
+  for (std::size_t a = 0; a < sensitivity.active.size(); ++a)
+    if (sensitivity.active[a].cv == cv)
+      for (const double value : sensitivity.step_response[a].row(cv))
+        response.push_back(value);
+  return response;
+}
+
+Panel structure_panel(const ReportInput& input, const StructureFit& fit) {
+  const Study& study = input.campaign.study;
+  const BasisCase& basis = input.campaign.basis;
+  const double Ts = study.controller.sample_time;
+  const std::string cv = cv_name(study, fit.cv);
+  PanelScript panel(fmt::format("structure_{}", fit.cv), "T_{0} of " + as_label(cv),
+                    {.label = "time (" + as_label(unit_text(study.plant.time_unit)) + ")"},
+                    {.label = "response per unit step"});
+  const auto draw = [&](const std::vector<double>& y, const Pen& pen) {
+    std::vector<double> time;
+    for (std::size_t l = 0; l < y.size(); ++l)
+      time.push_back(Ts * static_cast<double>(l));
+    panel.line(time, y, pen);
+  };
+  const std::vector<double> available = diagonal_response(basis.sensitivity, fit.cv);
+  const std::vector<double> fixed = diagonal_response(*basis.sensitivity_fixed, fit.cv);
+  for (const SecondOrderFit* of : {&fit.available, &fit.fixed}) {
+    if (of->status != FitStatus::ok)
+      continue;
+    const Eigen::RowVectorXd model =
+        second_order_response(of->model, Ts, static_cast<Eigen::Index>(available.size()) - 1);
+    std::vector<double> y{0.0};
+    y.insert(y.end(), model.begin(), model.end());
+    draw(y, kFit);
+  }
+  draw(available, kAvailable);
+  draw(fixed, kFixed);
+  return panel.finish(fmt::format("Step response of the diagonal of T0 of {} with {} available and fixed.",
+                                  cv, fixed_names(study)));
+}
+
+Figure structure_figure(const ReportInput& input) {
+  const std::string fixed = as_label(fixed_names(input.campaign.study));
+  Figure figure;
+  figure.name = "s0-structure";
+  figure.caption = fmt::format(
+      "Diagonal of T_{{0}} = I - S_{{0}} with {} available and with it fixed, and the fits of (6.24); thesis "
+      "figure 6.32.",
+      fixed);
+  figure.legend = {{fixed + " available", kAvailable}, {fixed + " fixed", kFixed}, {"fit", kFit}};
+  for (const StructureFit& fit : input.parts.structure_fits)
+    figure.panels.push_back(structure_panel(input, fit));
+  return figure;
+}
+
+}  // namespace
+
+ReportSection s0_perturbation_section(const ReportInput& input) {
+  ReportSection section{"s0-perturbation", "What does an error in S_{0} cost?", {}};
+  if (input.campaign.study.s0_perturbation.multipliers.empty()) {
+    section.leave_out("the study does not perturb S0 (s0_perturbation).");
+    return section;
+  }
+  if (input.parts.s0_curves.empty())
+    section.leave_out("there is no feasible experiment whose fault is on a CV at a soft limit.");
+  else
+    section.add(ratio_figure(input));
+  if (!input.parts.s0_fits.empty())
+    section.add(change_table(input));
+  if (!input.parts.structure_fits.empty()) {
+    section.add(structure_figure(input));
+    section.add(structure_table(input));
+  }
+  return section;
+}
+
+}  // namespace mpm

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/scenario_sections.hpp"
+#include "results/text/experiment_text.hpp"
+#include "results/text/scenario_text.hpp"
+
+namespace mpm {
+namespace {
+
+const Pen kKurtosis{colour::kBlue, Dash::none, Mark::dot, 1.0, 0.7};
+const Pen kSkewness{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.7};
+const Pen kThreshold{colour::kBlack, Dash::dashed, Mark::none, 1.2};
+const Pen kError{colour::kBlue, Dash::none, Mark::square, 1.0, 0.7};
+const Pen kRight{colour::kSky, Dash::none, Mark::square, 1.0, 1.2};
+const Pen kWrong{colour::kOrange, Dash::none, Mark::square, 1.0, 1.2};
+const Pen kOutside{colour::kGreen, Dash::none, Mark::square, 1.0, 1.2};
+
+constexpr double kRowHeight = 24;  // pixels
+
+/// Few digits, so that a field of a heat map holds them.
+std::string short_number(double value) {
+  if (!std::isfinite(value))
+    return "-";
+  return fmt::format("{:.{}f}", value, value < 9.995 ? 2 : value < 99.95 ? 1 : 0);
+}
+
+bool is_affected(const ExperimentRecord& record, Eigen::Index cv) {
+  const std::vector<AffectedCv> affected = record.draw.affected();
+  return std::any_of(affected.begin(), affected.end(), [cv](const auto& a) { return a.cv == cv; });
+}
+
+/// An axis with a word for each row, the first one on top.
+Axis rows_axis(std::vector<std::string> words) {
+  std::reverse(words.begin(), words.end());
+  const auto last = static_cast<double>(words.size()) - 1.0;
+  return {.label = "", .lower = -0.5, .upper = last + 0.5, .words = std::move(words)};
+}
+
+int margin_of(const std::vector<std::string>& words) {
+  std::size_t longest = 0;
+  for (const std::string& word : words)
+    longest = std::max(longest, plain_label(word).size());
+  return static_cast<int>(std::min<std::size_t>(longest + 3, 30));
+}
+
+std::vector<std::string> scenario_words(const Campaign& campaign) {
+  std::vector<std::string> words;
+  for (const ExperimentRecord& record : campaign.records)
+    words.push_back(as_label(scenario_name(campaign.study, record)));
+  return words;
+}
+
+/// How deep the colour of an index is: the whole depth a factor of 4 away from 1.
+double depth(double index) {
+  return std::clamp(0.2 + 0.6 * std::abs(std::log(index)) / std::log(4.0), 0.2, 0.8);
+}
+
+/// One field a CV and scenario, coloured outside of the band of impact. With `judged`, blue is an affected CV
+/// and orange another one, and an affected CV within the band stands in brackets.
+Panel index_panel(const Campaign& campaign, const char* name, const char* title,
+                  Eigen::VectorXd Diagnosis::*index, bool judged) {
+  const Study& study = campaign.study;
+  const std::vector<std::string> words = scenario_words(campaign);
+  const auto last = static_cast<double>(words.size()) - 1.0;
+  Axis cvs{.label = "", .lower = -0.5, .upper = static_cast<double>(study.cv_count()) - 0.5};
+  for (const PlantModel::Variable& cv : study.plant.cvs)
+    cvs.words.push_back(as_label(cv.name));
+  PanelScript panel(name, title, cvs, rows_axis(words));
+  panel.left_margin(margin_of(words));
+  for (std::size_t row = 0; row < campaign.records.size(); ++row) {
+    const ExperimentRecord& record = campaign.records[row];
+    const Eigen::VectorXd& values = record.diagnosis.*index;
+    for (Eigen::Index cv = 0; cv < values.size(); ++cv) {
+      const bool outside = study.diagnosis.has_impact(values(cv));
+      const bool affected = judged && is_affected(record, cv);
+      const std::string_view fill = !judged ? colour::kGreen : affected ? colour::kSky : colour::kOrange;
+      const std::string number = short_number(values(cv));
+      panel.field(static_cast<double>(cv), last - static_cast<double>(row), fill,
+                  outside ? depth(values(cv)) : 0.0, affected && !outside ? "[" + number + "]" : number);
+    }
+  }
+  return panel.finish(
+      fmt::format("{} of every CV and scenario as a heat map; the table below has the numbers.", title),
+      60.0 + kRowHeight * (last + 1.0));
+}
+
+Figure index_figure(const Campaign& campaign) {
+  const DiagnosisOptions& options = campaign.study.diagnosis;
+  Figure figure;
+  figure.name = "scenario-ivar";
+  figure.caption = fmt::format(
+      "Ivar and Ivar_{{diag}} of every CV; thesis figures 6.12 and 6.13. Coloured: outside the band of "
+      "impact, {:g} to {:g}, deeper the farther from 1. [Brackets]: an affected CV within the band.",
+      options.impact_lower, options.impact_upper);
+  figure.legend = {{"Ivar outside the band", kOutside},
+                   {"Ivar_{diag} outside the band, CV affected", kRight},
+                   {"Ivar_{diag} outside the band, CV not affected", kWrong}};
+  figure.panels = {index_panel(campaign, "ivar", "Ivar", &Diagnosis::ivar, false),
+                   index_panel(campaign, "ivar_diag", "Ivar_{diag}", &Diagnosis::ivar_diag, true)};
+  return figure;
+}
+
+/// co_dkts and co_dskn of the affected and of the flagged CVs, a row each.
+struct IndicatorRows {
+  std::vector<std::string> words;
+  std::vector<NamedPoint> kurtosis, skewness;
+
+  explicit IndicatorRows(const Campaign& campaign) {
+    for (const ExperimentRecord& record : campaign.records)
+      for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv)
+        if (record.diagnosis.cvs[cv].flagged || is_affected(record, static_cast<Eigen::Index>(cv)))
+          add(campaign.study, record, cv);
+    // The first row on top.
+    for (std::vector<NamedPoint>* points : {&kurtosis, &skewness})
+      for (NamedPoint& point : *points)
+        point.y = static_cast<double>(words.size()) - 1.0 - point.y;
+  }
+
+ private:
+  void add(const Study& study, const ExperimentRecord& record, std::size_t cv) {
+    const CvDiagnosis& found = record.diagnosis.cvs[cv];
+    std::string truth = "not affected";
+    for (const AffectedCv& affected : record.draw.affected())
+      if (affected.cv == static_cast<Eigen::Index>(cv))
+        truth = kind_name(affected.by) + (found.flagged ? "" : ", missed");
+    const std::string name =
+        fmt::format("{} {} ({})", scenario_name(study, record), study.plant.cvs[cv].name, truth);
+    const auto row = static_cast<double>(words.size());
+    const MpmIndicator& indicator = found.distribution.mpm;
+    kurtosis.push_back({indicator.co_dkts, row, fmt::format("{}: co_dkts {:.3f}", name, indicator.co_dkts)});
+    skewness.push_back({indicator.co_dskn, row, fmt::format("{}: co_dskn {:.3f}", name, indicator.co_dskn)});
+    words.push_back(as_label(name));
+  }
+};
+
+Panel indicator_panel(const Study& study, const IndicatorRows& rows) {
+  PanelScript panel("co", "source of the affected and flagged CVs",
+                    {.label = "correlation (-)", .lower = 0.0}, rows_axis(rows.words));
+  panel.left_margin(margin_of(rows.words));
+  panel.upright(study.diagnosis.mpm_threshold, kThreshold);
+  panel.points(rows.skewness, kSkewness);
+  panel.points(rows.kurtosis, kKurtosis);
+  return panel.finish("co_dkts and co_dskn of the affected and the flagged CVs of each scenario.",
+                      80.0 + kRowHeight * static_cast<double>(rows.words.size()));
+}
+
+Panel error_panel(const Campaign& campaign) {
+  const std::vector<std::string> words = scenario_words(campaign);
+  std::vector<NamedPoint> errors;
+  for (std::size_t row = 0; row < campaign.records.size(); ++row) {
+    const double tsse = total_simulation_error(campaign.records[row].diagnosis);
+    errors.push_back(
+        {tsse, static_cast<double>(words.size() - 1 - row),
+         fmt::format("{}: TSSE {:.3g}", scenario_name(campaign.study, campaign.records[row]), tsse)});
+  }
+  PanelScript panel("tsse", "model error", {.label = "TSSE (CV units)", .lower = 0.0}, rows_axis(words));
+  panel.left_margin(margin_of(words));
+  panel.points(errors, kError);
+  return panel.finish("TSSE of each scenario.", 80.0 + kRowHeight * static_cast<double>(words.size()));
+}
+
+Figure indicator_figure(const Campaign& campaign, const IndicatorRows& rows) {
+  Figure figure;
+  figure.name = "scenario-indicators";
+  figure.caption = fmt::format(
+      "Left: total simulation error (6.21); thesis figure 6.11. Right: co_{{dkts}} and co_{{dskn}} of the "
+      "affected and of the flagged CVs, with what is wrong in brackets; thesis figure 6.15. The verdict is "
+      "MPM when the larger exceeds {:g}.",
+      campaign.study.diagnosis.mpm_threshold);
+  figure.legend = {
+      {"TSSE", kError}, {"co_{dkts}", kKurtosis}, {"co_{dskn}", kSkewness}, {"threshold", kThreshold}};
+  figure.panels = {error_panel(campaign)};
+  if (!rows.words.empty())
+    figure.panels.push_back(indicator_panel(campaign.study, rows));
+  return figure;
+}
+
+}  // namespace
+
+void add_scenario_figures(ReportSection& section, const Campaign& campaign) {
+  section.add(index_figure(campaign));
+  section.add(indicator_figure(campaign, IndicatorRows(campaign)));
+}
+
+}  // namespace mpm

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+const Pen kOther{colour::kLightGrey, Dash::none, Mark::circle, 1.0, 0.32};
+const Pen kAffected{colour::kBlue, Dash::none, Mark::dot, 1.0, 0.38};
+const Pen kLine{colour::kVermillion, Dash::solid, Mark::none, 2.0};
+const Pen kIdentity{colour::kBlack, Dash::dashed, Mark::none, 1.0};
+
+struct Pairs {
+  std::vector<NamedPoint> affected, others;
+  double least = INFINITY, largest = -INFINITY;  ///< Ivar
+  double least_basis = INFINITY;                 ///< Ivar_basis
+
+  void add(const Study& study, const ExperimentRecord& record) {
+    for (Eigen::Index cv = 0; cv < record.diagnosis.ivar.size(); ++cv) {
+      const double x = record.diagnosis.ivar(cv);
+      const double y = record.diagnosis.ivar_basis(cv);
+      if (!(x > 0.0 && y > 0.0 && std::isfinite(x) && std::isfinite(y)))
+        continue;
+      least = std::min(least, x);
+      largest = std::max(largest, x);
+      least_basis = std::min(least_basis, y);
+      (cv == record.draw.true_cv() ? affected : others)
+          .push_back({x, y,
+                      fmt::format("experiment {} ({}), {}: Ivar {:.3g}, Ivar_basis {:.3g}", record.draw.index,
+                                  kind_name(record.draw.kind), cv_name(study, cv), x, y)});
+    }
+  }
+  bool empty() const { return affected.empty() && others.empty(); }
+};
+
+Pairs pairs_of(const Campaign& campaign, ExperimentKind kind) {
+  Pairs pairs;
+  for (const ExperimentRecord& record : campaign.records)
+    if (record.draw.kind == kind && record.status == ExperimentStatus::ok)
+      pairs.add(campaign.study, record);
+  return pairs;
+}
+
+/// The regression line over the range of the pairs, at points that are evenly spaced on a logarithmic axis.
+void add_fit(PanelScript& panel, const LinearFit& fit, const Pairs& pairs) {
+  constexpr int kPoints = 80;
+  std::vector<double> x, y;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double at = pairs.least * std::pow(pairs.largest / pairs.least, static_cast<double>(i) / kPoints);
+    const double value = fit.intercept + fit.slope * at;
+    if (value < pairs.least_basis)
+      continue;  // on its way to zero it would stretch the axis
+    x.push_back(at);
+    y.push_back(value);
+  }
+  panel.line(x, y, kLine);
+}
+
+Panel kind_panel(const ReportInput& input, const KindAggregate& kind, const Pairs& pairs) {
+  const DiagnosisOptions& options = input.campaign.study.diagnosis;
+  const LinearFitIntervals& fit = kind.regression;
+  const std::string title =
+      std::isnan(fit.fit.r_squared)
+          ? kind_name(kind.kind)
+          : fmt::format("{}: R\xC2\xB2 = {:.2f} ({:.2f} to {:.2f})", kind_name(kind.kind), fit.fit.r_squared,
+                        fit.r_squared.lower, fit.r_squared.upper);
+  PanelScript panel(fmt::format("ivar_{}", to_string(kind.kind)), title,
+                    {.label = "Ivar (-)", .logarithmic = true},
+                    {.label = "Ivar_{basis} (-)", .logarithmic = true});
+  panel.upright_band(options.impact_lower, options.impact_upper);
+  panel.points(pairs.others, kOther);
+  panel.points(pairs.affected, kAffected);
+  panel.line({pairs.least, pairs.largest}, {pairs.least, pairs.largest}, kIdentity);
+  add_fit(panel, fit.fit, pairs);
+  return panel.finish(fmt::format("Ivar_basis against Ivar of every CV of the {} experiments, with the "
+                                  "regression line.",
+                                  kind_name(kind.kind)),
+                      330);
+}
+
+std::string regression_table(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  HtmlTable table(
+      "Regression of Ivar<sub>basis</sub> on Ivar, all CVs; intervals by resampling whole "
+      "experiments.",
+      {{"Kind", HtmlTable::Align::left},
+       {"R&sup2;"},
+       {interval_title(study)},
+       {"Slope"},
+       {interval_title(study)},
+       {"Intercept"},
+       {"Pairs"}});
+  for (const KindAggregate& kind : input.parts.aggregate.kinds) {
+    const LinearFitIntervals& fit = kind.regression;
+    table.row({kind_name(kind.kind), html_number(fit.fit.r_squared), html_interval(fit.r_squared),
+               html_number(fit.fit.slope), html_interval(fit.slope), html_number(fit.fit.intercept),
+               fmt::format("{}", fit.fit.pairs)});
+  }
+  return table.html();
+}
+
+}  // namespace
+
+ReportSection variance_section(const ReportInput& input) {
+  const DiagnosisOptions& options = input.campaign.study.diagnosis;
+  ReportSection section{"variance", "Does Ivar tell what the fault costs?", {}};
+  Figure figure;
+  figure.name = "ivar";
+  figure.caption = fmt::format(
+      "Ivar_{{basis}} (what the fault really does to the variance) against Ivar (what the loop data say), "
+      "one point a CV and experiment; thesis figures 6.18 and 6.22. Grey band: no impact, Ivar from {:g} to "
+      "{:g}. The regression is a straight line, which logarithmic axes bend.",
+      options.impact_lower, options.impact_upper);
+  figure.legend = {{"affected CV", kAffected},
+                   {"other CVs", kOther},
+                   {"regression, all CVs", kLine},
+                   {"Ivar_{basis} = Ivar", kIdentity}};
+  for (const KindAggregate& kind : input.parts.aggregate.kinds)
+    if (const Pairs pairs = pairs_of(input.campaign, kind.kind); !pairs.empty())
+      figure.panels.push_back(kind_panel(input, kind, pairs));
+  if (figure.panels.empty()) {
+    section.leave_out("no experiment has variance indices.");
+    return section;
+  }
+  section.add(std::move(figure));
+  section.add(regression_table(input));
+  return section;
+}
+
+}  // namespace mpm

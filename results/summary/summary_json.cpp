@@ -1,0 +1,250 @@
+#include <nlohmann/json.hpp>
+
+#include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
+#include "analysis/sensitivity/loop_interaction.hpp"
+#include "results/files/utf8.hpp"
+#include "results/summary/summary.hpp"
+#include "results/summary/summary_parts.hpp"
+#include "results/text/experiment_text.hpp"
+#include "results/text/scenario_text.hpp"
+
+namespace mpm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json names(const std::vector<PlantModel::Variable>& variables) {
+  Json list = Json::array();
+  for (const PlantModel::Variable& variable : variables)
+    list.push_back(variable.name);
+  return list;
+}
+
+Json settings_json(const Study& study) {
+  return {{"title", study.title},
+          {"plant", study.plant.name},
+          {"cvs", names(study.plant.cvs)},
+          {"mvs", names(study.plant.mvs)},
+          {"mds", names(study.plant.mds)},
+          {"time_unit", study.plant.time_unit},
+          {"sample_time", study.controller.sample_time},
+          {"prediction_horizon", study.controller.prediction_horizon},
+          {"control_horizon", study.controller.control_horizon},
+          {"samples", study.simulation.samples}};
+}
+
+Json run_json(const CampaignInfo& info) {
+  return {{"mpmbench_version", info.mpmbench_version},
+          {"git_sha", info.git_sha},
+          {"created", info.created},
+          {"command", proper_utf8(info.command)},
+          {"jobs", info.jobs}};
+}
+
+/// Every number of a table of columns; a verdict as its word.
+template <class Owner>
+Json numbers_json(const Owner& owner, const std::vector<NumberColumn<Owner>>& columns) {
+  Json numbers = Json::object();
+  for (const NumberColumn<Owner>& column : columns)
+    if (column.words.empty())
+      numbers[column.name] = column.value(owner);
+    else
+      numbers[column.name] = column.words.at(static_cast<std::size_t>(column.value(owner)));
+  return numbers;
+}
+
+Json interaction_json(const Study& study, const BasisCase& basis) {
+  const LoopInteraction interaction = loop_interaction(study, basis.point, basis.sensitivity);
+  Json gains = Json::array();
+  for (std::size_t i = 0; i < interaction.mvs.size(); ++i)
+    for (std::size_t j = 0; j < interaction.mvs.size(); ++j)
+      gains.push_back({{"cv", study.plant.cvs[static_cast<std::size_t>(interaction.cvs[i])].name},
+                       {"mv", study.plant.mvs[static_cast<std::size_t>(interaction.mvs[j])].name},
+                       {"value", interaction.relative_gain_at_maximum(static_cast<Eigen::Index>(i),
+                                                                      static_cast<Eigen::Index>(j))}});
+  return {{"rpn_frequency", interaction.rpn_frequency},
+          {"rpn_maximum", interaction.rpn_maximum},
+          {"relative_gains", gains}};
+}
+
+Json basis_json(const Study& study, const BasisCase& basis) {
+  Json ivar = Json::object();
+  for (Eigen::Index cv = 0; cv < basis.diagnosis.ivar.size(); ++cv)
+    ivar[study.plant.cvs[static_cast<std::size_t>(cv)].name] = basis.diagnosis.ivar(cv);
+  Json differences = Json::object();
+  if (basis.sensitivity_direct) {
+    const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
+    for (Eigen::Index a = 0; a < largest.size(); ++a)
+      differences[study.plant
+                      .cvs[static_cast<std::size_t>(basis.sensitivity.active[static_cast<std::size_t>(a)].cv)]
+                      .name] = largest(a);
+  }
+  Json acf = Json::object();
+  for (std::size_t cv = 0; cv < basis.acf.size(); ++cv)
+    acf[study.plant.cvs[cv].name] = numbers_json(basis.acf[cv], acf_columns());
+  return {{"healthy", basis.healthy},
+          {"explanation", basis.explanation},
+          {"ivar", ivar},
+          {"acf", acf},
+          {"t0_difference", differences},
+          {"interaction", interaction_json(study, basis)}};
+}
+
+Json kinds_json(const StudyAggregate& aggregate) {
+  Json kinds = Json::object();
+  for (const KindAggregate& kind : aggregate.kinds)
+    kinds[std::string(to_string(kind.kind))] = kind.experiments;
+  for (const FalseAlarms& group : aggregate.false_alarms)
+    if (!group.parameter)
+      kinds[group.name()] = group.experiments;
+  return kinds;
+}
+
+Json aggregates_json(const std::vector<SummaryValue>& values) {
+  Json list = Json::array();
+  for (const SummaryValue& value : values)
+    list.push_back({{"name", value.measured.name},
+                    {"description", value.measured.description},
+                    {"value", value.measured.value},
+                    {"lower", value.measured.interval.lower},
+                    {"upper", value.measured.interval.upper},
+                    {"count", value.measured.count},
+                    {"reported", value.reported}});
+  return list;
+}
+
+Json dominance_json(const std::vector<DominanceBin>& bins) {
+  Json list = Json::array();
+  for (const DominanceBin& bin : bins)
+    list.push_back({{"lower", bin.lower},
+                    {"upper", bin.upper},
+                    {"count", bin.i_mpm.count},
+                    {"i_mpm_mean", bin.i_mpm.mean},
+                    {"i_mpm_mean_lower", bin.i_mpm.mean_interval.lower},
+                    {"i_mpm_mean_upper", bin.i_mpm.mean_interval.upper},
+                    {"above_threshold", bin.above_threshold.value}});
+  return list;
+}
+
+Json audit_json(const SummaryParts& parts, const CampaignInfo& info) {
+  return {{"share", info.audit_share},
+          {"steps", parts.audit.steps},
+          {"disagreements", parts.audit.disagreements},
+          {"largest_target", parts.audit.largest_target},
+          {"largest_move", parts.audit.largest_move},
+          {"largest_objective", parts.audit.largest_objective},
+          {"seconds", info.audit_seconds},
+          {"fallbacks", parts.fallbacks}};
+}
+
+Json change_json(const S0Change& change) {
+  return {{"largest_change", change.largest}, {"within_band", change.within_band.value}};
+}
+
+Json s0_perturbation_json(const Study& study, const SummaryParts& parts) {
+  const auto name = [&](Eigen::Index cv) { return study.plant.cvs[static_cast<std::size_t>(cv)].name; };
+  Json fits = Json::array(), curves = Json::array(), structures = Json::array();
+  for (const DiagonalFit& fit : parts.s0_fits)
+    fits.push_back({{"cv", name(fit.cv)},
+                    {"time_constant", fit.fit.model.time_constant},
+                    {"damping", fit.fit.model.damping},
+                    {"rms_error", fit.fit.rms_error}});
+  for (const S0Curve& curve : parts.s0_curves)
+    curves.push_back({{"cv", name(curve.cv)},
+                      {"experiments", curve.experiments},
+                      {"time_constant", change_json(curve.time_constant_change)},
+                      {"damping", change_json(curve.damping_change)}});
+  for (const StructureFit& fit : parts.structure_fits)
+    structures.push_back({{"cv", name(fit.cv)},
+                          {"time_constant", fit.fixed.model.time_constant},
+                          {"damping", fit.fixed.model.damping},
+                          {"time_constant_multiplier", fit.time_constant_multiplier},
+                          {"damping_multiplier", fit.damping_multiplier}});
+  return {{"fits", fits}, {"changes", curves}, {"fixed_mvs", structures}};
+}
+
+Json cv_json(const Study& study, const Diagnosis& diagnosis, std::size_t cv) {
+  const CvDiagnosis& found = diagnosis.cvs[cv];
+  const auto place = static_cast<Eigen::Index>(cv);
+  return {{"cv", study.plant.cvs[cv].name},
+          {"ivar", diagnosis.ivar(place)},
+          {"ivar_diag", diagnosis.ivar_diag(place)},
+          {"ivar_basis", diagnosis.ivar_basis(place)},
+          {"flagged", found.flagged},
+          {"source", to_string(found.source)},
+          {"i_mpm", found.distribution.mpm.i_mpm},
+          {"co_dkts", found.distribution.mpm.co_dkts},
+          {"co_dskn", found.distribution.mpm.co_dskn},
+          {"sse", found.sse},
+          {"distribution", numbers_json(found.distribution, distribution_columns())},
+          {"acf", numbers_json(found.acf, acf_columns())}};
+}
+
+/// Named scenarios; an empty list in a study of random experiments.
+Json scenarios_json(const Campaign& campaign) {
+  const Study& study = campaign.study;
+  Json list = Json::array();
+  for (const ExperimentRecord& record : campaign.records) {
+    if (!record.draw.named)
+      continue;
+    Json affected = Json::object(), cvs = Json::array();
+    for (const AffectedCv& cv : record.draw.affected())
+      affected[study.plant.cvs[static_cast<std::size_t>(cv.cv)].name] = to_string(cv.by);
+    for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv)
+      cvs.push_back(cv_json(study, record.diagnosis, cv));
+    list.push_back({{"index", record.draw.index},
+                    {"name", scenario_name(study, record)},
+                    {"description", study.scenarios[static_cast<std::size_t>(record.draw.index)].description},
+                    {"kind", to_string(record.draw.kind)},
+                    {"fault", fault_text(study, record.draw)},
+                    {"status", to_string(record.status)},
+                    {"affected", affected},
+                    {"verdict", scenario_verdict_text(study, record)},
+                    {"tsse", total_simulation_error(record.diagnosis)},
+                    {"cvs", cvs}});
+  }
+  return list;
+}
+
+Json failures_json(const std::vector<const ExperimentRecord*>& failed) {
+  Json list = Json::array();
+  for (const ExperimentRecord* record : failed)
+    list.push_back({{"index", record->draw.index}, {"message", proper_utf8(record->message)}});
+  return list;
+}
+
+Json wrong_json(const std::vector<const ExperimentRecord*>& wrong) {
+  Json list = Json::array();
+  for (const ExperimentRecord* record : wrong)
+    list.push_back(record->draw.index);
+  return list;
+}
+
+}  // namespace
+
+std::string summary_json(const Campaign& campaign) {
+  const SummaryParts parts = summary_parts(campaign);
+  const StudyAggregate& total = parts.aggregate;
+  const Json summary{{"study", campaign.study.name},
+                     {"seed", campaign.study.seed},
+                     {"solver", campaign.info.solver},
+                     {"seconds", campaign.info.seconds},
+                     {"experiments", total.experiments},
+                     {"infeasible", total.infeasible.hits},
+                     {"failed", total.failed},
+                     {"kinds", kinds_json(total)},
+                     {"basis", basis_json(campaign.study, campaign.basis)},
+                     {"settings", settings_json(campaign.study)},
+                     {"run", run_json(campaign.info)},
+                     {"confidence", campaign.study.aggregate.confidence},
+                     {"aggregates", aggregates_json(parts.values)},
+                     {"scenarios", scenarios_json(campaign)},
+                     {"dominance", dominance_json(total.dominance)},
+                     {"s0_perturbation", s0_perturbation_json(campaign.study, parts)},
+                     {"audit", audit_json(parts, campaign.info)},
+                     {"failures", failures_json(parts.failed)},
+                     {"wrong_verdicts", wrong_json(parts.wrong)}};
+  return summary.dump(2) + "\n";
+}
+
+}  // namespace mpm

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/findings/study_aggregate.hpp"
+
+namespace mpm {
+
+/// What one study of a sweep gave.
+struct SweepRow {
+  std::string choice;  ///< empty for the base study
+  std::string value;
+  bool healthy = true;  ///< the basis case passed its self-check
+  std::vector<AggregateValue> values;
+};
+
+/// The sweep as a table in Markdown: one line a study, grouped by choice, the base study first, one column a
+/// headline number with its interval in brackets. A star marks a study whose basis case fails its
+/// self-check.
+std::string sweep_table(const std::vector<SweepRow>& rows);
+
+}  // namespace mpm

@@ -1,0 +1,191 @@
+#include "results/text/experiment_text.hpp"
+
+#include <algorithm>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "results/archive/variable_text.hpp"
+#include "results/text/scenario_text.hpp"
+
+namespace mpm {
+namespace {
+
+/// "0.3 s + 2" of [0.3, 2].
+std::string polynomial_text(const Eigen::VectorXd& coefficients) {
+  std::string text;
+  for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
+    const Eigen::Index power = coefficients.size() - 1 - i;
+    if (coefficients(i) == 0 && coefficients.size() > 1)
+      continue;
+    text += fmt::format("{}{:.4g}{}", text.empty() ? "" : " + ", coefficients(i),
+                        power == 0   ? ""
+                        : power == 1 ? " s"
+                                     : fmt::format(" s^{}", power));
+  }
+  return text;
+}
+
+std::string transfer_function_text(const TransferFunction& channel) {
+  return fmt::format("({}) / ({}){}", polynomial_text(channel.numerator()),
+                     polynomial_text(channel.denominator()),
+                     channel.dead_time() > 0 ? fmt::format(" e^(-{:g} s)", channel.dead_time()) : "");
+}
+
+std::string input_name(const Study& study, Eigen::Index input) {
+  const auto place = static_cast<std::size_t>(input);
+  const std::size_t mvs = study.plant.mvs.size();
+  return place < mvs ? study.plant.mvs[place].name : study.plant.mds[place - mvs].name;
+}
+
+std::string mismatch_text(const Study& study, const Mismatch& mismatch) {
+  const std::string channel =
+      fmt::format("{}/{}", cv_name(study, mismatch.cv), input_name(study, mismatch.input));
+  switch (mismatch.parameter) {
+    case MismatchParameter::gain:
+      return fmt::format("gain of {} x {:.3g}", channel, mismatch.value);
+    case MismatchParameter::time_constant:
+      return fmt::format("time constant of {} x {:.3g}", channel, mismatch.value);
+    case MismatchParameter::dead_time:
+      return fmt::format("dead time of {} {:+.3g} {}", channel, mismatch.value,
+                         unit_text(study.plant.time_unit));
+    case MismatchParameter::channel:
+      return fmt::format("{} is {}", channel, transfer_function_text(*mismatch.channel));
+  }
+  return "unknown";
+}
+
+/// "cd1 7.86 (model 3.145)"
+std::string parameter_text(const Study& study, const ParameterChange& change) {
+  for (const NonlinearModel::Parameter& parameter : study.nonlinear->model.parameters)
+    if (parameter.name == change.name)
+      return fmt::format("{} {:.4g} (model {:.4g})", change.name, change.value, parameter.nominal);
+  return fmt::format("{} {:.4g}", change.name, change.value);
+}
+
+std::string place_text(const Study& study, const Disturbance& disturbance) {
+  return disturbance.inner_input
+             ? study.nonlinear->model.inner_inputs[static_cast<std::size_t>(*disturbance.inner_input)]
+             : cv_name(study, disturbance.cv);
+}
+
+std::string signal_text(const Study& study, const DisturbanceSignal& signal) {
+  const std::string time = unit_text(study.plant.time_unit);
+  if (const auto* noise = std::get_if<WhiteNoise>(&signal)) {
+    const double deviation = noise->factor * study.disturbance.v_standard_deviation;
+    return fmt::format("white {:.3g}{}", deviation,
+                       noise->hold > 1 ? fmt::format(" held for {} samples", noise->hold) : "");
+  }
+  if (const auto* sine = std::get_if<Sine>(&signal))
+    return fmt::format("sine of amplitude {:.3g}, period {:.4g} {}", sine->amplitude, sine->period, time);
+  if (const auto* ramp = std::get_if<Ramp>(&signal))
+    return fmt::format("ramp of {:.3g} a {} from {:g} {}", ramp->slope, time, ramp->start, time);
+  const std::size_t steps = std::get<StepSequence>(signal).steps.size();
+  return fmt::format("{} step{}", steps, steps == 1 ? "" : "s");
+}
+
+/// A random disturbance has always the same signal, which is not worth a word.
+std::string disturbance_text(const Study& study, const Disturbance& disturbance, bool named) {
+  const std::string on = "disturbance on " + place_text(study, disturbance);
+  const std::string signal = named ? ", " + signal_text(study, disturbance.signal) : "";
+  switch (disturbance.model) {
+    case DisturbanceModel::first_order:
+      return fmt::format("{}: gain {:.3g}, time constant {:.3g} {}{}", on, disturbance.gain,
+                         disturbance.time_constant, unit_text(study.plant.time_unit), signal);
+    case DisturbanceModel::transfer_function:
+      return fmt::format("{}: {}{}", on, transfer_function_text(*disturbance.Gd), signal);
+    case DisturbanceModel::direct:
+      return fmt::format("{}: {}", on, signal_text(study, disturbance.signal));
+  }
+  return "unknown";
+}
+
+/// "move suppression of u2 x 0.3"
+std::string tuning_text(const Study& study, const TuningChange& tuning) {
+  std::string weight(to_string(tuning.parameter));
+  std::replace(weight.begin(), weight.end(), '_', ' ');
+  const auto& variables = is_of_mv(tuning.parameter) ? study.plant.mvs : study.plant.cvs;
+  return fmt::format("{} of {} x {:.3g}", weight, variables[static_cast<std::size_t>(tuning.index)].name,
+                     tuning.factor);
+}
+
+}  // namespace
+
+std::string kind_name(ExperimentKind kind) {
+  switch (kind) {
+    case ExperimentKind::none:
+      return "none";
+    case ExperimentKind::mpm:
+      return "MPM";
+    case ExperimentKind::ud:
+      return "UD";
+    case ExperimentKind::mpm_ud:
+      return "MPM+UD";
+    case ExperimentKind::tuning:
+      return "tuning";
+  }
+  return "unknown";
+}
+
+std::string experiment_kind(const ExperimentDraw& draw) {
+  return draw.kind == ExperimentKind::none ? "healthy" : kind_name(draw.kind);
+}
+
+std::string cv_name(const Study& study, Eigen::Index cv) {
+  return cv < 0 ? "none" : study.plant.cvs[static_cast<std::size_t>(cv)].name;
+}
+
+std::string fault_text(const Study& study, const ExperimentDraw& draw) {
+  std::string text;
+  const auto add = [&text](const std::string& fault) { text += (text.empty() ? "" : "; ") + fault; };
+  for (const Mismatch& mismatch : draw.mismatches)
+    add(mismatch_text(study, mismatch));
+  for (const ParameterChange& change : draw.parameters)
+    add(parameter_text(study, change));
+  for (const Disturbance& disturbance : draw.disturbances)
+    add(disturbance_text(study, disturbance, draw.named));
+  if (draw.tuning)
+    add(tuning_text(study, *draw.tuning));
+  return text.empty() ? "nothing" : text;
+}
+
+std::string experiment_title(const Study& study, const ExperimentDraw& draw) {
+  if (draw.named)
+    return fmt::format("{} ({}): {}", study.scenarios[static_cast<std::size_t>(draw.index)].name,
+                       kind_name(draw.kind), fault_text(study, draw));
+  return fmt::format("experiment {} ({}): {}", draw.index, experiment_kind(draw), fault_text(study, draw));
+}
+
+std::string verdict_text(const Study& study, const ExperimentRecord& record) {
+  if (record.status != ExperimentStatus::ok)
+    return std::string(to_string(record.status));
+  if (record.draw.named)
+    return fmt::format("flagged {}; {}", flagged_text(study, record.diagnosis),
+                       scenario_verdict_text(study, record));
+  const Diagnosis& verdict = record.diagnosis;
+  return fmt::format("{}located {}, I_MPM {:.3f}: {}", verdict.impactful ? "" : "no impact, ",
+                     cv_name(study, verdict.predicted_cv), verdict.indicator.i_mpm,
+                     kind_name(verdict.predicted_source));
+}
+
+std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record) {
+  constexpr std::size_t kLongest = 100;
+  std::vector<std::string> lines;
+  std::string rest = experiment_title(study, record.draw);
+  while (rest.size() > kLongest) {
+    const std::size_t blank = rest.rfind("; ", kLongest - 1);
+    if (blank == std::string::npos)
+      break;
+    lines.push_back(rest.substr(0, blank + 1));
+    rest.erase(0, blank + 2);
+  }
+  lines.push_back(rest);
+  lines.push_back(verdict_text(study, record));
+  return lines;
+}
+
+std::string experiment_line(const Study& study, const ExperimentRecord& record) {
+  return experiment_title(study, record.draw) + "; " + verdict_text(study, record);
+}
+
+}  // namespace mpm

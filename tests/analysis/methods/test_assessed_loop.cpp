@@ -1,0 +1,234 @@
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/findings/comparison.hpp"
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/assessment_method.hpp"
+#include "analysis/methods/method_table.hpp"
+#include "analysis/sensitivity/nominal_output.hpp"
+#include "plants/error.hpp"
+#include "scenarios/study_library.hpp"
+
+// What a method of assessment gets to see of a loop, and when it is asked at all.
+
+namespace mpm {
+namespace {
+
+using Catch::Contains;
+
+const QpSolverFactory kFactory = qp_solver_factory("active-set");
+
+/// The range MPC of chapter 6 without noise.
+Study quiet_study() {
+  Study study = find_study("chapter6");
+  study.simulation.noise_standard_deviation.setZero();
+  study.simulation.samples = 120;
+  return study;
+}
+
+AssessedLoop healthy_loop(const Study& study, const OperatingPoint& point) {
+  return assessed_loop(study, point, simulate_experiment(study, {}, kFactory));
+}
+
+/// A loop of two CVs and one MV, as awkward as a test wants it.
+AssessedLoop made_up_loop() {
+  AssessedLoop loop;
+  loop.y = loop.y_sim = Eigen::MatrixXd::Zero(2, 5);
+  loop.u = loop.u_target = Eigen::MatrixXd::Zero(1, 5);
+  loop.d = Eigen::MatrixXd::Zero(0, 5);
+  loop.y_set = Eigen::MatrixXd::Constant(2, 5, std::nan(""));
+  return loop;
+}
+
+/// Counts how often it was made and asked.
+struct Tally {
+  int made = 0, asked = 0;
+};
+
+class CountingMethod final : public AssessmentMethod {
+ public:
+  explicit CountingMethod(Tally& tally) : tally_(tally) { ++tally_.made; }
+  Assessment assess(const AssessedLoop&) override {
+    ++tally_.asked;
+    Assessment assessment;
+    assessment.flagged = true;
+    return assessment;
+  }
+
+ private:
+  Tally& tally_;
+};
+
+}  // namespace
+
+TEST_CASE("a CV in a range has the steady state of the optimizer as setpoint: the soft limit it is put at",
+          "[assessed_loop]") {
+  Study study = quiet_study();
+  study.assessment.setpoints = AssessmentSetpoints::optimizer;
+  study.simulation.steps.clear();
+  const OperatingPoint point = operating_point(study, kFactory);
+  const AssessedLoop loop = healthy_loop(study, point);
+  const Limits& soft = study.controller.cv_soft;
+  REQUIRE(point.active.size() == 3);  // y1, y2 and y7
+  for (const ActiveReference& active : point.active) {
+    const double limit =
+        active.kind == ReferenceKind::upper_limit ? soft.upper(active.cv) : soft.lower(active.cv);
+    INFO("CV " << active.cv);
+    // The tolerance of the optimizer, with static gains up to 7.
+    CHECK((loop.y_set.row(active.cv).array() - limit).abs().maxCoeff() < 1e-6);
+  }
+}
+
+TEST_CASE("without noise the optimizer keeps all setpoints within the soft limits, also when an MD moves",
+          "[assessed_loop]") {
+  Study study = quiet_study();
+  study.assessment.setpoints = AssessmentSetpoints::optimizer;
+  const AssessedLoop loop = healthy_loop(study, operating_point(study, kFactory));
+  const Limits& soft = study.controller.cv_soft;
+  for (Eigen::Index k = 0; k < loop.samples(); ++k) {
+    CHECK((loop.y_set.col(k) - soft.upper).maxCoeff() < 1e-6);
+    CHECK((soft.lower - loop.y_set.col(k)).maxCoeff() < 1e-6);
+  }
+  CHECK(loop.setpoint_cvs().size() == 7);
+  // The limits of other CVs take over when d1 and d2 step: some setpoint must have moved.
+  CHECK((loop.y_set.rightCols(1) - loop.y_set.leftCols(1)).cwiseAbs().maxCoeff() > 0.01);
+}
+
+TEST_CASE("a CV in a range has no setpoint unless the study wants one", "[assessed_loop]") {
+  const Study study = quiet_study();
+  REQUIRE(study.assessment.setpoints == AssessmentSetpoints::controller);
+  const AssessedLoop loop = healthy_loop(study, operating_point(study, kFactory));
+  CHECK(loop.y_set.array().isNaN().all());
+  CHECK(loop.setpoint_cvs().empty());
+  // The model is the plant, and there is no noise: the simulated output is the measured one.
+  CHECK((loop.y - loop.y_sim).cwiseAbs().maxCoeff() < 1e-9);
+}
+
+TEST_CASE("a CV with a setpoint has that one, a CV in a range beside it has none", "[assessed_loop]") {
+  Study study = find_study("wood-berry-mixed");
+  study.simulation.samples = 60;
+  const OperatingPoint point = operating_point(study, kFactory);
+  const Trajectory record = simulate_experiment(study, {}, kFactory);
+  const AssessedLoop loop = assessed_loop(study, point, record);
+  int with = 0, without = 0;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
+    CHECK(loop.has_setpoint(cv) == study.controller.has_setpoint(cv));
+    ++(loop.has_setpoint(cv) ? with : without);
+    if (loop.has_setpoint(cv))
+      CHECK(loop.y_set.row(cv) == record.y_set.row(cv));
+  }
+  CHECK(with > 0);
+  CHECK(without > 0);
+}
+
+TEST_CASE("what a method needs and the loop does not have is said in one sentence", "[assessed_loop]") {
+  const Study study = quiet_study();
+  const BasisCase basis;
+  const AssessmentContext context{study, basis, kFactory, {}};
+  AssessedLoop loop = made_up_loop();
+  const auto unmet = [&](const AssessmentRequirements& needs) {
+    return unmet_requirement(needs, context, loop).value_or("met");
+  };
+  CHECK(unmet({}) == "met");
+  CHECK_THAT(unmet({.setpoints = true}),
+             Contains("needs setpoints, and the controller holds every CV in a range"));
+  CHECK_THAT(unmet({.moving_setpoints = true}), Contains("every CV in a range"));
+  CHECK_THAT(unmet({.benchmark = true}), Contains("benchmark"));
+  CHECK_THAT(unmet({.moving_mvs = true}), Contains("MVs that move"));
+
+  loop.y_set.row(1).setConstant(0.3);
+  CHECK(unmet({.setpoints = true}) == "met");
+  CHECK_THAT(unmet({.moving_setpoints = true}), Contains("setpoints that move"));
+  loop.y_set(1, 4) = 0.4;
+  CHECK(unmet({.moving_setpoints = true}) == "met");
+  loop.u(0, 2) = 1e-9;
+  CHECK(unmet({.moving_mvs = true}) == "met");
+  const AssessmentContext with_benchmark{study, basis, kFactory, loop};
+  CHECK_FALSE(unmet_requirement({.benchmark = true}, with_benchmark, loop));
+}
+
+TEST_CASE("a method is made for the first loop to which it applies, and once", "[assessed_loop]") {
+  const Study study = quiet_study();
+  const BasisCase basis;
+  const AssessmentContext context{study, basis, kFactory, {}};
+  Tally tally;
+  AssessmentMethodInfo info;
+  info.requirements.moving_mvs = true;
+  info.make = [&](const AssessmentContext&) { return std::make_unique<CountingMethod>(tally); };
+  Assessor assessor(info, context);
+
+  AssessedLoop loop = made_up_loop();
+  const Assessment refused = assessor.assess(loop);
+  CHECK(refused.status == AssessmentStatus::not_applicable);
+  CHECK_THAT(refused.reason, Contains("MVs that move"));
+  CHECK_FALSE(refused.flagged);
+  CHECK(tally.made == 0);
+
+  loop.u(0, 3) = 1.0;
+  for (int i = 0; i < 3; ++i)
+    CHECK(assessor.assess(loop).flagged);
+  CHECK(tally.made == 1);
+  CHECK(tally.asked == 3);
+}
+
+TEST_CASE("a loop that a method refuses has failed, with what it refused, and the next one is assessed",
+          "[assessed_loop]") {
+  const Study study = find_study("chapter6");
+  const BasisCase basis = run_basis_case(study, kFactory);
+  const AssessmentContext context = assessment_context(study, basis, kFactory);
+  const AssessedLoop& healthy = *context.benchmark;
+  AssessedLoop odd = healthy;
+  odd.y(2, 7) = std::nan("");
+  for (const AssessmentMethodInfo& method : assessment_methods()) {
+    INFO(method.name);
+    Assessor assessor(method, context);
+    const Assessment refused = assessor.assess(odd);
+    CHECK(refused.status != AssessmentStatus::ok);
+    CHECK_FALSE(refused.flagged);
+    CHECK_FALSE(refused.reason.empty());
+    if (method.name == "botelho")
+      CHECK(refused.status == AssessmentStatus::failed);
+    CHECK(assessor.assess(healthy).status == Assessor(method, context).assess(healthy).status);
+  }
+}
+
+TEST_CASE("a stored loop that did not reach its end gives no verdict, whatever the method",
+          "[assessed_loop]") {
+  const Study study = find_study("chapter6");
+  const BasisCase basis = run_basis_case(study, kFactory);
+  ExperimentRecord record = ExperimentRunner(study, basis, kFactory).run(0, StorePolicy::all);
+  record.loop->trajectory.status = ControlStatus::infeasible;
+  MethodPanel panel(study, basis, {"botelho", "sse"}, kFactory);
+  std::vector<std::string> reasons;
+  for (const MethodVerdict& verdict : panel.assess(record, reasons).verdicts) {
+    CHECK(verdict.status == AssessmentStatus::failed);
+    CHECK_FALSE(verdict.flagged);
+  }
+  REQUIRE(reasons.size() == 2);
+  CHECK_THAT(reasons[1], Contains("does not run to its end"));
+}
+
+TEST_CASE("a panel gives a stored loop and the same loop run again the same verdicts", "[assessed_loop]") {
+  const Study study = find_study("chapter6");
+  const BasisCase basis = run_basis_case(study, kFactory);
+  ExperimentRunner runner(study, basis, kFactory);
+  ExperimentRecord record = runner.run(3, StorePolicy::all);
+  REQUIRE(record.loop);
+  MethodPanel panel(study, basis, {"botelho"}, kFactory);
+  std::vector<std::string> reasons;
+  const MethodVerdict stored = panel.assess(record, reasons).verdicts.at(0);
+  CHECK(reasons == std::vector<std::string>{""});
+  record.loop.reset();
+  const ComparedLoop again = panel.assess(record, reasons);
+  CHECK(again.experiment == 3);
+  CHECK(again.verdicts.at(0).flagged == stored.flagged);
+  CHECK(again.verdicts.at(0).score == stored.score);
+  // The verdict of the chain itself, which the experiment has.
+  CHECK(stored.flagged == record.diagnosis.impactful);
+  CHECK(stored.located_cv == record.diagnosis.predicted_cv);
+  CHECK_THROWS_WITH(MethodPanel(study, basis, {"nobody"}, kFactory),
+                    Contains("found 'nobody'; allowed: botelho"));
+}
+
+}  // namespace mpm

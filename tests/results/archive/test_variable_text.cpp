@@ -1,0 +1,52 @@
+#include <catch2/catch.hpp>
+
+#include "results/archive/variable_text.hpp"
+#include "results/files/utf8.hpp"
+
+namespace {
+
+using namespace mpm;
+
+TEST_CASE("variable text: units of time are symbols, which xarray leaves alone, and no unit is 1") {
+  CHECK(unit_text("minutes") == "min");
+  CHECK(unit_text("seconds") == "s");
+  CHECK(unit_text("hours") == "h");
+  CHECK(unit_text("days") == "d");
+  CHECK(unit_text("min") == "min");
+  CHECK(unit_text("") == "1");
+}
+
+TEST_CASE("variable text: a unit is common only when all variables have it") {
+  CHECK(common_unit({{"a", "K", ""}, {"b", "K", ""}}) == "K");
+  CHECK(common_unit({{"a", "K", ""}, {"b", "m", ""}}) == "various");
+  CHECK(common_unit({{"a", "", ""}, {"b", "1", ""}}) == "1");
+  CHECK(common_unit({}) == "1");
+}
+
+TEST_CASE("variable text: positions have the names of the variables as meanings, in one word each") {
+  const Flags flags = index_flags({{"y1", "", ""}, {"top temperature", "", ""}});
+  CHECK(flags.values == std::vector<int>{-1, 0, 1});
+  CHECK(flags.meanings == std::vector<std::string>{"none", "y1", "top_temperature"});
+  CHECK(flags.contains(-1));
+  CHECK_FALSE(flags.contains(2));
+}
+
+TEST_CASE("utf8: a proper text comes back, any other one becomes proper") {
+  const std::string replacement = "\xEF\xBF\xBD";
+  CHECK(proper_utf8("") == "");
+  CHECK(proper_utf8("a\n\"\\\xC3\xBC\xE6\xB8\xAC\xF0\x9F\x98\x80") ==
+        "a\n\"\\\xC3\xBC\xE6\xB8\xAC\xF0\x9F\x98\x80");
+  CHECK(proper_utf8("\xFFz") == replacement + "z");
+  CHECK(proper_utf8("z\xC3") == "z" + replacement);
+  CHECK(proper_utf8(std::string_view("a\0b", 3)) == "a" + replacement + "b");
+}
+
+TEST_CASE("plain_text replaces what XML cannot hold and what moves the cursor of a terminal") {
+  const std::string replacement = "\xEF\xBF\xBD";
+  CHECK(plain_text("a<&>\"'\t\n\xC3\xBC") == "a<&>\"'\t\n\xC3\xBC");
+  CHECK(plain_text(std::string_view("\0\x1B[2J\r\x7F", 7)) ==
+        replacement + replacement + "[2J" + replacement + replacement);
+  CHECK(plain_text("\xEF\xBF\xBE\xEF\xBF\xBF\xFF") == replacement + replacement + replacement);
+}
+
+}  // namespace

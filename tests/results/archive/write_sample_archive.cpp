@@ -1,0 +1,25 @@
+// usage: write_sample_archive FILE [empty|scenarios|faultless]
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "results/archive/archive.hpp"
+#include "tests/results/campaign_sample.hpp"
+#include "tests/results/made_up_campaign.hpp"
+
+int main(int argc, char** argv) {
+  if (argc < 2)
+    return 1;
+  try {
+    const std::string which = argc == 2 ? "" : argv[2];
+    mpm::write_archive(argv[1], which == "empty"       ? mpm::testing::empty_campaign()
+                                : which == "scenarios" ? mpm::testing::scenario_campaign()
+                                : which == "faultless" ? mpm::testing::faultless_campaign()
+                                                       : campaign_sample());
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

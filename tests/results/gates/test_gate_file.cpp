@@ -1,0 +1,160 @@
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+#include "plants/error.hpp"
+#include "results/gates/gate_check.hpp"
+#include "results/gates/gate_file.hpp"
+#include "scenarios/study_library.hpp"
+#include "tests/results/made_up_campaign.hpp"
+#include "tests/scenarios/documented_keys.hpp"
+#include "tests/scenarios/study_texts.hpp"
+
+namespace {
+
+using namespace mpm;
+using namespace mpm::testing;
+
+const std::vector<std::string>& names() {
+  static const std::vector<std::string> list = gate_names(find_study("chapter6"));
+  return list;
+}
+
+std::string refused(const std::string& text) {
+  try {
+    parse_gates(text, "g.toml", names());
+    return "accepted";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+const std::string kGate = "[[gate]]\naggregate = \"ud.located\"\nminimum = 0.5\n";
+
+TEST_CASE("gate file: every key is read") {
+  const GateFile file = parse_gates(R"(
+inconclusive = "pass"
+confidence = 0.9
+maximum_failed = 3
+minimum_experiments = 40
+[[gate]]
+aggregate = "infeasible"
+maximum = 0.1
+[[gate]]
+aggregate = "mpm.slope"
+minimum = -1
+maximum = 2.5
+with_confidence = true
+minimum_count = 12
+reason = "why"
+[baseline]
+archive = "old/a.h5"
+significance = 0.01
+maximum_lost = 0
+)",
+                                    "folder/g.toml", names());
+  CHECK(file.inconclusive == InconclusivePolicy::pass);
+  CHECK(file.confidence == 0.9);
+  CHECK(file.maximum_failed == 3);
+  CHECK(file.minimum_experiments == 40);
+  REQUIRE(file.gates.size() == 2);
+  CHECK(file.gates[0].name == "infeasible");
+  CHECK(file.gates[0].minimum == -std::numeric_limits<double>::infinity());
+  CHECK(file.gates[0].maximum == 0.1);
+  CHECK_FALSE(file.gates[0].with_confidence);
+  CHECK(file.gates[1].minimum == -1.0);
+  CHECK(file.gates[1].maximum == 2.5);
+  CHECK(file.gates[1].with_confidence);
+  CHECK(file.gates[1].minimum_count == 12);
+  CHECK(file.gates[1].reason == "why");
+  REQUIRE(file.baseline);
+  CHECK(file.baseline->archive == "folder/old/a.h5");
+  CHECK(file.baseline->significance == 0.01);
+  CHECK(file.baseline->maximum_lost == 0);
+}
+
+TEST_CASE("gate file: defaults, an absolute path, and a baseline without gates") {
+  const GateFile file = parse_gates("[baseline]\narchive = \"/x/a.h5\"\n", "folder/g.toml", names());
+  CHECK(file.inconclusive == InconclusivePolicy::fail);
+  CHECK_FALSE(file.confidence);
+  CHECK(file.maximum_failed == 0);
+  CHECK(file.minimum_experiments == 1);
+  CHECK(file.gates.empty());
+  CHECK(file.baseline->archive == "/x/a.h5");
+  CHECK(file.baseline->significance == 0.05);
+  CHECK_FALSE(file.baseline->maximum_lost);
+}
+
+TEST_CASE("gate file: the shipped file is read, and every gate in it says why") {
+  const GateFile file =
+      parse_gates(project_file("scenarios/gates/chapter6.toml"), "scenarios/gates/chapter6.toml", names());
+  CHECK(file.gates.size() > 5);
+  for (const Gate& gate : file.gates)
+    CHECK_FALSE(gate.reason.empty());
+}
+
+TEST_CASE("gate file: the numbers of a gate are those that the summary has") {
+  CHECK(names().front() == "infeasible");
+  const Campaign campaign = made_up_campaign();
+  const std::vector<std::string> found = gate_names(campaign.study);
+  const std::vector<AggregateValue> values = named_values(aggregate(campaign.study, campaign.records));
+  REQUIRE(found.size() == values.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    CHECK(found[i] == values[i].name);
+    if (!has_interval(found[i]))
+      CHECK(std::isnan(values[i].interval.lower));
+  }
+}
+
+TEST_CASE("gate file: mistakes are refused with line, key, what was found and what is allowed") {
+  const std::vector<std::pair<std::string, std::string>> mistakes{
+      {"", "g.toml:1: gate: found nothing; allowed: a list of tables, one or more"},
+      {"gate = []\n", "g.toml:1: gate: found a list of 0; allowed: a list of tables, one or more"},
+      {"inconclusive = \"maybe\"\n", "g.toml:1: inconclusive: found 'maybe'; allowed: fail, pass"},
+      {"confidence = 95\n", "g.toml:1: confidence: found 95; allowed: a number in (0, 1)"},
+      {"maximum_failed = -1\n",
+       "g.toml:1: maximum_failed: found -1; allowed: a whole number from 0 to 2147483647"},
+      {"minimum_experiments = 0\n",
+       "g.toml:1: minimum_experiments: found 0; allowed: a whole number from 1 to 2147483647"},
+      {"[baselin]\narchive = \"a\"\n",
+       "g.toml:1: top level: found unknown key 'baselin' (nearest: 'baseline'); allowed: inconclusive, "
+       "confidence, maximum_failed, minimum_experiments, gate, baseline"},
+      {"[[gate]]\nmaximum = 0.1\nminumum = 0\n",
+       "g.toml:3: gate[0]: found unknown key 'minumum' (nearest: 'minimum'); allowed: aggregate, minimum, "
+       "maximum, with_confidence, minimum_count, reason"},
+      {"[[gate]]\naggregate = \"infeasible\"\n",
+       "g.toml:1: gate[0]: found no limit; allowed: minimum, maximum or both"},
+      {kGate + "maximum = 0.4\n",
+       "g.toml:4: gate[0].maximum: found 0.4; allowed: a number >= the minimum, 0.5"},
+      {"[[gate]]\naggregate = \"ud.located\"\nminimum = 95\n",
+       "g.toml:3: gate[0].minimum: found 95; allowed: a number in [0, 1]"},
+      {"[[gate]]\naggregate = \"ud.slope\"\nminimum = nan\n",
+       "g.toml:3: gate[0].minimum: found nan; allowed: a finite number"},
+      {kGate + "with_confidence = 1\n", "g.toml:4: gate[0].with_confidence: found 1; allowed: true or false"},
+      {kGate + "minimum_count = 0\n",
+       "g.toml:4: gate[0].minimum_count: found 0; allowed: a whole number from 1 to 2147483647"},
+      {kGate + "reason = \"\"\n", "g.toml:4: gate[0].reason: found ''; allowed: a text that is not empty"},
+      {kGate + "[[gate]]\naggregate = \"ud.i_mpm_max\"\nmaximum = 1\nwith_confidence = true\n",
+       "g.toml:7: gate[1].with_confidence: found true; allowed: false: 'ud.i_mpm_max' has no interval"},
+      {"[baseline]\n", "g.toml:1: baseline.archive: found nothing; allowed: a text that is not empty"},
+      {"[baseline]\narchive = \"a\"\nsignificance = 0\n",
+       "g.toml:3: baseline.significance: found 0; allowed: a number in (0, 1)"},
+      {"[baseline]\narchive = \"a\"\nmaximum_lost = 1.5\n",
+       "g.toml:3: baseline.maximum_lost: found 1.5; allowed: a whole number from 0 to 2147483647"},
+  };
+  for (const auto& [text, message] : mistakes)
+    CHECK(refused(text) == message);
+  const std::string unknown = refused("[[gate]]\naggregate = \"mpm.locatd\"\nminimum = 0\n");
+  CHECK(unknown.rfind("g.toml:2: gate[0].aggregate: found 'mpm.locatd' (nearest: 'mpm.located'); allowed: "
+                      "infeasible, mpm.infeasible, ",
+                      0) == 0);
+  CHECK(refused(kGate) == "accepted");
+  CHECK_THROWS_WITH(load_gates("none.toml", names()),
+                    "none.toml: found nothing that can be read; allowed: a gate file");
+}
+
+TEST_CASE("the document of the gate file has exactly the keys that the reader knows") {
+  check_documented_keys(project_file("docs/gates.md"), gate_file_tables());
+}
+
+}  // namespace

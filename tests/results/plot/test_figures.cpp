@@ -1,0 +1,125 @@
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "results/plot/figure_drawing.hpp"
+#include "results/plot/gnuplot.hpp"
+#include "results/plot/panel_script.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/plot/svg_text.hpp"
+#include "tests/results/made_up_campaign.hpp"
+
+namespace {
+
+using namespace mpm;
+using namespace mpm::testing;
+using Catch::Contains;
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
+    ++found;
+  return found;
+}
+
+Panel small_panel(const std::string& name, const std::string& title) {
+  PanelScript panel(name, title, {.label = "time (min)"}, {.label = "I_{MPM} (-)"});
+  panel.line({0, 1, NAN, 2, 3}, {1, 2, 3, 4, 5}, {});
+  panel.points({{0, 1, "first <point>"}, {1, NAN, "nowhere"}, {2, 2, "second 'point'"}},
+               {colour::kBlue, Dash::none, Mark::dot});
+  panel.upright_whiskers({{1, 2, 1, 3, "a mean"}}, {colour::kGreen, Dash::solid, Mark::square});
+  return panel.finish("A small panel & its description.");
+}
+
+TEST_CASE("figures: every point names itself without a script, and what cannot be shown is left out") {
+  const std::string svg = draw_panel(small_panel("p", "title"), "fig");
+  CHECK(svg.rfind("<svg ", 0) == 0);
+  CHECK_THAT(svg, Contains("<title>first &lt;point&gt;</title>") &&
+                      Contains("<title>second &#39;point&#39;</title>") && Contains("<title>a mean</title>"));
+  CHECK_THAT(svg, !Contains("nowhere") && !Contains("onmouse") && !Contains("<script"));
+  CHECK(count(svg, "<title>") == 3);
+  CHECK_THAT(svg, Contains("role=\"img\" aria-label=\"A small panel &amp; its description.\""));
+}
+
+TEST_CASE("figures: ids begin with the name of the drawing, and references follow") {
+  const std::string svg = draw_panel(small_panel("p", "title"), "fig-7");
+  CHECK(count(svg, " id=\"") == count(svg, " id=\"fig-7-"));
+  CHECK(count(svg, " id='") == 0);
+  CHECK(count(svg, "href='#") == count(svg, "href='#fig-7-"));
+  CHECK(count(svg, "href='#") > 4);
+}
+
+TEST_CASE("figures: the same panel gives the same bytes") {
+  CHECK(draw_panel(small_panel("p", "t"), "x") == draw_panel(small_panel("p", "t"), "x"));
+}
+
+TEST_CASE("figures: a foreign title runs no command") {
+  const TemporaryFolder folder;
+  const std::string trap = (folder / "trap").string();
+  for (const std::string& title :
+       {"`touch " + trap + "`", "' . system('touch " + trap + "') . '",
+        "$(touch " + trap + ")\nsystem 'touch " + trap + "'", std::string("@x {/*9 %d")})
+    CHECK_NOTHROW(draw_panel(small_panel("p", as_label(title)), "x"));
+  CHECK_FALSE(std::filesystem::exists(trap));
+}
+
+TEST_CASE("figures: a figure with heading, legend and panels in each format") {
+  Figure figure;
+  figure.name = "sample";
+  figure.heading = {"heading", "second line"};
+  figure.legend = {{"line, y_{0}", {}},
+                   {"mark", {colour::kBlue, Dash::none, Mark::triangle}},
+                   {"both", {colour::kBlue, Dash::solid, Mark::circle}}};
+  for (const char* name : {"a", "b", "c"})
+    figure.panels.push_back(small_panel(name, name));
+  const std::string svg = draw_figure(figure, FigureFormat::svg);
+  CHECK_THAT(svg, Contains("<?xml") && Contains("second line") && Contains("first &lt;point&gt;"));
+  CHECK(count(svg, "<title>") == 9);
+  CHECK(draw_figure(figure, FigureFormat::svg) == svg);
+  CHECK(draw_figure(figure, FigureFormat::pdf).rfind("%PDF-", 0) == 0);
+  CHECK(draw_figure(figure, FigureFormat::png).rfind("\x89PNG", 0) == 0);
+}
+
+TEST_CASE("figures: a panel without data, with one point, and on logarithmic axes can be drawn") {
+  CHECK_THAT(draw_panel(PanelScript("a", "", {}, {}).finish("nothing"), "x"), Contains("</svg>"));
+  PanelScript one("a", "", {}, {});
+  one.points({{5, 5, "only"}}, {colour::kBlue, Dash::none, Mark::dot});
+  CHECK_THAT(draw_panel(one.finish("one"), "x"), Contains("<title>only</title>"));
+  PanelScript logarithmic("a", "", {.label = "", .logarithmic = true}, {.label = "", .logarithmic = true});
+  logarithmic.points({{1e-3, 1e5, "shown"}, {0, 1, "zero"}, {-1, 1, "negative"}},
+                     {colour::kBlue, Dash::none, Mark::dot});
+  const std::string svg = draw_panel(logarithmic.finish("log"), "x");
+  CHECK_THAT(svg, Contains("<title>shown</title>") && !Contains("zero") && !Contains("negative"));
+}
+
+TEST_CASE("figures: a heat map with foreign names on its axes") {
+  const std::string awkward = as_label("100 %d `x` 'y' {_^");
+  PanelScript map("a", "", {.label = "", .words = {"one", awkward}},
+                  {.label = "", .words = {awkward, "two"}});
+  map.field(0, 0, colour::kSky, 0.8, "12");
+  map.field(1, 1, colour::kOrange, 0.2, "34");
+  const std::string svg = draw_panel(map.finish("map"), "x");
+  CHECK(count(svg, "100 %d `x` \xE2\x80\x99y\xE2\x80\x99 {_^") == 2);
+  CHECK_THAT(svg, Contains(">12</tspan>") && Contains(">34</tspan>"));
+}
+
+TEST_CASE("figures: of very many points every n-th is drawn") {
+  std::vector<NamedPoint> points;
+  for (int i = 0; i < 3 * static_cast<int>(kMostPoints); ++i)
+    points.push_back({static_cast<double>(i), 1.0, "p"});
+  PanelScript panel("a", "", {}, {});
+  panel.points(points, {colour::kBlue, Dash::none, Mark::dot});
+  CHECK(panel.finish("many").names.size() == kMostPoints);
+}
+
+TEST_CASE("gnuplot: a missing program, a wrong script and a silent one are errors that say so") {
+  CHECK_THROWS_WITH(run_gnuplot("", "no-such-gnuplot"),
+                    Contains("cannot start no-such-gnuplot") && Contains("install gnuplot"));
+  CHECK_THROWS_WITH(run_gnuplot("set terminal svg\nplot nonsense +\n"), Contains("could not draw"));
+  CHECK_THROWS_WITH(run_gnuplot("x = 1\n"), Contains("could not draw"));
+  CHECK_THROWS_AS(svg_element("no drawing", {}), GnuplotError);
+}
+
+}  // namespace
