@@ -19,6 +19,8 @@ struct OdeOptions {
 
   /// Errors: InputError when a number is out of range.
   void validate() const;
+
+  bool operator==(const OdeOptions&) const = default;
 };
 
 enum class OdeStatus {

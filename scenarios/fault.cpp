@@ -1,7 +1,10 @@
 #include "scenarios/fault.hpp"
 
 #include <cassert>
+#include <tuple>
 #include <utility>
+
+#include "plants/same_members.hpp"
 
 namespace mpm {
 namespace {
@@ -21,6 +24,16 @@ TransferFunction changed(const TransferFunction& channel, const Mismatch& mismat
   return channel;
 }
 
+auto members(const Mismatch& mismatch) {
+  const auto& [cv, input, parameter, value, channel] = mismatch;
+  return std::tie(cv, input, parameter, value, channel);
+}
+
+auto members(const Disturbance& disturbance) {
+  const auto& [cv, gain, time_constant, model, Gd, signal, inner_input] = disturbance;
+  return std::tie(cv, gain, time_constant, model, Gd, signal, inner_input);
+}
+
 }  // namespace
 
 TransferMatrix with_mismatches(TransferMatrix model, const std::vector<Mismatch>& mismatches) {
@@ -38,6 +51,14 @@ ExperimentKind kind_of(const std::vector<Mismatch>& mismatches,
   if (mismatches.empty() && parameters.empty())
     return disturbances.empty() ? ExperimentKind::none : ExperimentKind::ud;
   return disturbances.empty() ? ExperimentKind::mpm : ExperimentKind::mpm_ud;
+}
+
+bool operator==(const Mismatch& a, const Mismatch& b) {
+  return same_members(members(a), members(b));
+}
+
+bool operator==(const Disturbance& a, const Disturbance& b) {
+  return same_members(members(a), members(b));
 }
 
 }  // namespace mpm

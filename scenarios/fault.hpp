@@ -35,6 +35,8 @@ struct Mismatch {
   MismatchParameter parameter;
   double value;  ///< factor of gain or time constant; shift of the dead time in the plant's time unit
   std::optional<TransferFunction> channel = {};  ///< of the plant, when the parameter is `channel`
+
+  friend bool operator==(const Mismatch& a, const Mismatch& b);
 };
 
 /// The plant that has these mismatches, one after the other, where the model is `model`. Errors: InputError
@@ -46,18 +48,24 @@ TransferMatrix with_mismatches(TransferMatrix model, const std::vector<Mismatch>
 struct WhiteNoise {
   double factor = 1.0;
   int hold = 1;
+
+  bool operator==(const WhiteNoise&) const = default;
 };
 
 /// amplitude sin(2 pi t / period).
 struct Sine {
   double amplitude;
   double period;  ///< time unit of the plant
+
+  bool operator==(const Sine&) const = default;
 };
 
 /// slope (t - start) from t = start on, 0 before it.
 struct Ramp {
   double slope;  ///< per time unit of the plant
   double start;  ///< time unit of the plant
+
+  bool operator==(const Ramp&) const = default;
 };
 
 /// 0 at first, and `level` from `sample` on.
@@ -65,8 +73,12 @@ struct StepSequence {
   struct Step {
     int sample;
     double level;
+
+    bool operator==(const Step&) const = default;
   };
   std::vector<Step> steps;  ///< in the order of their samples
+
+  bool operator==(const StepSequence&) const = default;
 };
 
 using DisturbanceSignal = std::variant<WhiteNoise, Sine, Ramp, StepSequence>;
@@ -87,6 +99,8 @@ struct Disturbance {
   std::optional<TransferFunction> Gd = {};  ///< when the model is `transfer_function`
   DisturbanceSignal signal = WhiteNoise{};
   std::optional<Eigen::Index> inner_input = {};  ///< place in NonlinearModel::inner_inputs
+
+  friend bool operator==(const Disturbance& a, const Disturbance& b);
 };
 
 /// The kind of an experiment with these faults; changed parameters are a mismatch.
@@ -103,6 +117,8 @@ struct Scenario {
   /// The CVs that a diagnosis should find; none given: those with a fault.
   std::optional<std::vector<Eigen::Index>> affected_cvs;
   std::vector<ParameterChange> parameters = {};  ///< mismatches of a nonlinear plant
+
+  bool operator==(const Scenario&) const = default;
 };
 
 }  // namespace mpm
