@@ -51,9 +51,9 @@ void refuse_unusable_windows(const TomlTable& document, const Study& study) {
 
 }  // namespace
 
-Study parse_study(std::string_view text, const std::string& file_name) {
+Study read_study(std::string_view text, const std::string& file_name, TomlDraft* draft) {
   const toml::table toml = parse_toml(text, file_name);
-  const TomlTable document(toml, file_name, study_file_keys(""));
+  const TomlTable document(toml, file_name, study_file_keys(""), draft);
   Study study;
   read_heading(document, study);
   study.plant = read_plant(document);
@@ -62,9 +62,11 @@ Study parse_study(std::string_view text, const std::string& file_name) {
   study.simulation = read_simulation(document, study.plant, study.controller);
   study.scenarios = read_scenarios(document, study);
   study.experiments = read_experiments(document, study);
-  study.mismatch = read_mismatch(document, study.plant);
   study.disturbance = read_disturbance(document);
-  study.tuning = read_tuning(document, study);
+  if (!study.names_scenarios()) {
+    study.mismatch = read_mismatch(document, study.plant);
+    study.tuning = read_tuning(document, study);
+  }
   study.sensitivity = read_sensitivity(document, study.plant, study.controller);
   study.s0_perturbation = read_s0_perturbation(document, study.plant, study.controller);
   study.diagnosis = read_diagnosis(document);
@@ -74,6 +76,10 @@ Study parse_study(std::string_view text, const std::string& file_name) {
   refuse_unusable_windows(document, study);
   study.source = text;
   return study;
+}
+
+Study parse_study(std::string_view text, const std::string& file_name) {
+  return read_study(text, file_name, nullptr);
 }
 
 Study load_study(const std::filesystem::path& path) {

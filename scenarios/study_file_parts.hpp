@@ -14,6 +14,10 @@
 
 namespace mpm {
 
+/// The whole study file (study_file.cpp); see parse_study(). `draft`, whose keys are study_file_keys(""),
+/// takes the values in force; null: they are not recorded.
+Study read_study(std::string_view text, const std::string& file_name, TomlDraft* draft);
+
 /// [plant]: a plant of the catalogue, or one that the file defines (study_file_plant.cpp).
 PlantModel read_plant(const TomlTable& document);
 
