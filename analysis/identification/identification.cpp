@@ -23,8 +23,4 @@ std::string to_string(IdentificationStatus status) {
   return "noise free";
 }
 
-Eigen::VectorXd Identification::standard_errors() const {
-  return covariance.diagonal().cwiseSqrt();
-}
-
 }  // namespace mpm

@@ -42,9 +42,6 @@ struct Identification {
   Eigen::Index samples = 0;       ///< n, prediction errors in the loss
   Eigen::Index first_sample = 0;  ///< the first of them
   int iterations = 0;             ///< of the search; 0 for a linear regression
-
-  /// Standard errors, the roots of the diagonal of the covariance; empty when that is.
-  Eigen::VectorXd standard_errors() const;
 };
 
 }  // namespace mpm

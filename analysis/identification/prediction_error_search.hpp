@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// Where a search ended. Whether it is a minimum is for the caller to see (`relative_offset`).
+/// Where a search ended. Whether it is a minimum is for the caller to see.
 struct PredictionErrorSearch {
   PolynomialModel model;
   int iterations = 0;

@@ -165,16 +165,6 @@ Eigen::MatrixXd NominalSensitivity::static_gain() const {
   return gain;
 }
 
-double NominalSensitivity::unsettled() const {
-  double largest = 0.0;
-  for (const Eigen::MatrixXd& response : step_response) {
-    const Eigen::Index tail = std::max<Eigen::Index>(1, response.cols() / 10);
-    const Eigen::MatrixXd change = response.rightCols(tail).colwise() - response.rightCols<1>().col(0);
-    largest = std::max(largest, change.cwiseAbs().maxCoeff());
-  }
-  return largest;
-}
-
 Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point,
                                  const ActiveReference& reference,
                                  const Eigen::Ref<const Eigen::RowVectorXd>& moves,

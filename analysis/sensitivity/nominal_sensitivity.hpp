@@ -64,8 +64,6 @@ struct NominalSensitivity {
 
   /// Last values of the step responses, ny x ny; column j is zero for a CV inside its range.
   Eigen::MatrixXd static_gain() const;
-  /// Largest change over the last tenth of the responses: small when they have settled.
-  double unsettled() const;
 };
 
 /// Outputs of the controller on its own model while one reference moves, as deviations from rest (appendix
