@@ -25,21 +25,11 @@ SetpointTrajectories centres(const Study& study) {
 /// for.
 int one_window(const Study& study) {
   const auto longest = static_cast<int>(study.simulation.samples - kFewestCorrelatedPairs);
-  return std::clamp(static_cast<int>(study.controller.prediction_horizon), 3, std::max(3, longest));
+  return std::clamp(static_cast<int>(study.controller.prediction_horizon), kShortestWindow,
+                    std::max(kShortestWindow, longest));
 }
 
 }  // namespace
-
-WindowScan window_scan(const Study& study) {
-  const double hp = study.controller.prediction_horizon;
-  WindowScan scan;
-  // Half a sample is rounded up, as in default_window_scan.
-  scan.shortest = static_cast<int>(std::ceil(study.diagnosis.shortest_window * hp));
-  scan.longest = static_cast<int>(std::floor(study.diagnosis.longest_window * hp));
-  scan.stride = study.diagnosis.window_stride;
-  scan.validate();
-  return scan;
-}
 
 double distance_from_one(double ivar, LocationDistance distance) {
   return distance == LocationDistance::linear ? std::abs(ivar - 1.0) : std::abs(std::log(ivar));

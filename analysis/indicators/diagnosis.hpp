@@ -43,9 +43,6 @@ struct Diagnosis {
   std::vector<CvDiagnosis> cvs = {};
 };
 
-/// The window lengths of (6.13) for this study, in samples.
-WindowScan window_scan(const Study& study);
-
 /// |ivar - 1|, or |log ivar|.
 double distance_from_one(double ivar, LocationDistance distance);
 

@@ -1,4 +1,6 @@
-#include "analysis/indicators/window_scan.hpp"
+#include "scenarios/window_scan.hpp"
+
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -20,13 +22,10 @@ void WindowScan::validate() const {
   }
 }
 
-WindowScan default_window_scan(int prediction_horizon) {
-  constexpr int kShortestHorizon = 2 * kShortestWindow - 1;
-  if (prediction_horizon < kShortestHorizon) {
-    throw InputError("prediction horizon", fmt::format("{} samples", prediction_horizon),
-                     fmt::format("{} or more for a scan of moving windows", kShortestHorizon));
-  }
-  return {(prediction_horizon + 1) / 2, 2 * prediction_horizon, 1};
+WindowScan window_scan(const Study& study) {
+  const double hp = study.controller.prediction_horizon;
+  return {static_cast<int>(std::ceil(study.diagnosis.shortest_window * hp)),
+          static_cast<int>(std::floor(study.diagnosis.longest_window * hp)), study.diagnosis.window_stride};
 }
 
 }  // namespace mpm
