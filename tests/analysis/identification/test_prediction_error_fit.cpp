@@ -108,7 +108,6 @@ TEST_CASE("a fit is the same, bit for bit, when it is made again") {
   const Identification second = identify_prediction_error(y, u, truth.order());
   CHECK(first.model.parameters() == second.model.parameters());
   CHECK(first.covariance == second.covariance);
-  CHECK(first.iterations == second.iterations);
 }
 
 TEST_CASE("coefficients change with the units of the signals as they must") {
@@ -205,8 +204,7 @@ TEST_CASE("with one start allowed the search from the best one is all there is")
   CHECK(first.loss >= all.loss);
   const auto starts = mpm::prediction_error_starts(y, u, order, options);
   REQUIRE(starts.size() > 1);
-  CHECK(first.model.parameters() ==
-        mpm::search_prediction_error(starts[0], y, u, options).model.parameters());
+  CHECK(first.model.parameters() == mpm::search_prediction_error(starts[0], y, u, options).parameters());
 }
 
 TEST_CASE("an identification refuses what cannot be meant") {

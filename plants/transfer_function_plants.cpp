@@ -1,4 +1,4 @@
-#include "plants/shell_fractionator.hpp"
+#include "plants/transfer_function_plants.hpp"
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,7 @@ struct Entry {
 };
 
 // clang-format off
-/// Eq. 6.18.
+/// The Shell fractionator, eq. 6.18.
 constexpr std::array<std::array<Entry, 5>, 7> kModel{{
   //      u1              u2              u3              d1              d2
   {{{4.05, 27, 50}, {1.77, 28, 60}, {5.88, 27, 50}, {1.20, 27, 45}, {1.44, 27, 40}}},  // y1
@@ -78,6 +78,28 @@ PlantModel shell_fractionator_3x3() {
           .mvs = {{"u1", "1", "Top Draw"}, {"u2", "1", "Side Draw"}, {"u3", "1", "Bottoms Reflux Duty"}},
           .mds = {},
           .G = make_transfer_matrix(kReducedModel)};
+}
+
+PlantModel distillation_column() {
+  const auto lag = [](double gain) { return TransferFunction::first_order(gain, 75); };
+  return {.name = "distillation-column",
+          .title = "High-purity distillation column, LV configuration, 2 CVs, 2 MVs",
+          .time_unit = "min",
+          .cvs = {{"yD", "1", "Composition of the top product"},
+                  {"xB", "1", "Composition of the bottom product"}},
+          .mvs = {{"L", "1", "Reflux"}, {"V", "1", "Boilup"}},
+          .mds = {},
+          .G = {{lag(87.8), lag(-86.4)}, {lag(108.2), lag(-109.6)}}};
+}
+
+PlantModel siso_plant() {
+  return {.name = "siso",
+          .title = "SISO plant of second order with an inverse response",
+          .time_unit = "s",
+          .cvs = {{"y", "1", "Controlled variable"}},
+          .mvs = {{"u", "1", "Manipulated variable"}},
+          .mds = {},
+          .G = {{TransferFunction(Eigen::Vector2d(-100, 3.04), Eigen::Vector3d(305, 40, 1))}}};
 }
 
 }  // namespace mpm
