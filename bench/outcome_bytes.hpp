@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "bench/experiment_work.hpp"
+#include "bench/outcome/experiment_outcome.hpp"
 
 namespace mpm {
 

@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 
 #include "analysis/basis/basis_case.hpp"
-#include "bench/campaign_runner.hpp"
+#include "bench/campaign/campaign_runner.hpp"
 #include "bench/perf/benchmarks.hpp"
 #include "plants/error.hpp"
 
@@ -55,7 +55,7 @@ void add_diagnosis(const Study& study) {
 
 void add_study(const Study& study, std::int64_t experiments) {
   const auto run = [&study, experiments](benchmark::State& state) {
-    CampaignOptions options;
+    RunOptions options;
     options.experiments = experiments;
     options.solver = "active-set";
     options.store = StorePolicy::none;

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "bench/outcome_bytes.hpp"
-#include "bench/shard_store.hpp"
+#include "bench/shards/shard_store.hpp"
 #include "plants/error.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
@@ -49,7 +49,9 @@ void make_sealed(const fs::path& path, const std::string& content) {
 /// A store of five experiments, of which an earlier one was given some in a shard each.
 ShardStore store_of(const fs::path& folder, Leftovers leftovers, std::vector<std::string>* warnings = nullptr,
                     std::int64_t count = 5, const ShardIdentity& identity = kIdentity) {
-  return ShardStore({folder, leftovers}, identity, count, [=](const std::string& text) {
+  RunOptions options;
+  options.leftovers = leftovers;
+  return ShardStore(folder, options, identity, count, [=](const std::string& text) {
     if (warnings != nullptr)
       warnings->push_back(text);
   });

@@ -8,7 +8,7 @@
 
 #include "bench/byte_stream.hpp"
 #include "bench/outcome_bytes.hpp"
-#include "bench/shard_store.hpp"
+#include "bench/shards/shard_store.hpp"
 #include "plants/error.hpp"
 #include "results/files/file_seal.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -53,7 +53,7 @@ class Reader {
   /// Resumes a run with the last one as its shard.
   void resume() const {
     try {
-      const ShardStore store({folder_.path(), Leftovers::resume}, kIdentity, kExperiments, {});
+      const ShardStore store(folder_.path(), {.leftovers = Leftovers::resume}, kIdentity, kExperiments, {});
       store.read([](const ExperimentOutcome&) {});
     } catch (const InputError& error) {
       if (std::string_view(error.what()).find(file_.string()) == std::string_view::npos)
