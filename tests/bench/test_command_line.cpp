@@ -87,16 +87,19 @@ TEST_CASE("command line: what is to become of an interrupted run") {
 
 TEST_CASE("command line: an unhealthy basis case stops a run, unless it is allowed") {
   const TemporaryFolder folder;
-  const Words run{"run", "chapter4-shell", "-o",         folder / "a.h5", "--experiments",
-                  "1",   "--solver",       "active-set", "--quiet"};
+  const std::string seed =
+      std::to_string(find_study("wood-berry").seed + 1);  // its noise spoils the basis case
+  const Words run{"run",    "wood-berry", "-o",       folder / "a.h5", "--experiments", "1",
+                  "--seed", seed,         "--solver", "active-set",    "--quiet"};
   CHECK_THAT(complaint(run), Contains("self-check"));
   CHECK(typed(run + Words{"--allow-unhealthy-basis"}).code == ExitCode::done);
 }
 
 TEST_CASE("command line: reproduce takes several changes, one word each") {
-  CHECK_THAT(complaint({"reproduce", "--set", "a.b=1", "2.5"}), Contains("a.b"));
+  CHECK_THAT(complaint({"reproduce", "--set", "a.b=1", "2.5"}), Contains("unknown key 'a'"));
   const std::string change = "study.seed=3";
-  CHECK_THAT(complaint({"reproduce", "--set", change, "--set", "c=[1, 2]", "2.5"}), Contains("c=[1, 2]"));
+  CHECK_THAT(complaint({"reproduce", "--set", change, "--set", "c=[1, 2]", "2.5"}),
+             Contains("unknown key 'c'"));
   CHECK_THAT(complaint({"reproduce", "--set", change, "99.9", "--seeds", "7"}), Contains("found '99.9'"));
 }
 
@@ -124,7 +127,7 @@ TEST_CASE("command line: wrong usage names what is wrong") {
   const Words run{"run", "chapter6", "-o", "x"};
   const std::vector<std::pair<Words, std::string>> wrong{
       {{}, "subcommand is required"},
-      {{"dance"}, "dance"},
+      {{"dance"}, "subcommand is required"},
       {{"run", "chapter6"}, "--output is required"},
       {run + Words{"--jobs", "0"}, "--jobs"},
       {run + Words{"--experiments", "-4"}, "--experiments"},
@@ -139,7 +142,7 @@ TEST_CASE("command line: wrong usage names what is wrong") {
       {{"reproduce", "2.5", "--set"}, "--set"},
       {{"check", "x.h5"}, "--gates is required"},
       {{"replay", "x.h5", "-1"}, "INDEX"},
-      {{"report", "x.h5"}, "outputs"},
+      {{"report", "x.h5"}, "At least 1 option from [-o,--output,--figures]"},
       {{"report", "x.h5", "-o", "y", "--format", "pdf"}, "--format requires --figures"},
       {{"report", "x.h5", "--figures", "f", "--format", "gif"}, "--format"},
       {{"plot", "x.h5", "3"}, "--output is required"},
@@ -157,7 +160,7 @@ TEST_CASE("command line: help names every command, and the defaults of each") {
     CHECK(typed({name, "--help"}).code == ExitCode::done);
   }
   CHECK_THAT(typed({"run", "--help"}).message,
-             Contains("[auto]") && Contains("=0.001") && Contains("=flagged"));
+             Contains("}=auto") && Contains("]=0.001") && Contains("}=flagged"));
   CHECK_THAT(typed({"--version"}).message, Contains("mpmbench"));
 }
 
