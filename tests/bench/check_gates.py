@@ -13,7 +13,7 @@ import xml.etree.ElementTree
 import h5py
 import numpy
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "results"))
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "results" / "archive"))
 import seal  # noqa: E402, beside the other tests of archives
 
 EXPERIMENTS = 40
