@@ -1,11 +1,11 @@
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
-#include <string>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
-#include "bench/commands.hpp"
-#include "bench/options.hpp"
+#include "bench/command_line.hpp"
 
 namespace {
 
@@ -19,28 +19,12 @@ void use_single_threaded_blas(char** argv) {
   ::execv("/proc/self/exe", argv);  // returns only when it fails: then go on as we are
 }
 
-/// A word as a shell reads it back.
-std::string quoted(const std::string& word) {
-  constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:=+@%-";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos)
-    return word;
-  std::string text = "'";
-  for (const char c : word)
-    text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
-std::string joined(int argc, const char* const* argv) {
-  std::string line = "mpmbench";
-  for (int i = 1; i < argc; ++i)
-    line.append(" ").append(quoted(argv[i]));
-  return line;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   use_single_threaded_blas(argv);
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of its size is an error of write(), with a text
-  return static_cast<int>(mpm::execute(mpm::parse_command_line(argc, argv), joined(argc, argv)));
+  const mpm::CommandResult result = mpm::execute(argc, argv);
+  fmt::print(result.code == mpm::ExitCode::done ? stdout : stderr, "{}", result.message);
+  return static_cast<int>(result.code);
 }

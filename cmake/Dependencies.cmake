@@ -3,9 +3,11 @@
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt 9 REQUIRED)
-find_package(Boost 1.74 REQUIRED) # Boost.Math and Boost.PropertyTree, headers only
+find_package(Boost 1.74 REQUIRED) # Boost.Math, headers only
 find_package(CLI11 2.1 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
+find_package(pugixml 1.13 REQUIRED)
+find_package(utf8cpp 3.2 REQUIRED)
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto) # SHA-256 of archives
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(Threads REQUIRED)

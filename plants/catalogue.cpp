@@ -7,11 +7,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/distillation_column.hpp"
 #include "plants/error.hpp"
 #include "plants/quadruple_tank.hpp"
-#include "plants/shell_fractionator.hpp"
-#include "plants/siso_plant.hpp"
+#include "plants/transfer_function_plants.hpp"
 
 namespace mpm {
 namespace {

@@ -1,8 +1,20 @@
 #include "plants/nonlinear_model.hpp"
 
+#include <tuple>
+
 #include "plants/deviation_plant.hpp"
+#include "plants/same_members.hpp"
 
 namespace mpm {
+namespace {
+
+auto members(const NonlinearModel& model) {
+  const auto& [parameters, inner_inputs, operating_input, make_system] = model;
+  static_cast<void>(make_system);
+  return std::tie(parameters, inner_inputs, operating_input);
+}
+
+}  // namespace
 
 std::unique_ptr<Plant> nonlinear_plant(const NonlinearModel& model, double sample_time,
                                        const OdeOptions& options,
@@ -11,6 +23,10 @@ std::unique_ptr<Plant> nonlinear_plant(const NonlinearModel& model, double sampl
   auto plant = std::make_unique<OdePlant>(changes.empty() ? at_rest : model.make_system(changes), sample_time,
                                           options, at_rest);
   return std::make_unique<DeviationPlant>(std::move(plant), model.operating_input);
+}
+
+bool operator==(const NonlinearModel& a, const NonlinearModel& b) {
+  return same_members(members(a), members(b));
 }
 
 }  // namespace mpm

@@ -16,6 +16,8 @@ namespace mpm {
 struct ParameterChange {
   std::string name;
   double value;  ///< in the unit of the parameter
+
+  bool operator==(const ParameterChange&) const = default;
 };
 
 /// The nonlinear plant behind a linear model of the catalogue.
@@ -27,6 +29,8 @@ struct NonlinearModel {
   struct Parameter {
     std::string name;
     double nominal;
+
+    bool operator==(const Parameter&) const = default;
   };
 
   std::vector<Parameter> parameters;
@@ -35,6 +39,9 @@ struct NonlinearModel {
   /// The equations with these parameters changed. Errors: InputError for a name that is not among
   /// `parameters`, or a value out of range.
   std::function<std::shared_ptr<const OdeSystem>(const std::vector<ParameterChange>&)> make_system;
+
+  /// Without the equations, which cannot be compared.
+  friend bool operator==(const NonlinearModel& a, const NonlinearModel& b);
 };
 
 /// The plant of a closed loop, in deviations from the operating point of the nominal plant, with some

@@ -105,33 +105,9 @@ class OdeIntegrator::Implementation {
 
   // Forgets the past of the solution; its memory stays.
   void start() {
-    count_work();
     require(CVodeReInit(cvode.get(), 0.0, vector.get()));
     time = 0.0;
     fresh = false;
-    ++past.starts;
-  }
-
-  // CVodeReInit sets the counters of CVODE back.
-  void count_work() {
-    const OdeStatistics now = statistics();
-    past = now;
-  }
-
-  OdeStatistics statistics() const {
-    long steps = 0;
-    long derivatives = 0;
-    long jacobians = 0;
-    OdeStatistics result = past;
-    if (fresh || past.starts == 0)
-      return result;
-    CVodeGetNumSteps(cvode.get(), &steps);
-    CVodeGetNumRhsEvals(cvode.get(), &derivatives);
-    CVodeGetNumJacEvals(cvode.get(), &jacobians);
-    result.steps += steps;
-    result.derivatives += derivatives;
-    result.jacobians += jacobians;
-    return result;
   }
 
   static int derivative(realtype, N_Vector state, N_Vector rate, void* self) {
@@ -153,9 +129,8 @@ class OdeIntegrator::Implementation {
 
   std::shared_ptr<const OdeSystem> system;
   Eigen::VectorXd x, u;
-  double time = 0.0;   // since the last start
-  bool fresh = true;   // x was set since the last start
-  OdeStatistics past;  // before the last start
+  double time = 0.0;  // since the last start
+  bool fresh = true;  // x was set since the last start
   // In the order in which they depend on each other; x is the memory of `vector`.
   Context context;
   Vector vector;
@@ -176,7 +151,6 @@ OdeIntegrator::~OdeIntegrator() = default;
 void OdeIntegrator::reset(const Eigen::Ref<const Eigen::VectorXd>& x) {
   Implementation& my = *implementation_;
   require_signal("initial state", x, my.x.size());
-  my.count_work();
   my.x = x;
   my.fresh = true;
 }
@@ -200,10 +174,6 @@ OdeStatus OdeIntegrator::advance(const Eigen::Ref<const Eigen::VectorXd>& u, dou
 
 const Eigen::VectorXd& OdeIntegrator::state() const {
   return implementation_->x;
-}
-
-OdeStatistics OdeIntegrator::statistics() const {
-  return implementation_->statistics();
 }
 
 }  // namespace mpm

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 
 #include <Eigen/Core>
@@ -19,20 +18,14 @@ struct OdeOptions {
 
   /// Errors: InputError when a number is out of range.
   void validate() const;
+
+  bool operator==(const OdeOptions&) const = default;
 };
 
 enum class OdeStatus {
   ok,
   step_limit,  ///< the end was not reached within the limit of steps
   failed,      ///< the error test or Newton's iteration failed again and again, or f is not finite
-};
-
-/// What the integration has cost since it was begun.
-struct OdeStatistics {
-  std::int64_t steps = 0;
-  std::int64_t derivatives = 0;  ///< evaluations of f
-  std::int64_t jacobians = 0;
-  std::int64_t starts = 0;  ///< beginnings at order 1: after reset() and after each change of the input
 };
 
 /// Integrates an OdeSystem with CVODE (Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363-396): backward
@@ -61,8 +54,6 @@ class OdeIntegrator {
 
   /// x, state_count().
   const Eigen::VectorXd& state() const;
-
-  OdeStatistics statistics() const;
 
  private:
   class Implementation;

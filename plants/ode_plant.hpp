@@ -32,8 +32,6 @@ class OdePlant final : public Plant {
   /// InputError for a wrong size or a number that is not finite.
   void set_state(const Eigen::Ref<const Eigen::VectorXd>& x);
 
-  OdeStatistics statistics() const { return integrator_.statistics(); }
-
  private:
   std::shared_ptr<const OdeSystem> system_, at_rest_;
   double sample_time_;

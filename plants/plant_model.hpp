@@ -18,6 +18,8 @@ struct PlantModel {
     std::string name;
     std::string unit;
     std::string description;
+
+    bool operator==(const Variable&) const = default;
   };
 
   std::string name;   ///< the name in the catalogue
@@ -31,6 +33,8 @@ struct PlantModel {
   /// Errors: InputError if the plant, its time unit or a variable has an empty name, two variables have the
   /// same one, there is no CV or no MV, or G is not cvs x (mvs + mds).
   void validate() const;
+
+  bool operator==(const PlantModel&) const = default;
 };
 
 }  // namespace mpm

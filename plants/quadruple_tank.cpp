@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -128,6 +129,25 @@ Eigen::VectorXd QuadrupleTank::steady_state(const Eigen::Ref<const Eigen::Vector
 
 Eigen::VectorXd quadruple_tank_operating_point() {
   return (Eigen::VectorXd(12) << 3.2, 3.15, 0.43, 0.34, 0, 0, 0, 0, 0, 0, 0, 0).finished();
+}
+
+NonlinearModel quadruple_tank_nonlinear(const std::string& set, std::size_t flows) {
+  const QuadrupleTankParameters nominal = quadruple_tank_parameters(set);
+  NonlinearModel model;
+  for (const auto& [name, value] : named_parameters(nominal))
+    model.parameters.push_back({name, value});
+  for (std::size_t i = flows + 1; i <= std::size_t{QuadrupleTank::kFlows}; ++i)
+    model.inner_inputs.push_back(fmt::format("F{}", i));
+  for (std::size_t i = 1; i <= std::size_t{QuadrupleTank::kAdded}; ++i)
+    model.inner_inputs.push_back(fmt::format("D{}", i));
+  model.operating_input = quadruple_tank_operating_point();
+  model.make_system = [nominal](const std::vector<ParameterChange>& changes) {
+    QuadrupleTankParameters parameters = nominal;
+    for (const ParameterChange& change : changes)
+      parameters = with_parameter(parameters, change.name, change.value);
+    return std::make_shared<const QuadrupleTank>(parameters);
+  };
+  return model;
 }
 
 }  // namespace mpm

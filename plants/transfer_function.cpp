@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/same_members.hpp"
 
 namespace mpm {
 namespace {
@@ -126,6 +127,11 @@ TransferFunction TransferFunction::with_dead_time_shifted(double delta) const {
                      "a finite number >= 0");
   }
   return {numerator_, denominator_, shifted};
+}
+
+bool operator==(const TransferFunction& a, const TransferFunction& b) {
+  return same(a.numerator_, b.numerator_) && same(a.denominator_, b.denominator_) &&
+         same(a.dead_time_, b.dead_time_);
 }
 
 }  // namespace mpm

@@ -62,6 +62,9 @@ class TransferFunction {
   /// finite.
   TransferFunction with_dead_time_shifted(double delta) const;
 
+  /// Are all coefficients and the dead time the same? Other coefficients with the same G differ.
+  friend bool operator==(const TransferFunction& a, const TransferFunction& b);
+
  private:
   Eigen::VectorXd numerator_;
   Eigen::VectorXd denominator_;

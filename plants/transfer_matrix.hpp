@@ -37,6 +37,8 @@ class TransferMatrix {
   /// G(s) at one complex s, rows() x cols().
   Eigen::MatrixXcd frequency_response(std::complex<double> s) const;
 
+  friend bool operator==(const TransferMatrix&, const TransferMatrix&) = default;
+
  private:
   std::size_t position(Eigen::Index row, Eigen::Index col) const;
 

@@ -45,6 +45,8 @@ struct SunOptions {
   SunNoise noise = SunNoise::integrated;
   double noise_filter = 0.7;  ///< c of `integrated`
   int noise_order = 10;       ///< highest order of `benchmark`
+
+  bool operator==(const SunOptions&) const = default;
 };
 
 /// By what the order of an output-error model of Badwe et al. (2010) is chosen.
@@ -60,6 +62,8 @@ struct Badwe2010Options {
   int smallest_order = 3, largest_order = 7;  ///< of the output-error models (3.3.2)
   DesignedOrderCriterion criterion = DesignedOrderCriterion::record_fit;
   int max_iterations = 20;  ///< of the search for each model
+
+  bool operator==(const Badwe2010Options&) const = default;
 };
 
 /// Of the method of Yu and Qin (2008), analysis/assessment/yu_qin.
@@ -67,12 +71,16 @@ struct YuQinOptions {
   double confidence = 0.95;  ///< of the limits of eigenvalues and angles
   int largest_lag = 0;       ///< of the sum over autocorrelations (2.9); 0: all lags
   int first_sample = 0;      ///< at which both periods begin; leaves out how a loop starts
+
+  bool operator==(const YuQinOptions&) const = default;
 };
 
 /// Of a monitor of the simulation errors alone, analysis/assessment/sse_method.
 struct SseOptions {
   double threshold =
       1.5;  ///< a CV is flagged when its mean squared error is above so many times the benchmark's
+
+  bool operator==(const SseOptions&) const = default;
 };
 
 /// [assessment]
@@ -83,6 +91,8 @@ struct AssessmentOptions {
   Badwe2010Options badwe2010;
   YuQinOptions yu_qin;
   SseOptions sse;
+
+  bool operator==(const AssessmentOptions&) const = default;
 };
 
 }  // namespace mpm

@@ -78,8 +78,8 @@ AuditedStep Auditor::check(const AuditSample& sample) {
   AuditedStep step;
   step.experiment = sample.experiment;
   step.step = sample.step;
-  step.targets = check(sample.targets, targets_.get(), step.reference_kkt_residual);
-  step.moves = check(sample.moves, moves_.get(), step.reference_kkt_residual);
+  step.targets = check(sample.targets, targets_.get(), step.ipopt_kkt_residual);
+  step.moves = check(sample.moves, moves_.get(), step.ipopt_kkt_residual);
   return step;
 }
 

@@ -46,7 +46,7 @@ struct AuditedStep {
   std::int64_t experiment = 0;
   std::int64_t step = 0;
   AuditDifference targets, moves;
-  double reference_kkt_residual = 0.0;  ///< the larger one of the reference's answers
+  double ipopt_kkt_residual = 0.0;  ///< the larger one of the reference's answers
 };
 
 /// What a whole audit found. The largest differences are 0 without audited steps.

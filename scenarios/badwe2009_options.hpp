@@ -53,6 +53,8 @@ struct Badwe2009Options {
   ///   pole outside [0, 1), a confidence outside (0, 1), a correlation or share outside [0, 1], or a
   ///   deviation below 0
   void validate() const;
+
+  bool operator==(const Badwe2009Options&) const = default;
 };
 
 }  // namespace mpm

@@ -62,6 +62,20 @@ void begin(Plant& plant, const Eigen::VectorXd& input, Trajectory& trajectory) {
 
 }  // namespace
 
+std::string_view to_string(LoopFailure failure) {
+  switch (failure) {
+    case LoopFailure::none:
+      return "none";
+    case LoopFailure::solver:
+      return "solver";
+    case LoopFailure::plant:
+      return "plant";
+    case LoopFailure::no_steady_state:
+      return "no_steady_state";
+  }
+  return "unknown";
+}
+
 void SolverStatistics::add(const SolverStatistics& other) {
   steps += other.steps;
   iterations += other.iterations;

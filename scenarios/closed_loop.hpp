@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include <Eigen/Core>
 
@@ -31,6 +32,9 @@ enum class LoopFailure {
   plant,            ///< it could not be integrated
   no_steady_state,  ///< the plant cannot rest where the loop begins
 };
+
+/// "none", "solver", "plant", "no_steady_state"
+std::string_view to_string(LoopFailure failure);
 
 /// The data of one closed loop; one row a variable, one column a sample.
 ///

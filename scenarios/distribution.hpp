@@ -37,6 +37,9 @@ class Distribution {
   double maximum() const;
 
   Kind kind() const { return kind_; }
+  /// a and b of the table above; b has no meaning for a constant.
+  double first() const { return a_; }
+  double second() const { return b_; }
 
   friend bool operator==(const Distribution&, const Distribution&) = default;
 

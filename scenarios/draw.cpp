@@ -134,9 +134,9 @@ std::vector<AffectedCv> ExperimentDraw::affected() const {
   }
   std::vector<AffectedCv> list;
   for (const auto& [cv, fault] : faults)
-    list.push_back({cv, fault.first && fault.second ? ExperimentKind::mpm_ud
-                        : fault.first               ? ExperimentKind::mpm
-                                                    : ExperimentKind::ud});
+    list.push_back({cv, fault.first && fault.second ? FaultSource::mpm_ud
+                        : fault.first               ? FaultSource::mpm
+                                                    : FaultSource::ud});
   return list;
 }
 
@@ -163,7 +163,7 @@ ExperimentDraw ExperimentDraw::disturbance_alone() const {
 KindSequence::KindSequence(const ExperimentCounts& counts) {
   // A kind without experiments is never behind, so that adding one to the list changes no other study.
   constexpr std::array kinds{ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud,
-                             ExperimentKind::none, ExperimentKind::tuning};
+                             ExperimentKind::healthy, ExperimentKind::tuning};
   std::array<std::pair<ExperimentKind, int>, kinds.size()> wanted;
   for (std::size_t k = 0; k < kinds.size(); ++k)
     wanted[k] = {kinds[k], counts.of(kinds[k])};

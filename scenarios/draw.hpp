@@ -12,14 +12,14 @@ namespace mpm {
 /// A CV that an experiment affects, and by what.
 struct AffectedCv {
   Eigen::Index cv;
-  ExperimentKind by;  ///< mpm, ud, or mpm_ud for both
+  FaultSource by;  ///< mpm, ud, or mpm_ud for both
 };
 
 /// What one experiment does to the loop: drawn at random, with at most one fault of either sort or a change
 /// of the tuning, or a named scenario of the study.
 struct ExperimentDraw {
   std::int64_t index = 0;
-  ExperimentKind kind = ExperimentKind::none;
+  ExperimentKind kind = ExperimentKind::healthy;
   std::vector<Mismatch> mismatches;
   std::vector<Disturbance> disturbances;
   bool named = false;  ///< the scenario number `index` of the study

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -15,18 +16,33 @@
 
 namespace mpm {
 
-/// What is wrong in an experiment. `none` is the basis case and every healthy experiment: nothing but the
+/// What is wrong in an experiment. Nothing is in a `healthy` one, the basis case among them: there is only
 /// noise. In one of the kind `tuning` model and plant agree, and a weight of the controller is changed.
-enum class ExperimentKind : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3, tuning = 4 };
+enum class ExperimentKind : std::int8_t { healthy = 0, mpm = 1, ud = 2, mpm_ud = 3, tuning = 4 };
+
+/// "healthy", "mpm", "ud", "mpm_ud", "tuning"
+std::string_view to_string(ExperimentKind kind);
 
 /// Is there neither mismatch nor disturbance, so that every verdict of a modelling error is a false alarm?
 inline bool is_faultless(ExperimentKind kind) {
-  return kind == ExperimentKind::none || kind == ExperimentKind::tuning;
+  return kind == ExperimentKind::healthy || kind == ExperimentKind::tuning;
 }
+
+/// What a method sees as the cause of a fault, and what affects a CV: a mismatch, a disturbance, or both.
+enum class FaultSource : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3 };
+
+/// The source of the faults of an experiment of this kind; none where model and plant agree.
+FaultSource source_of(ExperimentKind kind);
+
+/// "none", "mpm", "ud", "mpm_ud"
+std::string_view to_string(FaultSource source);
 
 /// Which parameter of a channel a model-plant mismatch changes, as in table 6.4; `channel`: the plant has
 /// another transfer function in this place, as in (4.19) to (4.21).
 enum class MismatchParameter : std::int8_t { gain = 0, time_constant = 1, dead_time = 2, channel = 3 };
+
+/// "gain", "time_constant", "dead_time", "channel"
+std::string_view to_string(MismatchParameter parameter);
 
 /// A model-plant mismatch: the channel (cv, input) of the plant differs from the model.
 struct Mismatch {
@@ -35,6 +51,8 @@ struct Mismatch {
   MismatchParameter parameter;
   double value;  ///< factor of gain or time constant; shift of the dead time in the plant's time unit
   std::optional<TransferFunction> channel = {};  ///< of the plant, when the parameter is `channel`
+
+  friend bool operator==(const Mismatch& a, const Mismatch& b);
 };
 
 /// The plant that has these mismatches, one after the other, where the model is `model`. Errors: InputError
@@ -46,18 +64,24 @@ TransferMatrix with_mismatches(TransferMatrix model, const std::vector<Mismatch>
 struct WhiteNoise {
   double factor = 1.0;
   int hold = 1;
+
+  bool operator==(const WhiteNoise&) const = default;
 };
 
 /// amplitude sin(2 pi t / period).
 struct Sine {
   double amplitude;
   double period;  ///< time unit of the plant
+
+  bool operator==(const Sine&) const = default;
 };
 
 /// slope (t - start) from t = start on, 0 before it.
 struct Ramp {
   double slope;  ///< per time unit of the plant
   double start;  ///< time unit of the plant
+
+  bool operator==(const Ramp&) const = default;
 };
 
 /// 0 at first, and `level` from `sample` on.
@@ -65,8 +89,12 @@ struct StepSequence {
   struct Step {
     int sample;
     double level;
+
+    bool operator==(const Step&) const = default;
   };
   std::vector<Step> steps;  ///< in the order of their samples
+
+  bool operator==(const StepSequence&) const = default;
 };
 
 using DisturbanceSignal = std::variant<WhiteNoise, Sine, Ramp, StepSequence>;
@@ -87,6 +115,8 @@ struct Disturbance {
   std::optional<TransferFunction> Gd = {};  ///< when the model is `transfer_function`
   DisturbanceSignal signal = WhiteNoise{};
   std::optional<Eigen::Index> inner_input = {};  ///< place in NonlinearModel::inner_inputs
+
+  friend bool operator==(const Disturbance& a, const Disturbance& b);
 };
 
 /// The kind of an experiment with these faults; changed parameters are a mismatch.
@@ -103,6 +133,8 @@ struct Scenario {
   /// The CVs that a diagnosis should find; none given: those with a fault.
   std::optional<std::vector<Eigen::Index>> affected_cvs;
   std::vector<ParameterChange> parameters = {};  ///< mismatches of a nonlinear plant
+
+  bool operator==(const Scenario&) const = default;
 };
 
 }  // namespace mpm

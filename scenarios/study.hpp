@@ -23,6 +23,8 @@ struct SignalStep {
   Eigen::Index variable;
   int sample;
   double level;
+
+  bool operator==(const SignalStep&) const = default;
 };
 
 /// Length, noise and excitation of every closed loop of the study.
@@ -35,6 +37,8 @@ struct SimulationOptions {
   bool random_steps = false;                 ///< steps drawn once for the study, the same in every experiment
   Distribution step_interval = Distribution::uniform(60, 100);  ///< samples between random steps
   Distribution step_level = Distribution::uniform(-0.4, 0.4);   ///< level after a random step
+
+  friend bool operator==(const SimulationOptions& a, const SimulationOptions& b);
 };
 
 /// How many experiments of each kind make one full study.
@@ -42,13 +46,13 @@ struct ExperimentCounts {
   int mpm = 0;
   int ud = 0;
   int mpm_ud = 0;
-  int healthy = 0;  ///< nothing is wrong: kind none
+  int healthy = 0;  ///< nothing is wrong
   int tuning = 0;
 
   int total() const { return mpm + ud + mpm_ud + healthy + tuning; }
   int of(ExperimentKind kind) const {
     switch (kind) {
-      case ExperimentKind::none:
+      case ExperimentKind::healthy:
         return healthy;
       case ExperimentKind::mpm:
         return mpm;
@@ -61,6 +65,8 @@ struct ExperimentCounts {
     }
     return 0;
   }
+
+  bool operator==(const ExperimentCounts&) const = default;
 };
 
 /// Ranges of the random mismatches (table 6.4). Channels are pairs of a CV and an MV with non-zero gain.
@@ -72,6 +78,8 @@ struct MismatchRanges {
   /// Added to the dead time, in the time unit of the plant. Where the sum would be negative the draw is
   /// confined to shifts of at least minus the dead time (docs/methods.md).
   Distribution dead_time_shift = Distribution::uniform(-2.0, 2.0);
+
+  bool operator==(const MismatchRanges&) const = default;
 };
 
 /// Ranges of the random unmeasured disturbances: G_d = gain / (time_constant s + 1) driven by white noise v.
@@ -79,6 +87,8 @@ struct DisturbanceRanges {
   Distribution gain = Distribution::uniform(0.1, 3.0);
   Distribution time_constant = Distribution::uniform(30.0, 300.0);
   double v_standard_deviation = 1.0;  ///< of the white normal sequence, held over a sample
+
+  bool operator==(const DisturbanceRanges&) const = default;
 };
 
 /// Which way the active soft limit is stepped when T0 is determined. A range MPC answers the two differently:
@@ -110,6 +120,8 @@ struct SensitivityOptions {
   std::vector<Eigen::Index> fixed_mvs;  ///< MVs that are held while T0 is determined
   SensitivityStructure structure = SensitivityStructure::operating_point;
   SensitivitySwitching switching = SensitivitySwitching::output;
+
+  bool operator==(const SensitivityOptions&) const = default;
 };
 
 /// How S0 is made wrong on purpose, to see what an error in it costs ("Sensitivity of S0" in section 6.5.2).
@@ -120,6 +132,8 @@ struct S0PerturbationOptions {
   double tolerance_upper = 1.25;        ///< that the method should bear
   std::vector<Eigen::Index> fixed_mvs;  ///< MVs held in a second control structure; empty: there is none
   std::vector<Eigen::Index> fixed_active_cvs;  ///< CVs at an active soft limit in it
+
+  bool operator==(const S0PerturbationOptions&) const = default;
 };
 
 /// How the distance of Ivar_diag from 1 is measured when the CV is located.
@@ -147,18 +161,25 @@ struct DiagnosisOptions {
 
   /// Does this Ivar lie outside the band of impact? False for NaN.
   bool has_impact(double ivar) const { return ivar < impact_lower || ivar > impact_upper; }
+
+  bool operator==(const DiagnosisOptions&) const = default;
 };
 
 /// How aggregates get their intervals.
 struct AggregateOptions {
   double confidence = 0.95;
   int bootstrap_replications = 2000;
+
+  bool operator==(const AggregateOptions&) const = default;
 };
 
-/// A number that somebody has reported for an aggregate of this study, by the name of the aggregate.
-struct ReferenceValue {
+/// A number that somebody has reported for this study, by the name of the finding that it stands beside.
+struct ReportedValue {
   std::string name;
   double value;
+  std::string where = {};  ///< "FILE:LINE: KEY", for an error; no part of what is reported
+
+  bool operator==(const ReportedValue& other) const { return name == other.name && value == other.value; }
 };
 
 /// The nonlinear plant that is simulated in place of the linear model; the controller and y_sim keep the
@@ -166,6 +187,8 @@ struct ReferenceValue {
 struct NonlinearSimulation {
   NonlinearModel model;
   OdeOptions integration;
+
+  bool operator==(const NonlinearSimulation&) const = default;
 };
 
 /// A whole study as read from its file: every number that decides its result.
@@ -185,10 +208,11 @@ struct Study {
   SensitivityOptions sensitivity;
   S0PerturbationOptions s0_perturbation;
   DiagnosisOptions diagnosis;
-  AssessmentOptions assessment;
+  std::vector<std::string> methods{"botelho"};  ///< of assessment, by name; "all" alone: every one
+  AssessmentOptions assessment;                 ///< options of the methods
   AggregateOptions aggregate;
-  std::vector<ReferenceValue> reference;  ///< shown beside the results, never used to make them
-  std::string source;                     ///< the full text of the file
+  std::vector<ReportedValue> reported;  ///< shown beside the results, never used to make them
+  std::string source;                   ///< the full text of the file
 
   bool names_scenarios() const { return !scenarios.empty(); }
   /// Experiments of one full run.
@@ -198,6 +222,8 @@ struct Study {
   Eigen::Index cv_count() const { return static_cast<Eigen::Index>(plant.cvs.size()); }
   Eigen::Index mv_count() const { return static_cast<Eigen::Index>(plant.mvs.size()); }
   Eigen::Index md_count() const { return static_cast<Eigen::Index>(plant.mds.size()); }
+
+  bool operator==(const Study&) const = default;
 };
 
 }  // namespace mpm

@@ -1,6 +1,5 @@
 #include "scenarios/study_file.hpp"
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -13,14 +12,10 @@
 #include "scenarios/toml_file.hpp"
 #include "scenarios/toml_text.hpp"
 #include "scenarios/toml_values.hpp"
+#include "scenarios/window_scan.hpp"
 
 namespace mpm {
 namespace {
-
-/// Kurtosis and skewness (6.10-6.12) of fewer values are constants or functions of one another.
-constexpr double kShortestWindow = 4;
-/// Window positions that a correlation over a record needs at least (kFewestCorrelatedPairs of the analysis).
-constexpr double kSamplesBeyondWindow = 20;
 
 void read_heading(const TomlTable& document, Study& study) {
   const TomlTable table = document.table("study", study_file_keys("study"));
@@ -32,28 +27,34 @@ void read_heading(const TomlTable& document, Study& study) {
 
 /// The moving windows of (6.13) and (6.14), in samples, against the horizon and the length of the record.
 void refuse_unusable_windows(const TomlTable& document, const Study& study) {
-  const double horizon = study.controller.prediction_horizon;
-  const double shortest = std::round(study.diagnosis.shortest_window * horizon);
-  const double longest = std::round(study.diagnosis.longest_window * horizon);
-  if (shortest < kShortestWindow) {
+  const WindowScan scan = window_scan(study);
+  if (scan.shortest < kShortestWindow) {
     const TomlTable controller = document.table("controller", study_file_keys("controller"));
     controller.refuse("prediction_horizon",
-                      fmt::format("{} (the shortest moving window has {} samples)", horizon, shortest),
+                      fmt::format("{} (the shortest moving window has {} samples)",
+                                  study.controller.prediction_horizon, scan.shortest),
                       fmt::format("windows of at least {} samples", kShortestWindow));
   }
-  if (study.simulation.samples < longest + kSamplesBeyondWindow) {
+  if (scan.longest < scan.shortest) {
+    const TomlTable diagnosis = document.table("diagnosis", study_file_keys("diagnosis"));
+    diagnosis.refuse(
+        "windows", fmt::format("[{}, {}]", study.diagnosis.shortest_window, study.diagnosis.longest_window),
+        fmt::format("a whole number of samples between them, at a prediction horizon of {} samples",
+                    study.controller.prediction_horizon));
+  }
+  if (study.simulation.samples < scan.longest + kFewestCorrelatedPairs) {
     const TomlTable simulation = document.table("simulation", study_file_keys("simulation"));
     simulation.refuse("samples", fmt::format("{}", study.simulation.samples),
                       fmt::format("at least {}: the longest moving window has {} samples",
-                                  longest + kSamplesBeyondWindow, longest));
+                                  scan.longest + kFewestCorrelatedPairs, scan.longest));
   }
 }
 
 }  // namespace
 
-Study parse_study(std::string_view text, const std::string& file_name) {
+Study read_study(std::string_view text, const std::string& file_name, TomlDraft* draft) {
   const toml::table toml = parse_toml(text, file_name);
-  const TomlTable document(toml, file_name, study_file_keys(""));
+  const TomlTable document(toml, file_name, study_file_keys(""), draft);
   Study study;
   read_heading(document, study);
   study.plant = read_plant(document);
@@ -62,18 +63,25 @@ Study parse_study(std::string_view text, const std::string& file_name) {
   study.simulation = read_simulation(document, study.plant, study.controller);
   study.scenarios = read_scenarios(document, study);
   study.experiments = read_experiments(document, study);
-  study.mismatch = read_mismatch(document, study.plant);
   study.disturbance = read_disturbance(document);
-  study.tuning = read_tuning(document, study);
+  if (!study.names_scenarios()) {
+    study.mismatch = read_mismatch(document, study.plant);
+    study.tuning = read_tuning(document, study);
+  }
   study.sensitivity = read_sensitivity(document, study.plant, study.controller);
   study.s0_perturbation = read_s0_perturbation(document, study.plant, study.controller);
   study.diagnosis = read_diagnosis(document);
+  study.methods = read_methods(document);
   study.assessment = read_assessment(document);
   study.aggregate = read_aggregate(document);
-  study.reference = read_reference(document);
+  study.reported = read_reported(document);
   refuse_unusable_windows(document, study);
   study.source = text;
   return study;
+}
+
+Study parse_study(std::string_view text, const std::string& file_name) {
+  return read_study(text, file_name, nullptr);
 }
 
 Study load_study(const std::filesystem::path& path) {

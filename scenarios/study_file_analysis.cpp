@@ -136,11 +136,16 @@ AggregateOptions read_aggregate(const TomlTable& document) {
   return options;
 }
 
-std::vector<ReferenceValue> read_reference(const TomlTable& document) {
-  const TomlTable table = document.table_or_empty("reference", study_file_keys("reference"));
-  std::vector<ReferenceValue> values;
-  for (const std::string& name : table.present_keys())
-    values.push_back({name, read_number_or(table, name, NumberRule{}, 0.0)});
+std::vector<ReportedValue> read_reported(const TomlTable& document) {
+  // Which names there are is known to the findings, not to the reader.
+  std::vector<std::string> names;
+  if (const toml::node* const node = document.find("reference"); node != nullptr && node->is_table())
+    for (const auto& [name, value] : *node->as_table())
+      names.emplace_back(name.str());
+  const TomlTable table = document.table_or_empty("reference", names);
+  std::vector<ReportedValue> values;
+  for (const std::string& name : names)
+    values.push_back({name, read_number_or(table, name, NumberRule{}, 0.0), table.where(name)});
   return values;
 }
 

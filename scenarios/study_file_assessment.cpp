@@ -18,8 +18,10 @@ constexpr std::int64_t kMaxIterations = 100'000;
 
 /// A list of whole numbers.
 std::vector<int> read_orders(const TomlTable& table, const std::vector<int>& fallback) {
-  if (!table.has("orders"))
+  if (!table.has("orders")) {
+    table.record("orders", fallback);
     return fallback;
+  }
   std::vector<int> orders;
   const NumberRule rule{.low = 1, .high = kMaxOrder, .low_included = true, .high_included = true};
   for (const double order : read_numbers(table, "orders", rule, kMaxOrder)) {
@@ -27,6 +29,7 @@ std::vector<int> read_orders(const TomlTable& table, const std::vector<int>& fal
       table.refuse("orders", fmt::format("{}", order), "whole numbers");
     orders.push_back(static_cast<int>(order));
   }
+  table.record("orders", orders);  // as whole numbers
   return orders;
 }
 
@@ -139,6 +142,11 @@ SseOptions read_sse(const TomlTable& assessment) {
 }
 
 }  // namespace
+
+std::vector<std::string> read_methods(const TomlTable& document) {
+  const TomlTable table = document.table_or_empty("methods", study_file_keys("methods"));
+  return read_texts_or(table, "names", "names of methods of assessment, or \"all\" alone", {"botelho"});
+}
 
 AssessmentOptions read_assessment(const TomlTable& document) {
   const TomlTable table = document.table_or_empty("assessment", study_file_keys("assessment"));

@@ -130,7 +130,8 @@ Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantMod
     const auto cv = static_cast<Eigen::Index>(i);
     if (table.has("setpoint") && !controller.has_setpoint(cv))
       table.refuse("setpoint", "a setpoint without setpoint_weight", "both or none");
-    setpoint(cv) = read_number_or(table, "setpoint", NumberRule::finite(), 0.0);
+    if (controller.has_setpoint(cv))
+      setpoint(cv) = read_number_or(table, "setpoint", NumberRule::finite(), 0.0);
   }
   return setpoint;
 }

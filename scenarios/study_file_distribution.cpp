@@ -39,12 +39,16 @@ Distribution read_distribution(const TomlTable& table, std::string_view key, con
     table.refuse(key, fmt::format("draws from {} to {}", distribution.minimum(), distribution.maximum()),
                  fmt::format("a distribution whose every draw is {}", rule.text()));
   }
+  table.record(key, distribution);
   return distribution;
 }
 
 Distribution read_distribution_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
                                   const Distribution& fallback) {
-  return table.has(key) ? read_distribution(table, key, rule) : fallback;
+  if (table.has(key))
+    return read_distribution(table, key, rule);
+  table.record(key, fallback);
+  return fallback;
 }
 
 }  // namespace mpm

@@ -13,19 +13,18 @@ namespace {
 
 constexpr std::int64_t kMaxExperiments = 10'000'000;  // of one kind; the sum still is an int
 
-std::array<double, 3> read_weights(const TomlTable& mismatch, const std::array<double, 3>& fallback) {
-  if (!mismatch.has("parameter_weights")) {
-    return fallback;
-  }
-  const TomlTable table = mismatch.table("parameter_weights", study_file_keys("mismatch.parameter_weights"));
+bool all_zero(const auto& weights) {
+  return std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0; });
+}
+
+/// A table parameter_weights: all of the weights, or none of them.
+template <std::size_t n>
+void read_weights(const TomlTable& table, const std::array<std::string_view, n>& names,
+                  std::array<double, n>& weights) {
   const NumberRule rule = NumberRule::at_least(0);
-  const std::array<double, 3> weights{read_number(table, "gain", rule),
-                                      read_number(table, "time_constant", rule),
-                                      read_number(table, "dead_time", rule)};
-  if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0; })) {
-    table.refuse("", "three weights of 0", "at least one > 0");
-  }
-  return weights;
+  for (std::size_t i = 0; i < n; ++i)
+    weights[i] = table.is_there() ? read_number(table, names[i], rule)
+                                  : read_number_or(table, names[i], rule, weights[i]);
 }
 
 /// Smallest dead time of the channels that a mismatch can change.
@@ -90,7 +89,11 @@ ExperimentCounts read_experiments(const TomlTable& document, const Study& study)
 MismatchRanges read_mismatch(const TomlTable& document, const PlantModel& plant) {
   const TomlTable table = document.table_or_empty("mismatch", study_file_keys("mismatch"));
   MismatchRanges ranges;
-  ranges.parameter_weight = read_weights(table, ranges.parameter_weight);
+  const TomlTable weights =
+      table.table_or_empty("parameter_weights", study_file_keys("mismatch.parameter_weights"));
+  read_weights<3>(weights, {"gain", "time_constant", "dead_time"}, ranges.parameter_weight);
+  if (all_zero(ranges.parameter_weight))
+    weights.refuse("", "three weights of 0", "at least one > 0");
   ranges.gain_factor = read_distribution_or(table, "gain_factor", NumberRule::positive(), ranges.gain_factor);
   ranges.time_constant_factor = read_distribution_or(table, "time_constant_factor", NumberRule::positive(),
                                                      ranges.time_constant_factor);
@@ -114,19 +117,16 @@ DisturbanceRanges read_disturbance(const TomlTable& document) {
 TuningRanges read_tuning(const TomlTable& document, const Study& study) {
   const TomlTable table = document.table_or_empty("tuning", study_file_keys("tuning"));
   TuningRanges ranges;
-  if (table.has("parameter_weights")) {
-    const TomlTable weights = table.table("parameter_weights", study_file_keys("tuning.parameter_weights"));
-    for (std::size_t p = 0; p < kTuningParameters.size(); ++p)
-      ranges.parameter_weight[p] =
-          read_number(weights, to_string(kTuningParameters[p]), NumberRule::at_least(0));
-  }
+  std::array<std::string_view, kTuningParameters.size()> names;
+  std::transform(kTuningParameters.begin(), kTuningParameters.end(), names.begin(),
+                 [](TuningParameter parameter) { return to_string(parameter); });
+  read_weights(table.table_or_empty("parameter_weights", study_file_keys("tuning.parameter_weights")), names,
+               ranges.parameter_weight);
   ranges.factor = read_distribution_or(table, "factor", NumberRule::positive(), ranges.factor);
   ranges.sensitivity = read_choice_or<TuningSensitivity>(
       table, "sensitivity", {{"current", TuningSensitivity::current}, {"design", TuningSensitivity::design}},
       ranges.sensitivity);
-  const std::array<double, 4> drawn = ranges.weights_for(study.controller);
-  if (study.experiments.tuning > 0 &&
-      std::all_of(drawn.begin(), drawn.end(), [](double weight) { return weight == 0; }))
+  if (study.experiments.tuning > 0 && all_zero(ranges.weights_for(study.controller)))
     table.refuse("parameter_weights", "a weight of 0 for everything that the controller has",
                  "at least one > 0");
   return ranges;

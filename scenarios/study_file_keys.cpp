@@ -7,28 +7,14 @@ namespace mpm {
 namespace {
 
 /// The aggregates of analysis/study_aggregate.hpp that a study may give reported values for.
-std::vector<std::string> reference_names() {
-  std::vector<std::string> names{"infeasible"};
-  for (const char* parameter : {"s0_time_constant", "s0_damping"})
-    for (const char* quantity : {"largest_change", "within_band"})
-      names.push_back(std::string(parameter) + "." + quantity);
-  for (const char* kind : {"mpm", "ud", "mpm_ud"})
-    for (const char* quantity : {"infeasible", "r_squared", "slope", "located", "source_recognised",
-                                 "i_mpm_min", "i_mpm_mean", "i_mpm_max"})
-      names.push_back(std::string(kind) + "." + quantity);
-  for (const char* quantity : {"infeasible", "false_alarm", "false_mpm", "false_ud"})
-    for (const char* kind : {"healthy", "tuning"})
-      names.push_back(std::string(quantity) + "_" + kind);
-  return names;
-}
-
 }  // namespace
 
 const std::vector<StudyFileTable>& study_file_tables() {
   static const std::vector<StudyFileTable> tables{
       {"",
        {"study", "plant", "controller", "simulation", "experiments", "scenario", "mismatch", "disturbance",
-        "tuning", "sensitivity", "s0_perturbation", "diagnosis", "assessment", "aggregate", "reference"}},
+        "tuning", "sensitivity", "s0_perturbation", "diagnosis", "methods", "assessment", "aggregate",
+        "reference"}},
       {"study", {"name", "title", "seed"}},
       {"plant",
        {"catalogue", "simulated", "relative_tolerance", "absolute_tolerance", "step_limit", "name", "title",
@@ -69,6 +55,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
       {"diagnosis",
        {"impact_band", "variance_centre", "location_distance", "mpm_threshold", "windows", "window_stride",
         "source_population", "self_check_band"}},
+      {"methods", {"names"}},
       {"assessment", {"setpoints", "sun", "badwe2009", "badwe2010", "yu-qin", "sse"}},
       {"assessment.sun",
        {"tolerance", "index", "orders", "setpoint_order", "criterion", "own_outputs", "measured_disturbances",
@@ -81,7 +68,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
       {"assessment.yu-qin", {"confidence", "largest_lag", "first_sample"}},
       {"assessment.sse", {"threshold"}},
       {"aggregate", {"confidence", "bootstrap_replications"}},
-      {"reference", reference_names()},
+      {"reference", {"FINDING"}},
       {"DISTRIBUTION", {"constant", "uniform", "log_uniform", "normal"}},
   };
   return tables;

@@ -8,9 +8,9 @@ namespace mpm {
 
 /// One table of the study file with all its keys. docs/study_file.md says what they mean; a test compares.
 ///
-/// The name is the path of the table. "[]" stands for each table of a list, "NAME" for the name of a variable
-/// and "DISTRIBUTION" for the inline table of a random number, wherever it stands. The top level has the
-/// empty name.
+/// The name is the path of the table. "[]" stands for each table of a list, "NAME" for the name of a
+/// variable, "DISTRIBUTION" for the inline table of a random number, wherever it stands, and "FINDING" for
+/// the name of any finding. The top level has the empty name.
 struct StudyFileTable {
   std::string name;
   std::vector<std::string> keys;

@@ -14,6 +14,10 @@
 
 namespace mpm {
 
+/// The whole study file (study_file.cpp); see parse_study(). `draft`, whose keys are study_file_keys(""),
+/// takes the values in force; null: they are not recorded.
+Study read_study(std::string_view text, const std::string& file_name, TomlDraft* draft);
+
 /// [plant]: a plant of the catalogue, or one that the file defines (study_file_plant.cpp).
 PlantModel read_plant(const TomlTable& document);
 
@@ -79,13 +83,14 @@ S0PerturbationOptions read_s0_perturbation(const TomlTable& document, const Plan
 /// [diagnosis]
 DiagnosisOptions read_diagnosis(const TomlTable& document);
 
-/// [assessment] (study_file_assessment.cpp)
+/// [methods], [assessment] (study_file_assessment.cpp)
+std::vector<std::string> read_methods(const TomlTable& document);
 AssessmentOptions read_assessment(const TomlTable& document);
 
 /// [aggregate]
 AggregateOptions read_aggregate(const TomlTable& document);
 /// [reference]
-std::vector<ReferenceValue> read_reference(const TomlTable& document);
+std::vector<ReportedValue> read_reported(const TomlTable& document);
 
 /// A distribution written as an inline table with one key, such as {uniform = [0.3, 1.5]}, whose every draw
 /// satisfies `rule` (study_file_distribution.cpp).

@@ -157,7 +157,7 @@ void read_model(const TomlTable& table, double sample_time, Disturbance& disturb
     table.refuse("dead_time", fmt::format("{}", Gd.dead_time()),
                  fmt::format("at most {} samples", kMaxDeadTimeSamples));
   }
-  if (table.has("gain") && !table.has("dead_time")) {
+  if (table.has("gain") && Gd.dead_time() == 0) {
     disturbance.model = DisturbanceModel::first_order;
     disturbance.gain = read_number(table, "gain", NumberRule::finite());
     disturbance.time_constant = read_number(table, "time_constant", NumberRule::positive());
@@ -212,10 +212,11 @@ std::optional<std::vector<Eigen::Index>> read_affected(const TomlTable& table, c
     return std::nullopt;
   }
   if (const toml::array* list = node->as_array(); list != nullptr && list->empty()) {
+    table.record("affected", std::vector<std::string>{});
     return std::vector<Eigen::Index>{};
   }
   const std::vector<std::size_t> places = read_some_of(table, "affected", variable_names(study.plant.cvs));
-  if (kind_of(scenario.mismatches, scenario.parameters, scenario.disturbances) == ExperimentKind::none) {
+  if (kind_of(scenario.mismatches, scenario.parameters, scenario.disturbances) == ExperimentKind::healthy) {
     table.refuse("affected", fmt::format("a list of {} in a scenario without fault", places.size()),
                  "an empty list");
   }

@@ -21,18 +21,23 @@ std::uint32_t line_of(const toml::node* node, std::uint32_t fallback) {
 }  // namespace
 
 TomlTable::TomlTable(const toml::table& document, const std::string& file_name,
-                     std::vector<std::string> allowed_keys)
-    : table_(&document), file_name_(&file_name), line_(1), allowed_keys_(std::move(allowed_keys)) {
+                     std::vector<std::string> allowed_keys, TomlDraft* draft)
+    : table_(&document),
+      file_name_(&file_name),
+      line_(1),
+      allowed_keys_(std::move(allowed_keys)),
+      draft_(draft) {
   refuse_unknown_keys();
 }
 
 TomlTable::TomlTable(const TomlTable& parent, const toml::table* table, std::string path,
-                     std::vector<std::string> allowed_keys)
+                     std::vector<std::string> allowed_keys, TomlDraft* draft)
     : table_(table),
       file_name_(parent.file_name_),
       path_(std::move(path)),
       line_(line_of(table, parent.line_)),
-      allowed_keys_(std::move(allowed_keys)) {
+      allowed_keys_(std::move(allowed_keys)),
+      draft_(draft) {
   refuse_unknown_keys();
 }
 
@@ -87,7 +92,8 @@ TomlTable TomlTable::table_or_empty(std::string_view key, std::vector<std::strin
   if (node != nullptr && !node->is_table()) {
     refuse(key, describe(*node), "a table");
   }
-  return {*this, node == nullptr ? nullptr : node->as_table(), path_of(key), std::move(allowed_keys)};
+  TomlDraft* const draft = draft_ == nullptr ? nullptr : &draft_->table(key, allowed_keys);
+  return {*this, node == nullptr ? nullptr : node->as_table(), path_of(key), std::move(allowed_keys), draft};
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key,
@@ -100,7 +106,9 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key,
   std::vector<TomlTable> tables;
   for (const toml::node& element : *node.as_array()) {
     std::string path = fmt::format("{}[{}]", path_of(key), tables.size());
-    tables.push_back(TomlTable(*this, element.as_table(), std::move(path), allowed_keys));
+    TomlDraft* const draft =
+        draft_ == nullptr ? nullptr : &draft_->table_in_list(key, tables.size(), allowed_keys);
+    tables.push_back(TomlTable(*this, element.as_table(), std::move(path), allowed_keys, draft));
   }
   return tables;
 }

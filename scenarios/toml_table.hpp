@@ -8,6 +8,7 @@
 #include <toml++/toml.h>
 
 #include "plants/error.hpp"
+#include "scenarios/toml_draft.hpp"
 
 namespace mpm {
 
@@ -17,11 +18,18 @@ namespace mpm {
 /// whole path ("controller.mv.u1.cost", places in lists counted from 0) and LINE the line of the value or,
 /// for a missing key, of its table. A key that is looked up must be among the allowed ones. The document and
 /// the file name must outlive the view.
+///
+/// What is read can be recorded: with a draft, the readers of values (toml_values.hpp) write every value that
+/// they return into it, the defaults too. It becomes the same document with its defaults written out.
 class TomlTable {
  public:
-  /// The whole document. Errors: InputError for a key that is not in `allowed_keys`.
-  TomlTable(const toml::table& document, const std::string& file_name, std::vector<std::string> allowed_keys);
+  /// The whole document. Errors: InputError for a key that is not in `allowed_keys`. `draft`, whose keys must
+  /// be the allowed ones, takes what is recorded; it must outlive the view.
+  TomlTable(const toml::table& document, const std::string& file_name, std::vector<std::string> allowed_keys,
+            TomlDraft* draft = nullptr);
 
+  /// False for the empty table that table_or_empty() gives for a missing key.
+  bool is_there() const { return table_ != nullptr; }
   bool has(std::string_view key) const { return find(key) != nullptr; }
   /// The value under `key`, null when there is none.
   const toml::node* find(std::string_view key) const;
@@ -37,6 +45,14 @@ class TomlTable {
   TomlTable table_or_empty(std::string_view key, std::vector<std::string> allowed_keys) const;
   /// The tables in the list under `key`, one or more. Errors: as table().
   std::vector<TomlTable> tables(std::string_view key, const std::vector<std::string>& allowed_keys) const;
+
+  /// Records the value in force of a key, when there is a draft; the last one counts. For readers of values,
+  /// and for those who look at a node themselves.
+  template <class Value>
+  void record(std::string_view key, const Value& value) const {
+    if (draft_ != nullptr)
+      draft_->set(key, value);
+  }
 
   /// "FILE:LINE: KEY" of the value under `key`, or of this table for an empty `key`.
   std::string where(std::string_view key = {}) const;
@@ -54,7 +70,7 @@ class TomlTable {
 
  private:
   TomlTable(const TomlTable& parent, const toml::table* table, std::string path,
-            std::vector<std::string> allowed_keys);
+            std::vector<std::string> allowed_keys, TomlDraft* draft);
 
   void refuse_unknown_keys() const;
   std::string path_of(std::string_view key) const;
@@ -64,6 +80,7 @@ class TomlTable {
   std::string path_;
   std::uint32_t line_;
   std::vector<std::string> allowed_keys_;
+  TomlDraft* draft_;  // null: nothing is recorded
 };
 
 /// "'abc'", followed by the nearest of `names` if there is one: " (nearest: 'abd')".

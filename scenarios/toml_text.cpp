@@ -5,14 +5,10 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "scenarios/toml_literal.hpp"
 
 namespace mpm {
 namespace {
-
-/// The parser builds, and destroys by recursion, one table a part of a dotted key, without a limit of its own
-/// up to version 3.3: some 50 000 dots overflow the stack. The limit here, together with the parser's own one
-/// on nested values (256), keeps a factor of several away from that.
-constexpr std::ptrdiff_t kMaxDotsOnLine = 64;
 
 constexpr std::size_t kQuotedLength = 40;
 
@@ -33,15 +29,6 @@ void refuse_deep_keys(std::string_view text, const std::string& file_name) {
     }
     begin = end + 1;
   }
-}
-
-/// Without a fraction a float would look like a whole number.
-std::string float_text(double value) {
-  std::string text = fmt::format("{}", value);
-  if (text.find_first_not_of("-0123456789") == std::string::npos) {
-    text += ".0";
-  }
-  return text;
 }
 
 char printable(char c) {
@@ -76,7 +63,7 @@ std::string describe(const toml::node& node) {
     return fmt::format("{}", whole->get());
   }
   if (const auto* number = node.as_floating_point()) {
-    return float_text(number->get());
+    return toml_literal(number->get());
   }
   if (const auto* flag = node.as_boolean()) {
     return flag->get() ? "true" : "false";

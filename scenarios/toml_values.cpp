@@ -15,6 +15,12 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kLongestName = 64;
 
+template <class Value>
+Value recorded(const TomlTable& table, std::string_view key, Value value) {
+  table.record(key, value);
+  return value;
+}
+
 /// NaN, which no rule takes, for what is no number.
 double number_in(const toml::node& node) {
   return node.value<double>().value_or(std::numeric_limits<double>::quiet_NaN());
@@ -70,11 +76,11 @@ double read_number(const TomlTable& table, std::string_view key, const NumberRul
   if (!node.is_number() || !rule.contains(value)) {
     table.refuse(key, describe(node), rule.text());
   }
-  return value;
+  return recorded(table, key, value);
 }
 
 double read_number_or(const TomlTable& table, std::string_view key, const NumberRule& rule, double fallback) {
-  return table.has(key) ? read_number(table, key, rule) : fallback;
+  return table.has(key) ? read_number(table, key, rule) : recorded(table, key, fallback);
 }
 
 std::int64_t read_whole(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high) {
@@ -84,24 +90,24 @@ std::int64_t read_whole(const TomlTable& table, std::string_view key, std::int64
   if (value == nullptr || value->get() < low || value->get() > high) {
     table.refuse(key, describe(node), allowed);
   }
-  return value->get();
+  return recorded(table, key, value->get());
 }
 
 std::int64_t read_whole_or(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high,
                            std::int64_t fallback) {
-  return table.has(key) ? read_whole(table, key, low, high) : fallback;
+  return table.has(key) ? read_whole(table, key, low, high) : recorded(table, key, fallback);
 }
 
 bool read_flag_or(const TomlTable& table, std::string_view key, bool fallback) {
   const toml::node* node = table.find(key);
   if (node == nullptr) {
-    return fallback;
+    return recorded(table, key, fallback);
   }
   const toml::value<bool>* flag = node->as_boolean();
   if (flag == nullptr) {
     table.refuse(key, describe(*node), "true or false");
   }
-  return flag->get();
+  return recorded(table, key, flag->get());
 }
 
 std::string read_text(const TomlTable& table, std::string_view key) {
@@ -111,11 +117,13 @@ std::string read_text(const TomlTable& table, std::string_view key) {
   if (text == nullptr || text->get().empty()) {
     table.refuse(key, describe(node), allowed);
   }
-  return text->get();
+  return recorded(table, key, text->get());
 }
 
 std::string read_text_or(const TomlTable& table, std::string_view key, const std::string& fallback) {
-  return table.has(key) ? read_text(table, key) : fallback;
+  if (table.has(key))
+    return read_text(table, key);
+  return fallback.empty() ? fallback : recorded(table, key, fallback);
 }
 
 std::string read_name(const TomlTable& table, std::string_view key) {
@@ -125,12 +133,14 @@ std::string read_name(const TomlTable& table, std::string_view key) {
   if (text == nullptr || !is_name(text->get())) {
     table.refuse(key, describe(node), allowed);
   }
-  return text->get();
+  return recorded(table, key, text->get());
 }
 
 std::size_t read_one_of(const TomlTable& table, std::string_view key, const std::vector<std::string>& names) {
   const toml::node& node = table.require(key, fmt::format("{}", fmt::join(names, ", ")));
-  return position_of(table, key, node, names);
+  const std::size_t position = position_of(table, key, node, names);
+  table.record(key, names[position]);
+  return position;
 }
 
 std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view key,
@@ -142,14 +152,40 @@ std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view k
     table.refuse(key, describe(node), allowed);
   }
   std::vector<std::size_t> positions;
+  std::vector<std::string> chosen;
   for (const toml::node& element : *list) {
     const std::size_t position = position_of(table, key, element, names);
     if (std::find(positions.begin(), positions.end(), position) != positions.end()) {
       table.refuse(key, fmt::format("{} twice", in_quotes(names[position])), "every name once");
     }
     positions.push_back(position);
+    chosen.push_back(names[position]);
   }
+  table.record(key, chosen);
   return positions;
+}
+
+std::vector<std::string> read_texts_or(const TomlTable& table, std::string_view key,
+                                       const std::string& allowed, const std::vector<std::string>& fallback) {
+  table.record(key, fallback);
+  if (!table.has(key))
+    return fallback;
+  const std::string list_of = fmt::format("a list of one or more {}, each once", allowed);
+  const toml::node& node = table.require(key, list_of);
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->empty())
+    table.refuse(key, describe(node), list_of);
+  std::vector<std::string> texts;
+  for (const toml::node& element : *list) {
+    const toml::value<std::string>* text = element.as_string();
+    if (text == nullptr || text->get().empty())
+      table.refuse(key, describe(element), list_of);
+    if (std::find(texts.begin(), texts.end(), text->get()) != texts.end())
+      table.refuse(key, fmt::format("{} twice", in_quotes(text->get())), list_of);
+    texts.push_back(text->get());
+  }
+  table.record(key, texts);
+  return texts;
 }
 
 Eigen::VectorXd read_numbers(const TomlTable& table, std::string_view key, const NumberRule& rule,
@@ -168,7 +204,7 @@ Eigen::VectorXd read_numbers(const TomlTable& table, std::string_view key, const
       table.refuse(key, describe(element) + " in the list", allowed);
     }
   }
-  return numbers;
+  return recorded(table, key, numbers);
 }
 
 NumberPair read_pair(const TomlTable& table, std::string_view key, const std::string& allowed) {
@@ -176,13 +212,13 @@ NumberPair read_pair(const TomlTable& table, std::string_view key, const std::st
   if (!std::isfinite(pair.first) || !std::isfinite(pair.second)) {
     table.refuse(key, describe_pair(pair.first, pair.second), allowed);
   }
-  return pair;
+  return recorded(table, key, pair);
 }
 
 NumberPair read_band_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
                         const NumberPair& fallback) {
   if (!table.has(key)) {
-    return fallback;
+    return recorded(table, key, fallback);
   }
   const std::string allowed = fmt::format("[low, high] with low < high, each {}", rule.text());
   const NumberPair band = read_pair(table, key, allowed);
@@ -199,7 +235,7 @@ NumberPair read_limits(const TomlTable& table, std::string_view key) {
   if (!(low <= high) || low == kInfinity || high == -kInfinity) {
     table.refuse(key, describe_pair(low, high), allowed);
   }
-  return limits;
+  return recorded(table, key, limits);
 }
 
 }  // namespace mpm

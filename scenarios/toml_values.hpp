@@ -13,7 +13,8 @@
 #include "scenarios/toml_table.hpp"
 
 // Typed reading of the values of a TOML table. All functions refuse a value they cannot take as TomlTable
-// does. Those ending in `_or` return their last argument for a missing key; the others refuse it.
+// does. Those ending in `_or` return their last argument for a missing key; the others refuse it. What they
+// return is recorded (TomlTable::record()).
 
 namespace mpm {
 
@@ -34,6 +35,7 @@ bool read_flag_or(const TomlTable& table, std::string_view key, bool fallback);
 
 /// A text that is not empty.
 std::string read_text(const TomlTable& table, std::string_view key);
+/// An empty fallback stands for "none" and is not recorded.
 std::string read_text_or(const TomlTable& table, std::string_view key, const std::string& fallback);
 
 /// A text that can be a bare TOML key and part of a file name: 1 to 64 letters, digits, '_' and '-'.
@@ -46,12 +48,14 @@ std::size_t read_one_of(const TomlTable& table, std::string_view key, const std:
 template <class Value>
 Value read_choice_or(const TomlTable& table, std::string_view key,
                      const std::vector<std::pair<std::string, Value>>& choices, Value fallback) {
-  if (!table.has(key)) {
-    return fallback;
-  }
   std::vector<std::string> names;
   for (const auto& [name, value] : choices) {
     names.push_back(name);
+    if (value == fallback)
+      table.record(key, name);
+  }
+  if (!table.has(key)) {
+    return fallback;
   }
   return choices[read_one_of(table, key, names)].second;
 }
@@ -59,6 +63,10 @@ Value read_choice_or(const TomlTable& table, std::string_view key,
 /// A list of one or more of `names`, none twice; returns their positions.
 std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view key,
                                       const std::vector<std::string>& names);
+
+/// A list of one or more texts, none empty and none twice; `allowed` says what they are.
+std::vector<std::string> read_texts_or(const TomlTable& table, std::string_view key,
+                                       const std::string& allowed, const std::vector<std::string>& fallback);
 
 /// A list of `rule.text()`, from one to `longest` of them.
 Eigen::VectorXd read_numbers(const TomlTable& table, std::string_view key, const NumberRule& rule,

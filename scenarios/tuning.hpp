@@ -64,6 +64,8 @@ struct TuningRanges {
 
   /// Relative frequencies with 0 for the parameters that the controller has not.
   std::array<double, 4> weights_for(const MpcOptions& controller) const;
+
+  bool operator==(const TuningRanges&) const = default;
 };
 
 }  // namespace mpm

@@ -91,7 +91,6 @@ void ActiveSetSolver::reset_newton() {
 
 void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
   certificate_.setZero();
-  certified_violation_ = 0.0;
   result.iterations = 0;
   bind(data);
   // Few limits are active where slacks are shared, and those nearly parallel: the dual method's case.
@@ -240,12 +239,10 @@ bool ActiveSetSolver::proves_infeasible(const QpData& data, const Eigen::VectorX
   for (Eigen::Index i = 0; i < certificate_.size(); ++i)
     if (std::isinf(y(i) > 0.0 ? data.hard_upper(i) : data.hard_lower(i)))
       certificate_(i) = 0.0;
-  const double violation = proven_violation(structure(), data, certificate_, scratch_);
-  if (!(violation > kInfeasible)) {
+  if (!(proven_violation(structure(), data, certificate_, scratch_) > kInfeasible)) {
     certificate_.setZero();
     return false;
   }
-  certified_violation_ = violation;
   certificate_ /= certificate_.lpNorm<1>();
   return true;
 }

@@ -48,12 +48,9 @@ class ActiveSetSolver final : public QpSolver {
   /// Throws InputError when the structure or an option is not valid.
   ActiveSetSolver(std::shared_ptr<const QpStructure> structure, const ActiveSetOptions& options);
 
-  /// After an answer `infeasible`: y (m) with sum |y_i| = 1 such that every x in the box violates some hard
-  /// limit by at least `certified_violation()` > 0, because
-  ///     min over the box of (A'y)'x  -  sum_{y_i > 0} y_i hard_upper_i  -  sum_{y_i < 0} y_i hard_lower_i
-  /// is that large (Farkas). Zero otherwise.
+  /// After an answer `infeasible`: y (m) with sum |y_i| = 1 that proves a violation of the hard limits, see
+  /// `proven_violation`. Zero otherwise.
   const Eigen::VectorXd& certificate() const { return certificate_; }
-  double certified_violation() const { return certified_violation_; }
 
  private:
   void do_solve(const QpData& data, QpResult& result) override;
@@ -81,7 +78,6 @@ class ActiveSetSolver final : public QpSolver {
   Eigen::VectorXd change_;  ///< of the multipliers of the hard rows in the last round
   Eigen::VectorXd scratch_;
   KktWorkspace workspace_;
-  double certified_violation_ = 0.0;
   double stiffening_ = 1.0;  ///< of the springs with multipliers, in this solve
 };
 

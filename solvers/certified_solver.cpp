@@ -28,7 +28,7 @@ void CertifiedSolver::do_solve(const QpData& data, QpResult& result) {
   const int iterations = result.iterations;
   result = reference_->solve(data);
   result.iterations += iterations;
-  result.from_reference = true;
+  result.from_ipopt = true;
 }
 
 }  // namespace mpm

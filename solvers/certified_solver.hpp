@@ -18,7 +18,7 @@ inline constexpr double kCertifiedKktResidual = 1e-9;
 bool is_certified(const QpResult& result);
 
 /// The active-set method, and Ipopt for the problems to which it gives no certified answer; these are marked
-/// `from_reference`. It is Ipopt that makes the rule of IpoptSolver hold here too: one thread of a process
+/// `from_ipopt`. It is Ipopt that makes the rule of IpoptSolver hold here too: one thread of a process
 /// only. ActiveSetSolver alone gives the same answers, bit for bit, up to the first that is not certified.
 class CertifiedSolver final : public QpSolver {
  public:

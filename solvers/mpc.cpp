@@ -142,7 +142,7 @@ bool Mpc::solve_targets() {
   const QpResult& target = targets_->solve(y_at_zero_);
   move_.status = control_status(target.status);
   move_.iterations += target.iterations;
-  move_.fallbacks += target.from_reference ? 1 : 0;
+  move_.fallbacks += target.from_ipopt ? 1 : 0;
   if (move_.status != ControlStatus::ok)
     return false;
   move_.kkt_residual = target.kkt_residual;
@@ -156,7 +156,7 @@ void Mpc::solve_moves() {
   const QpResult& plan = solver_->solve(qp_.update({free_, input_.head(nu_), move_.u_target, setpoint_}));
   move_.status = control_status(plan.status);
   move_.iterations += plan.iterations;
-  move_.fallbacks += plan.from_reference ? 1 : 0;
+  move_.fallbacks += plan.from_ipopt ? 1 : 0;
   if (move_.status != ControlStatus::ok)
     return;
   move_.kkt_residual = std::max(move_.kkt_residual, plan.kkt_residual);

@@ -64,9 +64,6 @@ class Mpc {
   const ControlMove& step(const Eigen::Ref<const Eigen::VectorXd>& y,
                           const Eigen::Ref<const Eigen::VectorXd>& d);
 
-  /// Output of the nominal model at the sample to come (y_sim of 6.4).
-  const Eigen::VectorXd& model_output() const { return model_.output(); }
-
   /// The problems of the last step; there is no target problem without targets. When the targets have no
   /// answer, the moves are those of an earlier step.
   std::optional<SolvedQp> target_problem() const;

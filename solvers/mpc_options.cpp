@@ -3,10 +3,12 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/same_members.hpp"
 
 namespace mpm {
 namespace {
@@ -19,6 +21,20 @@ void require_weights(const char* name, const Eigen::VectorXd& weights, Eigen::In
   for (Eigen::Index i = 0; i < size; ++i)
     if (!std::isfinite(weights(i)) || weights(i) < 0)
       throw InputError(fmt::format("{}[{}]", name, i), fmt::format("{}", weights(i)), "a number >= 0");
+}
+
+auto members(const Limits& limits) {
+  const auto& [lower, upper] = limits;
+  return std::tie(lower, upper);
+}
+
+auto members(const MpcOptions& options) {
+  const auto& [sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
+               setpoint_weight, slack_weight, weight_convention, slack_form, mv_hard, cv_hard, cv_soft,
+               mv_cost, target_violation_cost] = options;
+  return std::tie(sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
+                  setpoint_weight, slack_weight, weight_convention, slack_form, mv_hard, cv_hard, cv_soft,
+                  mv_cost, target_violation_cost);
 }
 
 }  // namespace
@@ -82,6 +98,14 @@ void MpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) const {
         fmt::format("{} finite ones", mv_count));
   if (!(std::isfinite(target_violation_cost) && target_violation_cost > 0))
     throw InputError("target_violation_cost", fmt::format("{}", target_violation_cost), "a number > 0");
+}
+
+bool operator==(const Limits& a, const Limits& b) {
+  return same_members(members(a), members(b));
+}
+
+bool operator==(const MpcOptions& a, const MpcOptions& b) {
+  return same_members(members(a), members(b));
 }
 
 }  // namespace mpm

@@ -28,6 +28,8 @@ struct Limits {
   static Limits none(Eigen::Index size);
   /// Throws InputError that names `what` when the size is not `size`, a limit is NaN or limits cross.
   void validate(std::string_view what, Eigen::Index size) const;
+
+  friend bool operator==(const Limits& a, const Limits& b);
 };
 
 /// Tuning of a model predictive controller: which terms its objective has and which limits it keeps.
@@ -81,6 +83,8 @@ struct MpcOptions {
 
   /// Throws InputError for sizes, signs or horizons that make no controller.
   void validate(Eigen::Index cv_count, Eigen::Index mv_count) const;
+
+  friend bool operator==(const MpcOptions& a, const MpcOptions& b);
 };
 
 }  // namespace mpm

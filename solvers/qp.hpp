@@ -67,15 +67,15 @@ std::string_view to_string(QpStatus status);
 ///     Hx + g + bound_dual + A'(hard_dual + soft_dual) = 0.
 struct QpResult {
   QpStatus status = QpStatus::numerical_error;
-  Eigen::VectorXd x;            ///< n
-  Eigen::VectorXd slack;        ///< q
-  Eigen::VectorXd bound_dual;   ///< n
-  Eigen::VectorXd hard_dual;    ///< m
-  Eigen::VectorXd soft_dual;    ///< m
-  double objective = 0.0;       ///< 1/2 x'Hx + g'x + slack terms
-  double kkt_residual = 0.0;    ///< see kkt_residual(); infinite unless status is `solved`
-  int iterations = 0;           ///< of the back end, all rounds together
-  bool from_reference = false;  ///< the fast method gave no certified answer; this one is the reference's
+  Eigen::VectorXd x;           ///< n
+  Eigen::VectorXd slack;       ///< q
+  Eigen::VectorXd bound_dual;  ///< n
+  Eigen::VectorXd hard_dual;   ///< m
+  Eigen::VectorXd soft_dual;   ///< m
+  double objective = 0.0;      ///< 1/2 x'Hx + g'x + slack terms
+  double kkt_residual = 0.0;   ///< see kkt_residual(); infinite unless status is `solved`
+  int iterations = 0;          ///< of the back end, all rounds together
+  bool from_ipopt = false;     ///< the fast method gave no certified answer; this one is the reference's
 
   /// All zero, of the shape of `structure`.
   static QpResult zero(const QpStructure& structure);

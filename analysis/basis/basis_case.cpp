@@ -46,7 +46,7 @@ void check_health(const Study& study, BasisCase& basis) {
 void require_active(const Study& study, const NominalSensitivity& sensitivity) {
   for (const Eigen::Index cv : study.s0_perturbation.cvs)
     if (std::none_of(sensitivity.active.begin(), sensitivity.active.end(),
-                     [cv](const ActiveReference& reference) { return reference.cv == cv; }))
+                     [cv](const ActiveConstraint& reference) { return reference.cv == cv; }))
       throw InputError("s0_perturbation.cvs",
                        fmt::format("'{}', which is at no setpoint and no soft limit",
                                    study.plant.cvs[static_cast<std::size_t>(cv)].name),
@@ -79,9 +79,7 @@ BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, con
     basis.nominal =
         NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);
     DiagnosisChain chain(study);
-    basis.diagnosis = chain.diagnose(basis.trajectory.y, basis.nominal, basis.trajectory.y);
-    if (study.names_scenarios())
-      basis.acf = chain.compare_each(basis.trajectory.y, basis.nominal);
+    basis.diagnosis = chain.diagnose(basis.trajectory.y, basis.nominal);
   }
   check_health(study, basis);
   return basis;

@@ -26,8 +26,6 @@ struct BasisCase {
   Trajectory trajectory;
   NominalOutputs nominal;
   Diagnosis diagnosis;
-  /// One a CV; empty unless the study names scenarios and the loop ran to its end.
-  std::vector<AcfComparison> acf = {};
   bool healthy = false;
   std::string explanation;  ///< one sentence for people, also when healthy
 };

@@ -1,9 +1,11 @@
 #include "analysis/experiment/experiment.hpp"
 
+#include <algorithm>
 #include <utility>
 
-#include "analysis/basis/own_basis.hpp"
-#include "analysis/experiment/scenario_verdict.hpp"
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/methods/chain_numbers.hpp"
+#include "analysis/sensitivity/nominal_output.hpp"
 
 namespace mpm {
 namespace {
@@ -12,6 +14,19 @@ ExperimentStatus experiment_status(ControlStatus status) {
   return status == ControlStatus::ok           ? ExperimentStatus::ok
          : status == ControlStatus::infeasible ? ExperimentStatus::infeasible
                                                : ExperimentStatus::failed;
+}
+
+/// Is the experiment complete only with the loops that have one of its two faults alone?
+bool has_loops_alone(const ExperimentDraw& draw) {
+  return draw.kind == ExperimentKind::mpm_ud && draw.true_cv() >= 0;
+}
+
+/// The answer of the chain; null when it was not asked or gave no verdict.
+AssessmentRecord* chain_verdict(std::vector<AssessmentRecord>& assessments) {
+  const auto chain = std::find_if(assessments.begin(), assessments.end(), [](const auto& said) {
+    return said.form->method().name == kChainMethod && said.answered();
+  });
+  return chain == assessments.end() ? nullptr : &*chain;
 }
 
 }  // namespace
@@ -28,124 +43,130 @@ std::string_view to_string(ExperimentStatus status) {
   return "unknown";
 }
 
-std::string_view to_string(ExperimentKind kind) {
-  switch (kind) {
-    case ExperimentKind::none:
-      return "none";
-    case ExperimentKind::mpm:
-      return "mpm";
-    case ExperimentKind::ud:
-      return "ud";
-    case ExperimentKind::mpm_ud:
-      return "mpm_ud";
-    case ExperimentKind::tuning:
-      return "tuning";
-  }
-  return "unknown";
+const AssessmentRecord* ExperimentRecord::by(std::string_view method) const {
+  const auto found = std::find_if(assessments.begin(), assessments.end(), [method](const auto& assessment) {
+    return assessment.form->method().name == method;
+  });
+  return found == assessments.end() ? nullptr : &*found;
 }
 
-std::string_view to_string(MismatchParameter parameter) {
-  switch (parameter) {
-    case MismatchParameter::gain:
-      return "gain";
-    case MismatchParameter::time_constant:
-      return "time_constant";
-    case MismatchParameter::dead_time:
-      return "dead_time";
-    case MismatchParameter::channel:
-      return "channel";
-  }
-  return "unknown";
+Diagnosis ExperimentRecord::chain() const {
+  const AssessmentRecord* const said = by(kChainMethod);
+  return said == nullptr ? Diagnosis{} : diagnosis_of(*said);
 }
 
-bool ExperimentRecord::wrong() const {
-  if (status != ExperimentStatus::ok || (!draw.named && !diagnosis.impactful))
-    return false;
-  if (draw.named)
-    return !scenario_verdict(*this).right();
-  if (is_faultless(draw.kind))
-    return true;
-  const bool single_fault = draw.kind == ExperimentKind::mpm || draw.kind == ExperimentKind::ud;
-  return diagnosis.predicted_cv != draw.true_cv() ||
-         (single_fault && diagnosis.predicted_source != draw.kind);
-}
-
-ExperimentRunner::ExperimentRunner(const Study& study, const BasisCase& basis, QpSolverFactory factory)
+ExperimentRunner::ExperimentRunner(const Study& study, const BasisCase& basis,
+                                   const std::vector<std::string>& methods, QpSolverFactory factory)
     : study_(study),
       basis_(basis),
       factory_(std::move(factory)),
-      estimator_(study, basis.point, basis.sensitivity, factory_),
-      chain_(study),
+      panel_(study, basis, methods, factory_),
       perturbation_(study, basis.sensitivity) {}
 
-ExperimentRunner::DiagnosedLoop ExperimentRunner::run_loop(const ExperimentDraw& draw,
-                                                           const StepObserver& observer) {
-  DiagnosedLoop result;
-  result.loop.trajectory = simulate_experiment(study_, draw, factory_, observer);
-  const Trajectory& loop = result.loop.trajectory;
-  result.status = experiment_status(loop.status);
-  result.message = loop.message;
-  if (result.status != ExperimentStatus::ok) {
-    result.loop.y_sim = estimator_.simulated(loop);
-    return result;
+ExperimentRunner::FinishedLoop ExperimentRunner::simulate(const ExperimentDraw& draw,
+                                                          const StepObserver& observer) {
+  return finished(draw, simulate_experiment(study_, draw, factory_, observer));
+}
+
+ExperimentRunner::FinishedLoop ExperimentRunner::finished(const ExperimentDraw& draw, Trajectory trajectory) {
+  FinishedLoop loop{experiment_status(trajectory.status), trajectory.message, std::move(trajectory), {}, {}};
+  if (loop.status == ExperimentStatus::ok)
+    loop.own = tuned_basis(study_, draw, factory_);
+  if (loop.own && loop.own->basis.trajectory.status != ControlStatus::ok) {
+    loop.status = experiment_status(loop.own->basis.trajectory.status);
+    if (loop.status == ExperimentStatus::failed)
+      loop.message = "no S0 of its own: " + loop.own->basis.explanation;
   }
-  const std::optional<OwnBasis> own = own_basis(study_, draw, factory_);
-  std::optional<NominalEstimator> own_estimator;
-  if (own) {
-    result.own_basis = own->solver;
-    result.status = experiment_status(own->basis.trajectory.status);
-    if (result.status != ExperimentStatus::ok) {
-      if (result.status == ExperimentStatus::failed)
-        result.message = "no S0 of its own: " + own->basis.explanation;
-      result.loop.y_sim = estimator_.simulated(loop);
-      return result;
-    }
-    own_estimator.emplace(own->study, own->basis.point, own->basis.sensitivity, factory_);
+  if (loop.status != ExperimentStatus::ok)
+    loop.assessed.y_sim = simulated_output(study_.plant.G, study_.controller.sample_time, basis_.point.u,
+                                           loop.trajectory.u, loop.trajectory.d);
+  else if (loop.own)
+    loop.assessed = assessed_loop(loop.own->study, loop.own->basis.point, loop.trajectory);
+  else
+    loop.assessed = assessed_loop(study_, basis_.point, loop.trajectory);
+  return loop;
+}
+
+/// Runs the loops with one of two faults alone, without which the experiment is not complete.
+void ExperimentRunner::assess_alone(ExperimentRecord& record, const StepObserver& observer) {
+  const FinishedLoop mpm_alone = simulate(record.draw.mismatch_alone(), observer);
+  const FinishedLoop ud_alone = simulate(record.draw.disturbance_alone(), observer);
+  for (const FinishedLoop* part : {&mpm_alone, &ud_alone}) {
+    record.solver.add(part->trajectory.solver);
+    record.status = std::max(record.status, part->status);
+    if (record.message.empty())
+      record.message = part->message;
   }
-  const NominalOutputs nominal = (own_estimator ? *own_estimator : estimator_).estimate(loop);
-  result.loop.y_sim = nominal.y_sim;
-  result.diagnosis = chain_.diagnose(loop.y, nominal, basis_.trajectory.y);
-  if (draw.named)
-    result.diagnosis.cvs = chain_.diagnose_each(loop.y, nominal, result.diagnosis.ivar_diag);
-  return result;
+  if (AssessmentRecord* const chain = chain_verdict(record.assessments))
+    add_dominance(*chain, record.draw.true_cv(), mpm_alone, ud_alone);
+}
+
+void ExperimentRunner::add_dominance(AssessmentRecord& chain, Eigen::Index true_cv,
+                                     const FinishedLoop& mpm_alone, const FinishedLoop& ud_alone) {
+  if (mpm_alone.status != ExperimentStatus::ok || ud_alone.status != ExperimentStatus::ok)
+    return;
+  const auto ivar_diag = [&](const FinishedLoop& part) {
+    return panel_.assess_by(kChainMethod, part.assessed)->number("ivar_diag", true_cv);
+  };
+  const double mpm = ivar_diag(mpm_alone);
+  const double ud = ivar_diag(ud_alone);
+  chain.set_number("ivar_diag_mpm_alone", mpm);
+  chain.set_number("ivar_diag_ud_alone", ud);
+  chain.set_number("dominance_mpm", mpm / (mpm + ud));
 }
 
 ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, const StepObserver& observer) {
   ExperimentRecord record;
   record.draw = draw_experiment(study_, index);
-
-  DiagnosedLoop main = run_loop(record.draw, observer);
+  FinishedLoop main = simulate(record.draw, observer);
   record.status = main.status;
   record.message = main.message;
-  record.solver = main.loop.trajectory.solver;
-  record.solver.add(main.own_basis);
+  record.solver = main.trajectory.solver;
+  if (main.own)
+    record.solver.add(main.own->solver);
+  if (record.status == ExperimentStatus::ok)
+    record.assessments = panel_.assess(main.assessed, main.own ? &*main.own : nullptr);
   const Eigen::Index true_cv = record.draw.true_cv();
-  if (record.draw.kind == ExperimentKind::mpm_ud && true_cv >= 0 && record.status == ExperimentStatus::ok) {
-    const DiagnosedLoop mpm_alone = run_loop(record.draw.mismatch_alone(), observer);
-    const DiagnosedLoop ud_alone = run_loop(record.draw.disturbance_alone(), observer);
-    for (const DiagnosedLoop* part : {&mpm_alone, &ud_alone}) {
-      record.solver.add(part->loop.trajectory.solver);
-      record.status = std::max(record.status, part->status);
-      if (record.message.empty())
-        record.message = part->message;
-    }
-    if (record.status == ExperimentStatus::ok) {
-      record.ivar_diag_mpm_alone = mpm_alone.diagnosis.ivar_diag(true_cv);
-      record.ivar_diag_ud_alone = ud_alone.diagnosis.ivar_diag(true_cv);
-      record.dominance_mpm =
-          record.ivar_diag_mpm_alone / (record.ivar_diag_mpm_alone + record.ivar_diag_ud_alone);
-    }
-  }
+  if (has_loops_alone(record.draw) && record.status == ExperimentStatus::ok)
+    assess_alone(record, observer);
   if (record.status == ExperimentStatus::ok) {
-    record.diagnosis = std::move(main.diagnosis);
+    record.ivar_basis = basis_variance_indices(study_, main.trajectory.y, basis_.trajectory.y);
     if (true_cv >= 0)
-      record.perturbed =
-          perturbation_.ivar_diag(true_cv, Eigen::RowVectorXd(main.loop.trajectory.y.row(true_cv)),
-                                  Eigen::RowVectorXd(main.loop.y_sim.row(true_cv)));
+      record.perturbed = perturbation_.ivar_diag(true_cv, Eigen::RowVectorXd(main.trajectory.y.row(true_cv)),
+                                                 Eigen::RowVectorXd(main.assessed.y_sim.row(true_cv)));
+  } else {
+    record.assessments = panel_.unassessed();
   }
-  if (store == StorePolicy::all || (store == StorePolicy::flagged && record.wrong()))
-    record.loop = std::move(main.loop);
+  if (store == StorePolicy::all || (store == StorePolicy::flagged && !record.assessments.empty() &&
+                                    judge(study_, record, record.assessments.front()).wrong()))
+    record.loop = {std::move(main.trajectory), std::move(main.assessed.y_sim)};
   return record;
+}
+
+std::vector<AssessmentRecord> ExperimentRunner::assess(const ExperimentRecord& record) {
+  const FinishedLoop loop =
+      finished(record.draw,
+               record.loop ? record.loop->trajectory : simulate_experiment(study_, record.draw, factory_));
+  if (loop.status == ExperimentStatus::ok) {
+    std::vector<AssessmentRecord> assessments = panel_.assess(loop.assessed, loop.own ? &*loop.own : nullptr);
+    if (AssessmentRecord* const chain = chain_verdict(assessments); chain && has_loops_alone(record.draw))
+      add_dominance(*chain, record.draw.true_cv(), simulate(record.draw.mismatch_alone(), {}),
+                    simulate(record.draw.disturbance_alone(), {}));
+    return assessments;
+  }
+  std::vector<AssessmentRecord> failed = panel_.unassessed();
+  for (AssessmentRecord& assessment : failed) {
+    assessment.status = AssessmentStatus::failed;
+    assessment.reason = loop.own ? "its controller has no S0 of its own: " + loop.own->basis.explanation
+                                 : "the loop does not run to its end";
+  }
+  return failed;
+}
+
+bool ExperimentRunner::runs_loops(const ExperimentRecord& record) const {
+  const bool has_chain = std::any_of(forms().begin(), forms().end(),
+                                     [](const auto& form) { return form->method().name == kChainMethod; });
+  return !record.loop || has_tuned_basis(study_, record.draw) || (has_chain && has_loops_alone(record.draw));
 }
 
 }  // namespace mpm

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/tuned_basis.hpp"
 #include "analysis/indicators/diagnosis.hpp"
-#include "analysis/sensitivity/nominal_estimator.hpp"
+#include "analysis/methods/method_panel.hpp"
 #include "analysis/sensitivity/s0_perturbation.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/draw.hpp"
@@ -23,12 +26,11 @@ enum class ExperimentStatus : std::int8_t {
                    ///< begin at, or the process that ran the experiment died
 };
 
+/// "ok", "infeasible", "failed"
 std::string_view to_string(ExperimentStatus status);
-std::string_view to_string(ExperimentKind kind);
-std::string_view to_string(MismatchParameter parameter);
 
 /// Whose closed-loop data an archive keeps.
-enum class StorePolicy { none, flagged, all };  // flagged: the experiments with a wrong verdict
+enum class StorePolicy { none, flagged, all };  // flagged: those with a wrong verdict of the first method
 
 /// The data of one closed loop as they are kept in an archive.
 struct LoopRecord {
@@ -36,60 +38,74 @@ struct LoopRecord {
   Eigen::MatrixXd y_sim;  ///< ny x N
 };
 
-/// Everything that is known of one experiment.
+/// Everything that is known of one experiment: what was drawn, how it ended, the truth, and what each method
+/// of the study says of it.
 ///
 /// In an experiment with mismatch and disturbance on one CV the loop is run three times: with both, with the
-/// mismatch alone and with the disturbance alone. The diagnosis is that of the loop with both; the other two
-/// give the dominance of the mismatch on the affected CV (6.23),
-///     dominance_MPM = Ivar_diag^MPM / (Ivar_diag^MPM + Ivar_diag^UD).
+/// mismatch alone and with the disturbance alone. The methods see the loop with both; of the other two the
+/// chain of the thesis says how much the mismatch dominates (FaultsAlone).
 ///
-/// In an experiment with a changed tuning the diagnosis takes the S0 of own_basis(), and an experiment whose
+/// In an experiment with a changed tuning the methods know the S0 of tuned_basis(), and an experiment whose
 /// controller does not run on its own model is infeasible.
 struct ExperimentRecord {
   ExperimentDraw draw;
   ExperimentStatus status = ExperimentStatus::failed;
-  std::string message;  ///< why it failed; empty otherwise
-  Diagnosis diagnosis;  ///< empty vectors unless the status is ok
-  double ivar_diag_mpm_alone = std::numeric_limits<double>::quiet_NaN();
-  double ivar_diag_ud_alone = std::numeric_limits<double>::quiet_NaN();
-  double dominance_mpm = std::numeric_limits<double>::quiet_NaN();
+  std::string message;                        ///< why it failed; empty otherwise
+  Eigen::VectorXd ivar_basis;                 ///< ny, basis_variance_indices(); empty unless the status is ok
+  std::vector<AssessmentRecord> assessments;  ///< one a method of the study, in their order
   PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for
   SolverStatistics solver;  ///< of all loops of the experiment
-  std::optional<LoopRecord> loop;  ///< the loop that was diagnosed, when it was asked for
+  std::optional<LoopRecord> loop;  ///< the loop that was assessed, when it was asked for
 
-  /// The verdict is wrong: the experiment is impactful and the CV, or the source of a single fault, is not
-  /// the true one, or there is no fault (healthy, or a bad tuning). Of a named scenario: a CV that is not
-  /// affected is flagged, or an affected one is not, or has the wrong source (scenario_verdict()).
-  bool wrong() const;
+  /// What the method of this name says; null when it is not one of the study.
+  const AssessmentRecord* by(std::string_view method) const;
+  /// What the chain of the thesis says; without vectors and without impact when it says nothing.
+  Diagnosis chain() const;
 };
 
 /// Runs experiments of one study; keeps workspaces between them. One a thread; results depend on the index
 /// only.
 class ExperimentRunner {
  public:
-  /// `study` and `basis` must outlive the runner; the basis case must have status ok.
-  ExperimentRunner(const Study& study, const BasisCase& basis, QpSolverFactory factory);
+  /// `study` and `basis` must outlive the runner; the basis case must have status ok. Throws InputError for
+  /// an unknown method.
+  ExperimentRunner(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,
+                   QpSolverFactory factory);
 
   /// Experiment `index`, with its loop record when the policy asks for it. `observer` sees each step of each
   /// of its loops.
   ExperimentRecord run(std::int64_t index, StorePolicy store, const StepObserver& observer = {});
 
+  /// What the methods say of an experiment with status ok that was run before: of its loop where it was kept,
+  /// otherwise of the loop run again.
+  std::vector<AssessmentRecord> assess(const ExperimentRecord& record);
+  /// Does assess() run loops of this experiment: one that was not kept, those that give another S0, or for
+  /// the chain those with one of two faults alone?
+  bool runs_loops(const ExperimentRecord& record) const;
+
+  const std::vector<std::shared_ptr<const AssessmentForm>>& forms() const { return panel_.forms(); }
+
  private:
-  struct DiagnosedLoop {
+  /// One closed loop of an experiment, ready to be assessed.
+  struct FinishedLoop {
     ExperimentStatus status;
-    Diagnosis diagnosis;
-    LoopRecord loop;
-    std::string message;         ///< why it failed; empty otherwise
-    SolverStatistics own_basis;  ///< of the loops that gave an S0 of its own
+    std::string message;  ///< why it failed; empty otherwise
+    Trajectory trajectory;
+    AssessedLoop assessed;          ///< only y_sim when the status is not ok
+    std::optional<TunedBasis> own;  ///< of a changed tuning
   };
 
-  DiagnosedLoop run_loop(const ExperimentDraw& draw, const StepObserver& observer);
+  FinishedLoop simulate(const ExperimentDraw& draw, const StepObserver& observer);
+  FinishedLoop finished(const ExperimentDraw& draw, Trajectory trajectory);
+  void assess_alone(ExperimentRecord& record, const StepObserver& observer);
+  /// Has the chain say how much the mismatch dominates, from the loops with one fault alone.
+  void add_dominance(AssessmentRecord& chain, Eigen::Index true_cv, const FinishedLoop& mpm_alone,
+                     const FinishedLoop& ud_alone);
 
   const Study& study_;
   const BasisCase& basis_;
   QpSolverFactory factory_;
-  NominalEstimator estimator_;
-  DiagnosisChain chain_;
+  MethodPanel panel_;
   S0Perturbation perturbation_;
 };
 

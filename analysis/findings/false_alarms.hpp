@@ -6,31 +6,38 @@
 #include <string>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/finding.hpp"
 #include "analysis/statistics/interval.hpp"
 
 namespace mpm {
 
-/// How often the chain sees a modelling error where there is none: in the healthy experiments of a study, in
-/// those with a bad tuning, or in those of them in which one parameter was changed.
+/// How often a method flags loops in which model and plant agree: the healthy experiments of a study, those
+/// with a bad tuning, or those of them in which one parameter was changed.
 struct FalseAlarms {
-  ExperimentKind kind = ExperimentKind::none;
+  ExperimentKind kind = ExperimentKind::healthy;
   std::optional<TuningParameter> parameter;  ///< none: all experiments of the kind
   std::int64_t experiments = 0;
   std::int64_t failed = 0;
   Rate infeasible;   ///< of the experiments that did not fail
-  Rate false_alarm;  ///< of the feasible ones: some Ivar lies outside the band of impact
-  Rate false_mpm;    ///< of the feasible ones: the alarm says model-plant mismatch
-  Rate false_ud;     ///< of the feasible ones: the alarm says unmeasured disturbance
+  Rate false_alarm;  ///< of those with a verdict: flagged
+  Rate false_mpm;    ///< of those with a verdict: flagged, and the source is called a mismatch
+  Rate false_ud;     ///< of those with a verdict: flagged, and the source is called a disturbance
 
   /// "healthy", "tuning", "tuning_move_suppression", ...
   std::string name() const;
+  /// The same for people: "healthy", "tuning", "move suppression".
+  std::string label() const;
+  /// Is this experiment one of the group?
+  bool has(const ExperimentDraw& draw) const;
 };
 
-/// The key of [experiments] that counts this kind: "healthy" for none, and the name of the kind otherwise.
-std::string_view count_name(ExperimentKind kind);
+/// The kinds without a fault that the study has, and after `tuning` each parameter that it may draw. `method`
+/// is the place of the method in the assessments of each record.
+std::vector<FalseAlarms> false_alarms(const Study& study, std::size_t method,
+                                      std::span<const ExperimentRecord> records);
 
-/// The kinds without a fault that the study has, and after `tuning` each parameter that it may draw.
-std::vector<FalseAlarms> false_alarms(const Study& study, std::span<const ExperimentRecord> records);
+/// Its rows: all shares of a kind, of one parameter that was changed the false alarms only.
+std::vector<Finding> rows_of(const FalseAlarms& group, const std::string& method);
 
 }  // namespace mpm

@@ -39,14 +39,14 @@ std::optional<double> size_of(const Study& study, const ExperimentDraw& draw, Fa
 
 SizeBin bin_of(std::span<const SizedFault> faults, double confidence) {
   std::vector<double> sizes;
-  std::int64_t impactful = 0, diagnosed = 0;
+  std::int64_t flagged = 0, diagnosed = 0;
   for (const SizedFault& fault : faults) {
     sizes.push_back(fault.size);
-    impactful += fault.impactful ? 1 : 0;
+    flagged += fault.flagged ? 1 : 0;
     diagnosed += fault.diagnosed ? 1 : 0;
   }
   const auto total = static_cast<std::int64_t>(faults.size());
-  return {sizes.front(), sorted_quantile(sizes, 0.5), sizes.back(), rate(impactful, total, confidence),
+  return {sizes.front(), sorted_quantile(sizes, 0.5), sizes.back(), rate(flagged, total, confidence),
           rate(diagnosed, total, confidence)};
 }
 
@@ -72,15 +72,15 @@ double disturbance_deviation(const Disturbance& disturbance, double v_deviation,
          std::sqrt(std::tanh(0.5 * sample_time / disturbance.time_constant));
 }
 
-std::vector<SizedFault> faults_by_size(const Study& study, std::span<const ExperimentRecord> records,
-                                       FaultSize size) {
+std::vector<SizedFault> faults_by_size(const Study& study, std::size_t method,
+                                       std::span<const ExperimentRecord> records, FaultSize size) {
   std::vector<SizedFault> faults;
   for (const ExperimentRecord& record : records) {
     const std::optional<double> found = size_of(study, record.draw, size);
-    if (record.status != ExperimentStatus::ok || !found || !std::isfinite(*found))
+    const AssessmentRecord& said = record.assessments[method];
+    if (!said.answered() || !found || !std::isfinite(*found))
       continue;
-    const bool impactful = record.diagnosis.impactful;
-    faults.push_back({&record, *found, impactful, impactful && !record.wrong()});
+    faults.push_back({&record, *found, said.flagged, said.flagged && !judge(study, record, said).wrong()});
   }
   std::stable_sort(faults.begin(), faults.end(),
                    [](const SizedFault& a, const SizedFault& b) { return a.size < b.size; });

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/judgement.hpp"
 #include "analysis/statistics/interval.hpp"
 
 namespace mpm {
@@ -26,23 +26,24 @@ std::string_view to_string(FaultSize size);
 ///   sigma = |gain| v_deviation sqrt((1 - a)/(1 + a)),   a = exp(-Ts/time_constant)
 double disturbance_deviation(const Disturbance& disturbance, double v_deviation, double sample_time);
 
-/// One feasible experiment with a single fault: how large the fault is and what came of it.
+/// One experiment with a single fault and a verdict: how large the fault is and what came of it.
 struct SizedFault {
   const ExperimentRecord* record;
   double size;
-  bool impactful;  ///< some Ivar lies outside the band of impact: the fault is seen
+  bool flagged;    ///< the fault is seen
   bool diagnosed;  ///< seen, and both the CV and the source are right
 };
 
-/// The feasible experiments whose only fault is measured by `size`, smallest first. Points into `records`.
-std::vector<SizedFault> faults_by_size(const Study& study, std::span<const ExperimentRecord> records,
-                                       FaultSize size);
+/// The experiments whose only fault is measured by `size` and on which the method at place `method` of the
+/// assessments gave a verdict, smallest first. Points into `records`.
+std::vector<SizedFault> faults_by_size(const Study& study, std::size_t method,
+                                       std::span<const ExperimentRecord> records, FaultSize size);
 
 /// Faults of similar size, with the share of them that is seen and the share that is diagnosed rightly, both
 /// of all of them.
 struct SizeBin {
   double smallest, median, largest;
-  Rate impactful;
+  Rate flagged;
   Rate diagnosed;
 };
 

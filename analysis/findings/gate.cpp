@@ -6,7 +6,7 @@
 namespace mpm {
 namespace {
 
-GateDoubt doubt_about(const Gate& gate, const AggregateValue& measured) {
+GateDoubt doubt_about(const Gate& gate, const Finding& measured) {
   if (!std::isfinite(measured.value))
     return GateDoubt::no_value;
   if (measured.count < gate.minimum_count)
@@ -31,7 +31,7 @@ std::string_view to_string(GateOutcome outcome) {
   return "unknown";
 }
 
-GateResult judge(const Gate& gate, const AggregateValue& measured) {
+GateResult judge(const Gate& gate, const Finding& measured) {
   GateResult result{gate, measured};
   result.doubt = doubt_about(gate, measured);
   if (result.doubt != GateDoubt::none)

@@ -5,13 +5,13 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/findings/study_aggregate.hpp"
+#include "analysis/findings/finding.hpp"
 
 namespace mpm {
 
 /// A claim about one number of a study: minimum <= number <= maximum.
 struct Gate {
-  std::string name;  ///< of the number, as in named_values()
+  std::string name;  ///< of the number, a finding of the study
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   bool with_confidence = false;    ///< judged by the interval of the number instead of the number itself
@@ -35,7 +35,7 @@ enum class GateDoubt : std::int8_t {
 
 struct GateResult {
   Gate gate;
-  AggregateValue measured;
+  Finding measured;
   GateOutcome outcome = GateOutcome::inconclusive;
   GateDoubt doubt = GateDoubt::none;
   /// How far the number or interval is from changing the outcome, in units of the number; NaN without one.
@@ -51,6 +51,6 @@ struct GateResult {
 /// | pass         | minimum <= a and b <= maximum         | min(a - minimum, maximum - b)  |
 /// | fail         | b < minimum or maximum < a            | min(b - minimum, maximum - a)  |
 /// | inconclusive | neither, or nothing to be judged      | min(a - minimum, maximum - b)  |
-GateResult judge(const Gate& gate, const AggregateValue& measured);
+GateResult judge(const Gate& gate, const Finding& measured);
 
 }  // namespace mpm

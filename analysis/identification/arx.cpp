@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/identification/identification_check.hpp"
 #include "analysis/identification/least_squares.hpp"
 #include "plants/error.hpp"
 

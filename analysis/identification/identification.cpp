@@ -1,5 +1,13 @@
 #include "analysis/identification/identification.hpp"
 
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "analysis/statistics/signal_check.hpp"
+#include "plants/error.hpp"
+
 namespace mpm {
 
 bool is_usable(IdentificationStatus status) {
@@ -23,8 +31,31 @@ std::string to_string(IdentificationStatus status) {
   return "noise free";
 }
 
-Eigen::VectorXd Identification::standard_errors() const {
-  return covariance.diagonal().cwiseSqrt();
+void require_identification_data(const Eigen::Ref<const Eigen::VectorXd>& y,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& u, const ModelOrder& order,
+                                 Eigen::Index first_sample) {
+  order.validate(u.rows());
+  if (y.size() != u.cols())
+    throw InputError("lengths of output and inputs", fmt::format("{} and {}", y.size(), u.cols()),
+                     "equal lengths");
+  const Eigen::Index parameters = order.parameter_count();
+  if (parameters < 1)
+    throw InputError("parameters of a model", "none", "1 or more");
+  require_signal("output", y, first_sample + parameters + 1);
+  if (!u.allFinite())
+    throw InputError("inputs", "a value that is not finite", "finite values only");
+}
+
+double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y,
+                   const Eigen::Ref<const Eigen::VectorXd>& y_est) {
+  require_signal("output", y, 2);
+  require_same_length("output", y, "its estimate", y_est);
+  if (!y_est.allFinite())
+    return -std::numeric_limits<double>::infinity();
+  const double spread = (y.array() - y.mean()).matrix().squaredNorm();
+  if (spread <= static_cast<double>(y.size()) * variance_floor(y))
+    return std::numeric_limits<double>::quiet_NaN();
+  return 100.0 * (1.0 - std::sqrt((y - y_est).squaredNorm() / spread));
 }
 
 }  // namespace mpm

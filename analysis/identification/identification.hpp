@@ -41,10 +41,29 @@ struct Identification {
   double loss = 0.0;
   Eigen::Index samples = 0;       ///< n, prediction errors in the loss
   Eigen::Index first_sample = 0;  ///< the first of them
-  int iterations = 0;             ///< of the search; 0 for a linear regression
-
-  /// Standard errors, the roots of the diagonal of the covariance; empty when that is.
-  Eigen::VectorXd standard_errors() const;
 };
+
+/// Refuses data that no model of these orders can be identified from: other than nu rows, different lengths,
+/// values that are not finite, no parameter, or no more samples from `first_sample` on than parameters.
+/// @throws InputError naming what was found and what is allowed
+void require_identification_data(const Eigen::Ref<const Eigen::VectorXd>& y,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& u, const ModelOrder& order,
+                                 Eigen::Index first_sample);
+
+/// The best-fit index of an estimate of a measured output (3.32),
+///
+///   %Fit = 100 (1 - |y - y_est| / |y - mean y|)
+///
+/// 100 for an estimate that is right, 0 for one as good as the mean, without a lower bound. An output without
+/// variance (to rounding) has no such index: NaN.
+///
+/// | symbol   | meaning                     | shape | unit      |
+/// |----------|-----------------------------|-------|-----------|
+/// | y, y_est | measured, estimated output  | N     | of the CV |
+///
+/// @throws InputError for fewer than 2 samples, different lengths, or measurements that are not finite. An
+///   estimate that is not finite, of an unstable model, gives -infinity.
+double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y,
+                   const Eigen::Ref<const Eigen::VectorXd>& y_est);
 
 }  // namespace mpm

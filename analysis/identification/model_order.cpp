@@ -67,10 +67,6 @@ void ModelOrder::validate(Eigen::Index nu) const {
   }
 }
 
-ModelOrder arx_order(Eigen::Index nu, Eigen::Index na, Eigen::Index nb, Eigen::Index delay) {
-  return {na, std::vector<PathOrder>(static_cast<std::size_t>(nu), {nb, 0, delay}), 0, 0};
-}
-
 ModelOrder output_error_order(Eigen::Index nu, Eigen::Index nb, Eigen::Index nf, Eigen::Index delay) {
   return box_jenkins_order(nu, nb, nf, 0, 0, delay);
 }

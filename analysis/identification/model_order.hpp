@@ -37,9 +37,6 @@ struct ModelOrder {
   friend bool operator==(const ModelOrder&, const ModelOrder&) = default;
 };
 
-/// A y = sum_j q^-delay B_j u_j + e, the same nb and delay for `nu` inputs.
-ModelOrder arx_order(Eigen::Index nu, Eigen::Index na, Eigen::Index nb, Eigen::Index delay = 1);
-
 /// y = sum_j q^-delay B_j/F_j u_j + e, the same nb, nf and delay for `nu` inputs.
 ModelOrder output_error_order(Eigen::Index nu, Eigen::Index nb, Eigen::Index nf, Eigen::Index delay = 1);
 

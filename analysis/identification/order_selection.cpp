@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/identification/percent_fit.hpp"
 #include "analysis/identification/prediction_error_fit.hpp"
 #include "plants/error.hpp"
 

@@ -127,27 +127,11 @@ PolynomialModel model_from_parameters(const ModelOrder& order,
   return model;
 }
 
-double pole_radius(const PolynomialModel& model) {
-  double radius = root_radius(model.A);
-  for (const InputPath& path : model.inputs)
-    radius = std::max(radius, root_radius(path.F));
-  return radius;
-}
-
 Eigen::VectorXd simulate(const PolynomialModel& model, const Eigen::Ref<const Eigen::MatrixXd>& u,
                          StartState start) {
   model.validate();
   require_inputs(model, u);
   return filter(one(), model.A, input_part(model, u, start), 0, start);
-}
-
-Eigen::VectorXd simulate(const PolynomialModel& model, const Eigen::Ref<const Eigen::MatrixXd>& u,
-                         const Eigen::Ref<const Eigen::VectorXd>& e, StartState start) {
-  model.validate();
-  require_inputs(model, u);
-  require_length("e", e.size(), u.cols());
-  require_signal("e", e, 0);
-  return simulate(model, u, start) + filter(one(), model.A, filter(model.C, model.D, e));
 }
 
 Eigen::VectorXd prediction_errors(const PolynomialModel& model, const Eigen::Ref<const Eigen::VectorXd>& y,
@@ -158,11 +142,6 @@ Eigen::VectorXd prediction_errors(const PolynomialModel& model, const Eigen::Ref
   require_signal("y", y, 0);
   const Eigen::VectorXd v = filter(model.A, one(), y, 0, start) - input_part(model, u, start);
   return filter(model.D, model.C, v, 0, start);
-}
-
-Eigen::VectorXd predict(const PolynomialModel& model, const Eigen::Ref<const Eigen::VectorXd>& y,
-                        const Eigen::Ref<const Eigen::MatrixXd>& u, StartState start) {
-  return y - prediction_errors(model, y, u, start);
 }
 
 Eigen::MatrixXd step_response(const PolynomialModel& model, Eigen::Index samples) {

@@ -53,21 +53,14 @@ struct PolynomialModel {
 PolynomialModel model_from_parameters(const ModelOrder& order,
                                       const Eigen::Ref<const Eigen::VectorXd>& parameters);
 
-/// Largest magnitude of the roots of A and of every F: the response to the inputs is stable below 1.
-double pole_radius(const PolynomialModel& model);
-
 /// Output without noise, sum_j B_j/(A F_j) u_j. Before the first sample every signal is as `start` says; with
 /// `held` the model stands still at the first inputs.
 /// @throws InputError for an invalid model, other than nu rows or values that are not finite
 Eigen::VectorXd simulate(const PolynomialModel& model, const Eigen::Ref<const Eigen::MatrixXd>& u,
                          StartState start = StartState::rest);
 
-/// Output with the innovations e (N) given, which are 0 before the record whatever `start` says.
-/// @throws InputError as without, and when e and u differ in length
-Eigen::VectorXd simulate(const PolynomialModel& model, const Eigen::Ref<const Eigen::MatrixXd>& u,
-                         const Eigen::Ref<const Eigen::VectorXd>& e, StartState start = StartState::rest);
-
-/// One-step-ahead prediction y_hat = y - e from past outputs, and from inputs up to the delay,
+/// The errors e = y - y_hat of the one-step-ahead prediction from past outputs, and from inputs up to the
+/// delay,
 ///
 ///   e = (D/C) (A y - sum_j B_j/F_j u_j)
 ///
@@ -75,11 +68,6 @@ Eigen::VectorXd simulate(const PolynomialModel& model, const Eigen::Ref<const Ei
 /// roots of C and F.
 /// @throws InputError for an invalid model, other than nu rows, different lengths or values that are not
 /// finite
-Eigen::VectorXd predict(const PolynomialModel& model, const Eigen::Ref<const Eigen::VectorXd>& y,
-                        const Eigen::Ref<const Eigen::MatrixXd>& u, StartState start = StartState::rest);
-
-/// The prediction errors e of `predict`.
-/// @throws InputError as `predict`
 Eigen::VectorXd prediction_errors(const PolynomialModel& model, const Eigen::Ref<const Eigen::VectorXd>& y,
                                   const Eigen::Ref<const Eigen::MatrixXd>& u,
                                   StartState start = StartState::rest);

@@ -2,8 +2,6 @@
 
 #include <cstddef>
 
-#include "analysis/identification/least_squares.hpp"
-
 namespace mpm {
 namespace {
 
@@ -53,14 +51,6 @@ Eigen::MatrixXd prediction_error_gradient(const PolynomialModel& model,
     columns.append_shifts(prediction_errors(without_D, y, u, start), 1, order.nd);
   }
   return columns.gradient();
-}
-
-double relative_offset(const Eigen::Ref<const Eigen::MatrixXd>& J,
-                       const Eigen::Ref<const Eigen::VectorXd>& e) {
-  const double total = e.squaredNorm();
-  // Directions below this share of a column do not count: they are rounding.
-  constexpr double kRankTolerance = 1e-12;
-  return total > 0.0 ? 1.0 - least_squares(J, e, kRankTolerance).residual_sum / total : 0.0;
 }
 
 }  // namespace mpm

@@ -21,11 +21,4 @@ Eigen::MatrixXd prediction_error_gradient(const PolynomialModel& model,
                                           const Eigen::Ref<const Eigen::MatrixXd>& u,
                                           StartState start = StartState::rest);
 
-/// |J (J'J)^-1 J' e|^2 / |e|^2, the share of the sum of squares of e that a step along the gradients would
-/// take away: 0 at a minimum of the loss, whatever the units (the relative offset of Bates and Watts 1981,
-/// squared). 0 for e = 0.
-/// @throws InputError when the lengths differ
-double relative_offset(const Eigen::Ref<const Eigen::MatrixXd>& J,
-                       const Eigen::Ref<const Eigen::VectorXd>& e);
-
 }  // namespace mpm

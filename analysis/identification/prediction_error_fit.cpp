@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/identification/identification_check.hpp"
 #include "analysis/identification/least_squares.hpp"
 #include "analysis/identification/prediction_error.hpp"
 #include "analysis/identification/prediction_error_search.hpp"
@@ -40,10 +39,9 @@ PolynomialModel without_noise_model(PolynomialModel model) {
 }
 
 /// Status, loss and covariance of a model at which a search ended.
-Identification assess(const Data& data, const PolynomialModel& model, int iterations) {
+Identification assess(const Data& data, const PolynomialModel& model) {
   Identification result;
   result.model = model;
-  result.iterations = iterations;
   result.samples = data.samples();
   result.first_sample = data.options.first_sample;
   const Eigen::VectorXd e = data.errors(model);
@@ -89,14 +87,13 @@ bool leaves_at_most(const Data& data, const PolynomialModel& model, double share
 Identification search_from(const Data& data, const PolynomialModel& start) {
   const ModelOrder order = start.order();
   if (order.nc + order.nd > 0 && leaves_at_most(data, without_noise_model(start), kNearlyExact)) {
-    const PredictionErrorSearch plain =
+    const PolynomialModel plain =
         search_prediction_error(without_noise_model(start), data.y, data.u, data.options);
-    const Identification exact = assess(data, plain.model, plain.iterations);
-    if (leaves_at_most(data, plain.model, kNoiseFree) && exact.status == IdentificationStatus::ok)
+    const Identification exact = assess(data, plain);
+    if (leaves_at_most(data, plain, kNoiseFree) && exact.status == IdentificationStatus::ok)
       return noise_free_result(exact, order);
   }
-  const PredictionErrorSearch search = search_prediction_error(start, data.y, data.u, data.options);
-  return assess(data, search.model, search.iterations);
+  return assess(data, search_prediction_error(start, data.y, data.u, data.options));
 }
 
 bool is_minimum(IdentificationStatus status) {

@@ -102,10 +102,10 @@ double search_radius(const PolynomialModel& model) {
   return radius;
 }
 
-PredictionErrorSearch search_prediction_error(const PolynomialModel& start,
-                                              const Eigen::Ref<const Eigen::VectorXd>& y,
-                                              const Eigen::Ref<const Eigen::MatrixXd>& u,
-                                              const PredictionErrorOptions& options) {
+PolynomialModel search_prediction_error(const PolynomialModel& start,
+                                        const Eigen::Ref<const Eigen::VectorXd>& y,
+                                        const Eigen::Ref<const Eigen::MatrixXd>& u,
+                                        const PredictionErrorOptions& options) {
   const ModelOrder order = start.order();
   const Units units(y, u);
   Eigen::VectorXd theta = units.scaled(start, 1).parameters();
@@ -117,9 +117,8 @@ PredictionErrorSearch search_prediction_error(const PolynomialModel& start,
   problem.AddResidualBlock(&cost, nullptr, theta.data());
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(options), &problem, &summary);
-  const auto iterations = static_cast<int>(summary.iterations.size());
   // After a failure Ceres leaves the coefficients as they were at the start.
-  return {units.scaled(model_from_parameters(order, theta), -1), iterations};
+  return units.scaled(model_from_parameters(order, theta), -1);
 }
 
 }  // namespace mpm

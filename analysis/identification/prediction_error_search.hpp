@@ -7,19 +7,14 @@
 
 namespace mpm {
 
-/// Where a search ended. Whether it is a minimum is for the caller to see (`relative_offset`).
-struct PredictionErrorSearch {
-  PolynomialModel model;
-  int iterations = 0;
-};
-
 /// Minimises sum e^2 over the free coefficients, from `start`, by the Levenberg-Marquardt method of Ceres
 /// with the gradients of `prediction_error_gradient`, on one thread. Steps to a root of C, D or F outside of
-/// `options.largest_radius` are refused. Data, start and options must have been checked.
-PredictionErrorSearch search_prediction_error(const PolynomialModel& start,
-                                              const Eigen::Ref<const Eigen::VectorXd>& y,
-                                              const Eigen::Ref<const Eigen::MatrixXd>& u,
-                                              const PredictionErrorOptions& options);
+/// `options.largest_radius` are refused. Data, start and options must have been checked. Whether the search
+/// ended at a minimum is for the caller to see.
+PolynomialModel search_prediction_error(const PolynomialModel& start,
+                                        const Eigen::Ref<const Eigen::VectorXd>& y,
+                                        const Eigen::Ref<const Eigen::MatrixXd>& u,
+                                        const PredictionErrorOptions& options);
 
 /// Largest magnitude of the roots of C, D and every F.
 double search_radius(const PolynomialModel& model);

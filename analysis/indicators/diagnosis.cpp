@@ -25,20 +25,19 @@ SetpointTrajectories centres(const Study& study) {
 /// for.
 int one_window(const Study& study) {
   const auto longest = static_cast<int>(study.simulation.samples - kFewestCorrelatedPairs);
-  return std::clamp(static_cast<int>(study.controller.prediction_horizon), 3, std::max(3, longest));
+  return std::clamp(static_cast<int>(study.controller.prediction_horizon), kShortestWindow,
+                    std::max(kShortestWindow, longest));
 }
 
 }  // namespace
 
-WindowScan window_scan(const Study& study) {
-  const double hp = study.controller.prediction_horizon;
-  WindowScan scan;
-  // Half a sample is rounded up, as in default_window_scan.
-  scan.shortest = static_cast<int>(std::ceil(study.diagnosis.shortest_window * hp));
-  scan.longest = static_cast<int>(std::floor(study.diagnosis.longest_window * hp));
-  scan.stride = study.diagnosis.window_stride;
-  scan.validate();
-  return scan;
+double total_simulation_error(const Diagnosis& diagnosis) {
+  if (diagnosis.cvs.empty())
+    return std::numeric_limits<double>::quiet_NaN();
+  double total = 0.0;
+  for (const CvDiagnosis& cv : diagnosis.cvs)
+    total += cv.sse;
+  return total;
 }
 
 double distance_from_one(double ivar, LocationDistance distance) {
@@ -59,22 +58,29 @@ Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_dia
   return farthest;
 }
 
+Eigen::VectorXd basis_variance_indices(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& y_basis) {
+  return variance_indices(y, y_basis, centres(study));
+}
+
 DiagnosisChain::DiagnosisChain(const Study& study)
     : options_(study.diagnosis),
+      every_cv_(study.names_scenarios()),
       y_set_(centres(study)),
       windows_(window_scan(study)),
       scanner_(study.simulation.samples),
       window_(one_window(study)),
       distribution_scanner_(study.simulation.samples) {}
 
-Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal,
-                                   const Eigen::Ref<const Eigen::MatrixXd>& y_basis) {
+Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                   const NominalOutputs& nominal) {
   Diagnosis diagnosis;
   diagnosis.ivar = variance_indices(y, nominal.y0, y_set_);
   diagnosis.ivar_diag = variance_indices(y, nominal.y0_diag, y_set_);
-  diagnosis.ivar_basis = variance_indices(y, y_basis, y_set_);
   diagnosis.impactful = (diagnosis.ivar.array() < options_.impact_lower).any() ||
                         (diagnosis.ivar.array() > options_.impact_upper).any();
+  if (every_cv_)
+    diagnosis.cvs = diagnose_each(y, nominal, diagnosis.ivar_diag);
   diagnosis.predicted_cv = farthest_from_one(diagnosis.ivar_diag, options_.location_distance);
   if (diagnosis.predicted_cv < 0)
     return diagnosis;
@@ -83,24 +89,19 @@ Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, c
   return diagnosis;
 }
 
-std::vector<AcfComparison> DiagnosisChain::compare_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
-                                                        const NominalOutputs& nominal) const {
-  std::vector<AcfComparison> cvs;
-  for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
-    std::optional<Eigen::VectorXd> y_set;
-    if (!y_set_.empty())
-      y_set = y_set_[static_cast<std::size_t>(cv)];
-    cvs.push_back(compare_autocorrelations(y.row(cv).transpose(), nominal.y0.row(cv).transpose(),
-                                           nominal.y0_diag.row(cv).transpose(), y_set));
-  }
-  return cvs;
+AcfComparison DiagnosisChain::compare(Eigen::Index cv, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                      const NominalOutputs& nominal) const {
+  std::optional<Eigen::VectorXd> y_set;
+  if (!y_set_.empty())
+    y_set = y_set_[static_cast<std::size_t>(cv)];
+  return compare_autocorrelations(y.row(cv).transpose(), nominal.y0.row(cv).transpose(),
+                                  nominal.y0_diag.row(cv).transpose(), y_set);
 }
 
 std::vector<CvDiagnosis> DiagnosisChain::diagnose_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
                                                        const NominalOutputs& nominal,
                                                        const Eigen::Ref<const Eigen::VectorXd>& ivar_diag) {
   const Eigen::VectorXd sse = simulation_errors(y, nominal.y_sim);
-  const std::vector<AcfComparison> acf = compare_each(y, nominal);
   std::vector<CvDiagnosis> cvs;
   for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
     CvDiagnosis of_cv;
@@ -108,8 +109,8 @@ std::vector<CvDiagnosis> DiagnosisChain::diagnose_each(const Eigen::Ref<const Ei
     of_cv.distribution =
         distribution_scanner_.compute(y.row(cv).transpose(), nominal.y0.row(cv).transpose(),
                                       nominal.y0_diag.row(cv).transpose(), windows_, window_);
-    of_cv.acf = acf[static_cast<std::size_t>(cv)];
-    of_cv.source = of_cv.flagged ? source_of(of_cv.distribution.mpm) : ExperimentKind::none;
+    of_cv.acf = compare(cv, y, nominal);
+    of_cv.source = of_cv.flagged ? source_of(of_cv.distribution.mpm) : FaultSource::none;
     of_cv.sse = sse(cv);
     cvs.push_back(of_cv);
   }
@@ -123,8 +124,8 @@ MpmIndicator DiagnosisChain::indicator_of(Eigen::Index cv, const Eigen::Ref<cons
   return scanner_.scan(y0_diag, e0_diag, windows_);
 }
 
-ExperimentKind DiagnosisChain::source_of(const MpmIndicator& indicator) const {
-  return indicator.i_mpm > options_.mpm_threshold ? ExperimentKind::mpm : ExperimentKind::ud;
+FaultSource DiagnosisChain::source_of(const MpmIndicator& indicator) const {
+  return indicator.i_mpm > options_.mpm_threshold ? FaultSource::mpm : FaultSource::ud;
 }
 
 }  // namespace mpm

@@ -16,12 +16,24 @@ namespace mpm {
 
 /// What the chain says of one CV of a named scenario, in which several CVs may be affected.
 struct CvDiagnosis {
-  bool flagged = false;                          ///< Ivar_diag lies outside the band of impact
-  ExperimentKind source = ExperimentKind::none;  ///< of a flagged CV: mpm when I_MPM exceeds its threshold
+  bool flagged = false;                    ///< Ivar_diag lies outside the band of impact
+  FaultSource source = FaultSource::none;  ///< of a flagged CV: mpm when I_MPM exceeds its threshold
   /// Chapters 2, 5 and 6; `mpm` of it is (6.13) to (6.15). One window length is the prediction horizon.
   DistributionIndicators distribution;
   AcfComparison acf;  ///< M2 and M3: about the setpoint where the CV has one
   double sse = std::numeric_limits<double>::quiet_NaN();  ///< (4.17), CV unit
+};
+
+/// Ivar_diag of the affected CV of an experiment with mismatch and disturbance when the loop is run with one
+/// of them alone, and the dominance of the mismatch (6.23),
+///
+///   dominance_MPM = Ivar_diag^MPM / (Ivar_diag^MPM + Ivar_diag^UD)
+///
+/// NaN where there are no such loops.
+struct FaultsAlone {
+  double ivar_diag_mpm = std::numeric_limits<double>::quiet_NaN();
+  double ivar_diag_ud = std::numeric_limits<double>::quiet_NaN();
+  double dominance_mpm = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What the chain of the thesis says of one closed loop (appendix A2).
@@ -30,21 +42,21 @@ struct CvDiagnosis {
 /// |------------|------------|-------|-------------------------------------------------------|
 /// | Ivar       | ivar       | ny    | var y / var y0                           (3.24, 6.7)  |
 /// | Ivar_diag  | ivar_diag  | ny    | var y / var y0_diag                      (4.14, 6.8)  |
-/// | Ivar_basis | ivar_basis | ny    | var y / var y of the basis case                (6.22) |
 ///
 /// The variances of a CV with a setpoint are taken about it, unless the study wants them about the mean.
 struct Diagnosis {
-  Eigen::VectorXd ivar, ivar_diag, ivar_basis;
-  bool impactful = false;                                  ///< some Ivar lies outside the band of impact
-  Eigen::Index predicted_cv = -1;                          ///< the CV whose Ivar_diag is farthest from 1
-  MpmIndicator indicator;                                  ///< of the predicted CV, (6.13) to (6.15)
-  ExperimentKind predicted_source = ExperimentKind::none;  ///< mpm when I_MPM exceeds its threshold, else ud
+  Eigen::VectorXd ivar, ivar_diag;
+  bool impactful = false;                            ///< some Ivar lies outside the band of impact
+  Eigen::Index predicted_cv = -1;                    ///< the CV whose Ivar_diag is farthest from 1
+  MpmIndicator indicator;                            ///< of the predicted CV, (6.13) to (6.15)
+  FaultSource predicted_source = FaultSource::none;  ///< mpm when I_MPM exceeds its threshold, else ud
+  FaultsAlone alone;                                 ///< of an experiment with both faults
   /// Every CV on its own, for named scenarios; empty for random experiments, which look at one CV.
   std::vector<CvDiagnosis> cvs = {};
 };
 
-/// The window lengths of (6.13) for this study, in samples.
-WindowScan window_scan(const Study& study);
+/// TSSE (6.21), the sum of the SSE of all CVs; NaN without a diagnosis of every CV.
+double total_simulation_error(const Diagnosis& diagnosis);
 
 /// |ivar - 1|, or |log ivar|.
 double distance_from_one(double ivar, LocationDistance distance);
@@ -53,18 +65,18 @@ double distance_from_one(double ivar, LocationDistance distance);
 /// over.
 Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, LocationDistance distance);
 
+/// Ivar_basis = var y / var y_basis (6.22) of every CV: what really became of the variance, a truth in which
+/// no method has a part. y and y_basis are ny x N; variances as those of Ivar.
+Eigen::VectorXd basis_variance_indices(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& y_basis);
+
 /// Runs the chain on records y (ny x N); keeps the workspace of the indicators between calls. One a thread.
 class DiagnosisChain {
  public:
   explicit DiagnosisChain(const Study& study);
 
-  /// `y_basis` is the record of the basis case, of the same shape as y.
-  Diagnosis diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal,
-                     const Eigen::Ref<const Eigen::MatrixXd>& y_basis);
-
-  /// The autocorrelation functions of every CV of the record y, about the centres of the variances.
-  std::vector<AcfComparison> compare_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
-                                          const NominalOutputs& nominal) const;
+  /// Of a study of named scenarios with every CV on its own.
+  Diagnosis diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal);
 
   /// Every CV of the record y on its own; `ivar_diag` is that of diagnose().
   std::vector<CvDiagnosis> diagnose_each(const Eigen::Ref<const Eigen::MatrixXd>& y,
@@ -76,10 +88,15 @@ class DiagnosisChain {
                             const NominalOutputs& nominal);
 
   /// mpm or ud, by the threshold of I_MPM.
-  ExperimentKind source_of(const MpmIndicator& indicator) const;
+  FaultSource source_of(const MpmIndicator& indicator) const;
 
  private:
+  /// The autocorrelation functions of one CV about the centre of its variances.
+  AcfComparison compare(Eigen::Index cv, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                        const NominalOutputs& nominal) const;
+
   DiagnosisOptions options_;
+  bool every_cv_;
   SetpointTrajectories y_set_;  ///< what the variances are taken about; empty: the means of all CVs
   WindowScan windows_;
   MpmScanner scanner_;

@@ -80,7 +80,7 @@ struct DistributionIndicators {
 /// computation allocates nothing. One scanner a thread.
 class DistributionScanner {
  public:
-  /// @throws InputError when `samples` is below 3 + kFewestCorrelatedPairs
+  /// @throws InputError when `samples` is below kShortestWindow + kFewestCorrelatedPairs
   explicit DistributionScanner(Eigen::Index samples) : scatter_(samples), e0_(samples) {}
 
   /// The indicators of one controlled variable, in one scan over the window lengths.

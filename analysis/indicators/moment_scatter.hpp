@@ -2,15 +2,11 @@
 
 #include <Eigen/Core>
 
-#include "analysis/indicators/window_scan.hpp"
 #include "analysis/statistics/correlation.hpp"
 #include "analysis/statistics/moving_moments.hpp"
+#include "scenarios/window_scan.hpp"
 
 namespace mpm {
-
-/// A window length takes part in a mean only with this many pairs: below it, chance alone makes a
-/// |correlation| of about 0.18 = sqrt(2/(20 pi)), above the threshold 0.1 of the indicator.
-inline constexpr Eigen::Index kFewestCorrelatedPairs = 20;
 
 /// Variation of a moment below which it is only error. Moments are of the order of 1 to 10 and have the
 /// relative error kMovingMomentAccuracy.
@@ -41,7 +37,8 @@ struct PerStatistic {
 /// a peak at each step of the setpoint, that varies more. docs/methods.md has the evidence.
 class MomentScatter {
  public:
-  /// @throws InputError when `samples` is below 3 + kFewestCorrelatedPairs, the shortest usable record
+  /// @throws InputError when `samples` is below kShortestWindow + kFewestCorrelatedPairs, the shortest usable
+  /// record
   explicit MomentScatter(Eigen::Index samples);
 
   /// Length of the records.
@@ -56,7 +53,7 @@ class MomentScatter {
   /// | e0     | nominal error y0 - y, y axis | N | the same |
   ///
   /// @throws InputError for signals of another length than `samples()` or with values that are not finite,
-  ///   and for a window outside 3 ... N - kFewestCorrelatedPairs
+  ///   and for a window outside kShortestWindow ... N - kFewestCorrelatedPairs
   PerStatistic<CentredSums> at(const Eigen::Ref<const Eigen::VectorXd>& y0,
                                const Eigen::Ref<const Eigen::VectorXd>& e0, int window);
 

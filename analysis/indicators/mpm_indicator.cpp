@@ -49,8 +49,4 @@ MpmIndicator MpmScanner::scan(const Signal& y0_diag, const Signal& e0_diag, cons
   return means.result();
 }
 
-MpmIndicator mpm_indicator(const Signal& y0_diag, const Signal& e0_diag, const WindowScan& windows) {
-  return MpmScanner(y0_diag.size()).scan(y0_diag, e0_diag, windows);
-}
-
 }  // namespace mpm

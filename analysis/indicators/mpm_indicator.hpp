@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 
 #include "analysis/indicators/moment_scatter.hpp"
-#include "analysis/indicators/window_scan.hpp"
 
 namespace mpm {
 
@@ -59,7 +58,8 @@ class MpmMeans {
 /// allocates nothing. One scanner a thread.
 class MpmScanner {
  public:
-  /// @throws InputError when `samples` is below 3 + kFewestCorrelatedPairs, the shortest usable record
+  /// @throws InputError when `samples` is below kShortestWindow + kFewestCorrelatedPairs, the shortest usable
+  /// record
   explicit MpmScanner(Eigen::Index samples) : scatter_(samples) {}
 
   /// The indicators of one controlled variable, (6.13) to (6.15) with the signals that the text means (the
@@ -80,17 +80,13 @@ class MpmScanner {
   /// | e0_diag | nominal error y0_diag - y, (6.9) | N | the same |
   ///
   /// @throws InputError for signals of another length than `samples` or with values that are not finite, for
-  /// an
-  ///   invalid scan, and for longest > N - kFewestCorrelatedPairs
+  /// an invalid
+  ///   scan, and for longest > N - kFewestCorrelatedPairs
   MpmIndicator scan(const Eigen::Ref<const Eigen::VectorXd>& y0_diag,
                     const Eigen::Ref<const Eigen::VectorXd>& e0_diag, const WindowScan& windows);
 
  private:
   MomentScatter scatter_;
 };
-
-/// `MpmScanner::scan` for a single use.
-MpmIndicator mpm_indicator(const Eigen::Ref<const Eigen::VectorXd>& y0_diag,
-                           const Eigen::Ref<const Eigen::VectorXd>& e0_diag, const WindowScan& windows);
 
 }  // namespace mpm

@@ -13,6 +13,8 @@ std::string_view to_string(AssessmentStatus status) {
       return "not applicable";
     case AssessmentStatus::failed:
       return "failed";
+    case AssessmentStatus::not_assessed:
+      return "not assessed";
   }
   return "unknown";
 }
@@ -27,9 +29,9 @@ std::optional<Eigen::Index> Assessment::worst_cv() const {
   return worst;
 }
 
-double Assessment::number(std::string_view name, Eigen::Index cv, Eigen::Index mv) const {
+double Assessment::number(std::string_view name, Eigen::Index cv, Eigen::Index column) const {
   for (const AssessmentNumber& number : numbers)
-    if (number.name == name && number.cv == cv && number.mv == mv)
+    if (number.name == name && number.cv == cv && number.column == column)
       return number.value;
   return std::numeric_limits<double>::quiet_NaN();
 }

@@ -18,9 +18,10 @@ enum class AssessmentStatus : std::int8_t {
   ok = 0,
   not_applicable = 1,  ///< the method needs what this loop does not have (Assessment::reason)
   failed = 2,          ///< the data gave no answer: a singular covariance, no usable model, ...
+  not_assessed = 3,    ///< nobody asked the method: the loop did not run to its end, or was left out
 };
 
-/// "ok", "not applicable", "failed"
+/// "ok", "not applicable", "failed", "not assessed"
 std::string_view to_string(AssessmentStatus status);
 
 /// What a method says of one CV.
@@ -31,7 +32,7 @@ struct CvAssessment {
   /// NaN where `flagged` is none.
   double score = std::numeric_limits<double>::quiet_NaN();
   /// By methods that tell sources apart, of a flagged CV or the worst one: mpm or ud; otherwise none.
-  ExperimentKind source = ExperimentKind::none;
+  FaultSource source = FaultSource::none;
 };
 
 /// A channel of the model, CV against MV.
@@ -42,13 +43,13 @@ struct Channel {
   friend bool operator==(const Channel&, const Channel&) = default;
 };
 
-/// One number of a method, by a name of AssessmentMethodInfo::numbers. Of the whole loop (cv and mv -1), of a
-/// CV (mv -1) or of a channel.
+/// One number of a method, by a name of MethodDescription::numbers. Of the whole loop (cv and column -1), of
+/// a CV (column -1), of a channel (its MV in `column`) or of a CV at a lag (the lag in `column`).
 struct AssessmentNumber {
   std::string name;
   double value;
   Eigen::Index cv = -1;
-  Eigen::Index mv = -1;
+  Eigen::Index column = -1;
 };
 
 /// What a method of assessment says of one loop.
@@ -66,8 +67,8 @@ struct Assessment {
 
   /// The CV with the largest score; none without one.
   std::optional<Eigen::Index> worst_cv() const;
-  /// The number of this name, CV and MV; NaN when there is none.
-  double number(std::string_view name, Eigen::Index cv = -1, Eigen::Index mv = -1) const;
+  /// The number of this name, CV and column; NaN when there is none.
+  double number(std::string_view name, Eigen::Index cv = -1, Eigen::Index column = -1) const;
 
   static Assessment not_applicable(std::string reason);
   static Assessment failed(std::string reason);

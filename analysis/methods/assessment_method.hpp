@@ -10,8 +10,8 @@
 #include "analysis/methods/assessment.hpp"
 
 // The one interface of all methods that assess a loop, the chain of the thesis among them. A method is one
-// file that implements AssessmentMethod and describes it by an AssessmentMethodInfo, and one line in
-// method_table.cpp.
+// file that implements AssessmentMethod and describes it by an AssessmentMethodInfo, and its function in the
+// list of methods.hpp.
 
 namespace mpm {
 
@@ -23,14 +23,24 @@ struct AssessmentRequirements {
   bool moving_mvs = false;        ///< some MV moves during the record
 };
 
-/// Of what a number of a method is one.
-enum class NumberScope { loop, cv, channel };
+/// What a method gives a number for: the whole loop, each CV, each channel, or each CV at each lag.
+enum class NumberScope { loop, cv, channel, cv_lag };
 
-/// A number that a method gives besides its verdicts.
+/// A number that a method gives besides its verdicts. Archive, findings, report and gates take it from here.
 struct AssessmentNumberInfo {
-  std::string name;  ///< as in table files, after the name of the method and a dot
+  std::string
+      name;  ///< in the form of a variable name; in table files after the name of the method and a dot
   NumberScope scope = NumberScope::cv;
   std::string meaning;  ///< one line, with its equation
+  std::string unit = "1";
+  /// What the numbers 0, 1, 2, ... stand for; none for a quantity.
+  std::vector<std::string> words = {};
+  /// Least, mean and largest value over the experiments of each kind are findings of a study. Of the whole
+  /// loop only.
+  bool summarised = false;
+  std::string label = {};  ///< for tables, of a number that is summarised: "I_{MPM}"
+  /// An estimate of the loss of variance of each CV: the regression of Ivar_basis (6.22) on it is a finding.
+  bool estimates_ivar_basis = false;
 };
 
 /// A method that has learnt what it may know and now assesses loops, one after the other. Keeps workspaces
@@ -47,8 +57,9 @@ class AssessmentMethod {
   virtual Assessment assess(const AssessedLoop& loop) = 0;
 };
 
-/// All that others need to know of a method without knowing it.
-struct AssessmentMethodInfo {
+/// All that others need to know of a method without knowing it: an archive describes by it methods that the
+/// reader does not have.
+struct MethodDescription {
   std::string name;     ///< on the command line and in table files: "sun"
   std::string title;    ///< "Sun et al. (2013)"
   std::string verdict;  ///< what a flagged loop is, in one line
@@ -57,6 +68,13 @@ struct AssessmentMethodInfo {
   bool names_channels = false;  ///< Assessment::flagged_channels
   bool tells_sources = false;   ///< CvAssessment::source
   std::vector<AssessmentNumberInfo> numbers;
+};
+
+/// A method that this program has.
+struct AssessmentMethodInfo : MethodDescription {
+  /// Further numbers on the loops of a study of named scenarios, in which every CV is looked at; may be
+  /// empty.
+  std::function<std::vector<AssessmentNumberInfo>()> scenario_numbers;
   /// `context` must outlive the method. Throws InputError for options that do not fit the study.
   std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext& context)> make;
 };

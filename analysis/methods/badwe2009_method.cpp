@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/badwe2009.hpp"
-#include "analysis/methods/methods.hpp"
 
 namespace mpm {
 namespace {
@@ -77,7 +77,7 @@ class Badwe2009 final : public AssessmentMethod {
         assessment.numbers.push_back({"partial_correlation", channel.correlation.peak, cv, mv});
         assessment.numbers.push_back({"strength", strength, cv, mv});
       }
-      assessment.cvs.push_back({flagged, largest, ExperimentKind::none});
+      assessment.cvs.push_back({flagged, largest, FaultSource::none});
       assessment.flagged = assessment.flagged || flagged;
       assessment.score = std::max(assessment.score, largest);
     }
@@ -91,17 +91,18 @@ class Badwe2009 final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo badwe2009_method() {
-  return {.name = "badwe2009",
-          .title = "Badwe et al. (2009)",
-          .verdict = "some prediction error follows an MV: a strong partial correlation",
-          .requirements = {.moving_mvs = true},
-          .locates_cvs = true,
-          .names_channels = true,
-          .tells_sources = false,
-          .numbers = {{"partial_correlation", NumberScope::channel,
-                       "correlation of eps1 and eps2 (2.5, 2.6) at the lag where it is largest"},
-                      {"strength", NumberScope::channel, "its size over its confidence band"}},
-          .make = [](const AssessmentContext& context) { return std::make_unique<Badwe2009>(context); }};
+  return {{.name = "badwe2009",
+           .title = "Badwe et al. (2009)",
+           .verdict = "some prediction error follows an MV: a strong partial correlation",
+           .requirements = {.moving_mvs = true},
+           .locates_cvs = true,
+           .names_channels = true,
+           .tells_sources = false,
+           .numbers = {{"partial_correlation", NumberScope::channel,
+                        "correlation of eps1 and eps2 (2.5, 2.6) at the lag where it is largest"},
+                       {"strength", NumberScope::channel, "its size over its confidence band"}}},
+          {},
+          [](const AssessmentContext& context) { return std::make_unique<Badwe2009>(context); }};
 }
 
 }  // namespace mpm

@@ -8,8 +8,8 @@
 
 #include "analysis/indicators/acf_comparison.hpp"
 #include "analysis/indicators/diagnosis.hpp"
+#include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/designed_output.hpp"
-#include "analysis/methods/methods.hpp"
 #include "analysis/statistics/variance.hpp"
 
 namespace mpm {
@@ -110,26 +110,26 @@ class Badwe2010 final : public AssessmentMethod {
 
 AssessmentMethodInfo badwe2010_method() {
   return {
-      .name = "badwe2010",
-      .title = "Badwe et al. (2010)",
-      .verdict =
-          "the mismatch has an impact: Ivar of some CV against its designed output lies outside the "
-          "band of impact",
-      .requirements = {.setpoints = true, .moving_setpoints = true},
-      .locates_cvs = true,
-      .names_channels = false,
-      .tells_sources = false,
-      .numbers = {{"ivar", NumberScope::cv,
-                   "var(y - y_set)/var(y0 - y_set) (3.24), y0 the designed output (3.7)"},
-                  {"sqr", NumberScope::cv, "sum over the samples of |y_basis - y0| (3.31)"},
-                  {"fit_sd", NumberScope::cv, "%Fit (3.32) of the output-error model of S_d (3.3)"},
-                  {"fit_dgk", NumberScope::cv, "%Fit (3.32) of that of Delta G K (3.5); none for y = y_hat"},
-                  {"order_sd", NumberScope::cv, "order of the model of S_d"},
-                  {"order_dgk", NumberScope::cv, "order of the model of Delta G K"},
-                  {"decay_lag_ratio", NumberScope::cv,
-                   "decay lag of the autocorrelation of y - y_set over that of y0 - y_set"},
-                  {"oscillates", NumberScope::cv, "1 when y - y_set oscillates and y0 - y_set does not"}},
-      .make = [](const AssessmentContext& context) { return std::make_unique<Badwe2010>(context); }};
+      {.name = "badwe2010",
+       .title = "Badwe et al. (2010)",
+       .verdict = "the mismatch has an impact: Ivar of some CV against its designed output lies outside the "
+                  "band of impact",
+       .requirements = {.setpoints = true, .moving_setpoints = true},
+       .locates_cvs = true,
+       .names_channels = false,
+       .tells_sources = false,
+       .numbers = {{"ivar", NumberScope::cv,
+                    "var(y - y_set)/var(y0 - y_set) (3.24), y0 the designed output (3.7)"},
+                   {"sqr", NumberScope::cv, "sum over the samples of |y_basis - y0| (3.31)"},
+                   {"fit_sd", NumberScope::cv, "%Fit (3.32) of the output-error model of S_d (3.3)"},
+                   {"fit_dgk", NumberScope::cv, "%Fit (3.32) of that of Delta G K (3.5); none for y = y_hat"},
+                   {"order_sd", NumberScope::cv, "order of the model of S_d"},
+                   {"order_dgk", NumberScope::cv, "order of the model of Delta G K"},
+                   {"decay_lag_ratio", NumberScope::cv,
+                    "decay lag of the autocorrelation of y - y_set over that of y0 - y_set"},
+                   {"oscillates", NumberScope::cv, "1 when y - y_set oscillates and y0 - y_set does not"}}},
+      {},
+      [](const AssessmentContext& context) { return std::make_unique<Badwe2010>(context); }};
 }
 
 }  // namespace mpm

@@ -1,17 +1,34 @@
 #include "analysis/methods/method_table.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "analysis/methods/methods.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
 
+// The one list of all methods, in the order in which people read them: NAME stands for the function
+// NAME_method() of the source NAME_method.cpp in this folder.
+// clang-format off
+#define MPM_EACH_METHOD(method)                                                \
+  method(botelho)   /* the chain of the thesis, appendix A2 */                 \
+  method(sun)       /* model quality index, appendix A1.1 */                   \
+  method(badwe2009) /* partial correlations, appendix A1.2 */                  \
+  method(badwe2010) /* designed outputs, section 3.1 */                        \
+  method(yu_qin)    /* variability against a benchmark, section 2.2.2, A1.3 */ \
+  method(sse)       /* simulation errors against a benchmark (4.17), (6.21) */
+// clang-format on
+
+#define MPM_DECLARE(name) AssessmentMethodInfo name##_method();
+MPM_EACH_METHOD(MPM_DECLARE)
+#undef MPM_DECLARE
+
 const std::vector<AssessmentMethodInfo>& assessment_methods() {
-  static const std::vector<AssessmentMethodInfo> methods{
-      botelho_method(), sun_method(), badwe2009_method(), badwe2010_method(), yu_qin_method(), sse_method(),
-  };
+#define MPM_CALL(name) name##_method(),
+  static const std::vector<AssessmentMethodInfo> methods{MPM_EACH_METHOD(MPM_CALL)};
+#undef MPM_CALL
   return methods;
 }
 
@@ -21,6 +38,28 @@ const AssessmentMethodInfo& assessment_method(std::string_view name) {
       return method;
   throw InputError("method", fmt::format("'{}'", name),
                    fmt::format("{}", fmt::join(assessment_method_names(), ", ")));
+}
+
+std::vector<std::string> study_methods(const Study& study) {
+  return known_methods(study.methods, "methods.names");
+}
+
+std::vector<std::string> known_methods(const std::vector<std::string>& names, const std::string& key) {
+  const std::vector<std::string> known = assessment_method_names();
+  const auto refuse = [&](const std::string& found) {
+    throw InputError(key, found, fmt::format("each once: {}; or all", fmt::join(known, ", ")));
+  };
+  if (names == std::vector<std::string>{"all"})
+    return known;
+  if (names.empty())
+    refuse("no method");
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (std::find(known.begin(), known.end(), *name) == known.end())
+      refuse(fmt::format("'{}'", *name));
+    if (std::find(names.begin(), name, *name) != name)
+      refuse(fmt::format("'{}' twice", *name));
+  }
+  return names;
 }
 
 std::vector<std::string> assessment_method_names() {

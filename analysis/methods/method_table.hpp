@@ -14,6 +14,13 @@ const std::vector<AssessmentMethodInfo>& assessment_methods();
 /// The method of this name. Throws InputError, with the known names, when there is none.
 const AssessmentMethodInfo& assessment_method(std::string_view name);
 
+/// The names of the methods of a study, "all" spelled out. Throws InputError for an unknown method, one that
+/// is named twice, or none.
+std::vector<std::string> study_methods(const Study& study);
+
+/// The same for a list of names; `key` is for messages.
+std::vector<std::string> known_methods(const std::vector<std::string>& names, const std::string& key);
+
 /// The names of all methods, in their order.
 std::vector<std::string> assessment_method_names();
 

@@ -20,7 +20,7 @@ std::string listed(const std::vector<std::pair<bool, const char*>>& words) {
 
 }  // namespace
 
-std::string needs_text(const AssessmentMethodInfo& method) {
+std::string needs_text(const MethodDescription& method) {
   const AssessmentRequirements& needs = method.requirements;
   return listed({{needs.setpoints && !needs.moving_setpoints, "setpoints"},
                  {needs.moving_setpoints, "setpoints that move"},
@@ -28,7 +28,7 @@ std::string needs_text(const AssessmentMethodInfo& method) {
                  {needs.moving_mvs, "MVs that move"}});
 }
 
-std::string answers_text(const AssessmentMethodInfo& method) {
+std::string answers_text(const MethodDescription& method) {
   return listed({{method.locates_cvs, "the CV"},
                  {method.names_channels, "the channels"},
                  {method.tells_sources, "the source"}});

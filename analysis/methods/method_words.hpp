@@ -8,9 +8,9 @@ namespace mpm {
 
 /// What a method needs of a loop in words: "setpoints that move, a benchmark period"; "nothing else" of one
 /// that can do with records of any loop.
-std::string needs_text(const AssessmentMethodInfo& method);
+std::string needs_text(const MethodDescription& method);
 
 /// What a method tells of a loop besides its verdict, in words: "the CV, the source"; "nothing else".
-std::string answers_text(const AssessmentMethodInfo& method);
+std::string answers_text(const MethodDescription& method);
 
 }  // namespace mpm

@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "analysis/indicators/simulation_error.hpp"
-#include "analysis/methods/methods.hpp"
+#include "analysis/methods/assessment_method.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/error.hpp"
@@ -58,18 +58,17 @@ class SimulationErrorMonitor final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo sse_method() {
-  return {.name = "sse",
-          .title = "simulation errors (SSE)",
-          .verdict = "the mean squared simulation error of some CV is above that of the benchmark",
-          .requirements = {.benchmark = true},
-          .locates_cvs = true,
-          .numbers = {{"tsse", NumberScope::loop, "sum of the SSE of all CVs (6.21)"},
-                      {"sse", NumberScope::cv, "norm of y - y_sim (4.17)"},
-                      {"ratio", NumberScope::cv,
-                       "mean square of y - y_sim over that of the benchmark; 1 for the same errors"}},
-          .make = [](const AssessmentContext& context) {
-            return std::make_unique<SimulationErrorMonitor>(context);
-          }};
+  return {{.name = "sse",
+           .title = "simulation errors (SSE)",
+           .verdict = "the mean squared simulation error of some CV is above that of the benchmark",
+           .requirements = {.benchmark = true},
+           .locates_cvs = true,
+           .numbers = {{"tsse", NumberScope::loop, "sum of the SSE of all CVs (6.21)"},
+                       {"sse", NumberScope::cv, "norm of y - y_sim (4.17)"},
+                       {"ratio", NumberScope::cv,
+                        "mean square of y - y_sim over that of the benchmark; 1 for the same errors"}}},
+          {},
+          [](const AssessmentContext& context) { return std::make_unique<SimulationErrorMonitor>(context); }};
 }
 
 }  // namespace mpm

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/methods.hpp"
+#include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/model_quality.hpp"
 #include "plants/error.hpp"
 
@@ -143,18 +143,20 @@ class Sun final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo sun_method() {
-  return {.name = "sun",
-          .title = "Sun et al. (2013)",
-          .verdict = "the model is poor: MQI, or without weights the index of a CV, lies below the tolerance",
-          .requirements = {.setpoints = true},
-          .locates_cvs = true,
-          .names_channels = false,
-          .tells_sources = false,
-          .numbers = {{"mqi", NumberScope::loop, "weighted squares of e^d over those of e^p (2.4)"},
-                      {"imqi", NumberScope::cv, "|e^d| / |e^p| of the CV (4.3)"},
-                      {"mqi_cv", NumberScope::cv, "(2.4) of the CV alone, the square of iMQI"},
-                      {"order", NumberScope::cv, "MO1 of its high-order ARX model (2.1)"}},
-          .make = [](const AssessmentContext& context) { return std::make_unique<Sun>(context); }};
+  return {
+      {.name = "sun",
+       .title = "Sun et al. (2013)",
+       .verdict = "the model is poor: MQI, or without weights the index of a CV, lies below the tolerance",
+       .requirements = {.setpoints = true},
+       .locates_cvs = true,
+       .names_channels = false,
+       .tells_sources = false,
+       .numbers = {{"mqi", NumberScope::loop, "weighted squares of e^d over those of e^p (2.4)"},
+                   {"imqi", NumberScope::cv, "|e^d| / |e^p| of the CV (4.3)"},
+                   {"mqi_cv", NumberScope::cv, "(2.4) of the CV alone, the square of iMQI"},
+                   {"order", NumberScope::cv, "MO1 of its high-order ARX model (2.1)"}}},
+      {},
+      [](const AssessmentContext& context) { return std::make_unique<Sun>(context); }};
 }
 
 }  // namespace mpm

@@ -93,14 +93,6 @@ Eigen::VectorXd cosines(const std::vector<VariabilityDirection>& directions, Var
   return subspace_cosines(columns);
 }
 
-std::vector<Eigen::Index> above(const Eigen::VectorXd& cosines, double limit) {
-  std::vector<Eigen::Index> cvs;
-  for (Eigen::Index i = 0; i < cosines.size(); ++i)
-    if (cosines(i) > limit)
-      cvs.push_back(i);
-  return cvs;
-}
-
 }  // namespace
 
 void VariabilityOptions::validate() const {
@@ -122,14 +114,6 @@ std::string_view to_string(VariabilityChange change) {
 
 std::string_view to_string(VariabilityStatus status) {
   return status == VariabilityStatus::ok ? "ok" : "singular benchmark";
-}
-
-std::vector<Eigen::Index> VariabilityComparison::worse_cvs() const {
-  return above(cos_worse, beta);
-}
-
-std::vector<Eigen::Index> VariabilityComparison::better_cvs() const {
-  return above(cos_better, beta);
 }
 
 VariabilityComparison compare_variability(const Eigen::Ref<const Eigen::MatrixXd>& benchmark,

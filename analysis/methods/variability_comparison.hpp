@@ -56,15 +56,12 @@ std::string_view to_string(VariabilityStatus status);
 /// The result of a comparison of a monitored period with a benchmark period.
 struct VariabilityComparison {
   VariabilityStatus status = VariabilityStatus::ok;
-  double i_v = std::numeric_limits<double>::quiet_NaN();   ///< I_v (2.7), the product of all mu
-  std::vector<VariabilityDirection> directions;            ///< ny of them, mu descending
-  Eigen::VectorXd cos_worse;                               ///< cos theta^w (2.12) of each CV
-  Eigen::VectorXd cos_better;                              ///< cos theta^b (2.13) of each CV
-  double beta = std::numeric_limits<double>::quiet_NaN();  ///< above it a CV belongs to a subspace (2.14)
-
-  /// CVs whose cosine is above beta: to be held responsible for the change. A CV can be in both lists.
-  std::vector<Eigen::Index> worse_cvs() const;
-  std::vector<Eigen::Index> better_cvs() const;
+  double i_v = std::numeric_limits<double>::quiet_NaN();  ///< I_v (2.7), the product of all mu
+  std::vector<VariabilityDirection> directions;           ///< ny of them, mu descending
+  Eigen::VectorXd cos_worse;                              ///< cos theta^w (2.12) of each CV
+  Eigen::VectorXd cos_better;                             ///< cos theta^b (2.13) of each CV
+  /// (2.14): a CV whose cosine is above it is to be held responsible for the change, and may be for both.
+  double beta = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Compares the variability of the control errors of two periods, after Yu and Qin (2008), section 2.2.2 and

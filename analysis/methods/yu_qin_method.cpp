@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/methods.hpp"
+#include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/variability_comparison.hpp"
 #include "plants/error.hpp"
 
@@ -92,20 +92,22 @@ class YuQin final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo yu_qin_method() {
-  return {.name = "yu-qin",
-          .title = "Yu and Qin (2008)",
-          .verdict = "along some direction the variance of the control errors is above that of the benchmark",
-          .requirements = {.setpoints = true, .benchmark = true},
-          .locates_cvs = true,
-          .numbers = {{"i_v", NumberScope::loop, "det cov e / det cov e of the benchmark (2.7)"},
-                      {"mu_max", NumberScope::loop, "largest ratio of variances (2.8)"},
-                      {"mu_min", NumberScope::loop, "smallest ratio of variances (2.8)"},
-                      {"beta", NumberScope::loop, "limit of the cosines (2.14)"},
-                      {"cos_worse", NumberScope::cv, "nearness to the worse directions (2.12)"},
-                      {"cos_better", NumberScope::cv, "nearness to the better directions (2.13)"},
-                      {"worse", NumberScope::cv, "1 when cos_worse is above beta, 0 when not"},
-                      {"better", NumberScope::cv, "1 when cos_better is above beta, 0 when not"}},
-          .make = [](const AssessmentContext& context) { return std::make_unique<YuQin>(context); }};
+  return {
+      {.name = "yu-qin",
+       .title = "Yu and Qin (2008)",
+       .verdict = "along some direction the variance of the control errors is above that of the benchmark",
+       .requirements = {.setpoints = true, .benchmark = true},
+       .locates_cvs = true,
+       .numbers = {{"i_v", NumberScope::loop, "det cov e / det cov e of the benchmark (2.7)"},
+                   {"mu_max", NumberScope::loop, "largest ratio of variances (2.8)"},
+                   {"mu_min", NumberScope::loop, "smallest ratio of variances (2.8)"},
+                   {"beta", NumberScope::loop, "limit of the cosines (2.14)"},
+                   {"cos_worse", NumberScope::cv, "nearness to the worse directions (2.12)"},
+                   {"cos_better", NumberScope::cv, "nearness to the better directions (2.13)"},
+                   {"worse", NumberScope::cv, "1 when cos_worse is above beta, 0 when not"},
+                   {"better", NumberScope::cv, "1 when cos_better is above beta, 0 when not"}}},
+      {},
+      [](const AssessmentContext& context) { return std::make_unique<YuQin>(context); }};
 }
 
 }  // namespace mpm

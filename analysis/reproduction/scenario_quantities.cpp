@@ -24,6 +24,7 @@ QuantityScope table_scope(NumberScope scope) {
     case NumberScope::cv:
       return QuantityScope::cv;
     case NumberScope::channel:
+    case NumberScope::cv_lag:  // of no method whose numbers stand in a table
       break;
   }
   return QuantityScope::channel;
@@ -84,10 +85,10 @@ ScenarioQuantities::ScenarioQuantities(const Study& study, const BasisCase& basi
   if (loop_.status != ControlStatus::ok)
     return;
   nominal_ = NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(loop_);
-  diagnosis_ = chain_.diagnose(loop_.y, nominal_, basis.trajectory.y);
+  diagnosis_ = chain_.diagnose(loop_.y, nominal_);
   by_cv_["ivar"] = diagnosis_.ivar;
   by_cv_["ivar_diag"] = diagnosis_.ivar_diag;
-  by_cv_["ivar_basis"] = diagnosis_.ivar_basis;
+  by_cv_["ivar_basis"] = basis_variance_indices(study, loop_.y, basis.trajectory.y);
   by_cv_["sse"] = simulation_errors(loop_.y, nominal_.y_sim);
   by_cv_["squared_error"] = by_cv_["sse"].cwiseAbs2();
   by_cv_["sqr"] = (basis.trajectory.y - nominal_.y0).cwiseAbs().rowwise().sum();
@@ -121,9 +122,9 @@ const std::vector<TableQuantity>& ScenarioQuantities::known() {
 }
 
 const std::vector<CvDiagnosis>& ScenarioQuantities::cvs() {
-  if (cvs_.empty())
-    cvs_ = chain_.diagnose_each(loop_.y, nominal_, diagnosis_.ivar_diag);
-  return cvs_;
+  if (diagnosis_.cvs.empty())
+    diagnosis_.cvs = chain_.diagnose_each(loop_.y, nominal_, diagnosis_.ivar_diag);
+  return diagnosis_.cvs;
 }
 
 const LoopInteraction& ScenarioQuantities::interaction() {

@@ -61,7 +61,6 @@ class ScenarioQuantities {
   DiagnosisChain chain_;
   Diagnosis diagnosis_;
   std::map<std::string, Eigen::VectorXd> by_cv_;
-  std::vector<CvDiagnosis> cvs_;  ///< empty until a quantity needs them
   std::optional<LoopInteraction> interaction_;
   std::optional<AssessedLoop> assessed_;  ///< none until a method looks at the loop
   std::map<std::string, Assessment> assessments_;

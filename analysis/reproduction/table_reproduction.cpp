@@ -22,15 +22,16 @@ std::optional<double> number_or_none(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
-/// The loops of a table: each study and each scenario is run once.
+/// The loops of a table: each scenario is run once.
 class Loops {
  public:
-  Loops(const ThesisTable& table, const QpSolverFactory& factory) : table_(table), factory_(factory) {}
+  Loops(const ThesisTable& table, const QpSolverFactory& factory, BasisCases& basis_cases)
+      : table_(table), factory_(factory), basis_cases_(basis_cases) {}
 
   /// The loop of this row; null with a remark when the basis case has none.
   ScenarioQuantities* of(const TableRow& row, std::string& remark) {
     const Study& study = table_.studies.at(row.variant);
-    const BasisCase& basis = basis_of(row.variant, study);
+    const BasisCase& basis = basis_cases_.of(study);
     if (basis.trajectory.status != ControlStatus::ok) {
       remark = basis.explanation;
       return nullptr;
@@ -46,16 +47,10 @@ class Loops {
   }
 
  private:
-  const BasisCase& basis_of(const std::string& variant, const Study& study) {
-    const auto found = basis_.find(variant);
-    return found != basis_.end() ? found->second
-                                 : basis_.emplace(variant, run_basis_case(study, factory_)).first->second;
-  }
-
   /// The basis case of a variant; none when it did not run to its end.
   std::optional<AssessedLoop> benchmark_of(const std::string& variant) {
     const Study& study = table_.studies.at(variant);
-    const BasisCase& basis = basis_of(variant, study);
+    const BasisCase& basis = basis_cases_.of(study);
     if (basis.trajectory.status != ControlStatus::ok)
       return std::nullopt;
     return assessed_loop(study, basis.point, basis.trajectory);
@@ -70,7 +65,7 @@ class Loops {
 
   const ThesisTable& table_;
   const QpSolverFactory& factory_;
-  std::map<std::string, BasisCase> basis_;
+  BasisCases& basis_cases_;
   /// By variant, scenario and benchmark.
   std::map<std::tuple<std::string, std::string, std::string>, std::unique_ptr<ScenarioQuantities>> loops_;
 };
@@ -195,9 +190,9 @@ std::vector<std::optional<std::string>> judge(const VerdictRule& rule,
   return judge_each(rule, numbers);
 }
 
-ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& factory) {
+ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& factory, BasisCases& basis_cases) {
   ReproducedTable result{table, {}};
-  Loops loops(result.table, factory);
+  Loops loops(result.table, factory, basis_cases);
   for (const TableRow& row : result.table.rows) {
     ReproducedRow reproduced{row.label, "", {}};
     ScenarioQuantities* const loop = loops.of(row, reproduced.remark);

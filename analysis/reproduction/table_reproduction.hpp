@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/basis/basis_cases.hpp"
 #include "scenarios/table_file.hpp"
 #include "solvers/qp_solver.hpp"
 
@@ -46,9 +47,10 @@ struct ReproducedTable {
 };
 
 /// Runs every loop of the table, and judges every cell by the rules of the table, ours and the thesis's by
-/// the same. Each study is run with its own basis case and S0. Throws InputError as run_basis_case(). The
-/// table must have been read with ScenarioQuantities::known().
-ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& factory);
+/// the same. Each study is run with its own basis case and S0, from `basis_cases`, where other tables that
+/// have the study find them. Throws InputError as run_basis_case(). The table must have been read with
+/// ScenarioQuantities::known().
+ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& factory, BasisCases& basis_cases);
 
 /// The verdicts on the numbers of one column or row: judge(numbers)[i] for `i` of them. For any_above and
 /// any_within `numbers` are those of the row that the rule is for; for rank those of the column. Entries are

@@ -31,7 +31,7 @@ Eigen::Index begin_of_answer(const Eigen::RowVectorXd& moves, const Eigen::RowVe
 }
 
 Eigen::MatrixXd identified_response(const Study& study, const OperatingPoint& point,
-                                    const ActiveReference& reference, bool into_range,
+                                    const ActiveConstraint& reference, bool into_range,
                                     const QpSolverFactory& factory, const StepObserver& observer) {
   const Eigen::RowVectorXd moves = identification_moves(study, reference, into_range);
   const Eigen::MatrixXd y = reference_record(study, point, reference, moves, factory, observer);
@@ -59,18 +59,18 @@ Eigen::MatrixXd identified_response(const Study& study, const OperatingPoint& po
 
 }  // namespace
 
-Eigen::RowVectorXd identification_moves(const Study& study, const ActiveReference& reference,
+Eigen::RowVectorXd identification_moves(const Study& study, const ActiveConstraint& reference,
                                         bool into_range) {
   const Eigen::Index length = study.sensitivity.samples;
   const Eigen::Index N = std::max(kShortestRecord, 4 * length);
   const Eigen::Index shortest = std::max<Eigen::Index>(1, length / 12);
   const Eigen::Index longest = std::max<Eigen::Index>(shortest, length / 2);
-  const bool upwards = (reference.kind == ReferenceKind::upper_limit) != into_range;
+  const bool upwards = (reference.kind == ConstraintKind::upper_limit) != into_range;
   RandomStream stream(study.seed, static_cast<std::uint64_t>(reference.cv), StreamId::identification);
   Eigen::RowVectorXd moves = Eigen::RowVectorXd::Zero(N);
   double level = 0.0;
   for (Eigen::Index k = 1; k < N;) {
-    if (reference.kind == ReferenceKind::setpoint)
+    if (reference.kind == ConstraintKind::setpoint)
       level = study.sensitivity.step_size * stream.uniform(-1.0, 1.0);
     else
       level += (upwards ? 0.5 : -0.5) * study.sensitivity.step_size * stream.uniform();
@@ -87,11 +87,11 @@ NominalSensitivity box_jenkins_sensitivity(const Study& study, const OperatingPo
                                            const QpSolverFactory& factory, const StepObserver& observer) {
   NominalSensitivity sensitivity{study.cv_count(), point.active, {}};
   const StepDirection direction = study.sensitivity.step_direction;
-  for (const ActiveReference& reference : point.active) {
+  for (const ActiveConstraint& reference : point.active) {
     const auto response = [&](bool into_range) {
       return identified_response(study, point, reference, into_range, factory, observer);
     };
-    const bool both = direction == StepDirection::mean && reference.kind != ReferenceKind::setpoint;
+    const bool both = direction == StepDirection::mean && reference.kind != ConstraintKind::setpoint;
     sensitivity.step_response.push_back(both ? Eigen::MatrixXd(0.5 * (response(true) + response(false)))
                                              : response(direction == StepDirection::into_range));
   }

@@ -12,7 +12,7 @@ namespace mpm {
 /// A setpoint goes to random levels within +-step_size. A soft limit goes one way, by steps of up to half of
 /// step_size, since the controller answers the two ways differently (docs/methods.md, T0): into the range or,
 /// with `into_range` false, out of it.
-Eigen::RowVectorXd identification_moves(const Study& study, const ActiveReference& reference,
+Eigen::RowVectorXd identification_moves(const Study& study, const ActiveConstraint& reference,
                                         bool into_range);
 
 /// T0 as Box-Jenkins models, one of each CV for each reference, each from a simulation in which that

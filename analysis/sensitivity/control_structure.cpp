@@ -23,11 +23,11 @@ std::vector<ControlStructure> control_structures(const Study& study, const Traje
     for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
       const double lower = options.cv_soft.lower(cv), upper = options.cv_soft.upper(cv);
       if (options.has_setpoint(cv))
-        structure.active.push_back({cv, ReferenceKind::setpoint});
+        structure.active.push_back({cv, ConstraintKind::setpoint});
       else if (at_or_above(y(cv, k), upper))
-        structure.active.push_back({cv, ReferenceKind::upper_limit});
+        structure.active.push_back({cv, ConstraintKind::upper_limit});
       else if (at_or_below(y(cv, k), lower))
-        structure.active.push_back({cv, ReferenceKind::lower_limit});
+        structure.active.push_back({cv, ConstraintKind::lower_limit});
     }
     for (Eigen::Index mv = 0; mv < u.rows(); ++mv)
       if (at_or_below(u(mv, k), options.mv_hard.lower(mv)) ||

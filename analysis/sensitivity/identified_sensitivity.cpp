@@ -17,7 +17,6 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// The row of a CV that does not move.
 IdentifiedRow row_at_rest(Eigen::Index n_ref, Eigen::Index N) {
   IdentifiedRow row;
-  row.at_rest = true;
   row.validation_fit = kNan;
   row.identification.status = IdentificationStatus::noise_free;
   row.identification.samples = N;

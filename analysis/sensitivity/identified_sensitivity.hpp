@@ -26,12 +26,11 @@ struct IdentifiedSensitivityOptions {
 
 /// One CV's part of an identified T0.
 struct IdentifiedRow {
-  /// On the whole record, of the selected orders. Its model has one input a reference.
+  /// On the whole record, of the selected orders. Its model has one input a reference; for a CV that stands
+  /// still (to rounding) no reference has an effect: the model is 0, and the status noise_free.
   Identification identification;
   /// %Fit (3.32) on the validation data, of the model from the estimation data alone. NaN for a CV at rest.
   double validation_fit = 0.0;
-  /// The CV stands still (to rounding): no reference has an effect on it, and the model is 0.
-  bool at_rest = false;
 };
 
 /// T0 from a record of a closed loop.

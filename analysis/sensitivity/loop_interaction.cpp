@@ -95,7 +95,7 @@ LoopInteraction loop_interaction(const Study& study, const OperatingPoint& point
   if (count < 2)
     throw InputError("number of frequencies", fmt::format("{}", count), "2 or more");
   LoopInteraction result;
-  for (const ActiveReference& reference : sensitivity.active)
+  for (const ActiveConstraint& reference : sensitivity.active)
     result.cvs.push_back(reference.cv);
   if (result.cvs.empty() || sensitivity.step_response.front().cols() == 0 || !has_weight(sensitivity))
     return result;

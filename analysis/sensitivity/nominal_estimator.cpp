@@ -35,7 +35,10 @@ Eigen::MatrixXd NominalEstimator::simulated(const Trajectory& loop) const {
 }
 
 NominalOutputs NominalEstimator::estimate(const Trajectory& loop) {
-  const Eigen::MatrixXd y_sim = simulated(loop);
+  return estimate(loop, simulated(loop));
+}
+
+NominalOutputs NominalEstimator::estimate(const Trajectory& loop, const Eigen::MatrixXd& y_sim) {
   if (study_.sensitivity.structure == SensitivityStructure::operating_point)
     return nominal_outputs(sensitivity_, loop.y, y_sim);
   const std::vector<ControlStructure> structures = control_structures(study_, loop, y_sim);

@@ -32,6 +32,8 @@ class NominalEstimator {
 
   /// y_sim, y0 and y0_diag of a loop that ran to its end. Throws InputError as nominal_sensitivity().
   NominalOutputs estimate(const Trajectory& loop);
+  /// The same where y_sim, that of simulated(), is known.
+  NominalOutputs estimate(const Trajectory& loop, const Eigen::MatrixXd& y_sim);
 
  private:
   const NominalSensitivity& sensitivity_of(const ControlStructure& structure);

@@ -14,11 +14,11 @@
 namespace mpm {
 namespace {
 
-ActiveReference limit_reference(Eigen::Index cv, bool upper) {
-  return {cv, upper ? ReferenceKind::upper_limit : ReferenceKind::lower_limit};
+ActiveConstraint limit_reference(Eigen::Index cv, bool upper) {
+  return {cv, upper ? ConstraintKind::upper_limit : ConstraintKind::lower_limit};
 }
 
-ActiveReference nearest_limit(const Study& study, Eigen::Index cv, const Eigen::VectorXd& y) {
+ActiveConstraint nearest_limit(const Study& study, Eigen::Index cv, const Eigen::VectorXd& y) {
   const Limits& soft = study.controller.cv_soft;
   return limit_reference(cv, std::abs(soft.upper(cv) - y(cv)) < std::abs(y(cv) - soft.lower(cv)));
 }
@@ -29,12 +29,12 @@ bool contains(const std::vector<Eigen::Index>& list, Eigen::Index i) {
 
 /// The setpoints, and of the CVs in ranges those of `cvs` at the limit they are nearest to; in the order of
 /// the CVs.
-std::vector<ActiveReference> references(const Study& study, const std::vector<Eigen::Index>& cvs,
-                                        const Eigen::VectorXd& y) {
-  std::vector<ActiveReference> active;
+std::vector<ActiveConstraint> references(const Study& study, const std::vector<Eigen::Index>& cvs,
+                                         const Eigen::VectorXd& y) {
+  std::vector<ActiveConstraint> active;
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
     if (study.controller.has_setpoint(cv))
-      active.push_back({cv, ReferenceKind::setpoint});
+      active.push_back({cv, ConstraintKind::setpoint});
     else if (contains(cvs, cv))
       active.push_back(nearest_limit(study, cv, y));
   return active;
@@ -50,16 +50,16 @@ std::vector<Eigen::Index> cvs_at_limit(const Study& study, const Eigen::VectorXd
 }
 
 /// Where the reference lies while T0 is determined.
-double reference_value(const Study& study, const OperatingPoint& point, const ActiveReference& reference) {
-  if (reference.kind == ReferenceKind::setpoint || !study.controller.has_targets())
+double reference_value(const Study& study, const OperatingPoint& point, const ActiveConstraint& reference) {
+  if (reference.kind == ConstraintKind::setpoint || !study.controller.has_targets())
     return point.y(reference.cv);
   const Limits& soft = study.controller.cv_soft;
-  return (reference.kind == ReferenceKind::upper_limit ? soft.upper : soft.lower)(reference.cv);
+  return (reference.kind == ConstraintKind::upper_limit ? soft.upper : soft.lower)(reference.cv);
 }
 
 /// The limit of `soft` that the reference is.
-double& limit_of(Limits& soft, const ActiveReference& reference) {
-  return (reference.kind == ReferenceKind::upper_limit ? soft.upper : soft.lower)(reference.cv);
+double& limit_of(Limits& soft, const ActiveConstraint& reference) {
+  return (reference.kind == ConstraintKind::upper_limit ? soft.upper : soft.lower)(reference.cv);
 }
 
 /// The controller of A3 b and d: only the setpoints and the active limits are left.
@@ -70,23 +70,23 @@ MpcOptions relaxed_options(const Study& study, const OperatingPoint& point) {
     options.mv_hard.lower(mv) = options.mv_hard.upper(mv) = point.u(mv);
   options.cv_hard = Limits::none(study.cv_count());
   options.cv_soft = Limits::none(study.cv_count());
-  for (const ActiveReference& reference : point.active)
-    if (reference.kind != ReferenceKind::setpoint)
+  for (const ActiveConstraint& reference : point.active)
+    if (reference.kind != ConstraintKind::setpoint)
       limit_of(options.cv_soft, reference) = reference_value(study, point, reference);
   return options;
 }
 
 Eigen::VectorXd setpoints_at_rest(const Study& study, const OperatingPoint& point) {
   Eigen::VectorXd y_set = Eigen::VectorXd::Zero(study.cv_count());
-  for (const ActiveReference& reference : point.active)
-    if (reference.kind == ReferenceKind::setpoint)
+  for (const ActiveConstraint& reference : point.active)
+    if (reference.kind == ConstraintKind::setpoint)
       y_set(reference.cv) = reference_value(study, point, reference);
   return y_set;
 }
 
 /// Response of the outputs per unit of a step of the reference, `step` in CV units.
 Eigen::MatrixXd reference_response(const Study& study, const OperatingPoint& point,
-                                   const ActiveReference& reference, double step,
+                                   const ActiveConstraint& reference, double step,
                                    const QpSolverFactory& factory, const StepObserver& observer) {
   const Eigen::Index samples = study.sensitivity.samples;
   const Eigen::RowVectorXd moves = Eigen::RowVectorXd::Constant(samples + 1, step);
@@ -94,15 +94,15 @@ Eigen::MatrixXd reference_response(const Study& study, const OperatingPoint& poi
 }
 
 Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& point,
-                                  const ActiveReference& reference, const QpSolverFactory& factory,
+                                  const ActiveConstraint& reference, const QpSolverFactory& factory,
                                   const StepObserver& observer) {
   const auto response = [&](double step) {
     return reference_response(study, point, reference, step, factory, observer);
   };
   const double size = study.sensitivity.step_size;
-  if (reference.kind == ReferenceKind::setpoint)
+  if (reference.kind == ConstraintKind::setpoint)
     return response(size);
-  const double into_range = reference.kind == ReferenceKind::upper_limit ? -size : size;
+  const double into_range = reference.kind == ConstraintKind::upper_limit ? -size : size;
   if (!study.controller.has_targets())  // nothing draws a CV after a limit that leaves it
     return response(into_range);
   switch (study.sensitivity.step_direction) {
@@ -118,13 +118,13 @@ Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& poin
 
 }  // namespace
 
-std::string_view to_string(ReferenceKind kind) {
+std::string_view to_string(ConstraintKind kind) {
   switch (kind) {
-    case ReferenceKind::lower_limit:
+    case ConstraintKind::lower_limit:
       return "lower limit";
-    case ReferenceKind::upper_limit:
+    case ConstraintKind::upper_limit:
       return "upper limit";
-    case ReferenceKind::setpoint:
+    case ConstraintKind::setpoint:
       return "setpoint";
   }
   return "unknown";
@@ -165,18 +165,8 @@ Eigen::MatrixXd NominalSensitivity::static_gain() const {
   return gain;
 }
 
-double NominalSensitivity::unsettled() const {
-  double largest = 0.0;
-  for (const Eigen::MatrixXd& response : step_response) {
-    const Eigen::Index tail = std::max<Eigen::Index>(1, response.cols() / 10);
-    const Eigen::MatrixXd change = response.rightCols(tail).colwise() - response.rightCols<1>().col(0);
-    largest = std::max(largest, change.cwiseAbs().maxCoeff());
-  }
-  return largest;
-}
-
 Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point,
-                                 const ActiveReference& reference,
+                                 const ActiveConstraint& reference,
                                  const Eigen::Ref<const Eigen::RowVectorXd>& moves,
                                  const QpSolverFactory& factory, const StepObserver& observer) {
   const MpcOptions options = relaxed_options(study, point);
@@ -193,7 +183,7 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
   const Eigen::VectorXd rest = plant.output();
 
   const auto move_reference = [&](double by) {
-    if (reference.kind == ReferenceKind::setpoint) {
+    if (reference.kind == ConstraintKind::setpoint) {
       Eigen::VectorXd moved = y_set;
       moved(reference.cv) += by;
       controller.set_setpoints(moved);
@@ -226,7 +216,7 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
 NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint& point,
                                        const QpSolverFactory& factory, const StepObserver& observer) {
   NominalSensitivity sensitivity{study.cv_count(), point.active, {}};
-  for (const ActiveReference& reference : point.active)
+  for (const ActiveConstraint& reference : point.active)
     sensitivity.step_response.push_back(directed_response(study, point, reference, factory, observer));
   return sensitivity;
 }

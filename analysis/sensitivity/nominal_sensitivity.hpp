@@ -14,26 +14,26 @@
 namespace mpm {
 
 /// What the controller holds a CV at.
-enum class ReferenceKind : std::int8_t { lower_limit = 0, upper_limit = 1, setpoint = 2 };
+enum class ConstraintKind : std::int8_t { lower_limit = 0, upper_limit = 1, setpoint = 2 };
 
 /// "lower limit", "upper limit" or "setpoint".
-std::string_view to_string(ReferenceKind kind);
+std::string_view to_string(ConstraintKind kind);
 
 /// A CV at its setpoint, or at one of its soft limits.
-struct ActiveReference {
+struct ActiveConstraint {
   Eigen::Index cv;
-  ReferenceKind kind;
+  ConstraintKind kind;
 
-  auto operator<=>(const ActiveReference&) const = default;
+  auto operator<=>(const ActiveConstraint&) const = default;
 };
 
 /// The operating point at which a study is assessed: what the target optimizer chooses for the nominal model
 /// at zero disturbances.
 struct OperatingPoint {
-  Eigen::VectorXd u;                    ///< nu
-  Eigen::VectorXd y;                    ///< ny
-  std::vector<ActiveReference> active;  ///< CVs at a setpoint or a soft limit
-  std::vector<Eigen::Index> fixed_mvs;  ///< MVs at a hard limit: not available for control
+  Eigen::VectorXd u;                     ///< nu
+  Eigen::VectorXd y;                     ///< ny
+  std::vector<ActiveConstraint> active;  ///< CVs at a setpoint or a soft limit
+  std::vector<Eigen::Index> fixed_mvs;   ///< MVs at a hard limit: not available for control
 };
 
 /// Where the loops of the study start (Mpc::nominal_target): the economic optimum at zero disturbances,
@@ -59,13 +59,11 @@ OperatingPoint with_fixed_mvs(const Study& study, OperatingPoint point);
 /// | T0(:, j) / s | step_response[a] | ny x L          | column l-1: outputs l samples after a unit step   |
 struct NominalSensitivity {
   Eigen::Index cv_count = 0;
-  std::vector<ActiveReference> active;
+  std::vector<ActiveConstraint> active;
   std::vector<Eigen::MatrixXd> step_response;
 
   /// Last values of the step responses, ny x ny; column j is zero for a CV inside its range.
   Eigen::MatrixXd static_gain() const;
-  /// Largest change over the last tenth of the responses: small when they have settled.
-  double unsettled() const;
 };
 
 /// Outputs of the controller on its own model while one reference moves, as deviations from rest (appendix
@@ -79,7 +77,7 @@ struct NominalSensitivity {
 ///
 /// @throws InputError when the relaxed controller has no solution
 Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point,
-                                 const ActiveReference& reference,
+                                 const ActiveConstraint& reference,
                                  const Eigen::Ref<const Eigen::RowVectorXd>& moves,
                                  const QpSolverFactory& factory, const StepObserver& observer = {});
 

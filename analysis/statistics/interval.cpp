@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <fmt/format.h>
 
@@ -21,12 +20,6 @@ void require_counts(std::int64_t hits, std::int64_t total) {
   if (hits < 0 || hits > total) {
     throw InputError("number of hits", fmt::format("{}", hits), fmt::format("0 to {} (the trials)", total));
   }
-}
-
-/// The p for which Beta(a, b) has the weight `probability` below p.
-double beta_quantile(std::int64_t a, std::int64_t b, double probability) {
-  return boost::math::quantile(
-      boost::math::beta_distribution<>(static_cast<double>(a), static_cast<double>(b)), probability);
 }
 
 }  // namespace
@@ -51,14 +44,6 @@ Interval wilson_interval(std::int64_t hits, std::int64_t total, double confidenc
   // At the ends the formula gives 0 or 1 only to rounding.
   return {hits == 0 ? 0.0 : std::max(0.0, middle - half_width),
           hits == total ? 1.0 : std::min(1.0, middle + half_width)};
-}
-
-Interval clopper_pearson_interval(std::int64_t hits, std::int64_t total, double confidence) {
-  require_counts(hits, total);
-  require_confidence(confidence);
-  const double tail = (1.0 - confidence) / 2.0;
-  return {hits == 0 ? 0.0 : beta_quantile(hits, total - hits + 1, tail),
-          hits == total ? 1.0 : beta_quantile(hits + 1, total - hits, 1.0 - tail)};
 }
 
 Rate rate(std::int64_t hits, std::int64_t total, double confidence) {

@@ -25,12 +25,6 @@ double two_sided_normal_quantile(double confidence);
 /// @throws InputError unless 0 <= hits <= total and 0 < confidence < 1
 Interval wilson_interval(std::int64_t hits, std::int64_t total, double confidence = 0.95);
 
-/// The exact interval of Clopper and Pearson (1934): each end is the p for which a result as extreme as k or
-/// more has the probability (1 - confidence)/2. [0, 1] for n = 0. Covers the truth with at least `confidence`
-/// for every p, and is wider than Wilson's for it.
-/// @throws InputError unless 0 <= hits <= total and 0 < confidence < 1
-Interval clopper_pearson_interval(std::int64_t hits, std::int64_t total, double confidence = 0.95);
-
 /// A share of trials with its uncertainty.
 struct Rate {
   std::int64_t hits = 0;

@@ -57,7 +57,7 @@ std::vector<Pair> finite_pairs(const Signal& x, const Signal& y, std::span<const
   pairs.reserve(static_cast<std::size_t>(x.size()));
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     if (std::isfinite(x[i]) && std::isfinite(y[i])) {
-      pairs.push_back({x[i], y[i], cluster.empty() ? 0 : cluster[static_cast<std::size_t>(i)]});
+      pairs.push_back({x[i], y[i], cluster[static_cast<std::size_t>(i)]});
     }
   }
   return pairs;
@@ -139,16 +139,6 @@ LinearFit fit_all(const std::vector<Sums>& clusters, const Centre& centre, Eigen
 }
 
 }  // namespace
-
-LinearFit linear_fit(const Signal& x, const Signal& y) {
-  require_same_length("x", x, "y", y);
-  const std::vector<Pair> pairs = finite_pairs(x, y, {});
-  if (pairs.empty()) {
-    return fit_all({}, {}, x.size());
-  }
-  const Centre centre = medians(pairs);
-  return fit_all(sums_by_cluster(pairs, centre), centre, x.size());
-}
 
 void ClusterBootstrapOptions::validate() const {
   if (replications < 100) {

@@ -11,7 +11,13 @@
 
 namespace mpm {
 
-/// A least-squares line y = intercept + slope x.
+/// A least-squares line y = intercept + slope x,
+///
+///   slope = Sxy/Sxx,   intercept = mean y - slope mean x,   R^2 = Sxy^2/(Sxx Syy)
+///
+/// with the centred sums Sxx, Sxy, Syy. Pairs with a NaN or an infinity (an index without a denominator) are
+/// left out and counted. All three results are NaN for fewer than 3 pairs or when x has no variance to
+/// rounding; R^2 alone is NaN when y has none.
 struct LinearFit {
   double slope = std::numeric_limits<double>::quiet_NaN();
   double intercept = std::numeric_limits<double>::quiet_NaN();
@@ -23,16 +29,6 @@ struct LinearFit {
   /// Number of pairs left out because a member is NaN or infinite.
   Eigen::Index left_out = 0;
 };
-
-/// Ordinary least squares,
-///
-///   slope = Sxy/Sxx,   intercept = mean y - slope mean x,   R^2 = Sxy^2/(Sxx Syy)
-///
-/// with the centred sums Sxx, Sxy, Syy. Pairs with a NaN or an infinity (an index without a denominator) are
-/// left out and counted. All three results are NaN for fewer than 3 pairs or when x has no variance to
-/// rounding; R^2 alone is NaN when y has none.
-/// @throws InputError when the lengths differ
-LinearFit linear_fit(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& y);
 
 /// Options of `cluster_bootstrap`.
 struct ClusterBootstrapOptions {
@@ -57,7 +53,7 @@ struct LinearFitIntervals {
   int replications_used = 0;
 };
 
-/// `linear_fit` with intervals by the cluster bootstrap (Davison and Hinkley 1997, section 3.8): whole
+/// The line with intervals by the cluster bootstrap (Davison and Hinkley 1997, section 3.8): whole
 /// clusters are drawn with replacement, as many as there are, and the line is fitted to their pairs; the
 /// interval lies between the quantiles (1 - confidence)/2 and (1 + confidence)/2 of the results (interpolated
 /// between order statistics). Clusters are the experiments, because the controlled variables of one

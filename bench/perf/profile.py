@@ -37,9 +37,10 @@ PARTS = [
     (2, "LinearPlant::advance", "plant (and the models of controllers)"),
     (1, "simulated_output", "y_sim"),
     (1, "nominal_outputs", "nominal outputs"),
-    (1, "DiagnosisChain::diagnose", "diagnosis"),
-    (2, "MpmScanner::scan", "I_MPM"),
-    (0, "aggregate", "aggregates"),
+    (1, "MethodPanel::assess", "assessment by the methods"),
+    (2, "DiagnosisChain::diagnose", "diagnosis of the chain"),
+    (3, "MpmScanner::scan", "I_MPM"),
+    (0, "study_findings", "findings"),
     (0, "write_archive", "archive"),
 ]
 

@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 
 #include "analysis/basis/basis_case.hpp"
-#include "bench/campaign_runner.hpp"
+#include "bench/campaign/campaign_runner.hpp"
 #include "bench/perf/benchmarks.hpp"
 #include "plants/error.hpp"
 
@@ -46,8 +46,7 @@ void add_diagnosis(const Study& study) {
     for ([[maybe_unused]] const auto pass : state) {
       const Eigen::MatrixXd y_sim =
           simulated_output(study.plant.G, study.controller.sample_time, basis.point.u, loop.u, loop.d);
-      benchmark::DoNotOptimize(
-          chain.diagnose(loop.y, nominal_outputs(basis.sensitivity, loop.y, y_sim), loop.y));
+      benchmark::DoNotOptimize(chain.diagnose(loop.y, nominal_outputs(basis.sensitivity, loop.y, y_sim)));
     }
   };
   benchmark::RegisterBenchmark("diagnosis", run)->Unit(benchmark::kMillisecond);
@@ -55,7 +54,7 @@ void add_diagnosis(const Study& study) {
 
 void add_study(const Study& study, std::int64_t experiments) {
   const auto run = [&study, experiments](benchmark::State& state) {
-    CampaignOptions options;
+    RunOptions options;
     options.experiments = experiments;
     options.solver = "active-set";
     options.store = StorePolicy::none;

@@ -18,14 +18,12 @@ Campaign read_groups(const std::filesystem::path& path) {
   const Hdf5Group root = Hdf5File::open(path).root();
   Campaign campaign = read_heading(root, file);
   const Study& study = campaign.study;
-  campaign.records = read_experiments(root, study, file);
-  read_scenarios(root, study, campaign.records, file);
-  read_trajectories(root, study, campaign.records, file);
-  read_s0_sensitivity(root, study, campaign.records, file);
+  campaign.methods = read_methods(root, study, file);
+  campaign.study.methods = method_names(campaign);
+  campaign.records = read_records(root, study, forms_of(campaign), file);
+  read_method_times(root, campaign);
   campaign.audit = read_audit(root, file);
-  read_comparison(root, campaign, file);
   campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
-  read_basis_acf(root, study, campaign.basis, file);
   campaign.basis.sensitivity_direct = read_nominal_direct(root, study, campaign.basis.sensitivity, file);
   campaign.basis.sensitivity_fixed = read_nominal_fixed(root, study, file);
   return campaign;
@@ -37,21 +35,21 @@ Campaign read_groups(const std::filesystem::path& path) {
 
 }  // namespace
 
-void write_archive(const std::filesystem::path& path, const Campaign& campaign) {
+void write_archive(const std::filesystem::path& path, const Campaign& campaign,
+                   const StudyFindings& findings) {
   const Hdf5File file = Hdf5File::create(path.string());
   Hdf5Group root = file.root();
   write_heading(root, campaign);
-  write_experiments(root, campaign);
+  write_records(root, campaign);
+  write_methods(root, campaign, findings);
   write_scenarios(root, campaign);
   write_basis(root, campaign.study, campaign.basis);
   write_nominal(root, campaign.study, campaign.basis.sensitivity);
   write_nominal_direct(root, campaign.study, campaign.basis);
   write_nominal_fixed(root, campaign.study, campaign.basis.sensitivity_fixed);
-  write_trajectories(root, campaign);
-  write_s0_sensitivity(root, campaign);
+  write_s0_perturbation(root, campaign);
   write_audit(root, campaign.audit);
-  write_aggregate(root, campaign);
-  write_comparison(root, campaign);
+  write_findings(root, campaign, findings);
   write_file_atomically(path, file.image());
 }
 

@@ -8,15 +8,16 @@ namespace mpm {
 
 /// Version of the archive format. A reader refuses another major version; a minor version adds to the format
 /// without changing what was there.
-inline constexpr int kArchiveMajorVersion = 1;
-inline constexpr int kArchiveMinorVersion = 3;
+inline constexpr int kArchiveMajorVersion = 2;
+inline constexpr int kArchiveMinorVersion = 0;
 
-/// Writes a campaign as an archive (docs/file_format.md), all or nothing (write_file_atomically()): HDF5 that
-/// also opens as netCDF-4. The data sets depend on the study and the records only; what differs between two
-/// runs of a study (time, command, jobs) is in attributes.
+/// Writes a campaign and what it has found as an archive (docs/file_format.md), all or nothing
+/// (write_file_atomically()): HDF5 that also opens as netCDF-4. The data sets depend on the study and the
+/// records only; what differs between two runs of a study (time, command, jobs) is in attributes.
 ///
 /// Errors: ArchiveError when the file cannot be written; what was at `path` is then as it was.
-void write_archive(const std::filesystem::path& path, const Campaign& campaign);
+void write_archive(const std::filesystem::path& path, const Campaign& campaign,
+                   const StudyFindings& findings);
 
 /// Reads an archive. All numbers come back bit for bit; the study is read again from the attribute `scenario`
 /// and gets the seed in `master_seed`.

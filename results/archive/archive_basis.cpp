@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/statistics/autocorrelation.hpp"
 #include "results/archive/archive_groups.hpp"
 #include "results/archive/column_io.hpp"
@@ -32,8 +33,8 @@ VariableText active_limit_text() {
           {{-1, 0, 1, 2}, {"lower", "none", "upper", "setpoint"}}};
 }
 
-std::int8_t active_limit(ReferenceKind kind) {
-  return kind == ReferenceKind::lower_limit ? std::int8_t{-1} : static_cast<std::int8_t>(kind);
+std::int8_t active_limit(ConstraintKind kind) {
+  return kind == ConstraintKind::lower_limit ? std::int8_t{-1} : static_cast<std::int8_t>(kind);
 }
 
 VariableText fixed_mv_text() {
@@ -83,8 +84,7 @@ Eigen::MatrixXd autocorrelations(const Eigen::MatrixXd& signal, Eigen::Index row
 
 /// For people: they follow from the signals and are not read back.
 void write_autocorrelations(Hdf5Group& group, const Study& study, const BasisCase& basis) {
-  const Eigen::Index max_lag =
-      std::min(2 * study.controller.prediction_horizon, study.simulation.samples - 1);
+  const Eigen::Index max_lag = lag_count(study) - 1;
   write_sample_dimension(group, "lag", "lag in samples", "lag_time", study, 0, max_lag + 1);
   for (const auto& [of, signal] : {std::pair{"y", &basis.trajectory.y}, std::pair{"y0", &basis.nominal.y0},
                                    std::pair{"y0_diag", &basis.nominal.y0_diag}}) {
@@ -94,6 +94,13 @@ void write_autocorrelations(Hdf5Group& group, const Study& study, const BasisCas
         {std::string("acf_") + of, std::string("autocorrelation of ") + of, "1", "", {}, "lag_time"},
         {&values}, study.cv_count(), max_lag + 1);
   }
+}
+
+/// What the chain says of the basis case, for the self-check: its numbers, without a verdict.
+AssessmentRecord chain_assessment(const Study& study, std::vector<AssessmentNumber> numbers) {
+  Assessment assessment;
+  assessment.numbers = std::move(numbers);
+  return kept(assessment_forms(study, {std::string(kChainMethod)}).front(), assessment);
 }
 
 }  // namespace
@@ -113,12 +120,11 @@ void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis) {
                    row_count(column, study), samples);
   for (const auto& [text, member] : nominal_columns(study))
     write_matrices(group, {"cv", "sample"}, text, {&(basis.nominal.*member)}, study.cv_count(), samples);
-  for (const CvColumn<Diagnosis>& column : variance_columns())
-    write_vectors(group, {"cv"}, column.text, {&(basis.diagnosis.*column.member)}, study.cv_count());
   write_columns(group, {}, loop_columns(), {&basis.trajectory});
-  write_columns(group, {}, verdict_columns(study), {&basis.diagnosis});
   write_columns(group, {}, solver_columns(), {&basis.trajectory.solver});
   write_autocorrelations(group, study, basis);
+  if (basis.trajectory.status == ControlStatus::ok)
+    write_numbers(group, chain_assessment(study, chain_numbers(basis.diagnosis)));
 }
 
 BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivity sensitivity,
@@ -133,7 +139,6 @@ BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivi
 
   const Eigen::Index samples = study.simulation.samples;
   read_columns(group, {}, loop_columns(), {&basis.trajectory}, file);
-  read_columns(group, {}, verdict_columns(study), {&basis.diagnosis}, file);
   read_columns(group, {}, solver_columns(), {&basis.trajectory.solver}, file);
   for (const SignalColumn& column : signal_columns(study))
     read_matrices(group, column.text.name, false, {&(basis.trajectory.*column.member)},
@@ -145,10 +150,10 @@ BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivi
     if (complete)
       basis.nominal.*member = signal;
   }
-  for (const CvColumn<Diagnosis>& column : variance_columns()) {
-    const auto vectors = read_vectors(group, column.text.name, false, 1, study.cv_count());
-    if (complete)
-      basis.diagnosis.*column.member = vectors.front();
+  if (complete) {
+    AssessmentRecord assessment = chain_assessment(study, {});
+    read_numbers(group, assessment, file);
+    basis.diagnosis = diagnosis_of(assessment);
   }
   return basis;
 }

@@ -18,10 +18,23 @@ void write_heading(Hdf5Group& root, const Campaign& campaign);
 /// Checks that the file is an archive of this version, and reads study and info.
 Campaign read_heading(const Hdf5Group& root, const std::string& file);
 
-/// Root: the table of experiments.
-void write_experiments(Hdf5Group& root, const Campaign& campaign);
-std::vector<ExperimentRecord> read_experiments(const Hdf5Group& root, const Study& study,
-                                               const std::string& file);
+/// Every table of record_tables(): the root group, /methods/NAME, /trajectories (no such group when no loop
+/// was kept) and /s0_perturbation.
+void write_records(Hdf5Group& root, const Campaign& campaign);
+std::vector<ExperimentRecord> read_records(const Hdf5Group& root, const Study& study,
+                                           const AssessmentForms& forms, const std::string& file);
+
+/// The numbers of one assessment as variables of a group that has the dimensions `cv` and `lag`; `assessment`
+/// must have its form, and the status ok.
+void write_numbers(Hdf5Group& group, const AssessmentRecord& assessment);
+void read_numbers(const Hdf5Group& group, AssessmentRecord& assessment, const std::string& file);
+
+/// Attributes of /methods/NAME: who the methods are. Their groups have been written.
+void write_methods(Hdf5Group& root, const Campaign& campaign, const StudyFindings& findings);
+/// The methods of an archive, also those that this program does not have.
+std::vector<CampaignMethod> read_methods(const Hdf5Group& root, const Study& study, const std::string& file);
+/// Their processor time, which is in no record.
+void read_method_times(const Hdf5Group& root, Campaign& campaign);
 
 /// /nominal: T0.
 void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity);
@@ -40,19 +53,13 @@ std::optional<NominalSensitivity> read_nominal_direct(const Hdf5Group& root, con
                                                       const NominalSensitivity& identified,
                                                       const std::string& file);
 
-/// /s0_sensitivity: Ivar_diag with a modified S0; no such group when the study asks for none. What follows
-/// from the rest (fits, ratios) is not read back.
-void write_s0_sensitivity(Hdf5Group& root, const Campaign& campaign);
-void read_s0_sensitivity(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
-                         const std::string& file);
+/// /s0_perturbation beside the records in it: what follows from them and is not read back (fits, ratios). No
+/// such group when the study asks for none.
+void write_s0_perturbation(Hdf5Group& root, const Campaign& campaign);
 
-/// /scenarios: every CV of the named scenarios on its own; no such group in a study of random experiments.
-/// Names, truth and totals follow from the rest and are not read back.
+/// /scenarios: names and truth of the named scenarios, which follow from the study and are not read back; no
+/// such group in a study of random experiments.
 void write_scenarios(Hdf5Group& root, const Campaign& campaign);
-void read_scenarios(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
-                    const std::string& file);
-/// The autocorrelations of the basis case, which stand in /scenarios.
-void read_basis_acf(const Hdf5Group& root, const Study& study, BasisCase& basis, const std::string& file);
 
 /// /basis: the operating point and the run without mismatch and disturbance.
 void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis);
@@ -60,22 +67,12 @@ void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis);
 BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivity sensitivity,
                      const std::string& file);
 
-/// /trajectories: the loops that were kept; no such group when none was.
-void write_trajectories(Hdf5Group& root, const Campaign& campaign);
-void read_trajectories(const Hdf5Group& root, const Study& study, std::vector<ExperimentRecord>& records,
-                       const std::string& file);
-
 /// /audit: what the audit found; no such group without audited steps.
 void write_audit(Hdf5Group& root, const std::vector<AuditedStep>& audit);
 std::vector<AuditedStep> read_audit(const Hdf5Group& root, const std::string& file);
 
-/// /aggregate: all numbers of a StudyAggregate. They follow from the rest and are not read back.
-void write_aggregate(Hdf5Group& root, const Campaign& campaign);
-
-/// /comparison: what methods of assessment say of the loops, and how often they are right; no such group
-/// until a comparison was made. Rates and paired tests follow from the rest and are not read back.
-void write_comparison(Hdf5Group& root, const Campaign& campaign);
-/// Puts the comparison into `campaign`, whose study and records have been read; nothing without the group.
-void read_comparison(const Hdf5Group& root, Campaign& campaign, const std::string& file);
+/// /findings: the rows of the table of findings, and the arrays behind them. They follow from the rest and
+/// are not read back.
+void write_findings(Hdf5Group& root, const Campaign& campaign, const StudyFindings& findings);
 
 }  // namespace mpm

@@ -8,6 +8,7 @@
 #include "results/archive/archive.hpp"
 #include "results/archive/archive_groups.hpp"
 #include "results/files/archive_error.hpp"
+#include "scenarios/resolved_study.hpp"
 #include "scenarios/study_file.hpp"
 
 namespace mpm {
@@ -16,6 +17,13 @@ namespace {
 constexpr const char* kFileType = "mpmbench archive";
 constexpr const char* kConventions = "CF-1.8";
 
+/// Of an archive of an earlier format: the command that made it makes it anew.
+std::string how_to_make_anew(const Hdf5Group& root, const std::vector<std::int32_t>& version) {
+  if (version.empty() || version.front() >= kArchiveMajorVersion)
+    return "";
+  return fmt::format("; this program makes it anew by: {}", root.attribute<std::string>("command"));
+}
+
 void require_archive(const Hdf5Group& root, const std::string& file) {
   const auto file_type = root.attribute<std::string>("filetype");
   if (file_type != kFileType)
@@ -23,8 +31,9 @@ void require_archive(const Hdf5Group& root, const std::string& file) {
         fmt::format("{}: attribute '/filetype': found '{}'; allowed: '{}'", file, file_type, kFileType));
   const auto version = root.attribute<std::vector<std::int32_t>>("format_version");
   if (version.size() != 2 || version.front() != kArchiveMajorVersion)
-    throw ArchiveError(fmt::format("{}: attribute '/format_version': found {}; allowed: {}.x", file,
-                                   fmt::join(version, "."), kArchiveMajorVersion));
+    throw ArchiveError(fmt::format("{}: attribute '/format_version': found {}; allowed: {}.x{}", file,
+                                   fmt::join(version, "."), kArchiveMajorVersion,
+                                   how_to_make_anew(root, version)));
 }
 
 Study read_study(const Hdf5Group& root, const std::string& file) {
@@ -41,6 +50,8 @@ Study read_study(const Hdf5Group& root, const std::string& file) {
 
 void write_heading(Hdf5Group& root, const Campaign& campaign) {
   const CampaignInfo& info = campaign.info;
+  Study study = campaign.study;
+  study.methods = method_names(campaign);  // some may have been added after the run
   const Attributes list{
       {"filetype", kFileType},
       {"format_version", std::vector{std::int32_t{kArchiveMajorVersion}, std::int32_t{kArchiveMinorVersion}}},
@@ -56,7 +67,8 @@ void write_heading(Hdf5Group& root, const Campaign& campaign) {
       {"jobs", std::int32_t{info.jobs}},
       {"audit_share", info.audit_share},
       {"audit_seconds", info.audit_seconds},
-      {"scenario", campaign.study.source}};
+      {"scenario", campaign.study.source},
+      {"study_resolved", resolved_study(study)}};
   for (const auto& [name, value] : list)
     root.write_attribute(name, value);
 }

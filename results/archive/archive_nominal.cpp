@@ -37,10 +37,10 @@ Eigen::Index position(const Study& study, const std::string& name, const char* g
   return found - cvs.begin();
 }
 
-ReferenceKind reference_kind(std::int8_t side, const char* group, const std::string& file) {
-  if (side < 0 || side > static_cast<std::int8_t>(ReferenceKind::setpoint))
+ConstraintKind constraint_kind(std::int8_t side, const char* group, const std::string& file) {
+  if (side < 0 || side > static_cast<std::int8_t>(ConstraintKind::setpoint))
     throw ArchiveError(fmt::format("{}: '/{}/side': found {}; allowed: 0, 1 or 2", file, group, side));
-  return static_cast<ReferenceKind>(side);
+  return static_cast<ConstraintKind>(side);
 }
 
 void write_sensitivity(Hdf5Group& group, const std::string& title, const Study& study,
@@ -81,7 +81,7 @@ NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, con
   std::vector<Eigen::MatrixXd*> responses;
   for (std::size_t a = 0; a < active.size(); ++a) {
     sensitivity.active.push_back(
-        {position(study, active[a], name, file), reference_kind(side[a], name, file)});
+        {position(study, active[a], name, file), constraint_kind(side[a], name, file)});
     responses.push_back(&sensitivity.step_response[a]);
   }
   read_matrices(group, kResponse, true, responses, study.cv_count(), lags);

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/experiment/experiment.hpp"
-#include "analysis/findings/comparison.hpp"
+#include "analysis/findings/study_findings.hpp"
 #include "scenarios/audit.hpp"
 #include "scenarios/study.hpp"
 
@@ -25,8 +26,9 @@ struct CampaignInfo {
   double audit_seconds = 0.0;  ///< processor time of the audit
 };
 
-/// By which program and command a comparison of methods was made.
-struct ComparisonInfo {
+/// A method that has assessed the loops of a campaign, and by which program and command it did.
+struct CampaignMethod {
+  std::shared_ptr<const AssessmentForm> form;
   std::string mpmbench_version;
   std::string git_sha;
   std::string command;
@@ -35,15 +37,30 @@ struct ComparisonInfo {
 /// Everything that a run of a study leaves behind.
 ///
 /// `study.seed` is the seed that was used; it may differ from the one in `study.source`. `records` are the
-/// experiments that were run, in the order of their index.
+/// experiments that were run, in the order of their index, each with an assessment of every method.
 struct Campaign {
   Study study;
   CampaignInfo info;
   BasisCase basis;
+  std::vector<CampaignMethod> methods;
   std::vector<ExperimentRecord> records;
-  std::vector<AuditedStep> audit;             ///< in the order of experiment and step
-  std::optional<Comparison> comparison = {};  ///< of methods of assessment; none until one was made
-  ComparisonInfo comparison_info = {};
+  std::vector<AuditedStep> audit;  ///< in the order of experiment and step
 };
+
+/// The forms of its methods, and their names.
+AssessmentForms forms_of(const Campaign& campaign);
+std::vector<std::string> method_names(const Campaign& campaign);
+
+/// Notes the command line by which the campaign was run and assessed.
+void note_command(Campaign& campaign, const std::string& command_line);
+
+/// The place of the thesis's chain among its methods; as many as there are methods when it is none of them.
+std::size_t chain_place(const Campaign& campaign);
+
+/// How many of its loops some method has looked at.
+std::int64_t assessed_loops(const Campaign& campaign);
+
+/// What it has found.
+StudyFindings findings_of(const Campaign& campaign);
 
 }  // namespace mpm

@@ -1,41 +1,39 @@
 #include "results/files/utf8.hpp"
 
-#include <nlohmann/json.hpp>
+#include <cstdint>
+#include <iterator>
+
+#include <utf8.h>
 
 namespace mpm {
 namespace {
 
-constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
+constexpr std::uint32_t kReplacement = 0xFFFD;
+
+/// `text` as UTF-8 in which each code point that is not `allowed` is U+FFFD.
+template <class Allowed>
+std::string replaced(std::string_view text, Allowed allowed) {
+  std::string valid;
+  utf8::replace_invalid(text.begin(), text.end(), std::back_inserter(valid), kReplacement);
+  std::string result;
+  for (auto at = valid.cbegin(); at != valid.cend();) {
+    const std::uint32_t code = utf8::unchecked::next(at);
+    utf8::unchecked::append(allowed(code) ? code : kReplacement, std::back_inserter(result));
+  }
+  return result;
+}
 
 }  // namespace
 
 std::string proper_utf8(std::string_view text) {
-  using nlohmann::json;
-  // The JSON library replaces what is no UTF-8 when it writes a text.
-  const std::string quoted = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
-  const auto valid = json::parse(quoted).get<std::string>();
-  std::string proper;
-  proper.reserve(valid.size());
-  for (const char c : valid) {
-    if (c == '\0')
-      proper += kReplacement;
-    else
-      proper += c;
-  }
-  return proper;
+  return replaced(text, [](std::uint32_t code) { return code != 0; });
 }
 
 std::string plain_text(std::string_view text) {
-  std::string result;
-  for (const char c : proper_utf8(text)) {
-    const auto code = static_cast<unsigned char>(c);
-    const bool control = (code < 0x20 && c != '\t' && c != '\n') || code == 0x7F;
-    result += control ? std::string(kReplacement) : std::string(1, c);
-  }
-  for (const std::string_view none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE, U+FFFF
-    for (std::size_t at = result.find(none); at != std::string::npos; at = result.find(none, at))
-      result.replace(at, none.size(), kReplacement);
-  return result;
+  return replaced(text, [](std::uint32_t code) {
+    const bool control = (code < 0x20 && code != '\t' && code != '\n') || code == 0x7F;
+    return !control && code != 0xFFFE && code != 0xFFFF;
+  });
 }
 
 }  // namespace mpm

@@ -5,8 +5,8 @@
 
 namespace mpm {
 
-/// `text` as HDF5, netCDF and JSON take it: UTF-8 without NUL. Each byte that does not belong to a UTF-8
-/// sequence, and each NUL, is replaced by U+FFFD; a proper text comes back as it is.
+/// `text` as HDF5, netCDF and JSON take it: UTF-8 without NUL. Each sequence of bytes that is none of UTF-8,
+/// and each NUL, is replaced by U+FFFD; a proper text comes back as it is.
 std::string proper_utf8(std::string_view text);
 
 /// `text` as XML 1.0 and a terminal take it: UTF-8 in which each control character but tab and line feed, and

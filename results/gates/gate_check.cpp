@@ -5,7 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "analysis/findings/method_rates.hpp"
+#include "analysis/methods/chain_numbers.hpp"
+#include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
@@ -13,28 +14,30 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-AggregateValue plain_value(std::string name, std::string description, double value, std::int64_t count) {
-  return {std::move(name), std::move(description), value, {kNaN, kNaN}, count};
+Finding plain_value(std::string name, std::string meaning, double value, std::int64_t count) {
+  const Finding finding{
+      .name = std::move(name), .label = {}, .meaning = std::move(meaning), .has_interval = false};
+  return finding.with(value, {kNaN, kNaN}, count);
 }
 
-Gate limit(const AggregateValue& value, double minimum, double maximum) {
+Gate limit(const Finding& value, double minimum, double maximum) {
   Gate gate{value.name, minimum, maximum};
-  gate.reason = value.description;
+  gate.reason = value.meaning;
   return gate;
 }
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 /// Without these a campaign could pass because the experiments that would have failed a gate are missing.
-void judge_campaign(const Campaign& campaign, const StudyAggregate& total, const GateFile& file,
+void judge_campaign(const Campaign& campaign, const StudyFindings& total, const GateFile& file,
                     std::vector<GateResult>& results) {
-  const AggregateValue healthy =
+  const Finding healthy =
       plain_value("self_check", "1: the basis case is healthy; otherwise no number means anything",
                   campaign.basis.healthy ? 1.0 : 0.0, 1);
-  const AggregateValue experiments = plain_value("experiments", "number of experiments",
-                                                 static_cast<double>(total.experiments), total.experiments);
-  const AggregateValue failed = plain_value("failed", "number of experiments without a result",
-                                            static_cast<double>(total.failed), total.experiments);
+  const Finding experiments = plain_value("experiments", "number of experiments",
+                                          static_cast<double>(total.experiments), total.experiments);
+  const Finding failed = plain_value("failed", "number of experiments without a result",
+                                     static_cast<double>(total.failed), total.experiments);
   results.push_back(judge(limit(healthy, 1.0, kNoLimit), healthy));
   results.push_back(
       judge(limit(experiments, static_cast<double>(file.minimum_experiments), kNoLimit), experiments));
@@ -55,33 +58,36 @@ void require_same_study(const Campaign& campaign, const Campaign& baseline, cons
 
 BaselineComparison compare(const Campaign& campaign, const Campaign& baseline, const std::string& archive) {
   require_same_study(campaign, baseline, archive);
-  const auto source = [&](const ExperimentRecord& record) { return source_verdict(campaign.study, record); };
+  const auto question = [&](Correctness (Judgement::*of)() const) {
+    return [&study = campaign.study, of](const ExperimentRecord& record) {
+      const AssessmentRecord* const chain = record.by(kChainMethod);
+      return chain == nullptr ? Correctness::not_judged : (judge(study, record, *chain).*of)();
+    };
+  };
   try {
-    return {archive, baseline.info, verdict_changes(baseline.records, campaign.records, location_verdict),
-            verdict_changes(baseline.records, campaign.records, source)};
+    return {archive,
+            baseline.info,
+            {{"located", "located",
+              judgement_changes(baseline.records, campaign.records, question(&Judgement::location))},
+             {"source_recognised", "source recognised",
+              judgement_changes(baseline.records, campaign.records, question(&Judgement::source))}}};
   } catch (const InputError& error) {
     throw InputError(fmt::format("baseline {}: {}", archive, error.what()));
   }
 }
 
-void judge_changes(const std::string& question, const VerdictChanges& changes, const BaselineLimits& limits,
+void judge_changes(const BaselineChanges& question, const BaselineLimits& limits,
                    std::vector<GateResult>& results) {
-  const std::string of = "baseline." + question;
-  const AggregateValue p_worse = plain_value(of + ".p_worse", "exact p-value of lost against gained verdicts",
-                                             changes.test.p_worse, changes.pairs);
+  const JudgementChanges& changes = question.changes;
+  const std::string of = fmt::format("baseline.{}", question.name);
+  const Finding p_worse = plain_value(of + ".p_worse", "exact p-value of lost against gained verdicts",
+                                      changes.test.p_worse, changes.pairs);
   results.push_back(judge(limit(p_worse, limits.significance, kNoLimit), p_worse));
   if (!limits.maximum_lost)
     return;
-  const AggregateValue lost = plain_value(of + ".lost", "verdicts that were right in the baseline",
-                                          static_cast<double>(changes.lost.size()), changes.pairs);
+  const Finding lost = plain_value(of + ".lost", "verdicts that were right in the baseline",
+                                   static_cast<double>(changes.lost.size()), changes.pairs);
   results.push_back(judge(limit(lost, -kNoLimit, static_cast<double>(*limits.maximum_lost)), lost));
-}
-
-/// The numbers of the comparison of methods with the intervals of `study`; none without a comparison.
-std::vector<AggregateValue> comparison_values(const Campaign& campaign, const Study& study) {
-  if (!campaign.comparison)
-    return {};
-  return named_values(summarise(*campaign.comparison, campaign.records, study));
 }
 
 }  // namespace
@@ -96,18 +102,20 @@ bool GateCheck::passed() const {
                       [this](const GateResult& result) { return stops(result); });
 }
 
-std::vector<std::string> gate_names(const Study& study) {
-  std::vector<std::string> names;
-  for (AggregateValue& value : named_values(aggregate(study, {})))
-    names.push_back(std::move(value.name));
-  return names;
+const BaselineChanges* BaselineComparison::of(const GateResult& result) const {
+  for (const BaselineChanges& question : questions)
+    for (const char* number : {"p_worse", "lost"})
+      if (result.gate.name == fmt::format("baseline.{}.{}", question.name, number))
+        return &question;
+  return nullptr;
 }
 
-std::vector<std::string> gate_names(const Campaign& campaign) {
-  std::vector<std::string> names = gate_names(campaign.study);
-  for (AggregateValue& value : comparison_values(campaign, campaign.study))
-    names.push_back(std::move(value.name));
-  return names;
+std::vector<Finding> gate_findings(const Study& study) {
+  return study_findings(study, assessment_forms(study, study_methods(study)), {}).rows;
+}
+
+std::vector<Finding> gate_findings(const Campaign& campaign) {
+  return study_findings(campaign.study, forms_of(campaign), {}).rows;
 }
 
 GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Campaign* baseline) {
@@ -116,21 +124,17 @@ GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Camp
   check.inconclusive = file.inconclusive;
   Study study = campaign.study;
   study.aggregate.confidence = check.confidence = file.confidence.value_or(study.aggregate.confidence);
-  const StudyAggregate total = aggregate(study, campaign.records);
+  const StudyFindings total = study_findings(study, forms_of(campaign), campaign.records);
   judge_campaign(campaign, total, file, check.results);
-  std::vector<AggregateValue> values = named_values(total);
-  for (AggregateValue& value : comparison_values(campaign, study))
-    values.push_back(std::move(value));
   for (const Gate& gate : file.gates) {
-    const auto value = std::find_if(values.begin(), values.end(),
-                                    [&](const AggregateValue& entry) { return entry.name == gate.name; });
-    assert(value != values.end());
-    check.results.push_back(judge(gate, *value));
+    const Finding* const finding = find_finding(total.rows, gate.name);
+    assert(finding != nullptr);
+    check.results.push_back(judge(gate, *finding));
   }
   if (file.baseline) {
     check.baseline = compare(campaign, *baseline, file.baseline->archive.string());
-    judge_changes("located", check.baseline->located, *file.baseline, check.results);
-    judge_changes("source_recognised", check.baseline->source_recognised, *file.baseline, check.results);
+    for (const BaselineChanges& question : check.baseline->questions)
+      judge_changes(question, *file.baseline, check.results);
   }
   return check;
 }

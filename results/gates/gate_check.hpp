@@ -5,17 +5,27 @@
 #include <vector>
 
 #include "analysis/findings/gate.hpp"
-#include "analysis/findings/verdict_changes.hpp"
+#include "analysis/findings/judgement_changes.hpp"
 #include "results/archive/campaign.hpp"
 #include "results/gates/gate_file.hpp"
 
 namespace mpm {
 
-/// How the verdicts on the experiments of a campaign differ from those of its baseline.
+/// How the judgements of one question differ between a campaign and its baseline.
+struct BaselineChanges {
+  const char* name;   ///< in the names of gates: "located"
+  const char* title;  ///< for people: "source recognised"
+  JudgementChanges changes;
+};
+
+/// How the verdicts of the chain on the experiments of a campaign differ from those of its baseline.
 struct BaselineComparison {
   std::string archive;
   CampaignInfo info;  ///< of the baseline
-  VerdictChanges located, source_recognised;
+  std::vector<BaselineChanges> questions;
+
+  /// The changes that a gate on the baseline is about; null for any other gate.
+  const BaselineChanges* of(const GateResult& result) const;
 };
 
 /// What the gates say of a campaign.
@@ -31,12 +41,10 @@ struct GateCheck {
   bool passed() const;
 };
 
-/// The names of the numbers that a gate can be put on: those of named_values() for this study.
-std::vector<std::string> gate_names(const Study& study);
-
-/// The names for this campaign: those for its study, and, when it has a comparison of methods,
-/// "compare.METHOD.RATE" as named_values(const ComparisonSummary&) has them.
-std::vector<std::string> gate_names(const Campaign& campaign);
+/// The findings that a gate can be put on: those of a run of this study, and of this campaign. Without
+/// values: the names and forms matter.
+std::vector<Finding> gate_findings(const Study& study);
+std::vector<Finding> gate_findings(const Campaign& campaign);
 
 /// Judges a campaign. Beside the gates of the file, every campaign has the gates `self_check` (the basis case
 /// is healthy), `experiments` (at least minimum_experiments) and `failed` (at most maximum_failed). With

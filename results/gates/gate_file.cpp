@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "results/summary/summary_parts.hpp"
+#include "analysis/methods/method_table.hpp"
 #include "scenarios/toml_file.hpp"
 #include "scenarios/toml_text.hpp"
 #include "scenarios/toml_values.hpp"
@@ -23,33 +23,39 @@ const std::vector<std::string>& gate_file_keys(std::string_view table) {
 
 /// Limits of a share are shares: a limit of 95 on it was meant as a percentage, and no result would ever show
 /// that it is wrong.
-NumberRule limit_rule(const std::string& name) {
-  return is_share(name) ? NumberRule{.low = 0, .high = 1, .low_included = true, .high_included = true}
-                        : NumberRule::finite();
+NumberRule limit_rule(const Finding& finding) {
+  return finding.is_share() ? NumberRule{.low = 0, .high = 1, .low_included = true, .high_included = true}
+                            : NumberRule::finite();
 }
 
-constexpr std::string_view kComparison = "compare.";
-
-bool is_of_comparison(const std::string& name) {
-  return name.starts_with(kComparison);
-}
-
-/// A gate on a comparison where there is none gets its own message: a list of other numbers would not help.
-void require_comparison(const TomlTable& table, const std::vector<std::string>& names) {
+/// A gate on a method that has not assessed the loops gets its own message: a list of other numbers would not
+/// help.
+void require_assessed(const TomlTable& table, const std::vector<Finding>& findings) {
   if (!table.has("aggregate"))
     return;
   const toml::value<std::string>* name = table.require("aggregate", "").as_string();
-  if (name != nullptr && is_of_comparison(name->get()) &&
-      std::none_of(names.begin(), names.end(), is_of_comparison))
-    table.refuse("aggregate", fmt::format("'{}', and the archive has no comparison of methods", name->get()),
-                 "this number for an archive that `mpmbench compare ARCHIVE -o OUT.h5` has written");
+  if (name == nullptr || find_finding(findings, name->get()) != nullptr)
+    return;
+  for (const AssessmentMethodInfo& method : assessment_methods())
+    if (name->get().starts_with(fmt::format("compare.{}.", method.name)) &&
+        std::none_of(findings.begin(), findings.end(),
+                     [&](const Finding& f) { return f.method == method.name; }))
+      table.refuse(
+          "aggregate", fmt::format("'{}', and the method has not assessed the archive", name->get()),
+          fmt::format("this number for an archive that `mpmbench compare ARCHIVE --methods {} -o OUT.h5` has "
+                      "written",
+                      method.name));
 }
 
-Gate read_gate(const TomlTable& table, const std::vector<std::string>& names) {
-  require_comparison(table, names);
+Gate read_gate(const TomlTable& table, const std::vector<Finding>& findings) {
+  require_assessed(table, findings);
+  std::vector<std::string> names;
+  for (const Finding& finding : findings)
+    names.push_back(finding.name);
+  const Finding& finding = findings[read_one_of(table, "aggregate", names)];
   Gate gate;
-  gate.name = names[read_one_of(table, "aggregate", names)];
-  const NumberRule rule = limit_rule(gate.name);
+  gate.name = finding.name;
+  const NumberRule rule = limit_rule(finding);
   gate.minimum = read_number_or(table, "minimum", rule, gate.minimum);
   gate.maximum = read_number_or(table, "maximum", rule, gate.maximum);
   if (!table.has("minimum") && !table.has("maximum"))
@@ -58,7 +64,7 @@ Gate read_gate(const TomlTable& table, const std::vector<std::string>& names) {
     table.refuse("maximum", fmt::format("{}", gate.maximum),
                  fmt::format("a number >= the minimum, {}", gate.minimum));
   gate.with_confidence = read_flag_or(table, "with_confidence", gate.with_confidence);
-  if (gate.with_confidence && !has_interval(gate.name))
+  if (gate.with_confidence && !finding.has_interval)
     table.refuse("with_confidence", "true", fmt::format("false: '{}' has no interval", gate.name));
   gate.minimum_count = read_whole_or(table, "minimum_count", 1, kMaxCount, gate.minimum_count);
   gate.reason = read_text_or(table, "reason", "");
@@ -87,7 +93,7 @@ const std::vector<StudyFileTable>& gate_file_tables() {
 }
 
 GateFile parse_gates(std::string_view text, const std::string& file_name,
-                     const std::vector<std::string>& names) {
+                     const std::vector<Finding>& findings) {
   const toml::table toml = parse_toml(text, file_name);
   const TomlTable document(toml, file_name, gate_file_keys(""));
   GateFile file;
@@ -103,12 +109,12 @@ GateFile parse_gates(std::string_view text, const std::string& file_name,
     file.baseline = read_baseline(document, std::filesystem::path(file_name).parent_path());
   if (document.has("gate") || !file.baseline)
     for (const TomlTable& table : document.tables("gate", gate_file_keys("gate[]")))
-      file.gates.push_back(read_gate(table, names));
+      file.gates.push_back(read_gate(table, findings));
   return file;
 }
 
-GateFile load_gates(const std::filesystem::path& path, const std::vector<std::string>& names) {
-  return parse_gates(read_toml_file(path, "a gate file"), path.string(), names);
+GateFile load_gates(const std::filesystem::path& path, const std::vector<Finding>& findings) {
+  return parse_gates(read_toml_file(path, "a gate file"), path.string(), findings);
 }
 
 }  // namespace mpm

@@ -37,14 +37,14 @@ struct GateFile {
 /// as those of the study file.
 const std::vector<StudyFileTable>& gate_file_tables();
 
-/// Reads gates on the numbers `names` from the text of a gate file. `file_name` is for messages, and a
+/// Reads gates on the `findings` from the text of a gate file. `file_name` is for messages, and a
 /// relative path in the text is relative to its folder.
 ///
 /// Errors: InputError as parse_study().
 GateFile parse_gates(std::string_view text, const std::string& file_name,
-                     const std::vector<std::string>& names);
+                     const std::vector<Finding>& findings);
 
 /// Reads a gate file. Errors: as parse_gates(), and InputError for a file that cannot be read.
-GateFile load_gates(const std::filesystem::path& path, const std::vector<std::string>& names);
+GateFile load_gates(const std::filesystem::path& path, const std::vector<Finding>& findings);
 
 }  // namespace mpm

@@ -1,52 +1,42 @@
 #include <algorithm>
 #include <sstream>
 
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
 #include <fmt/format.h>
+#include <pugixml.hpp>
 
 #include "results/files/utf8.hpp"
 #include "results/gates/gate_report.hpp"
-#include "results/gates/gate_words.hpp"
+#include "results/gates/gate_sentences.hpp"
 
 namespace mpm {
 namespace {
 
-using Tree = boost::property_tree::ptree;
-
-/// A path of one step: names here have dots, which the library would read as steps of a path.
-Tree& child(Tree& tree, const std::string& name) {
-  return tree.push_back({name, Tree()})->second;
+void set_attribute(pugi::xml_node element, const char* name, const std::string& value) {
+  element.append_attribute(name) = plain_text(value).c_str();
 }
 
-void set_attribute(Tree& element, const std::string& name, const std::string& value) {
-  const auto attributes = element.find("<xmlattr>");
-  Tree& list = attributes == element.not_found() ? child(element, "<xmlattr>")
-                                                 : element.to_iterator(attributes)->second;
-  child(list, name).data() = plain_text(value);
-}
-
-void add_case(Tree& suite, const GateCheck& check, const GateResult& result, const std::string& study) {
+void add_case(pugi::xml_node suite, const GateCheck& check, const GateResult& result,
+              const std::string& study) {
   const std::string sentence = explanation(result, check.confidence);
-  Tree& test_case = child(suite, "testcase");
+  pugi::xml_node test_case = suite.append_child("testcase");
   set_attribute(test_case, "classname", study);
   set_attribute(test_case, "name",
-                fmt::format("{} {}{}", result.gate.name, limit_text(result.gate),
+                fmt::format("{} {}{}", result.gate.name, limit_text(result),
                             result.gate.with_confidence ? " with confidence" : ""));
   if (check.stops(result)) {
-    Tree& failure = child(test_case, "failure");
+    pugi::xml_node failure = test_case.append_child("failure");
     set_attribute(failure, "message", sentence);
     set_attribute(failure, "type", std::string(to_string(result.outcome)));
-    failure.data() = plain_text(sentence + "\n" + details_text(check, result));
+    failure.text() = plain_text(sentence + "\n" + details_text(check, result)).c_str();
   } else if (result.outcome == GateOutcome::inconclusive) {
-    set_attribute(child(test_case, "skipped"), "message", sentence);
+    set_attribute(test_case.append_child("skipped"), "message", sentence);
   } else {
-    child(test_case, "system-out").data() = plain_text(sentence);
+    test_case.append_child("system-out").text() = plain_text(sentence).c_str();
   }
 }
 
-void add_property(Tree& properties, const std::string& name, const std::string& value) {
-  Tree& property = child(properties, "property");
+void add_property(pugi::xml_node properties, const std::string& name, const std::string& value) {
+  pugi::xml_node property = properties.append_child("property");
   set_attribute(property, "name", name);
   set_attribute(property, "value", value);
 }
@@ -60,14 +50,14 @@ std::string gates_junit(const GateCheck& check, const Campaign& campaign, const 
       std::count_if(check.results.begin(), check.results.end(), [&](const GateResult& result) {
         return result.outcome == GateOutcome::inconclusive && !check.stops(result);
       });
-  Tree document;
-  Tree& suite = child(child(document, "testsuites"), "testsuite");
+  pugi::xml_document document;
+  pugi::xml_node suite = document.append_child("testsuites").append_child("testsuite");
   set_attribute(suite, "name", "mpmbench check " + campaign.study.name);
   set_attribute(suite, "tests", fmt::format("{}", check.results.size()));
   set_attribute(suite, "failures", fmt::format("{}", failures));
   set_attribute(suite, "errors", "0");
   set_attribute(suite, "skipped", fmt::format("{}", skipped));
-  Tree& properties = child(suite, "properties");
+  pugi::xml_node properties = suite.append_child("properties");
   add_property(properties, "archive", archive);
   add_property(properties, "seed", fmt::format("{}", campaign.study.seed));
   add_property(properties, "solver", campaign.info.solver);
@@ -77,8 +67,7 @@ std::string gates_junit(const GateCheck& check, const Campaign& campaign, const 
     add_case(suite, check, result, campaign.study.name);
 
   std::ostringstream text;
-  boost::property_tree::write_xml(text, document,
-                                  boost::property_tree::xml_writer_make_settings<std::string>(' ', 2));
+  document.save(text, "  ", pugi::format_default, pugi::encoding_utf8);
   return text.str();
 }
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "results/gates/gate_report.hpp"
-#include "results/gates/gate_words.hpp"
+#include "results/gates/gate_sentences.hpp"
 #include "results/text/text_table.hpp"
 
 namespace mpm {
@@ -15,26 +15,27 @@ std::string gate_table(const GateCheck& check) {
   table.add({"gate", "limit", "judged by", "measured",
              fmt::format("{:g} % interval", 100.0 * check.confidence), "count", "margin", "outcome"});
   for (const GateResult& result : check.results)
-    table.add({result.gate.name, limit_text(result.gate), result.gate.with_confidence ? "interval" : "value",
+    table.add({result.gate.name, limit_text(result), result.gate.with_confidence ? "interval" : "value",
                measured_text(result), interval_text(result), fmt::format("{}", result.measured.count),
                margin_text(result), std::string(to_string(result.outcome))});
   return table.text(TextTable::LastColumn::words);
 }
 
-std::string changes_heading(const char* question, const VerdictChanges& changes) {
+std::string changes_heading(const char* question, const JudgementChanges& changes) {
   return fmt::format("{}: {} lost, {} gained among {} experiments, p = {:.3g} (two-sided {:.3g})\n", question,
                      changes.lost.size(), changes.gained.size(), changes.pairs, changes.test.p_worse,
                      changes.test.p_two_sided);
 }
 
 std::string baseline_text(const BaselineComparison& baseline) {
+  std::string text;
+  for (const BaselineChanges& each : baseline.questions)
+    text += changes_heading(each.title, each.changes) + changes_text(each.changes);
   return fmt::format("\nagainst the baseline {} (mpmbench {} ({}), solver {}):\n", baseline.archive,
                      baseline.info.mpmbench_version,
                      baseline.info.git_sha.empty() ? "unknown revision" : baseline.info.git_sha,
                      baseline.info.solver) +
-         changes_heading("located", baseline.located) + changes_text(baseline.located) +
-         changes_heading("source recognised", baseline.source_recognised) +
-         changes_text(baseline.source_recognised);
+         text;
 }
 
 std::string verdict_line(const GateCheck& check) {

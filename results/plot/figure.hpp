@@ -14,7 +14,6 @@ inline constexpr std::string_view kBlack = "#000000";
 inline constexpr std::string_view kOrange = "#E69F00";
 inline constexpr std::string_view kSky = "#56B4E9";
 inline constexpr std::string_view kGreen = "#009E73";
-inline constexpr std::string_view kYellow = "#F0E442";
 inline constexpr std::string_view kBlue = "#0072B2";
 inline constexpr std::string_view kVermillion = "#D55E00";
 inline constexpr std::string_view kPurple = "#CC79A7";

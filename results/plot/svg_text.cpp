@@ -1,8 +1,10 @@
 #include "results/plot/svg_text.hpp"
 
+#include <sstream>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <pugixml.hpp>
 
 #include "results/plot/gnuplot.hpp"
 #include "results/plot/plot_text.hpp"
@@ -10,82 +12,75 @@
 namespace mpm {
 namespace {
 
-/// What stands between `open` and `close`, from `from` on; empty when that is not there.
-std::string_view between(std::string_view text, std::string_view open, std::string_view close) {
-  const std::size_t begin = text.find(open);
-  if (begin == std::string_view::npos)
-    return {};
-  const std::size_t end = text.find(close, begin + open.size());
-  if (end == std::string_view::npos)
-    return {};
-  return text.substr(begin + open.size(), end - begin - open.size());
+/// Titles and descriptions of gnuplot's own (its series would all be called "gnuplot_plot_1"), effects that
+/// are not used, and groups that hold nothing.
+constexpr const char* kWaste = "//title | //desc | //filter | //g[not(@id) and not(*)]";
+
+void remove_waste(const pugi::xml_document& drawing) {
+  for (const pugi::xpath_node& found : drawing.select_nodes(kWaste))
+    found.parent().remove_child(found.node());
 }
 
-/// `text` with every `open`...`close` replaced by what `replacement` makes of the part between.
-template <class Replacement>
-std::string replaced(std::string_view text, std::string_view open, std::string_view close,
-                     Replacement replacement) {
-  std::string result;
-  for (;;) {
-    const std::size_t begin = text.find(open);
-    const std::size_t end = begin == std::string_view::npos ? begin : text.find(close, begin + open.size());
-    if (end == std::string_view::npos)
-      return result.append(text);
-    result.append(text.substr(0, begin));
-    result.append(replacement(text.substr(begin + open.size(), end - begin - open.size())));
-    text.remove_prefix(end + close.size());
+void put_before_ids(const pugi::xml_document& drawing, const std::string& id) {
+  for (const pugi::xpath_node& found : drawing.select_nodes("//@id"))
+    found.attribute() = fmt::format("{}-{}", id, found.attribute().value()).c_str();
+  for (const pugi::xpath_node& found : drawing.select_nodes("//@xlink:href"))
+    if (const std::string_view target = found.attribute().value(); target.starts_with('#'))
+      found.attribute() = fmt::format("#{}-{}", id, target.substr(1)).c_str();
+}
+
+/// The hypertext of a point, which gnuplot writes as gnuplot_svg.showHypertext(evt,'...').
+std::string hypertext(std::string_view call) {
+  const std::size_t begin = call.find('\'');
+  const std::size_t end = call.rfind('\'');
+  return begin == end ? std::string() : std::string(call.substr(begin + 1, end - begin - 1));
+}
+
+void name_points(const pugi::xml_document& drawing, const std::map<std::string, std::string>& names) {
+  for (const pugi::xpath_node& found : drawing.select_nodes("//g[@onmousemove]")) {
+    pugi::xml_node point = found.node();
+    const std::string key = hypertext(point.attribute("onmousemove").value());
+    const auto name = names.find(key);
+    point.remove_attributes();
+    point.append_attribute("class") = "point";
+    point.prepend_child("title").text() = shown_text(name == names.end() ? key : name->second).c_str();
   }
 }
 
-std::string without(std::string_view text, std::string_view open, std::string_view close) {
-  return replaced(text, open, close, [](std::string_view) { return std::string_view(); });
-}
-
-std::string exchanged(std::string_view text, std::string_view from, std::string_view to) {
-  return replaced(text, from, "", [&](std::string_view) { return to; });
-}
-
-/// Without titles and descriptions of gnuplot's own (its series would all be called "gnuplot_plot_1"),
-/// effects that are not used, and groups that hold nothing.
-std::string without_waste(std::string_view drawing) {
-  std::string text = without(drawing, "<title>", "</title>");
-  text = without(text, "<desc>", "</desc>");
-  text = without(text, "<filter ", "</filter>");
-  for (const char* colour : {"black", "white"})
-    text =
-        exchanged(text,
-                  fmt::format("<g fill=\"none\" color=\"{}\" stroke=\"currentColor\" stroke-width=\"1.00\" "
-                              "stroke-linecap=\"butt\" stroke-linejoin=\"miter\">\n</g>\n",
-                              colour),
-                  "");
-  return text;
+/// A drawing in a page has the attributes that it needs, and says what it shows.
+void describe(pugi::xml_node svg, const std::string& description) {
+  std::istringstream box(svg.attribute("viewBox").value());
+  std::string left, top, width, height;
+  box >> left >> top >> width >> height;
+  svg.remove_attributes();
+  svg.append_attribute("xmlns") = "http://www.w3.org/2000/svg";
+  svg.append_attribute("xmlns:xlink") = "http://www.w3.org/1999/xlink";
+  svg.append_attribute("width") = width.c_str();
+  svg.append_attribute("height") = height.c_str();
+  svg.append_attribute("viewBox") = fmt::format("{} {} {} {}", left, top, width, height).c_str();
+  svg.append_attribute("role") = "img";
+  svg.append_attribute("aria-label") = shown_text(description).c_str();
 }
 
 }  // namespace
 
 std::string svg_element(const std::string& drawing, const SvgText& text) {
-  const std::string_view box = between(drawing, "viewBox=\"0 0 ", "\"");
-  const std::size_t blank = box.find(' ');
-  const std::size_t tag = drawing.find("<svg");
-  const std::size_t body = drawing.find('>', tag);
-  if (blank == std::string_view::npos || tag == std::string::npos || body == std::string::npos)
+  pugi::xml_document document;
+  // A text may consist of blanks; those between elements mean nothing.
+  const auto parsed =
+      document.load_buffer(drawing.data(), drawing.size(), pugi::parse_default | pugi::parse_ws_pcdata_single,
+                           pugi::encoding_utf8);
+  const pugi::xml_node svg = document.child("svg");
+  if (!parsed || !svg.attribute("viewBox"))
     throw GnuplotError("gnuplot drew something that is no SVG");
 
-  std::string content = without_waste(std::string_view(drawing).substr(body + 1));
-  for (const char* quote : {"\"", "'"})  // in this order: new ids have double quotes
-    content = replaced(content, fmt::format(" id={}", quote), quote,
-                       [&](std::string_view id) { return fmt::format(" id=\"{}-{}\"", text.id, id); });
-  content = exchanged(content, "xlink:href='#", fmt::format("xlink:href='#{}-", text.id));
-  content = replaced(content, "<g onmousemove=\"gnuplot_svg.showHypertext(evt,'",
-                     "')\" onmouseout=\"gnuplot_svg.hideHypertext()\">", [&](std::string_view key) {
-                       const auto name = text.names.find(std::string(key));
-                       return fmt::format("<g class=\"point\"><title>{}</title>",
-                                          html_text(name == text.names.end() ? key : name->second));
-                     });
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
-      "width=\"{}\" height=\"{}\" viewBox=\"0 0 {}\" role=\"img\" aria-label=\"{}\">{}",
-      box.substr(0, blank), box.substr(blank + 1), box, html_text(text.description), content);
+  remove_waste(document);
+  put_before_ids(document, text.id);
+  name_points(document, text.names);
+  describe(svg, text.description);
+  std::ostringstream element;
+  svg.print(element, "", pugi::format_raw, pugi::encoding_utf8);
+  return element.str();
 }
 
 }  // namespace mpm

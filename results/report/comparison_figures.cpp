@@ -24,7 +24,7 @@ constexpr std::array<Pen, 7> kPens{{
 }};
 const Pen kChance{colour::kGrey, Dash::dotted, Mark::none, 1.2};
 
-using Methods = std::vector<MethodRates>;
+using Methods = std::vector<MethodFindings>;
 
 /// A curve in the pen of its method.
 Pen curve_pen(std::size_t method) {
@@ -44,16 +44,16 @@ Pen whisker_pen(std::size_t method) {
 std::vector<std::size_t> answering(const Methods& methods) {
   std::vector<std::size_t> places;
   for (std::size_t m = 0; m < methods.size(); ++m)
-    if (methods[m].answered.hits > 0)
+    if (methods[m].rates.answered.hits > 0)
       places.push_back(m);
   return places;
 }
 
-Whisker rate_whisker(const MethodRates& method, const Rate& rate, double at) {
+Whisker rate_whisker(const MethodFindings& method, const Rate& rate, double at) {
   const double value = 100.0 * rate.value;
   const double lower = 100.0 * rate.interval.lower, upper = 100.0 * rate.interval.upper;
   return {at, value, lower, upper,
-          fmt::format("{}: {:.1f} %, interval {:.1f} to {:.1f} %, {} of {} loops", method.method, value,
+          fmt::format("{}: {:.1f} %, interval {:.1f} to {:.1f} %, {} of {} loops", method.name(), value,
                       lower, upper, rate.hits, rate.total)};
 }
 
@@ -62,7 +62,7 @@ Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
   const auto rows = static_cast<double>(places.size());
   Axis y{.label = "", .lower = -0.6, .upper = rows - 0.4};
   for (const std::size_t place : places)
-    y.words.push_back(methods[place].method);
+    y.words.push_back(methods[place].name());
   std::reverse(y.words.begin(), y.words.end());  // the first one on top
   PanelScript panel(
       info.name, info.title,
@@ -70,7 +70,7 @@ Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
   panel.left_margin(13);
   double at = rows;
   for (const std::size_t place : places) {
-    const Rate& rate = methods[place].*info.rate;
+    const Rate& rate = methods[place].rates.*info.rate;
     at -= 1.0;
     if (rate.total > 0)
       panel.level_whiskers({rate_whisker(methods[place], rate, at)}, whisker_pen(place));
@@ -93,10 +93,10 @@ void draw_curve(PanelScript& panel, const RocCurve& roc, const Pen& pen) {
 }
 
 /// Where the method itself draws the line: what it flags of both kinds of loops.
-NamedPoint verdict_point(const MethodRates& method) {
-  const double x = 100.0 * method.false_alarm_healthy.value, y = 100.0 * method.detected.value;
+NamedPoint verdict_point(const MethodFindings& method) {
+  const double x = 100.0 * method.rates.false_alarm_healthy.value, y = 100.0 * method.rates.detected.value;
   return {x, y,
-          fmt::format("{}: {:.1f} % of the faults detected, {:.1f} % false alarms", method.method, y, x)};
+          fmt::format("{}: {:.1f} % of the faults detected, {:.1f} % false alarms", method.name(), y, x)};
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ std::vector<MethodRateInfo> counted_rates(const Methods& methods) {
   std::vector<MethodRateInfo> counted;
   for (const MethodRateInfo& info : method_rate_infos())
     if (std::any_of(methods.begin(), methods.end(),
-                    [&](const MethodRates& m) { return (m.*info.rate).total > 0; }))
+                    [&](const MethodFindings& m) { return (m.rates.*info.rate).total > 0; }))
       counted.push_back(info);
   return counted;
 }
@@ -138,16 +138,16 @@ Figure comparison_roc_figure(const Methods& methods) {
       "Each method with any threshold on its score; the mark is its own verdict, which need not lie on the "
       "curve of a method that flags by more than one number.";
   for (std::size_t m = 0; m < methods.size(); ++m) {
-    if (!methods[m].roc.defined())
+    if (!methods[m].rates.roc.defined())
       continue;
-    draw_curve(panel, methods[m].roc, curve_pen(m));
+    draw_curve(panel, methods[m].rates.roc, curve_pen(m));
     figure.legend.push_back(
-        {fmt::format("{}, area {:.3f} ({:.3f} to {:.3f})", methods[m].method, methods[m].roc.area,
-                     methods[m].roc_area.lower, methods[m].roc_area.upper),
+        {fmt::format("{}, area {:.3f} ({:.3f} to {:.3f})", methods[m].name(), methods[m].rates.roc.area,
+                     methods[m].rates.roc_area.lower, methods[m].rates.roc_area.upper),
          kPens[m % kPens.size()]});
   }
   for (std::size_t m = 0; m < methods.size(); ++m)
-    if (methods[m].roc.defined())
+    if (methods[m].rates.roc.defined())
       panel.points({verdict_point(methods[m])}, kPens[m % kPens.size()]);
   figure.legend.push_back({"chance", kChance});
   figure.panels = {

@@ -2,19 +2,19 @@
 
 #include <vector>
 
-#include "analysis/findings/method_rates.hpp"
+#include "analysis/findings/study_findings.hpp"
 #include "results/plot/figure.hpp"
 #include "scenarios/study.hpp"
 
 namespace mpm {
 
 /// The rates that were counted on some loop of some method; the others are empty rows and panels.
-std::vector<MethodRateInfo> counted_rates(const std::vector<MethodRates>& methods);
+std::vector<MethodRateInfo> counted_rates(const std::vector<MethodFindings>& methods);
 
 /// A panel a rate; `answered` says nothing that a table does not.
-Figure comparison_rates_figure(const Study& study, const std::vector<MethodRates>& methods);
+Figure comparison_rates_figure(const Study& study, const std::vector<MethodFindings>& methods);
 
 /// The ROC curves of the methods that have one, which must be some.
-Figure comparison_roc_figure(const std::vector<MethodRates>& methods);
+Figure comparison_roc_figure(const std::vector<MethodFindings>& methods);
 
 }  // namespace mpm

@@ -14,13 +14,14 @@ namespace mpm {
 /// The bytes depend on the campaign, the name and the version of gnuplot only.
 ///
 /// Errors: GnuplotError.
-std::string report_html(const Campaign& campaign, const std::filesystem::path& file);
+std::string report_html(const Campaign& campaign, const StudyFindings& findings,
+                        const std::filesystem::path& file);
 
 /// Writes the same figures, and the confusion matrices as heat maps, into `folder`, one file a figure, and
 /// returns their paths. The folder is made when its parent exists.
 ///
 /// Errors: GnuplotError; ArchiveError when a file cannot be written.
-std::vector<std::filesystem::path> write_figures(const Campaign& campaign,
+std::vector<std::filesystem::path> write_figures(const Campaign& campaign, const StudyFindings& findings,
                                                  const std::filesystem::path& folder, FigureFormat format);
 
 }  // namespace mpm

@@ -18,33 +18,26 @@ const Pen kBand{colour::kLightGrey, Dash::solid, Mark::none, 1.0};
 
 constexpr std::size_t kFewCvs = 3;  // of so many CVs all are drawn
 
-/// The comparisons of one loop under its name.
+/// What the chain says of one loop, under its name.
 struct Loop {
   std::string id;
   std::string name;
-  std::vector<std::pair<std::size_t, const AcfComparison*>> cvs;  ///< all of them
-  std::vector<std::size_t> drawn;                                 ///< which of these are drawn
+  Diagnosis chain;
+  std::vector<std::size_t> drawn;  ///< which CVs are drawn
 };
 
 std::vector<Loop> loops_of(const Campaign& campaign) {
   std::vector<Loop> loops;
-  if (!campaign.basis.acf.empty()) {
-    Loop basis{"basis", "basis case", {}, {}};
-    for (std::size_t cv = 0; cv < campaign.basis.acf.size(); ++cv) {
-      basis.cvs.emplace_back(cv, &campaign.basis.acf[cv]);
-      basis.drawn.push_back(cv);
-    }
-    loops.push_back(std::move(basis));
-  }
-  for (const ExperimentRecord& record : campaign.records) {
-    Loop loop{fmt::format("{}", record.draw.index), scenario_name(campaign.study, record), {}, {}};
-    for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv) {
-      loop.cvs.emplace_back(cv, &record.diagnosis.cvs[cv].acf);
-      if (record.diagnosis.cvs[cv].flagged || record.diagnosis.cvs.size() <= kFewCvs)
-        loop.drawn.push_back(cv);
-    }
-    loops.push_back(std::move(loop));
-  }
+  if (!campaign.basis.diagnosis.cvs.empty())
+    loops.push_back({"basis", "basis case", campaign.basis.diagnosis, {}});
+  const std::size_t basis = loops.size();
+  for (const ExperimentRecord& record : campaign.records)
+    loops.push_back(
+        {fmt::format("{}", record.draw.index), scenario_name(campaign.study, record), record.chain(), {}});
+  for (std::size_t i = 0; i < loops.size(); ++i)
+    for (std::size_t cv = 0; cv < loops[i].chain.cvs.size(); ++cv)
+      if (i < basis || loops[i].chain.cvs[cv].flagged || loops[i].chain.cvs.size() <= kFewCvs)
+        loops[i].drawn.push_back(cv);
   return loops;
 }
 
@@ -73,7 +66,7 @@ Figure acf_figure(const Study& study, const Loop& loop) {
       as_label(loop.name));
   figure.legend = {{"y", kY}, {"y_{0}", kY0}, {"y_{0 diag}", kY0Diag}, {"white noise", kBand}};
   for (const std::size_t cv : loop.drawn)
-    figure.panels.push_back(acf_panel(study, cv, *loop.cvs[cv].second));
+    figure.panels.push_back(acf_panel(study, cv, loop.chain.cvs[cv].acf));
   return figure;
 }
 
@@ -90,12 +83,12 @@ std::string acf_table(const Study& study, const std::vector<Loop>& loops) {
        {"Own share"}});
   bool any = false;
   for (const Loop& loop : loops)
-    for (const auto& [cv, acf] : loop.cvs)
-      if (acf_differs(*acf)) {
+    for (std::size_t cv = 0; cv < loop.chain.cvs.size(); ++cv)
+      if (const AcfComparison& acf = loop.chain.cvs[cv].acf; acf_differs(acf)) {
         any = true;
-        table.row({html_text(loop.name), html_text(study.plant.cvs[cv].name), html_text(acf_text(*acf)),
-                   html_number(acf->y.decay_lag), html_number(acf->y0.decay_lag),
-                   html_number(acf->decay_lag_ratio), html_number(acf->own_share)});
+        table.row({html_text(loop.name), html_text(study.plant.cvs[cv].name), html_text(acf_text(acf)),
+                   html_number(acf.y.decay_lag), html_number(acf.y0.decay_lag),
+                   html_number(acf.decay_lag_ratio), html_number(acf.own_share)});
       }
   return any ? table.html()
              : "<p>The autocorrelation functions of no CV differ from those of its nominal output.</p>\n";

@@ -33,7 +33,7 @@ std::string difference_text(const Study& study, const BasisCase& basis) {
 
 Panel step_panel(const Study& study, const NominalSensitivity& sensitivity,
                  const std::optional<NominalSensitivity>& direct, std::size_t a) {
-  const ActiveReference& reference = sensitivity.active[a];
+  const ActiveConstraint& reference = sensitivity.active[a];
   const Eigen::MatrixXd& response = sensitivity.step_response[a];
   std::vector<double> time{0.0};
   for (Eigen::Index l = 0; l < response.cols(); ++l)

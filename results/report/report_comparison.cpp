@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/method_rates.hpp"
-#include "analysis/methods/method_table.hpp"
 #include "analysis/methods/method_words.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/comparison_figures.hpp"
@@ -16,14 +15,14 @@
 namespace mpm {
 namespace {
 
-using Methods = std::vector<MethodRates>;
+using Methods = std::vector<MethodFindings>;
 
 std::string introduction(const Campaign& campaign) {
   return fmt::format(
       "<p>Every method has assessed the same {} of {} experiments, those that ran to their end, and has seen "
       "of each what a historian would have kept. Judge detection and false alarms together, for a method "
       "that flags every loop detects every fault; a rate that is missing had no loop to be counted on.</p>\n",
-      campaign.comparison->loops.size(), campaign.records.size());
+      assessed_loops(campaign), campaign.records.size());
 }
 
 /// A value over its interval and what it rests on, both small.
@@ -36,16 +35,16 @@ std::string rate_cell(const Rate& rate) {
 /// One row a rate, one column a method: there are more rates than a page is wide.
 std::string rates_table(const Study& study, const Methods& methods) {
   std::vector<HtmlTable::Column> columns{{"Share of loops", HtmlTable::Align::left}};
-  for (const MethodRates& method : methods)
-    columns.push_back({html_text(method.method)});
+  for (const MethodFindings& method : methods)
+    columns.push_back({html_text(method.name())});
   HtmlTable table(fmt::format("Shares of loops with their {}, and the number of loops looked at. "
                               "Rates that no loop was counted for are left out.",
                               interval_title(study)),
                   columns);
   for (const MethodRateInfo& info : counted_rates(methods)) {
     std::vector<std::string> cells{html_text(info.title)};
-    for (const MethodRates& method : methods)
-      cells.push_back(rate_cell(method.*info.rate));
+    for (const MethodFindings& method : methods)
+      cells.push_back(rate_cell(method.rates.*info.rate));
     table.row(cells);
   }
   return table.html();
@@ -60,7 +59,8 @@ std::string rates_legend() {
 }
 
 void add_roc(ReportSection& section, const Methods& methods) {
-  if (std::any_of(methods.begin(), methods.end(), [](const MethodRates& m) { return m.roc.defined(); }))
+  if (std::any_of(methods.begin(), methods.end(),
+                  [](const MethodFindings& m) { return m.rates.roc.defined(); }))
     section.add(comparison_roc_figure(methods));
   else
     section.add(
@@ -68,7 +68,7 @@ void add_roc(ReportSection& section, const Methods& methods) {
         "that a method has scored.</p>\n");
 }
 
-std::string pairs_table(const ComparisonSummary& summary) {
+std::string pairs_table(const StudyFindings& summary) {
   HtmlTable table(
       "Two methods on the loops that both gave a verdict on. Right is to flag the loops with a fault, "
       "or those with a fault that has an impact, and no others; p is that of McNemar&rsquo;s exact test, "
@@ -82,8 +82,8 @@ std::string pairs_table(const ComparisonSummary& summary) {
        {"p"}});
   for (const MethodPair& pair : summary.pairs)
     if (pair.loops > 0)
-      table.row({html_text(summary.methods[pair.first].method),
-                 html_text(summary.methods[pair.second].method), std::string(to_string(pair.truth)),
+      table.row({html_text(summary.methods[pair.first].name()),
+                 html_text(summary.methods[pair.second].name()), std::string(to_string(pair.truth)),
                  fmt::format("{}", pair.loops), fmt::format("{}", pair.test.lost),
                  fmt::format("{}", pair.test.gained), fmt::format("{:.2g}", pair.test.p_two_sided)});
   return table.html();
@@ -107,13 +107,13 @@ std::string methods_table(const Methods& methods) {
        {"Tells besides", HtmlTable::Align::left},
        {"ms a loop"},
        {"No verdict on", HtmlTable::Align::text}});
-  for (const MethodRates& method : methods) {
-    const AssessmentMethodInfo& info = assessment_method(method.method);
-    table.row(
-        {fmt::format("{}<br><small>{}</small>", html_text(info.name), html_text(info.title)),
-         html_text(info.verdict), html_text(needs_text(info)), html_text(answers_text(info)),
-         std::isnan(method.milliseconds) ? html_number(NAN) : fmt::format("{:.2f}", method.milliseconds),
-         reason_cell(method)});
+  for (const MethodFindings& method : methods) {
+    const MethodDescription& info = method.form->method();
+    table.row({fmt::format("{}<br><small>{}</small>", html_text(info.name), html_text(info.title)),
+               html_text(info.verdict), html_text(needs_text(info)), html_text(answers_text(info)),
+               std::isnan(method.rates.milliseconds) ? html_number(NAN)
+                                                     : fmt::format("{:.2f}", method.rates.milliseconds),
+               reason_cell(method.rates)});
   }
   return table.html();
 }
@@ -123,7 +123,11 @@ std::string methods_table(const Methods& methods) {
 ReportSection comparison_section(const ReportInput& input) {
   const Campaign& campaign = input.campaign;
   ReportSection section{"comparison", "Assessment methods compared", {}};
-  const ComparisonSummary summary = summarise(*campaign.comparison, campaign.records, campaign.study);
+  const StudyFindings& summary = input.findings();
+  if (assessed_loops(campaign) == 0) {
+    section.leave_out("it needs an experiment that ran to its end; there is none.");
+    return section;
+  }
   section.add(introduction(campaign));
   Figure rates = comparison_rates_figure(campaign.study, summary.methods);
   if (!rates.panels.empty())

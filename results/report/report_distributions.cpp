@@ -61,11 +61,12 @@ Panel ellipse_panel(const std::string& name, const std::string& cv, const PerSta
 /// Calls `visit(name of the CV, what was found of it)` for each flagged CV.
 template <class Visit>
 void for_each_flagged(const Campaign& campaign, Visit visit) {
-  for (const ExperimentRecord& record : campaign.records)
-    for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv)
-      if (record.diagnosis.cvs[cv].flagged)
-        visit(scenario_name(campaign.study, record) + " " + campaign.study.plant.cvs[cv].name,
-              record.diagnosis.cvs[cv]);
+  for (const ExperimentRecord& record : campaign.records) {
+    const Diagnosis chain = record.chain();
+    for (std::size_t cv = 0; cv < chain.cvs.size(); ++cv)
+      if (chain.cvs[cv].flagged)
+        visit(scenario_name(campaign.study, record) + " " + campaign.study.plant.cvs[cv].name, chain.cvs[cv]);
+  }
 }
 
 Figure ellipse_figure(const Campaign& campaign) {

@@ -17,18 +17,6 @@ const Pen kAlarm{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.6};
 const Pen kCost{colour::kGrey, Dash::none, Mark::circle, 1.0, 0.5};
 const Pen kBand{colour::kBlack, Dash::dashed, Mark::none, 1.2};
 
-/// "healthy", "tuning", "move suppression".
-std::string words(const FalseAlarms& group) {
-  std::string text(group.parameter ? to_string(*group.parameter) : count_name(group.kind));
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
-bool belongs_to(const ExperimentDraw& draw, const FalseAlarms& group) {
-  return draw.kind == group.kind &&
-         (!group.parameter || (draw.tuning && draw.tuning->parameter == *group.parameter));
-}
-
 /// Numbers of a logarithmic axis that a reader can take in, between these values.
 std::vector<double> round_numbers(double least, double largest) {
   std::vector<double> ticks;
@@ -45,7 +33,8 @@ Panel group_panel(const Campaign& campaign, const FalseAlarms& group) {
   double least = study.diagnosis.impact_lower, largest = study.diagnosis.impact_upper;
   std::vector<NamedPoint> quiet, alarms, costs;
   for (const ExperimentRecord& record : campaign.records) {
-    if (record.status != ExperimentStatus::ok || !belongs_to(record.draw, group))
+    const Diagnosis chain = record.chain();
+    if (chain.ivar.size() == 0 || !group.has(record.draw))
       continue;
     const double x = group.parameter ? record.draw.tuning->factor : static_cast<double>(record.draw.index);
     const auto farthest = [&](const char* index, const Eigen::VectorXd& values) -> NamedPoint {
@@ -59,12 +48,12 @@ Panel group_panel(const Campaign& campaign, const FalseAlarms& group) {
               fmt::format("{}; {} of {} {:.3g}", experiment_line(study, record), index, cv_name(study, cv),
                           value)};
     };
-    costs.push_back(farthest("Ivar_basis", record.diagnosis.ivar_basis));
-    (record.diagnosis.impactful ? alarms : quiet).push_back(farthest("Ivar", record.diagnosis.ivar));
+    costs.push_back(farthest("Ivar_basis", record.ivar_basis));
+    (chain.impactful ? alarms : quiet).push_back(farthest("Ivar", chain.ivar));
   }
   const Rate& rate = group.false_alarm;
   PanelScript panel("alarm_" + group.name(),
-                    fmt::format("{}: {} of {} false alarms", words(group), rate.hits, rate.total),
+                    fmt::format("{}: {} of {} false alarms", group.label(), rate.hits, rate.total),
                     group.parameter ? Axis{.label = "factor of the weight (-)", .logarithmic = true}
                                     : Axis{.label = "experiment"},
                     {.label = "index farthest from 1 (-)",
@@ -76,7 +65,7 @@ Panel group_panel(const Campaign& campaign, const FalseAlarms& group) {
   panel.points(quiet, kQuiet);
   panel.points(alarms, kAlarm);
   return panel.finish(fmt::format(
-      "Ivar farthest from 1 of the experiments of the group {}, with the band of impact.", words(group)));
+      "Ivar farthest from 1 of the experiments of the group {}, with the band of impact.", group.label()));
 }
 
 std::string rates_table(const ReportInput& input) {
@@ -90,8 +79,8 @@ std::string rates_table(const ReportInput& input) {
        {"as MPM"},
        {"as UD"},
        {"Feasible"}});
-  for (const FalseAlarms& group : input.parts.aggregate.false_alarms)
-    table.row({(group.parameter ? "&emsp;" : "") + words(group), html_number(group.infeasible.value, true),
+  for (const FalseAlarms& group : input.false_alarms())
+    table.row({(group.parameter ? "&emsp;" : "") + group.label(), html_number(group.infeasible.value, true),
                html_number(group.false_alarm.value, true), html_interval(group.false_alarm.interval, true),
                html_number(group.false_mpm.value, true), html_number(group.false_ud.value, true),
                fmt::format("{}", group.false_alarm.total)});
@@ -112,7 +101,7 @@ std::string sensitivity_sentence(const Study& study) {
 
 ReportSection false_alarm_section(const ReportInput& input) {
   ReportSection section{"false-alarms", "Are there alarms where the model is right?", {}};
-  const std::vector<FalseAlarms>& groups = input.parts.aggregate.false_alarms;
+  const std::vector<FalseAlarms>& groups = input.false_alarms();
   Figure figure;
   figure.name = "false-alarms";
   figure.caption =
@@ -125,7 +114,7 @@ ReportSection false_alarm_section(const ReportInput& input) {
                    {"Ivar_{basis}", kCost},
                    {"band of impact", kBand}};
   for (const FalseAlarms& group : groups)
-    if ((group.parameter || group.kind == ExperimentKind::none) && group.false_alarm.total > 0)
+    if ((group.parameter || group.kind == ExperimentKind::healthy) && group.false_alarm.total > 0)
       figure.panels.push_back(group_panel(input.campaign, group));
   if (!figure.panels.empty())
     section.add(std::move(figure));

@@ -69,9 +69,9 @@ Panel size_panel(const Study& study, FaultSize size, const std::vector<SizedFaul
   std::vector<NamedPoint> missed, wrong;
   for (const SizedFault& fault : faults)
     if (!fault.diagnosed)
-      (fault.impactful ? wrong : missed)
+      (fault.flagged ? wrong : missed)
           .push_back(
-              {fault.size, fault.impactful ? kWrongRow : kMissedRow, experiment_line(study, *fault.record)});
+              {fault.size, fault.flagged ? kWrongRow : kMissedRow, experiment_line(study, *fault.record)});
   const Labels text = labels(size, study);
   PanelScript panel(std::string(to_string(size)),
                     fmt::format("{}: {} experiments", text.title, faults.size()), {.label = text.axis},
@@ -80,7 +80,7 @@ Panel size_panel(const Study& study, FaultSize size, const std::vector<SizedFaul
     panel.upright(0.0, kNoFault);
   else if (size != FaultSize::disturbance_deviation)
     panel.upright(1.0, kNoFault);
-  add_curve(panel, whiskers(bins, &SizeBin::impactful, "have an impact"), kSeen);
+  add_curve(panel, whiskers(bins, &SizeBin::flagged, "have an impact"), kSeen);
   add_curve(panel, whiskers(bins, &SizeBin::diagnosed, "are diagnosed rightly"), kDiagnosed);
   panel.points(missed, kMissed);
   panel.points(wrong, kWrong);
@@ -109,7 +109,8 @@ ReportSection fault_size_section(const ReportInput& input) {
                    {"no fault", kNoFault}};
   for (const FaultSize size : {FaultSize::gain_factor, FaultSize::time_constant_factor,
                                FaultSize::dead_time_shift, FaultSize::disturbance_deviation}) {
-    const std::vector<SizedFault> faults = faults_by_size(study, input.campaign.records, size);
+    const std::vector<SizedFault> faults =
+        faults_by_size(study, chain_place(input.campaign), input.campaign.records, size);
     if (!faults.empty())
       figure.panels.push_back(size_panel(study, size, faults));
   }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/methods/chain_numbers.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
@@ -17,11 +19,10 @@ const Pen kBoth{colour::kGreen, Dash::none, Mark::dot, 1.0, 0.5};
 const Pen kMean{colour::kBlack, Dash::solid, Mark::square, 2.0, 0.6};
 const Pen kThreshold{colour::kBlack, Dash::dashed, Mark::none, 1.2};
 
-/// The experiments that rates of I_MPM are counted over, as in the aggregates.
-bool judged(const Study& study, const ExperimentRecord& record) {
-  return record.status == ExperimentStatus::ok &&
-         (record.diagnosis.impactful || study.diagnosis.source_population == SourcePopulation::feasible) &&
-         std::isfinite(record.diagnosis.indicator.i_mpm);
+/// I_MPM of an experiment that rates of it are counted over, as in the findings; NaN for any other.
+double judged_indicator(const Study& study, const ExperimentRecord& record) {
+  const AssessmentRecord* const chain = record.by(kChainMethod);
+  return chain != nullptr && in_source_population(study, *chain) ? chain->number("i_mpm") : NAN;
 }
 
 std::string population(const Study& study) {
@@ -31,8 +32,8 @@ std::string population(const Study& study) {
 double highest_indicator(const Campaign& campaign) {
   double highest = campaign.study.diagnosis.mpm_threshold;
   for (const ExperimentRecord& record : campaign.records)
-    if (judged(campaign.study, record))
-      highest = std::max(highest, record.diagnosis.indicator.i_mpm);
+    if (const double i_mpm = judged_indicator(campaign.study, record); std::isfinite(i_mpm))
+      highest = std::fmax(highest, i_mpm);
   return 1.05 * highest;
 }
 
@@ -40,15 +41,16 @@ Axis indicator_axis(const Campaign& campaign) {
   return {.label = "I_{MPM} (-)", .lower = 0.0, .upper = highest_indicator(campaign)};
 }
 
-Panel kind_panel(const Campaign& campaign, const KindAggregate& kind) {
+Panel kind_panel(const Campaign& campaign, const KindFindings& kind) {
   const Study& study = campaign.study;
   std::vector<NamedPoint> right, wrong;
   for (const ExperimentRecord& record : campaign.records) {
-    if (record.draw.kind != kind.kind || !judged(study, record))
+    const double i_mpm = judged_indicator(study, record);
+    if (record.draw.kind != kind.kind || !std::isfinite(i_mpm))
       continue;
-    (record.diagnosis.predicted_source == kind.kind ? right : wrong)
-        .push_back({static_cast<double>(record.draw.index), record.diagnosis.indicator.i_mpm,
-                    experiment_line(study, record)});
+    const Judgement judgement = judge(study, record, *record.by(kChainMethod));
+    (judgement.source() == Correctness::right ? right : wrong)
+        .push_back({static_cast<double>(record.draw.index), i_mpm, experiment_line(study, record)});
   }
   const Rate& rate = kind.source_recognised;
   PanelScript panel(fmt::format("impm_{}", to_string(kind.kind)),
@@ -65,10 +67,12 @@ Panel dominance_panel(const Campaign& campaign, const std::vector<DominanceBin>&
   const Study& study = campaign.study;
   std::vector<NamedPoint> points;
   for (const ExperimentRecord& record : campaign.records)
-    if (record.draw.kind == ExperimentKind::mpm_ud && judged(study, record))
+    if (const double i_mpm = judged_indicator(study, record);
+        record.draw.kind == ExperimentKind::mpm_ud && std::isfinite(i_mpm)) {
+      const double dominance = record.by(kChainMethod)->number("dominance_mpm");
       points.push_back(
-          {record.dominance_mpm, record.diagnosis.indicator.i_mpm,
-           experiment_line(study, record) + fmt::format(", dominance {:.2f}", record.dominance_mpm)});
+          {dominance, i_mpm, experiment_line(study, record) + fmt::format(", dominance {:.2f}", dominance)});
+    }
   std::vector<Whisker> means;
   for (const DominanceBin& bin : bins)
     means.push_back({0.5 * (bin.lower + bin.upper), bin.i_mpm.mean, bin.i_mpm.mean_interval.lower,
@@ -112,8 +116,8 @@ ReportSection indicator_section(const ReportInput& input) {
       "is MPM, below it UD.",
       population(study), study.diagnosis.mpm_threshold);
   figure.legend = {{"source right", kRight}, {"source wrong", kWrong}, {"threshold", kThreshold}};
-  for (const KindAggregate& kind : input.parts.aggregate.kinds)
-    if (kind.kind != ExperimentKind::mpm_ud && kind.i_mpm.count > 0)
+  for (const KindFindings& kind : input.kinds())
+    if (kind.kind != ExperimentKind::mpm_ud && kind.source_recognised.total > 0)
       figure.panels.push_back(kind_panel(input.campaign, kind));
   if (figure.panels.empty())
     section.leave_out("no experiment with a single fault has an I_MPM to judge.");
@@ -124,7 +128,7 @@ ReportSection indicator_section(const ReportInput& input) {
 
 ReportSection dominance_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
-  const std::vector<DominanceBin>& bins = input.parts.aggregate.dominance;
+  const std::vector<DominanceBin>& bins = input.findings().dominance;
   ReportSection section{"dominance", "Which of two faults does I_{MPM} point at?", {}};
   std::int64_t count = 0;
   for (const DominanceBin& bin : bins)

@@ -33,7 +33,7 @@ std::string whole_percents(const Interval& interval) {
                      100.0 * interval.upper);
 }
 
-std::string matrix_table(const Study& study, const KindAggregate& kind) {
+std::string matrix_table(const Study& study, const KindFindings& kind) {
   const ConfusionMatrix& confusion = kind.confusion;
   std::string head;
   for (const PlantModel::Variable& cv : study.plant.cvs)
@@ -63,7 +63,7 @@ std::string matrix_table(const Study& study, const KindAggregate& kind) {
 }
 
 /// The matrix as a heat map, true CVs from top to bottom.
-Panel matrix_panel(const Study& study, const KindAggregate& kind) {
+Panel matrix_panel(const Study& study, const KindFindings& kind) {
   const ConfusionMatrix& confusion = kind.confusion;
   const Eigen::Index classes = confusion.classes();
   const double last = static_cast<double>(classes) - 1.0;
@@ -103,7 +103,7 @@ ReportSection location_section(const ReportInput& input) {
   Figure figure;
   figure.name = "confusion";
   figure.caption = "CV with the fault against CV located, experiments with impact.";
-  for (const KindAggregate& kind : input.parts.aggregate.kinds) {
+  for (const KindFindings& kind : input.kinds()) {
     if (kind.confusion.total() > 0) {
       tables += matrix_table(study, kind);
       figure.panels.push_back(matrix_panel(study, kind));

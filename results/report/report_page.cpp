@@ -102,8 +102,9 @@ std::vector<Figure> all_figures(const ReportSection& section) {
 
 }  // namespace
 
-std::string report_html(const Campaign& campaign, const std::filesystem::path& file) {
-  const SummaryParts parts = summary_parts(campaign);
+std::string report_html(const Campaign& campaign, const StudyFindings& findings,
+                        const std::filesystem::path& file) {
+  const SummaryContent parts = summary_content(campaign, findings);
   const std::vector<ReportSection> sections = report_sections({campaign, parts, file.filename().string()});
   std::string body;
   for (std::size_t i = 0; i < sections.size(); ++i)
@@ -124,14 +125,14 @@ std::string report_html(const Campaign& campaign, const std::filesystem::path& f
       body);
 }
 
-std::vector<std::filesystem::path> write_figures(const Campaign& campaign,
+std::vector<std::filesystem::path> write_figures(const Campaign& campaign, const StudyFindings& findings,
                                                  const std::filesystem::path& folder, FigureFormat format) {
   std::error_code error;
   std::filesystem::create_directory(folder, error);
   if (!std::filesystem::is_directory(folder))
     throw ArchiveError(fmt::format("{}: cannot make the folder for the figures{}{}", folder.string(),
                                    error ? ": " : "", error ? error.message() : ""));
-  const SummaryParts parts = summary_parts(campaign);
+  const SummaryContent parts = summary_content(campaign, findings);
   std::vector<std::filesystem::path> files;
   for (const ReportSection& section : report_sections({campaign, parts, ""}))
     for (const Figure& figure : all_figures(section)) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/statistics/roc.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
@@ -24,12 +25,13 @@ struct Scores {
 
   explicit Scores(const Campaign& campaign) {
     for (const ExperimentRecord& record : campaign.records) {
-      if (record.status != ExperimentStatus::ok || !record.diagnosis.impactful)
+      const AssessmentRecord* const chain = record.by(kChainMethod);
+      if (chain == nullptr || !chain->flagged)
         continue;
       if (record.draw.kind == ExperimentKind::mpm)
-        mpm.push_back(record.diagnosis.indicator.i_mpm);
+        mpm.push_back(chain->number("i_mpm"));
       if (record.draw.kind == ExperimentKind::ud)
-        ud.push_back(record.diagnosis.indicator.i_mpm);
+        ud.push_back(chain->number("i_mpm"));
     }
   }
 };

@@ -31,15 +31,10 @@ std::string controller_text(const Study& study) {
 }
 
 std::string experiments_text(const ReportInput& input) {
-  const StudyAggregate& total = input.parts.aggregate;
-  std::string kinds = input.campaign.study.names_scenarios() ? "named scenarios" : "";
-  for (const KindAggregate& kind : total.kinds)
-    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind.experiments, kind_name(kind.kind));
-  for (const FalseAlarms& group : total.false_alarms)
-    if (!group.parameter)
-      kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", group.experiments, group.name());
+  const StudyFindings& total = input.findings();
   return fmt::format("{} of {} samples<br><small>{}; {} infeasible, {} failed</small>", total.experiments,
-                     input.campaign.study.simulation.samples, kinds, total.infeasible.hits, total.failed);
+                     input.campaign.study.simulation.samples, kinds_text(input.campaign),
+                     total.infeasible.hits, total.failed);
 }
 
 std::string program_text(const CampaignInfo& info) {

@@ -74,7 +74,8 @@ Panel index_panel(const Campaign& campaign, const char* name, const char* title,
   panel.left_margin(margin_of(words));
   for (std::size_t row = 0; row < campaign.records.size(); ++row) {
     const ExperimentRecord& record = campaign.records[row];
-    const Eigen::VectorXd& values = record.diagnosis.*index;
+    const Diagnosis chain = record.chain();
+    const Eigen::VectorXd& values = chain.*index;
     for (Eigen::Index cv = 0; cv < values.size(); ++cv) {
       const bool outside = study.diagnosis.has_impact(values(cv));
       const bool affected = judged && is_affected(record, cv);
@@ -111,10 +112,12 @@ struct IndicatorRows {
   std::vector<NamedPoint> kurtosis, skewness;
 
   explicit IndicatorRows(const Campaign& campaign) {
-    for (const ExperimentRecord& record : campaign.records)
-      for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv)
-        if (record.diagnosis.cvs[cv].flagged || is_affected(record, static_cast<Eigen::Index>(cv)))
-          add(campaign.study, record, cv);
+    for (const ExperimentRecord& record : campaign.records) {
+      const Diagnosis chain = record.chain();
+      for (std::size_t cv = 0; cv < chain.cvs.size(); ++cv)
+        if (chain.cvs[cv].flagged || is_affected(record, static_cast<Eigen::Index>(cv)))
+          add(campaign.study, record, chain.cvs[cv], cv);
+    }
     // The first row on top.
     for (std::vector<NamedPoint>* points : {&kurtosis, &skewness})
       for (NamedPoint& point : *points)
@@ -122,12 +125,11 @@ struct IndicatorRows {
   }
 
  private:
-  void add(const Study& study, const ExperimentRecord& record, std::size_t cv) {
-    const CvDiagnosis& found = record.diagnosis.cvs[cv];
+  void add(const Study& study, const ExperimentRecord& record, const CvDiagnosis& found, std::size_t cv) {
     std::string truth = "not affected";
     for (const AffectedCv& affected : record.draw.affected())
       if (affected.cv == static_cast<Eigen::Index>(cv))
-        truth = kind_name(affected.by) + (found.flagged ? "" : ", missed");
+        truth = source_name(affected.by) + (found.flagged ? "" : ", missed");
     const std::string name =
         fmt::format("{} {} ({})", scenario_name(study, record), study.plant.cvs[cv].name, truth);
     const auto row = static_cast<double>(words.size());
@@ -153,7 +155,7 @@ Panel error_panel(const Campaign& campaign) {
   const std::vector<std::string> words = scenario_words(campaign);
   std::vector<NamedPoint> errors;
   for (std::size_t row = 0; row < campaign.records.size(); ++row) {
-    const double tsse = total_simulation_error(campaign.records[row].diagnosis);
+    const double tsse = total_simulation_error(campaign.records[row].chain());
     errors.push_back(
         {tsse, static_cast<double>(words.size() - 1 - row),
          fmt::format("{}: TSSE {:.3g}", scenario_name(campaign.study, campaign.records[row]), tsse)});

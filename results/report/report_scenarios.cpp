@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/methods/chain_numbers.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
 #include "results/report/report_sections.hpp"
@@ -19,15 +21,16 @@ std::string flagged_cell(const Study& study, const Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < diagnosis.cvs.size(); ++i)
     if (const CvDiagnosis& cv = diagnosis.cvs[i]; cv.flagged)
       html += fmt::format("{}{}: {} ({})", html.empty() ? "" : "<br>", html_text(study.plant.cvs[i].name),
-                          html_number(cv.distribution.mpm.i_mpm), kind_name(cv.source));
+                          html_number(cv.distribution.mpm.i_mpm), source_name(cv.source));
   return html.empty() ? "none" : html;
 }
 
 std::string verdict_cell(const Study& study, const ExperimentRecord& record) {
   const std::string text = html_text(scenario_verdict_text(study, record));
-  return record.status != ExperimentStatus::ok
-             ? text
-             : fmt::format("<span class=\"{}\">{}</span>", record.wrong() ? "no" : "yes", text);
+  const AssessmentRecord& chain = *record.by(kChainMethod);
+  return !chain.answered() ? text
+                           : fmt::format("<span class=\"{}\">{}</span>",
+                                         judge(study, record, chain).wrong() ? "no" : "yes", text);
 }
 
 std::string scenario_table(const ReportInput& input) {
@@ -43,6 +46,7 @@ std::string scenario_table(const ReportInput& input) {
        {"Verdict", HtmlTable::Align::left}});
   for (const ExperimentRecord& record : input.campaign.records) {
     const Scenario& scenario = study.scenarios[static_cast<std::size_t>(record.draw.index)];
+    const Diagnosis chain = record.chain();
     table.row(
         {html_text(scenario.name),
          fmt::format("{}{}<br><code>mpmbench replay {} {}</code>",
@@ -50,8 +54,8 @@ std::string scenario_table(const ReportInput& input) {
                          ? ""
                          : "<strong>" + html_text(scenario.description) + "</strong><br>",
                      html_text(fault_text(study, record.draw)), html_text(input.file), record.draw.index),
-         html_text(affected_text(study, record.draw)), flagged_cell(study, record.diagnosis),
-         html_number(total_simulation_error(record.diagnosis)), verdict_cell(study, record)});
+         html_text(affected_text(study, record.draw)), flagged_cell(study, chain),
+         html_number(total_simulation_error(chain)), verdict_cell(study, record)});
   }
   return table.html();
 }
@@ -73,8 +77,9 @@ std::string index_table(const Campaign& campaign) {
     table.row(cells);
   };
   for (const ExperimentRecord& record : campaign.records) {
-    row(html_text(scenario_name(study, record)), "Ivar", record.diagnosis.ivar);
-    row("", "Ivar<sub>diag</sub>", record.diagnosis.ivar_diag);
+    const Diagnosis chain = record.chain();
+    row(html_text(scenario_name(study, record)), "Ivar", chain.ivar);
+    row("", "Ivar<sub>diag</sub>", chain.ivar_diag);
   }
   return table.html();
 }
@@ -98,8 +103,9 @@ ReportSection scenarios_section(const ReportInput& input) {
   }
   std::int64_t right = 0, judged = 0;
   for (const ExperimentRecord& record : campaign.records) {
-    judged += record.status == ExperimentStatus::ok ? 1 : 0;
-    right += record.status == ExperimentStatus::ok && !record.wrong() ? 1 : 0;
+    const AssessmentRecord& chain = *record.by(kChainMethod);
+    judged += chain.answered() ? 1 : 0;
+    right += chain.answered() && !judge(campaign.study, record, chain).wrong() ? 1 : 0;
   }
   section.add(
       fmt::format("<p>In <strong>{} of {}</strong> feasible scenarios the flagged CVs are the affected "

@@ -10,22 +10,38 @@ void ReportSection::leave_out(const std::string& why) {
   add("<p class=\"absent\">Left out: " + html_text(why) + "</p>\n");
 }
 
+const std::vector<KindFindings>& ReportInput::kinds() const {
+  static const std::vector<KindFindings> none;
+  return findings().chain() == nullptr ? none : findings().chain()->kinds;
+}
+
+const std::vector<FalseAlarms>& ReportInput::false_alarms() const {
+  static const std::vector<FalseAlarms> none;
+  return findings().chain() == nullptr ? none : findings().chain()->false_alarms;
+}
+
 std::vector<ReportSection> report_sections(const ReportInput& input) {
   const bool named = input.campaign.study.names_scenarios();
-  std::vector<ReportSection> sections =
-      named ? std::vector{run_section(input), scenarios_section(input)}
-            : std::vector{run_section(input),      rates_section(input),     variance_section(input),
-                          location_section(input), indicator_section(input), dominance_section(input),
-                          roc_section(input),      fault_size_section(input)};
-  if (!input.parts.aggregate.false_alarms.empty())
-    sections.insert(sections.begin() + 2, false_alarm_section(input));
-  if (input.campaign.comparison)
-    sections.push_back(comparison_section(input));
-  for (const auto& section :
-       {sensitivity_section, interaction_section, s0_perturbation_section, basis_section, solver_section})
-    sections.push_back(section(input));
+  const bool chain = input.findings().chain() != nullptr;
+  std::vector<ReportSection> sections{run_section(input)};
+  const auto add = [&](std::initializer_list<ReportSection (*)(const ReportInput&)> list) {
+    for (const auto& section : list)
+      sections.push_back(section(input));
+  };
   if (!named)
-    sections.push_back(wrong_verdict_section(input));
+    add({rates_section});
+  if (!input.false_alarms().empty())
+    add({false_alarm_section});
+  if (chain && named)
+    add({scenarios_section});
+  if (chain && !named)
+    add({variance_section, location_section, indicator_section, dominance_section, roc_section,
+         fault_size_section});
+  if (input.campaign.methods.size() > 1 || !chain)
+    add({comparison_section});
+  add({sensitivity_section, interaction_section, s0_perturbation_section, basis_section, solver_section});
+  if (chain && !named)
+    add({wrong_verdict_section});
   return sections;
 }
 

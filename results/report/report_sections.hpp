@@ -6,15 +6,21 @@
 
 #include "results/archive/campaign.hpp"
 #include "results/plot/figure.hpp"
-#include "results/summary/summary_parts.hpp"
+#include "results/summary/summary_content.hpp"
 
 namespace mpm {
 
 /// What the sections of a report are made from.
 struct ReportInput {
   const Campaign& campaign;
-  const SummaryParts& parts;
+  const SummaryContent& parts;
   std::string file;  ///< name of the archive
+
+  const StudyFindings& findings() const { return parts.findings; }
+  /// What the chain of the thesis shows of each kind, and where model and plant agree; nothing in a study
+  /// that does not run it.
+  const std::vector<KindFindings>& kinds() const;
+  const std::vector<FalseAlarms>& false_alarms() const;
 };
 
 /// A piece of HTML.
@@ -57,8 +63,8 @@ ReportSection wrong_verdict_section(const ReportInput& input);    ///< wrong ver
 
 /// Those that the study can have: rates and what belongs to them for random experiments, false alarms after
 /// the rates where model and plant agree in some of them, and `scenarios` in their place for named ones;
-/// `comparison` in archives that have one. A later section is a function as above and a line in the list of
-/// this one.
+/// `comparison` where there are several methods. What belongs to the thesis's chain is there when it was run.
+/// A later section is a function as above and a line in the list of this one.
 std::vector<ReportSection> report_sections(const ReportInput& input);
 
 /// Share of an interval in words: "95 % interval".

@@ -48,7 +48,7 @@ void add_row(HtmlTable& table, const std::string& name, Effort effort) {
 }
 
 /// What the solver `auto` adds: fallbacks, and the audit.
-std::string audit_html(const SummaryParts& parts, const CampaignInfo& info) {
+std::string audit_html(const SummaryContent& parts, const CampaignInfo& info) {
   const AuditSummary& audit = parts.audit;
   const std::string fallbacks = fmt::format(
       "<p>Ipopt answered <strong>{}</strong> problems in place of the active-set method, whose answer "
@@ -91,7 +91,7 @@ ReportSection solver_section(const ReportInput& input) {
     section.leave_out("no experiment has solver statistics.");
     return section;
   }
-  for (const KindAggregate& kind : input.parts.aggregate.kinds) {
+  for (const KindFindings& kind : input.kinds()) {
     Effort effort;
     for (const ExperimentRecord& record : campaign.records)
       if (record.draw.kind == kind.kind)

@@ -23,9 +23,10 @@ struct Pairs {
   double least_basis = INFINITY;                 ///< Ivar_basis
 
   void add(const Study& study, const ExperimentRecord& record) {
-    for (Eigen::Index cv = 0; cv < record.diagnosis.ivar.size(); ++cv) {
-      const double x = record.diagnosis.ivar(cv);
-      const double y = record.diagnosis.ivar_basis(cv);
+    const Diagnosis chain = record.chain();
+    for (Eigen::Index cv = 0; cv < chain.ivar.size(); ++cv) {
+      const double x = chain.ivar(cv);
+      const double y = record.ivar_basis(cv);
       if (!(x > 0.0 && y > 0.0 && std::isfinite(x) && std::isfinite(y)))
         continue;
       least = std::min(least, x);
@@ -63,7 +64,7 @@ void add_fit(PanelScript& panel, const LinearFit& fit, const Pairs& pairs) {
   panel.line(x, y, kLine);
 }
 
-Panel kind_panel(const ReportInput& input, const KindAggregate& kind, const Pairs& pairs) {
+Panel kind_panel(const ReportInput& input, const KindFindings& kind, const Pairs& pairs) {
   const DiagnosisOptions& options = input.campaign.study.diagnosis;
   const LinearFitIntervals& fit = kind.regression;
   const std::string title =
@@ -97,7 +98,7 @@ std::string regression_table(const ReportInput& input) {
        {interval_title(study)},
        {"Intercept"},
        {"Pairs"}});
-  for (const KindAggregate& kind : input.parts.aggregate.kinds) {
+  for (const KindFindings& kind : input.kinds()) {
     const LinearFitIntervals& fit = kind.regression;
     table.row({kind_name(kind.kind), html_number(fit.fit.r_squared), html_interval(fit.r_squared),
                html_number(fit.fit.slope), html_interval(fit.slope), html_number(fit.fit.intercept),
@@ -122,7 +123,7 @@ ReportSection variance_section(const ReportInput& input) {
                    {"other CVs", kOther},
                    {"regression, all CVs", kLine},
                    {"Ivar_{basis} = Ivar", kIdentity}};
-  for (const KindAggregate& kind : input.parts.aggregate.kinds)
+  for (const KindFindings& kind : input.kinds())
     if (const Pairs pairs = pairs_of(input.campaign, kind.kind); !pairs.empty())
       figure.panels.push_back(kind_panel(input, kind, pairs));
   if (figure.panels.empty()) {

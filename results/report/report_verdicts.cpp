@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/methods/chain_numbers.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
 #include "results/report/report_sections.hpp"
@@ -12,19 +14,11 @@ namespace {
 
 constexpr std::size_t kMostRows = 500;
 
-/// "y3", or the wrong one marked.
-std::string located(const Study& study, const ExperimentRecord& record) {
-  const std::string found = html_text(cv_name(study, record.diagnosis.predicted_cv));
-  return record.diagnosis.predicted_cv == record.draw.true_cv() ? found
-                                                                : "<span class=\"no\">" + found + "</span>";
-}
-
-std::string source(const ExperimentRecord& record) {
-  const std::string found = kind_name(record.diagnosis.predicted_source);
-  const bool single = record.draw.kind != ExperimentKind::mpm_ud;
-  return single && record.diagnosis.predicted_source != record.draw.kind
-             ? "<span class=\"no\">" + found + "</span>"
-             : found;
+/// What was found; the wrong one is marked.
+std::string marked(const std::string& found, Correctness correctness) {
+  return correctness == Correctness::right || correctness == Correctness::not_judged
+             ? found
+             : "<span class=\"no\">" + found + "</span>";
 }
 
 std::string of_cv(const Eigen::VectorXd& values, Eigen::Index cv) {
@@ -57,12 +51,18 @@ std::string wrong_table(const ReportInput& input) {
   const std::vector<const ExperimentRecord*>& wrong = input.parts.wrong;
   for (std::size_t i = 0; i < std::min(wrong.size(), kMostRows); ++i) {
     const ExperimentRecord& record = *wrong[i];
-    const Diagnosis& verdict = record.diagnosis;
-    table.row({fmt::format("{}", record.draw.index), experiment_kind(record.draw), fault_cell(input, record),
-               html_text(cv_name(study, record.draw.true_cv())), located(study, record), source(record),
+    const Diagnosis verdict = record.chain();
+    const Judgement judgement = judge(study, record, *record.by(kChainMethod));
+    const bool faultless = is_faultless(record.draw.kind);
+    table.row({fmt::format("{}", record.draw.index), kind_name(record.draw.kind), fault_cell(input, record),
+               html_text(cv_name(study, record.draw.true_cv())),
+               marked(html_text(cv_name(study, verdict.predicted_cv)),
+                      faultless ? Correctness::wrong : judgement.predicted_cv),
+               marked(source_name(verdict.predicted_source),
+                      faultless ? Correctness::wrong : judgement.predicted_source),
                html_number(verdict.indicator.i_mpm), of_cv(verdict.ivar, record.draw.true_cv()),
                of_cv(verdict.ivar_diag, record.draw.true_cv()),
-               of_cv(verdict.ivar_diag, verdict.predicted_cv), html_number(record.dominance_mpm)});
+               of_cv(verdict.ivar_diag, verdict.predicted_cv), html_number(verdict.alone.dominance_mpm)});
   }
   std::string html = table.html();
   if (wrong.size() > kMostRows)
@@ -78,7 +78,7 @@ std::string failed_table(const ReportInput& input) {
                                                {"Why", HtmlTable::Align::text}});
   const std::vector<const ExperimentRecord*>& failed = input.parts.failed;
   for (std::size_t i = 0; i < std::min(failed.size(), kMostRows); ++i)
-    table.row({fmt::format("{}", failed[i]->draw.index), experiment_kind(failed[i]->draw),
+    table.row({fmt::format("{}", failed[i]->draw.index), kind_name(failed[i]->draw.kind),
                fault_cell(input, *failed[i]), html_text(failed[i]->message)});
   return table.html();
 }
@@ -94,9 +94,9 @@ ReportSection wrong_verdict_section(const ReportInput& input) {
     return section;
   }
   std::int64_t impactful = 0;
-  for (const KindAggregate& kind : input.parts.aggregate.kinds)
-    impactful += kind.impactful.hits;
-  for (const FalseAlarms& group : input.parts.aggregate.false_alarms)
+  for (const KindFindings& kind : input.kinds())
+    impactful += kind.flagged.hits;
+  for (const FalseAlarms& group : input.false_alarms())
     impactful += group.parameter ? 0 : group.false_alarm.hits;
   section.add(
       fmt::format("<p>{} of {} experiments with impact got a wrong verdict. <code>mpmbench plot {} INDEX -o "

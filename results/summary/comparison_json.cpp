@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "analysis/findings/method_rates.hpp"
-#include "analysis/methods/method_table.hpp"
+#include "results/archive/method_json.hpp"
 #include "results/files/utf8.hpp"
 #include "results/summary/comparison.hpp"
 
@@ -41,29 +40,19 @@ Json roc_json(const MethodRates& method) {
           {"false_positive_rate", false_positive}};
 }
 
-Json method_json(const MethodRates& method) {
-  const AssessmentMethodInfo& info = assessment_method(method.method);
-  const AssessmentRequirements& needs = info.requirements;
-  return {{"name", info.name},
-          {"title", info.title},
-          {"verdict", info.verdict},
-          {"needs",
-           {{"setpoints", needs.setpoints},
-            {"moving_setpoints", needs.moving_setpoints},
-            {"benchmark", needs.benchmark},
-            {"moving_mvs", needs.moving_mvs}}},
-          {"answers",
-           {{"cv", info.locates_cvs}, {"channel", info.names_channels}, {"source", info.tells_sources}}},
-          {"reason", proper_utf8(method.reason)},
-          {"rates", rates_json(method)},
-          {"roc", roc_json(method)},
-          {"milliseconds", method.milliseconds}};
+Json method_findings_json(const MethodFindings& method) {
+  Json json = method_json(method.form->method());
+  json["reason"] = proper_utf8(method.rates.reason);
+  json["rates"] = rates_json(method.rates);
+  json["roc"] = roc_json(method.rates);
+  json["milliseconds"] = method.rates.milliseconds;
+  return json;
 }
 
-Json pair_json(const ComparisonSummary& summary, const MethodPair& pair) {
+Json pair_json(const StudyFindings& findings, const MethodPair& pair) {
   return {{"truth", to_string(pair.truth)},
-          {"first", summary.methods[pair.first].method},
-          {"second", summary.methods[pair.second].method},
+          {"first", findings.methods[pair.first].name()},
+          {"second", findings.methods[pair.second].name()},
           {"loops", pair.loops},
           {"first_alone", pair.test.lost},
           {"second_alone", pair.test.gained},
@@ -80,17 +69,16 @@ Json rate_names_json() {
 
 }  // namespace
 
-std::string comparison_json(const Campaign& campaign) {
-  const ComparisonSummary summary = summarise(*campaign.comparison, campaign.records, campaign.study);
+std::string comparison_json(const Campaign& campaign, const StudyFindings& findings) {
   Json methods = Json::array(), pairs = Json::array();
-  for (const MethodRates& method : summary.methods)
-    methods.push_back(method_json(method));
-  for (const MethodPair& pair : summary.pairs)
-    pairs.push_back(pair_json(summary, pair));
+  for (const MethodFindings& method : findings.methods)
+    methods.push_back(method_findings_json(method));
+  for (const MethodPair& pair : findings.pairs)
+    pairs.push_back(pair_json(findings, pair));
   const Json comparison{{"study", campaign.study.name},
                         {"seed", campaign.study.seed},
                         {"experiments", campaign.records.size()},
-                        {"loops", campaign.comparison->loops.size()},
+                        {"loops", assessed_loops(campaign)},
                         {"confidence", campaign.study.aggregate.confidence},
                         {"rates", rate_names_json()},
                         {"methods", methods},

@@ -22,19 +22,20 @@ std::string rate_text(const Rate& rate) {
                      100 * rate.interval.upper, rate.total);
 }
 
-std::string area_text(const MethodRates& method) {
-  if (!method.roc.defined())
+std::string area_text(const MethodFindings& method) {
+  const RocCurve& roc = method.rates.roc;
+  if (!roc.defined())
     return "-";
-  return fmt::format("{:.3f} [{:.3f}, {:.3f}] {:>4}", method.roc.area, method.roc_area.lower,
-                     method.roc_area.upper, method.roc.positives + method.roc.negatives);
+  return fmt::format("{:.3f} [{:.3f}, {:.3f}] {:>4}", roc.area, method.rates.roc_area.lower,
+                     method.rates.roc_area.upper, roc.positives + roc.negatives);
 }
 
-std::string cost_text(const MethodRates& method) {
-  return std::isnan(method.milliseconds) ? "-" : fmt::format("{:.2f}", method.milliseconds);
+std::string cost_text(const MethodFindings& method) {
+  return std::isnan(method.rates.milliseconds) ? "-" : fmt::format("{:.2f}", method.rates.milliseconds);
 }
 
 /// One column a method of [first, last), one row a rate.
-std::string rates_text(const std::vector<MethodRates>& methods, std::size_t first, std::size_t last) {
+std::string rates_text(const std::vector<MethodFindings>& methods, std::size_t first, std::size_t last) {
   TextTable table;
   const auto row = [&](const std::string& title, const auto& cell) {
     TextTable::Row cells{title};
@@ -42,32 +43,32 @@ std::string rates_text(const std::vector<MethodRates>& methods, std::size_t firs
       cells.push_back(cell(methods[m]));
     table.add(std::move(cells));
   };
-  row("% of loops", [](const MethodRates& m) { return m.method; });
+  row("% of loops", [](const MethodFindings& m) { return m.name(); });
   for (const MethodRateInfo& info : method_rate_infos())
-    row(info.title, [&](const MethodRates& m) { return rate_text(m.*info.rate); });
+    row(info.title, [&](const MethodFindings& m) { return rate_text(m.rates.*info.rate); });
   row("area under ROC", area_text);
   row("ms a loop, median", cost_text);
   return table.text();
 }
 
 /// The methods that gave no verdict on some loop, with the reason.
-std::string reasons_text(const std::vector<MethodRates>& methods) {
+std::string reasons_text(const std::vector<MethodFindings>& methods) {
   TextTable table;
-  for (const MethodRates& method : methods)
-    if (!method.reason.empty())
-      table.add({method.method, fmt::format("{}", method.answered.total - method.answered.hits),
-                 "loops, the first because: " + method.reason});
+  for (const MethodFindings& method : methods)
+    if (const MethodRates& rates = method.rates; !rates.reason.empty())
+      table.add({method.name(), fmt::format("{}", rates.answered.total - rates.answered.hits),
+                 "loops, the first because: " + rates.reason});
   const std::string rows = table.text(TextTable::LastColumn::words);
   return rows.empty() ? rows : fmt::format("\nno verdict on\n{}", rows);
 }
 
-std::string pairs_text(const ComparisonSummary& summary) {
+std::string pairs_text(const StudyFindings& summary) {
   TextTable table;
   table.add({"pair", "truth", "loops", "right: first alone", "second alone", "p"});
   for (const MethodPair& pair : summary.pairs)
     if (pair.loops > 0)
       table.add(
-          {fmt::format("{} / {}", summary.methods[pair.first].method, summary.methods[pair.second].method),
+          {fmt::format("{} / {}", summary.methods[pair.first].name(), summary.methods[pair.second].name()),
            std::string(to_string(pair.truth)), fmt::format("{}", pair.loops),
            fmt::format("{}", pair.test.lost), fmt::format("{}", pair.test.gained),
            fmt::format("{:.2g}", pair.test.p_two_sided)});
@@ -83,15 +84,14 @@ std::string pairs_text(const ComparisonSummary& summary) {
 
 }  // namespace
 
-std::string comparison_text(const Campaign& campaign) {
-  const ComparisonSummary summary = summarise(*campaign.comparison, campaign.records, campaign.study);
+std::string comparison_text(const Campaign& campaign, const StudyFindings& findings) {
   std::string text = fmt::format("{}: {} of {} experiments compared; [{:g} % interval], loops looked at\n",
-                                 campaign.study.name, campaign.comparison->loops.size(),
-                                 campaign.records.size(), 100.0 * campaign.study.aggregate.confidence);
-  for (std::size_t first = 0; first < summary.methods.size(); first += kMethodsAbreast)
-    text += fmt::format("\n{}", rates_text(summary.methods, first,
-                                           std::min(first + kMethodsAbreast, summary.methods.size())));
-  return text + reasons_text(summary.methods) + pairs_text(summary);
+                                 campaign.study.name, assessed_loops(campaign), campaign.records.size(),
+                                 100.0 * campaign.study.aggregate.confidence);
+  for (std::size_t first = 0; first < findings.methods.size(); first += kMethodsAbreast)
+    text += fmt::format("\n{}", rates_text(findings.methods, first,
+                                           std::min(first + kMethodsAbreast, findings.methods.size())));
+  return text + reasons_text(findings.methods) + pairs_text(findings);
 }
 
 }  // namespace mpm

@@ -4,7 +4,7 @@
 #include "analysis/sensitivity/loop_interaction.hpp"
 #include "results/files/utf8.hpp"
 #include "results/summary/summary.hpp"
-#include "results/summary/summary_parts.hpp"
+#include "results/summary/summary_content.hpp"
 #include "results/text/experiment_text.hpp"
 #include "results/text/scenario_text.hpp"
 
@@ -80,8 +80,8 @@ Json basis_json(const Study& study, const BasisCase& basis) {
                       .name] = largest(a);
   }
   Json acf = Json::object();
-  for (std::size_t cv = 0; cv < basis.acf.size(); ++cv)
-    acf[study.plant.cvs[cv].name] = numbers_json(basis.acf[cv], acf_columns());
+  for (std::size_t cv = 0; cv < basis.diagnosis.cvs.size(); ++cv)
+    acf[study.plant.cvs[cv].name] = numbers_json(basis.diagnosis.cvs[cv].acf, acf_columns());
   return {{"healthy", basis.healthy},
           {"explanation", basis.explanation},
           {"ivar", ivar},
@@ -90,26 +90,24 @@ Json basis_json(const Study& study, const BasisCase& basis) {
           {"interaction", interaction_json(study, basis)}};
 }
 
-Json kinds_json(const StudyAggregate& aggregate) {
+Json kinds_json(const std::vector<KindCount>& counts) {
   Json kinds = Json::object();
-  for (const KindAggregate& kind : aggregate.kinds)
-    kinds[std::string(to_string(kind.kind))] = kind.experiments;
-  for (const FalseAlarms& group : aggregate.false_alarms)
-    if (!group.parameter)
-      kinds[group.name()] = group.experiments;
+  for (const KindCount& count : counts)
+    kinds[std::string(to_string(count.kind))] = count.experiments;
   return kinds;
 }
 
-Json aggregates_json(const std::vector<SummaryValue>& values) {
+Json findings_json(const std::vector<Finding>& rows) {
   Json list = Json::array();
-  for (const SummaryValue& value : values)
-    list.push_back({{"name", value.measured.name},
-                    {"description", value.measured.description},
-                    {"value", value.measured.value},
-                    {"lower", value.measured.interval.lower},
-                    {"upper", value.measured.interval.upper},
-                    {"count", value.measured.count},
-                    {"reported", value.reported}});
+  for (const Finding& row : rows)
+    list.push_back({{"name", row.name},
+                    {"meaning", row.meaning},
+                    {"form", to_string(row.form)},
+                    {"value", row.value},
+                    {"lower", row.interval.lower},
+                    {"upper", row.interval.upper},
+                    {"count", row.count},
+                    {"reported", row.reported}});
   return list;
 }
 
@@ -126,7 +124,7 @@ Json dominance_json(const std::vector<DominanceBin>& bins) {
   return list;
 }
 
-Json audit_json(const SummaryParts& parts, const CampaignInfo& info) {
+Json audit_json(const SummaryContent& parts, const CampaignInfo& info) {
   return {{"share", info.audit_share},
           {"steps", parts.audit.steps},
           {"disagreements", parts.audit.disagreements},
@@ -141,7 +139,7 @@ Json change_json(const S0Change& change) {
   return {{"largest_change", change.largest}, {"within_band", change.within_band.value}};
 }
 
-Json s0_perturbation_json(const Study& study, const SummaryParts& parts) {
+Json s0_perturbation_json(const Study& study, const SummaryContent& parts) {
   const auto name = [&](Eigen::Index cv) { return study.plant.cvs[static_cast<std::size_t>(cv)].name; };
   Json fits = Json::array(), curves = Json::array(), structures = Json::array();
   for (const DiagonalFit& fit : parts.s0_fits)
@@ -163,13 +161,14 @@ Json s0_perturbation_json(const Study& study, const SummaryParts& parts) {
   return {{"fits", fits}, {"changes", curves}, {"fixed_mvs", structures}};
 }
 
-Json cv_json(const Study& study, const Diagnosis& diagnosis, std::size_t cv) {
+Json cv_json(const Study& study, const Diagnosis& diagnosis, const Eigen::VectorXd& ivar_basis,
+             std::size_t cv) {
   const CvDiagnosis& found = diagnosis.cvs[cv];
   const auto place = static_cast<Eigen::Index>(cv);
   return {{"cv", study.plant.cvs[cv].name},
           {"ivar", diagnosis.ivar(place)},
           {"ivar_diag", diagnosis.ivar_diag(place)},
-          {"ivar_basis", diagnosis.ivar_basis(place)},
+          {"ivar_basis", ivar_basis(place)},
           {"flagged", found.flagged},
           {"source", to_string(found.source)},
           {"i_mpm", found.distribution.mpm.i_mpm},
@@ -187,11 +186,12 @@ Json scenarios_json(const Campaign& campaign) {
   for (const ExperimentRecord& record : campaign.records) {
     if (!record.draw.named)
       continue;
+    const Diagnosis chain = record.chain();
     Json affected = Json::object(), cvs = Json::array();
     for (const AffectedCv& cv : record.draw.affected())
       affected[study.plant.cvs[static_cast<std::size_t>(cv.cv)].name] = to_string(cv.by);
-    for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv)
-      cvs.push_back(cv_json(study, record.diagnosis, cv));
+    for (std::size_t cv = 0; cv < chain.cvs.size(); ++cv)
+      cvs.push_back(cv_json(study, chain, record.ivar_basis, cv));
     list.push_back({{"index", record.draw.index},
                     {"name", scenario_name(study, record)},
                     {"description", study.scenarios[static_cast<std::size_t>(record.draw.index)].description},
@@ -200,7 +200,7 @@ Json scenarios_json(const Campaign& campaign) {
                     {"status", to_string(record.status)},
                     {"affected", affected},
                     {"verdict", scenario_verdict_text(study, record)},
-                    {"tsse", total_simulation_error(record.diagnosis)},
+                    {"tsse", total_simulation_error(chain)},
                     {"cvs", cvs}});
   }
   return list;
@@ -222,9 +222,8 @@ Json wrong_json(const std::vector<const ExperimentRecord*>& wrong) {
 
 }  // namespace
 
-std::string summary_json(const Campaign& campaign) {
-  const SummaryParts parts = summary_parts(campaign);
-  const StudyAggregate& total = parts.aggregate;
+std::string summary_json(const Campaign& campaign, const StudyFindings& total) {
+  const SummaryContent parts = summary_content(campaign, total);
   const Json summary{{"study", campaign.study.name},
                      {"seed", campaign.study.seed},
                      {"solver", campaign.info.solver},
@@ -232,12 +231,13 @@ std::string summary_json(const Campaign& campaign) {
                      {"experiments", total.experiments},
                      {"infeasible", total.infeasible.hits},
                      {"failed", total.failed},
-                     {"kinds", kinds_json(total)},
+                     {"kinds", kinds_json(kind_counts(campaign))},
                      {"basis", basis_json(campaign.study, campaign.basis)},
                      {"settings", settings_json(campaign.study)},
                      {"run", run_json(campaign.info)},
                      {"confidence", campaign.study.aggregate.confidence},
-                     {"aggregates", aggregates_json(parts.values)},
+                     {"methods", method_names(campaign)},
+                     {"findings", findings_json(total.rows)},
                      {"scenarios", scenarios_json(campaign)},
                      {"dominance", dominance_json(total.dominance)},
                      {"s0_perturbation", s0_perturbation_json(campaign.study, parts)},

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kCvWidth = 32;
 
 /// Fits and changes of the CVs at a soft limit when S0 is modified.
-void add_changes(SummaryLines& text, const Study& study, const SummaryParts& parts) {
+void add_changes(SummaryLines& text, const Study& study, const SummaryContent& parts) {
   if (parts.s0_fits.empty())
     return;
   const S0PerturbationOptions& options = study.s0_perturbation;
@@ -57,7 +57,7 @@ void add_structures(SummaryLines& text, const Study& study, const std::vector<St
 
 }  // namespace
 
-void add_s0_perturbation(SummaryLines& text, const Study& study, const SummaryParts& parts) {
+void add_s0_perturbation(SummaryLines& text, const Study& study, const SummaryContent& parts) {
   add_changes(text, study, parts);
   add_structures(text, study, parts.structure_fits);
 }

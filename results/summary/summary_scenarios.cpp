@@ -26,7 +26,8 @@ void add_scenario_indices(SummaryLines& text, const Campaign& campaign, const ch
   row(name, cells);
   for (const ExperimentRecord& record : campaign.records) {
     cells.clear();
-    for (const double value : record.diagnosis.*index)
+    const Diagnosis chain = record.chain();
+    for (const double value : chain.*index)
       cells.push_back(digits_text(value) + (study.diagnosis.has_impact(value) ? "*" : " "));
     row(scenario_name(study, record), cells);
   }
@@ -38,14 +39,16 @@ void add_scenario_indicators(SummaryLines& text, const Campaign& campaign) {
   constexpr auto kRow = "{:<14}  {:<10}  {:>8}  {:>8}  {:>8}  {:>8}";
   text.line("");
   text.line(kRow, "flagged CVs", "CV", "I_MPM", "co_dkts", "co_dskn", "SSE");
-  for (const ExperimentRecord& record : campaign.records)
-    for (std::size_t i = 0; i < record.diagnosis.cvs.size(); ++i) {
-      const CvDiagnosis& cv = record.diagnosis.cvs[i];
+  for (const ExperimentRecord& record : campaign.records) {
+    const Diagnosis chain = record.chain();
+    for (std::size_t i = 0; i < chain.cvs.size(); ++i) {
+      const CvDiagnosis& cv = chain.cvs[i];
       if (cv.flagged)
         text.line(kRow, scenario_name(study, record), study.plant.cvs[i].name,
                   digits_text(cv.distribution.mpm.i_mpm), digits_text(cv.distribution.mpm.co_dkts),
                   digits_text(cv.distribution.mpm.co_dskn), digits_text(cv.sse));
     }
+  }
   text.line("(* outside the band of impact)");
 }
 
@@ -63,11 +66,13 @@ void add_autocorrelations(SummaryLines& text, const Campaign& campaign) {
     text.line(kRow, name, study.plant.cvs[cv].name, digits_text(acf.y.decay_lag),
               digits_text(acf.y0.decay_lag), digits_text(acf.own_share), acf_text(acf));
   };
-  for (std::size_t cv = 0; cv < campaign.basis.acf.size(); ++cv)
-    row("basis case", cv, campaign.basis.acf[cv]);
+  const auto rows = [&](const std::string& name, const Diagnosis& chain) {
+    for (std::size_t cv = 0; cv < chain.cvs.size(); ++cv)
+      row(name, cv, chain.cvs[cv].acf);
+  };
+  rows("basis case", campaign.basis.diagnosis);
   for (const ExperimentRecord& record : campaign.records)
-    for (std::size_t cv = 0; cv < record.diagnosis.cvs.size(); ++cv)
-      row(scenario_name(study, record), cv, record.diagnosis.cvs[cv].acf);
+    rows(scenario_name(study, record), record.chain());
   text.line("({}; lags in samples; own: 1 when y0_diag is like y0, 0 when it is like y)",
             any ? "CVs that differ from their nominal output" : "no CV differs from its nominal output");
 }
@@ -80,10 +85,12 @@ void add_scenarios(SummaryLines& text, const Campaign& campaign) {
   constexpr auto kRow = "{:<14}  {:<24}  {:<24}  {:>8}  {}";
   text.line("");
   text.line(kRow, "named scenarios", "affected", "flagged", "TSSE", "verdict");
-  for (const ExperimentRecord& record : campaign.records)
+  for (const ExperimentRecord& record : campaign.records) {
+    const Diagnosis chain = record.chain();
     text.line(kRow, scenario_name(study, record), affected_text(study, record.draw),
-              flagged_text(study, record.diagnosis), digits_text(total_simulation_error(record.diagnosis)),
+              flagged_text(study, chain), digits_text(total_simulation_error(chain)),
               scenario_verdict_text(study, record));
+  }
   text.line("(flagged: Ivar_diag outside {:g} to {:g}; source by I_MPM above or below {:g})",
             options.impact_lower, options.impact_upper, options.mpm_threshold);
   add_scenario_indices(text, campaign, "Ivar", &Diagnosis::ivar);

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "results/archive/campaign.hpp"
+#include "results/summary/summary_content.hpp"
 #include "results/summary/summary_lines.hpp"
-#include "results/summary/summary_parts.hpp"
 
 namespace mpm {
 
@@ -14,6 +14,6 @@ namespace mpm {
 void add_scenarios(SummaryLines& text, const Campaign& campaign);
 
 /// Of a study that modifies S0: fits and changes of the CVs at a soft limit, and the fits with MVs fixed.
-void add_s0_perturbation(SummaryLines& text, const Study& study, const SummaryParts& parts);
+void add_s0_perturbation(SummaryLines& text, const Study& study, const SummaryContent& parts);
 
 }  // namespace mpm

@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/sensitivity/loop_interaction.hpp"
+#include "results/summary/comparison.hpp"
 #include "results/summary/summary.hpp"
+#include "results/summary/summary_content.hpp"
 #include "results/summary/summary_lines.hpp"
-#include "results/summary/summary_parts.hpp"
 #include "results/summary/summary_sections.hpp"
 
 namespace mpm {
@@ -15,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostListed = 10;
 
-std::string audit_sentence(const SummaryParts& parts, const CampaignInfo& info) {
+std::string audit_sentence(const SummaryContent& parts, const CampaignInfo& info) {
   const AuditSummary& audit = parts.audit;
   const std::string fallbacks =
       parts.fallbacks == 0 ? "no problem fell back to Ipopt"
@@ -58,8 +60,8 @@ std::string interaction_sentence(const Study& study, const BasisCase& basis) {
   return sentence;
 }
 
-void add_heading(SummaryLines& text, const Campaign& campaign, const SummaryParts& parts) {
-  const StudyAggregate& aggregate = parts.aggregate;
+void add_heading(SummaryLines& text, const Campaign& campaign, const SummaryContent& parts) {
+  const StudyFindings& findings = parts.findings;
   const Study& study = campaign.study;
   const PlantModel& plant = study.plant;
   const CampaignInfo& info = campaign.info;
@@ -70,15 +72,9 @@ void add_heading(SummaryLines& text, const Campaign& campaign, const SummaryPart
              fmt::format("sample time {:g} {}, prediction horizon {}, control horizon {}",
                          study.controller.sample_time, plant.time_unit, study.controller.prediction_horizon,
                          study.controller.control_horizon));
-  std::string kinds = study.names_scenarios() ? "named scenarios" : "";
-  for (const KindAggregate& kind : aggregate.kinds)
-    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind.experiments, to_string(kind.kind));
-  for (const FalseAlarms& group : aggregate.false_alarms)
-    if (!group.parameter)
-      kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", group.experiments, group.name());
-  text.entry("experiments",
-             fmt::format("{} ({}) of {} samples; {} infeasible, {} failed", aggregate.experiments, kinds,
-                         study.simulation.samples, aggregate.infeasible.hits, aggregate.failed));
+  text.entry("experiments", fmt::format("{} ({}) of {} samples; {} infeasible, {} failed",
+                                        findings.experiments, kinds_text(campaign), study.simulation.samples,
+                                        findings.infeasible.hits, findings.failed));
   text.entry("seed", fmt::format("{}", study.seed));
   text.entry("program", fmt::format("mpmbench {} ({}), solver {}", info.mpmbench_version,
                                     info.git_sha.empty() ? "unknown revision" : info.git_sha, info.solver));
@@ -97,42 +93,40 @@ std::string confidence_title(const Study& study) {
   return fmt::format("{:g} % interval", 100.0 * study.aggregate.confidence);
 }
 
-void add_compared(SummaryLines& text, const Study& study, const std::vector<SummaryValue>& values) {
-  if (std::none_of(values.begin(), values.end(), [](const auto& v) { return v.has_reported(); }))
+void add_compared(SummaryLines& text, const Study& study, const std::vector<Finding>& rows) {
+  if (std::none_of(rows.begin(), rows.end(), [](const Finding& row) { return row.has_reported(); }))
     return;
   text.line("");
   text.line("{:<{}}  {:>10}  {:>18}  {:>8}  {:>10}  {}", "measured against reported", kNameWidth, "measured",
             confidence_title(study), "count", "reported", "agree");
-  for (const SummaryValue& value : values) {
-    if (!value.has_reported())
+  for (const Finding& row : rows) {
+    if (!row.has_reported())
       continue;
-    const bool share = value.is_share();
-    const Interval& range = value.measured.interval;
-    const char* agree = std::isnan(range.lower) ? "-" : range.contains(value.reported) ? "yes" : "no";
-    text.line("{:<{}}  {:>10}  {:>18}  {:>8}  {:>10}  {}", value.measured.name, kNameWidth,
-              number_text(value.measured.value, share), interval_text(range, share), value.measured.count,
-              number_text(value.reported, share), agree);
+    const bool share = row.is_share();
+    const char* agree = std::isnan(row.interval.lower)        ? "-"
+                        : row.interval.contains(row.reported) ? "yes"
+                                                              : "no";
+    text.line("{:<{}}  {:>10}  {:>18}  {:>8}  {:>10}  {}", row.name, kNameWidth,
+              number_text(row.value, share), interval_text(row.interval, share), row.count,
+              number_text(row.reported, share), agree);
   }
   text.line("(agree: the interval contains the reported number)");
 }
 
-/// The bins of dominance have a table of their own.
-bool is_dominance(const SummaryValue& value) {
-  return value.measured.name.find("_at_dominance_") != std::string::npos;
+/// What has no table of its own: bins of dominance, and methods, when there are several.
+bool is_other(const Finding& row) {
+  return !row.has_reported() && row.prominence != Prominence::detail &&
+         row.group != FindingGroup::dominance && row.group != FindingGroup::method;
 }
 
-void add_others(SummaryLines& text, const Study& study, const std::vector<SummaryValue>& values) {
+void add_others(SummaryLines& text, const Study& study, const std::vector<Finding>& rows) {
   text.line("");
   text.line("{:<{}}  {:>10}  {:>18}  {:>8}", "other numbers", kNameWidth, "measured", confidence_title(study),
             "count");
-  for (const SummaryValue& value : values) {
-    if (value.has_reported() || is_dominance(value))
-      continue;
-    const bool share = value.is_share();
-    text.line("{:<{}}  {:>10}  {:>18}  {:>8}", value.measured.name, kNameWidth,
-              number_text(value.measured.value, share), interval_text(value.measured.interval, share),
-              value.measured.count);
-  }
+  for (const Finding& row : rows)
+    if (is_other(row))
+      text.line("{:<{}}  {:>10}  {:>18}  {:>8}", row.name, kNameWidth, number_text(row.value, row.is_share()),
+                interval_text(row.interval, row.is_share()), row.count);
 }
 
 std::string cv_name(const Study& study, Eigen::Index cv) {
@@ -173,34 +167,37 @@ void add_wrong(SummaryLines& text, const Study& study, const std::vector<const E
             wrong.empty() ? "" : ":");
   for (std::size_t i = 0; i < std::min(wrong.size(), kMostListed); ++i) {
     const ExperimentDraw& draw = wrong[i]->draw;
-    const Diagnosis& verdict = wrong[i]->diagnosis;
-    const std::string truth = is_faultless(draw.kind) ? std::string(count_name(draw.kind))
+    const AssessmentRecord& said = *wrong[i]->by(kChainMethod);
+    const std::string truth = is_faultless(draw.kind) ? std::string(to_string(draw.kind))
                                                       : fmt::format("{} on {}", to_string(draw.kind),
                                                                     cv_name(study, draw.true_cv()));
     text.line("  {:<{}}  # {}, found {} on {}", fmt::format("mpmbench replay {} {}", file, draw.index),
-              file.size() + 22, truth, to_string(verdict.predicted_source),
-              cv_name(study, verdict.predicted_cv));
+              file.size() + 22, truth, to_string(said.predicted_source), cv_name(study, said.predicted_cv));
   }
   add_more(text, wrong.size());
 }
 
 }  // namespace
 
-std::string summary_text(const Campaign& campaign, const std::string& file) {
-  const SummaryParts parts = summary_parts(campaign);
+std::string summary_text(const Campaign& campaign, const StudyFindings& findings, const std::string& file) {
+  const SummaryContent parts = summary_content(campaign, findings);
+  const bool chain = findings.chain() != nullptr;
   SummaryLines text;
   add_heading(text, campaign, parts);
   if (campaign.study.names_scenarios()) {
-    add_scenarios(text, campaign);
-    add_failed(text, parts.failed);
-    return text.take();
+    if (chain)
+      add_scenarios(text, campaign);
+  } else {
+    add_compared(text, campaign.study, findings.rows);
+    add_others(text, campaign.study, findings.rows);
+    add_dominance(text, campaign.study, findings.dominance);
+    add_s0_perturbation(text, campaign.study, parts);
   }
-  add_compared(text, campaign.study, parts.values);
-  add_others(text, campaign.study, parts.values);
-  add_dominance(text, campaign.study, parts.aggregate.dominance);
-  add_s0_perturbation(text, campaign.study, parts);
   add_failed(text, parts.failed);
-  add_wrong(text, campaign.study, parts.wrong, file);
+  if (!campaign.study.names_scenarios() && chain)
+    add_wrong(text, campaign.study, parts.wrong, file);
+  if (findings.methods.size() > 1 || !chain)
+    text.line("\n{}", comparison_text(campaign, findings));
   return text.take();
 }
 

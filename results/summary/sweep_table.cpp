@@ -1,39 +1,37 @@
 #include "results/summary/sweep_table.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "results/plot/plot_text.hpp"
+#include "results/text/experiment_text.hpp"
+
 namespace mpm {
 namespace {
 
-struct Column {
-  const char* title;
-  const char* name;  ///< of the aggregate
-  bool share;
-};
+/// The headline findings of the first study: later ones have the same.
+std::vector<Finding> columns_of(const std::vector<SweepRow>& rows) {
+  std::vector<Finding> columns;
+  if (!rows.empty())
+    for (const Finding& finding : rows.front().findings)
+      if (finding.prominence == Prominence::headline)
+        columns.push_back(finding);
+  return columns;
+}
 
-constexpr std::array<Column, 9> kColumns{{
-    {"infeasible, %", "infeasible", true},
-    {"located MPM, %", "mpm.located", true},
-    {"located UD, %", "ud.located", true},
-    {"located MPM+UD, %", "mpm_ud.located", true},
-    {"MPM recognised, %", "mpm.source_recognised", true},
-    {"UD recognised, %", "ud.source_recognised", true},
-    {"R^2 MPM", "mpm.r_squared", false},
-    {"R^2 UD", "ud.r_squared", false},
-    {"R^2 MPM+UD", "mpm_ud.r_squared", false},
-}};
+std::string title(const Finding& column) {
+  const bool of_kind = column.kind && column.group == FindingGroup::kind;
+  return fmt::format("{}{}{}{}", plain_label(column.label), of_kind ? " " : "",
+                     of_kind ? kind_name(*column.kind) : "", column.is_share() ? ", %" : "");
+}
 
-std::string cell(const Column& column, const std::vector<AggregateValue>& values) {
-  const auto found = std::find_if(values.begin(), values.end(),
-                                  [&](const AggregateValue& value) { return value.name == column.name; });
-  if (found == values.end() || !std::isfinite(found->value))
+std::string cell(const Finding& column, const std::vector<Finding>& findings) {
+  const Finding* const found = find_finding(findings, column.name);
+  if (found == nullptr || !std::isfinite(found->value))
     return "-";
   const auto [lower, upper] = found->interval;
-  if (column.share)
+  if (column.is_share())
     return fmt::format("{:.1f} ({:.0f} to {:.0f})", 100 * found->value, 100 * lower, 100 * upper);
   return fmt::format("{:.2f} ({:.2f} to {:.2f})", found->value, lower, upper);
 }
@@ -41,10 +39,11 @@ std::string cell(const Column& column, const std::vector<AggregateValue>& values
 }  // namespace
 
 std::string sweep_table(const std::vector<SweepRow>& rows) {
+  const std::vector<Finding> columns = columns_of(rows);
   std::string head = "| choice | value |";
   std::string rule = "|---|---|";
-  for (const Column& column : kColumns) {
-    head += fmt::format(" {} |", column.title);
+  for (const Finding& column : columns) {
+    head += fmt::format(" {} |", title(column));
     rule += "---|";
   }
   std::string text = head + '\n' + rule + '\n';
@@ -53,8 +52,8 @@ std::string sweep_table(const std::vector<SweepRow>& rows) {
     const bool repeated = last_choice != nullptr && *last_choice == row.choice;
     const std::string choice = row.choice.empty() ? "as shipped" : repeated ? "" : row.choice;
     text += fmt::format("| {} | {}{} |", choice, row.value, row.healthy ? "" : " *");
-    for (const Column& column : kColumns)
-      text += fmt::format(" {} |", cell(column, row.values));
+    for (const Finding& column : columns)
+      text += fmt::format(" {} |", cell(column, row.findings));
     text += '\n';
     last_choice = &row.choice;
   }

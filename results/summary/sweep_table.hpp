@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/findings/study_aggregate.hpp"
+#include "analysis/findings/finding.hpp"
 
 namespace mpm {
 
@@ -12,7 +12,7 @@ struct SweepRow {
   std::string choice;  ///< empty for the base study
   std::string value;
   bool healthy = true;  ///< the basis case passed its self-check
-  std::vector<AggregateValue> values;
+  std::vector<Finding> findings;
 };
 
 /// The sweep as a table in Markdown: one line a study, grouped by choice, the base study first, one column a

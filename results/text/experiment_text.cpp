@@ -113,22 +113,30 @@ std::string tuning_text(const Study& study, const TuningChange& tuning) {
 
 std::string kind_name(ExperimentKind kind) {
   switch (kind) {
-    case ExperimentKind::none:
-      return "none";
-    case ExperimentKind::mpm:
-      return "MPM";
-    case ExperimentKind::ud:
-      return "UD";
-    case ExperimentKind::mpm_ud:
-      return "MPM+UD";
+    case ExperimentKind::healthy:
+      return "healthy";
     case ExperimentKind::tuning:
       return "tuning";
+    case ExperimentKind::mpm:
+    case ExperimentKind::ud:
+    case ExperimentKind::mpm_ud:
+      return source_name(source_of(kind));
   }
   return "unknown";
 }
 
-std::string experiment_kind(const ExperimentDraw& draw) {
-  return draw.kind == ExperimentKind::none ? "healthy" : kind_name(draw.kind);
+std::string source_name(FaultSource source) {
+  switch (source) {
+    case FaultSource::none:
+      return "none";
+    case FaultSource::mpm:
+      return "MPM";
+    case FaultSource::ud:
+      return "UD";
+    case FaultSource::mpm_ud:
+      return "MPM+UD";
+  }
+  return "unknown";
 }
 
 std::string cv_name(const Study& study, Eigen::Index cv) {
@@ -153,19 +161,20 @@ std::string experiment_title(const Study& study, const ExperimentDraw& draw) {
   if (draw.named)
     return fmt::format("{} ({}): {}", study.scenarios[static_cast<std::size_t>(draw.index)].name,
                        kind_name(draw.kind), fault_text(study, draw));
-  return fmt::format("experiment {} ({}): {}", draw.index, experiment_kind(draw), fault_text(study, draw));
+  return fmt::format("experiment {} ({}): {}", draw.index, kind_name(draw.kind), fault_text(study, draw));
 }
 
 std::string verdict_text(const Study& study, const ExperimentRecord& record) {
   if (record.status != ExperimentStatus::ok)
     return std::string(to_string(record.status));
+  const Diagnosis chain = record.chain();
   if (record.draw.named)
-    return fmt::format("flagged {}; {}", flagged_text(study, record.diagnosis),
-                       scenario_verdict_text(study, record));
-  const Diagnosis& verdict = record.diagnosis;
-  return fmt::format("{}located {}, I_MPM {:.3f}: {}", verdict.impactful ? "" : "no impact, ",
-                     cv_name(study, verdict.predicted_cv), verdict.indicator.i_mpm,
-                     kind_name(verdict.predicted_source));
+    return fmt::format("flagged {}; {}", flagged_text(study, chain), scenario_verdict_text(study, record));
+  if (chain.ivar.size() == 0)
+    return "not assessed by the chain";
+  return fmt::format("{}located {}, I_MPM {:.3f}: {}", chain.impactful ? "" : "no impact, ",
+                     cv_name(study, chain.predicted_cv), chain.indicator.i_mpm,
+                     source_name(chain.predicted_source));
 }
 
 std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record) {

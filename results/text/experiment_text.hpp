@@ -10,11 +10,11 @@ namespace mpm {
 
 // How reports name experiments and what is in them; plain text. Foreign names in it are as in the study.
 
-/// "MPM", "UD", "MPM+UD", "tuning", "none".
+/// "healthy", "MPM", "UD", "MPM+UD", "tuning".
 std::string kind_name(ExperimentKind kind);
 
-/// The same for an experiment, in which "none" is "healthy".
-std::string experiment_kind(const ExperimentDraw& draw);
+/// "none", "MPM", "UD", "MPM+UD".
+std::string source_name(FaultSource source);
 
 /// The name of a CV, "none" for -1.
 std::string cv_name(const Study& study, Eigen::Index cv);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/chain_numbers.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
@@ -14,8 +15,8 @@ std::string cv_list(const Study& study, const std::vector<Eigen::Index>& cvs) {
   return text;
 }
 
-void add_source(std::string& text, const Study& study, Eigen::Index cv, ExperimentKind source) {
-  text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", cv_name(study, cv), kind_name(source));
+void add_source(std::string& text, const Study& study, Eigen::Index cv, FaultSource source) {
+  text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", cv_name(study, cv), source_name(source));
 }
 
 }  // namespace
@@ -42,7 +43,10 @@ std::string flagged_text(const Study& study, const Diagnosis& diagnosis) {
 std::string scenario_verdict_text(const Study& study, const ExperimentRecord& record) {
   if (record.status != ExperimentStatus::ok)
     return std::string(to_string(record.status));
-  const ScenarioVerdict verdict = scenario_verdict(record);
+  const AssessmentRecord* const chain = record.by(kChainMethod);
+  if (chain == nullptr || !chain->answered())
+    return "not assessed by the chain";
+  const CvJudgement verdict = *judge(study, record, *chain).cvs;
   std::string text;
   const auto add = [&](const char* what, const std::vector<Eigen::Index>& cvs) {
     if (!cvs.empty())

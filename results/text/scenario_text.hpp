@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include "analysis/experiment/experiment.hpp"
-#include "analysis/experiment/scenario_verdict.hpp"
+#include "analysis/experiment/judgement.hpp"
 
 namespace mpm {
 

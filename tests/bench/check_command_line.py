@@ -1,13 +1,32 @@
-"""Runs the program as a user does: list, run, summary, replay, and every kind of wrong input.
+"""Runs the program as a user does: list, run, summary, replay, sweep, stops, and every kind of wrong input.
 
 usage: check_command_line.py MPMBENCH CHAPTER6.toml
 """
 
 import json
 import pathlib
+import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
+
+PATIENCE = 300  # s, for a machine that is busy with other things
+
+
+def stopped(number, *command):
+    """What a command says that gets a signal as soon as it takes signals."""
+    process = subprocess.Popen([*map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    status = pathlib.Path(f"/proc/{process.pid}/status")
+    end = time.monotonic() + PATIENCE
+    while not int(re.search(r"^SigCgt:\s*(\w+)", status.read_text(), re.MULTILINE)[1], 16) & 1 << (number - 1):
+        assert process.poll() is None and time.monotonic() < end, process.communicate()
+        time.sleep(0.002)
+    process.send_signal(number)
+    out, error = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 3 and not out, (command, process.returncode, out, error)
+    return error
 
 
 def main(program, chapter6):
@@ -38,6 +57,16 @@ def main(program, chapter6):
         assert sorted(p.name for p in (folder / "swept").iterdir()) == ["00.h5", "01.h5", "sweep.md"]
         assert "bit-identical" in run("replay", folder / "swept" / "01.h5", 1).stdout
 
+        # Signals end long commands in order; what was finished stays, and nothing is half-written.
+        error = stopped(signal.SIGINT, program, "sweep", sweep, "-o", folder / "half", "--experiments", 4000)
+        assert re.search(r"SIGINT: stopped when \d+ of 4000 experiments were done, in study 1 of 2: as shipped$", error,
+                         re.MULTILINE), error
+        assert "study 1 of 2: as shipped\n" in error, error
+        assert not list((folder / "half").iterdir())
+        error = stopped(signal.SIGTERM, program, "compare", archive, "-o", folder / "b.h5", "--jobs", 1)
+        assert re.search(r"SIGTERM: stopped when [1-5] of \d experiments were done$", error, re.MULTILINE), error
+        assert "bit-identical" in run("replay", archive, 3).stdout
+
         # Bad input names file, line and key, and writes nothing.
         broken = folder / "broken.toml"
         broken.write_text(pathlib.Path(chapter6).read_text().replace("prediction_horizon = 75", "prediction_horizon = 0"))
@@ -52,7 +81,7 @@ def main(program, chapter6):
         run("summary", folder / "none.h5", code=2)
         run("run", "chapter6", "-o", folder / "none" / "b.h5", code=3)
         left = sorted(p.name for p in folder.iterdir())
-        assert left == ["a.h5", "broken.toml", "sweep.toml", "swept", "weak.toml"], left
+        assert left == ["a.h5", "broken.toml", "half", "sweep.toml", "swept", "weak.toml"], left
 
 
 if __name__ == "__main__":

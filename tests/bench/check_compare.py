@@ -1,10 +1,11 @@
-"""Runs `mpmbench compare` as a user does: text, JSON, the archive with a comparison and what other commands do with it.
+"""Assessment methods side by side as a user runs them: with `run --methods`, and later with `compare`.
 
 usage: check_compare.py MPMBENCH
 """
 
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -12,11 +13,11 @@ import tempfile
 import h5py
 import numpy
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "results"))
-import seal  # noqa: E402, beside the other tests of archives
+from archives import check_same, contents, seal
 
 EXPERIMENTS = 12
 TIMES = {"seconds", "milliseconds"}  # all that two comparisons of one archive may differ in
+ALL = ["botelho", "sun", "badwe2009", "badwe2010", "yu-qin", "sse"]
 
 
 class Compare:
@@ -33,6 +34,9 @@ class Compare:
         self.run("run", "chapter6", "-o", path, "--experiments", EXPERIMENTS, "--solver", "active-set", "--quiet", *more)
         return path
 
+    def answer(self, archive, *more):
+        return json.loads(self.run("compare", archive, "--json", "--quiet", *more))
+
 
 def without_times(item):
     if isinstance(item, dict):
@@ -40,108 +44,147 @@ def without_times(item):
     return [without_times(value) for value in item] if isinstance(item, list) else item
 
 
-def datasets(path):
-    """{path: values} of all data sets; {path: value} of all attributes of groups."""
-    values, attributes = {}, {}
-
-    def visit(name, item):
-        if isinstance(item, h5py.Dataset):
-            values[name] = item[()]
-        else:
-            attributes.update({f"{name}/{key}": value for key, value in item.attrs.items()})
-
+def method_names(path):
     with h5py.File(path) as file:
-        visit("", file)
-        file.visititems(visit)
-    return values, attributes
+        return list(file["method"].asstr())
 
 
-def same(a, b):
-    return a.shape == b.shape and a.dtype == b.dtype and (a.tobytes() == b.tobytes() if a.dtype != object else (a == b).all())
+def check_one_pass(compare, archive):
+    """Methods that assess in the run give what they give later; a loop is simulated once for all of them."""
+    at_once = compare.campaign("at-once.h5", "--methods", "all")
+    assert method_names(at_once) == ALL
+    with h5py.File(archive) as one, h5py.File(at_once) as all_of_them:
+        ok = int((one["status"][:] == 0).sum())
+        loops = numpy.where(one["kind"][:] == 3, 3, 1)  # MPM+UD: both faults, and either of them alone
+        samples = one["basis/sample"].size
+        for file in one, all_of_them:
+            assert (file["solver_steps"][:] == samples * loops)[file["status"][:] == 0].all()
+        for name in one.keys():
+            if name.startswith("solver_") or name == "ivar_basis":
+                assert numpy.array_equal(one[name][:], all_of_them[name][:], equal_nan=True), name
+    answer = compare.answer(at_once)
+    assert answer["loops"] == ok and [method["name"] for method in answer["methods"]] == ALL
 
-
-def check_answers(compare, archive):
-    """The same answer with any number of threads, from stored loops and from loops run again."""
-    text = compare.run("compare", archive, "--quiet")
-    with h5py.File(archive) as file:
-        ok = int((file["status"][:] == 0).sum())
-    assert f"{ok} of {EXPERIMENTS} experiments compared" in text and "botelho" in text, text
-    answers = [json.loads(compare.run("compare", archive, "--json", "--quiet", "--jobs", jobs)) for jobs in (1, 2, 5)]
-    assert all(without_times(answer) == without_times(answers[0]) for answer in answers)
-    assert answers[0]["loops"] == ok
+    # One after the other, in any number of threads, from loops that are stored and that are run again.
+    assert without_times(compare.answer(archive, "--methods", "all")) == without_times(answer)
+    for jobs in 1, 2, 5:
+        assert without_times(compare.answer(archive, "--jobs", jobs)) == without_times(answer)
     stored = compare.campaign("stored.h5", "--store", "all")
-    of_stored = json.loads(compare.run("compare", stored, "--json", "--quiet"))
-    assert without_times(of_stored) == without_times(answers[0])
-    detected = answers[0]["methods"][0]["rates"]["detected"]
-    with h5py.File(archive) as file:  # the chain of the thesis itself: what it said in the run
-        flagged = int((file["impactful"][:][file["status"][:] == 0] == 1).sum())
+    assert without_times(compare.answer(stored)) == without_times(answer)
+    later = compare.folder / "later.h5"
+    compare.run("compare", archive, "-o", later, "--quiet")
+    check_same(later, at_once)
+    assert "bit-identical" in compare.run("replay", later, 2)
+
+    # The chain of the thesis itself: what it said in the run.
+    detected = answer["methods"][0]["rates"]["detected"]
+    with h5py.File(archive) as file:
+        flagged = int(file["flagged"][:, 0].sum())
     assert (detected["hits"], detected["total"]) == (flagged, ok), detected
-    first = json.loads(compare.run("compare", archive, "--json", "--quiet", "--experiments", 4))
+    text = compare.run("compare", at_once, "--quiet")
+    assert f"{ok} of {EXPERIMENTS} experiments compared" in text and "botelho" in text, text
+    first = compare.answer(at_once, "--experiments", 4)
     assert first["loops"] <= 4 and first["methods"][0]["rates"]["answered"]["total"] == first["loops"]
-    return answers[0]
+
+    # A method that has the first loops only is asked about all of them when all are asked for.
+    some, rest = compare.folder / "some.h5", compare.folder / "rest.h5"
+    compare.answer(archive, "--methods", "sse", "--experiments", 4, "-o", some)
+    completed = compare.answer(some, "--methods", "sse,botelho", "-o", rest)
+    assert completed["methods"][0]["rates"]["answered"]["total"] == ok, completed["methods"][0]["rates"]
+    assert method_names(rest) == ["botelho", "sse"]
+    return later
 
 
-def check_archive(compare, archive, answer):
-    """-o adds one group and changes nothing else; it stays sealed, and a second comparison replaces the first."""
-    before, attributes_before = datasets(archive)
+def check_nothing_twice(compare, later):
+    """An archive that has all methods that are asked for answers from what it has, times included."""
+    for more in (), ("--methods", "sse,botelho"):
+        assert compare.answer(later, *more) == compare.answer(later, *more)
+    changed = compare.folder / "changed.h5"
+    shutil.copy(later, changed)
+    with h5py.File(changed, "r+") as file:
+        place = method_names(later).index("sse")
+        loop = int(numpy.flatnonzero(file["flagged"][:, place])[0])
+        file["flagged"][loop, place] = 0
+    seal.seal(changed)
+
+    def hits(path):
+        return compare.answer(path, "--methods", "sse")["methods"][0]["rates"]["detected"]["hits"]
+
+    assert hits(changed) == hits(later) - 1  # had it assessed the loop again, there would be no difference
+
+
+def check_archive(compare, archive, later):
+    """-o adds methods and leaves what was there; what follows from all methods together is made anew."""
     output = compare.folder / "with.h5"
-    compare.run("compare", archive, "-o", output, "--quiet")
-    assert seal.is_sealed(output)
-    values, attributes = datasets(output)
-    assert all(same(before[name], values[name]) for name in before)
-    assert all(numpy.array_equal(attributes_before[name], attributes[name]) for name in attributes_before)
-    added = values.keys() - before.keys()
-    assert added and all(name.startswith("comparison/") for name in added), added
-    assert attributes["comparison/command"].endswith(f"compare {archive} -o {output} --quiet"), attributes
-    names = [name.decode() for name in values["comparison/rate"]]
-    for place, method in enumerate(answer["methods"]):
-        hits = dict(zip(names, values["comparison/hits"][place]))
-        assert hits == {name: rate["hits"] for name, rate in method["rates"].items()}, (method["name"], hits)
+    shutil.copy(archive, output)
+    for more in "sse", "sun,botelho":
+        compare.run("compare", output, "-o", output, "--methods", more, "--quiet")
+    assert seal.is_sealed(output) and method_names(output) == ["botelho", "sse", "sun"]
+    before, after = contents(archive), contents(output)
+    assert before.keys() <= after.keys()
+    assert all(name.startswith("methods/s") for name in after.keys() - before.keys())
+    with h5py.File(archive) as one, h5py.File(output) as two, h5py.File(later) as full:
+        by_method = [name for name, data in one.items()
+                     if isinstance(data, h5py.Dataset) and data.ndim == 2 and data.dims[1][0].name == "/method"]
+        assert len(by_method) == 5, by_method
+        for name in by_method:
+            assert one[name][:, 0].tobytes() == two[name][:, 0].tobytes(), name
+            of_full = full[name][:][:, [ALL.index(method) for method in method_names(output)]]
+            assert of_full.tobytes() == two[name][:].tobytes(), name
+        command = two["methods/sse"].attrs["command"]
+        assert command.endswith(f"compare {output} -o {output} --methods sse --quiet"), command
+        assert two["methods/botelho"].attrs["command"] == one["methods/botelho"].attrs["command"]
+        assert 'names = ["botelho", "sse", "sun"]' in two.attrs["study_resolved"]
+        for key in one.attrs.keys() - {"study_resolved"}:
+            assert numpy.array_equal(two.attrs[key], one.attrs[key]), key
+        names = list(two["findings/finding"].asstr())
+        hits = dict(zip(names, two["findings/hits"][:]))
+    changed = {name.split("/")[0] for name in before if before[name] != after[name]}
+    assert changed <= {"findings", "method", *by_method}, changed
+    for method in compare.answer(output, "--methods", "botelho,sse,sun")["methods"]:
+        for rate, measured in method["rates"].items():
+            assert hits[f"compare.{method['name']}.{rate}"] == measured["hits"], (method["name"], rate)
 
-    # In place, by one method, on fewer loops.
-    compare.run("compare", output, "-o", output, "--methods", "botelho", "--experiments", 4, "--quiet")
-    assert seal.is_sealed(output)
-    values, _ = datasets(output)
-    assert list(values["comparison/assessment_method"]) == [b"botelho"] and len(values["comparison/experiment"]) <= 4
-    assert all(same(before[name], values[name]) for name in before)
-    return output
 
-
-def check_other_commands(compare, archive, output):
-    """Other commands take an archive with a comparison as one without."""
-    assert compare.run("summary", output).replace(str(output), str(archive)) == compare.run("summary", archive)
-    assert compare.run("summary", output, "--json") == compare.run("summary", archive, "--json")
-    assert "bit-identical" in compare.run("replay", output, 2)
+def check_other_commands(compare, archive, later):
+    """Other commands take an archive with more methods as one without."""
+    one, two = (json.loads(compare.run("summary", path, "--json")) for path in (archive, later))
+    more = [finding for finding in two.pop("findings") if finding not in one["findings"]]
+    assert more and all(any(name in finding["name"] for name in ALL[1:]) for finding in more), more
+    assert two.pop("methods") == ALL and one.pop("methods") == ["botelho"]
+    del one["findings"]
+    assert one == two
     page = compare.folder / "page.html"
-    compare.run("report", output, "-o", page)
-    assert "Assessment methods compared" in page.read_text(encoding="utf-8")
-    compare.run("report", archive, "-o", page)
-    assert "Assessment methods compared" not in page.read_text(encoding="utf-8")
+    for path, there in ((later, True), (archive, False)):
+        compare.run("report", path, "-o", page)
+        assert ("Assessment methods compared" in page.read_text(encoding="utf-8")) == there
     gates = compare.folder / "gates.toml"
-    gates.write_text('[[gate]]\naggregate = "compare.botelho.answered"\nminimum = 1\n', encoding="utf-8")
-    assert "compare.botelho.answered" in compare.run("check", output, "--gates", gates)
-    assert "the archive has no comparison of methods" in compare.run("check", archive, "--gates", gates, code=2)
+    gates.write_text('[[gate]]\naggregate = "compare.sse.answered"\nminimum = 1\n', encoding="utf-8")
+    assert "compare.sse.answered" in compare.run("check", later, "--gates", gates)
+    assert "the method has not assessed the archive" in compare.run("check", archive, "--gates", gates, code=2)
     gates.write_text('[[gate]]\naggregate = "compare.botelho.answered"\nmaximum = 0.5\n', encoding="utf-8")
-    compare.run("check", output, "--gates", gates, code=1)
+    compare.run("check", later, "--gates", gates, code=1)
 
 
 def check_refusals(compare, archive):
-    assert "nobody" in compare.run("compare", archive, "--methods", "nobody", code=2)
-    assert "'botelho' twice; allowed: each method once" in compare.run(
-        "compare", archive, "--methods", "botelho,botelho", code=2)
+    before = sorted(compare.folder.iterdir())
+    for command in ("compare", archive), ("run", "chapter6", "-o", compare.folder / "none.h5"):
+        assert "'nobody'" in compare.run(*command, "--methods", "nobody", code=2)
+        assert "'botelho' twice; allowed: " in compare.run(*command, "--methods", "botelho,botelho", code=2)
     assert "none.h5: no such file" in compare.run("compare", compare.folder / "none.h5", code=2)
     assert "folder does not exist" in compare.run("compare", archive, "-o", compare.folder / "no" / "a.h5", code=3)
-    assert not (compare.folder / "no").exists()
     compare.run("compare", code=2)
+    assert sorted(compare.folder.iterdir()) == before
 
 
-def check_no_loop(compare):
+def check_no_loop(compare, archive):
     """Where no experiment ran to its end there is nothing to compare on."""
     empty = compare.folder / "empty.h5"
-    compare.campaign("whole.h5")
-    empty.write_bytes((compare.folder / "whole.h5").read_bytes())
+    shutil.copy(archive, empty)
     with h5py.File(empty, "r+") as file:
-        file["status"][:] = 1
+        for name, value in (("status", 1), ("assessment_status", 3), ("flagged", 0), ("score", numpy.nan),
+                            ("predicted_cv", -1), ("predicted_source", 0)):
+            file[name][:] = value
     seal.seal(empty)
     message = compare.run("compare", empty, "-o", compare.folder / "out.h5", code=2)
     assert "empty.h5: found no loop that ran to its end; allowed: one or more" in message, message
@@ -163,11 +206,12 @@ def main(program):
     with tempfile.TemporaryDirectory() as name:
         compare = Compare(program, pathlib.Path(name))
         archive = compare.campaign("a.h5")
-        answer = check_answers(compare, archive)
-        output = check_archive(compare, archive, answer)
-        check_other_commands(compare, archive, output)
+        later = check_one_pass(compare, archive)
+        check_nothing_twice(compare, later)
+        check_archive(compare, archive, later)
+        check_other_commands(compare, archive, later)
         check_refusals(compare, archive)
-        check_no_loop(compare)
+        check_no_loop(compare, archive)
         check_unfit_options(compare)
 
 

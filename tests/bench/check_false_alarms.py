@@ -11,23 +11,10 @@ import sys
 import tempfile
 
 import h5py
-import numpy
+
+from archives import check_same
 
 EXPERIMENTS = 12
-
-
-def datasets(path):
-    found = {}
-    with h5py.File(path) as file:
-        file.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
-    return found
-
-
-def check_same(path, other):
-    one, two = datasets(path), datasets(other)
-    assert one.keys() == two.keys(), one.keys() ^ two.keys()
-    for name, values in one.items():
-        assert numpy.asarray(values).tobytes() == numpy.asarray(two[name]).tobytes() or (values == two[name]).all(), name
 
 
 def main(program):
@@ -45,7 +32,7 @@ def main(program):
         check_same(archive, folder / "b.h5")
         with h5py.File(archive) as file:
             kinds = list(file["kind"])
-            impactful = file["impactful"][()]
+            flagged = file["flagged"][:, 0]
             status = file["status"][()]
         assert kinds.count(0) == 3 and kinds.count(4) == 3, kinds
         for index in range(EXPERIMENTS):
@@ -54,13 +41,13 @@ def main(program):
 
         summary = json.loads(mpmbench("summary", archive, "--json"))
         assert summary["kinds"] == {"mpm": 3, "ud": 3, "healthy": 3, "tuning": 3}, summary["kinds"]
-        values = {entry["name"]: entry for entry in summary["aggregates"]}
+        values = {entry["name"]: entry for entry in summary["findings"]}
         for kind, number in (("healthy", 0), ("tuning", 4)):
             feasible = [i for i in range(EXPERIMENTS) if kinds[i] == number and status[i] == 0]
             entry = values[f"false_alarm_{kind}"]
             assert entry["count"] == len(feasible)
-            assert entry["value"] == sum(impactful[i] for i in feasible) / len(feasible)
-            assert all(i in summary["wrong_verdicts"] for i in feasible if impactful[i])
+            assert entry["value"] == sum(flagged[i] for i in feasible) / len(feasible)
+            assert all(i in summary["wrong_verdicts"] for i in feasible if flagged[i])
         assert "3 healthy, 3 tuning" in mpmbench("summary", archive)
 
         gates = folder / "gates.toml"

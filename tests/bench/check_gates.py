@@ -13,8 +13,7 @@ import xml.etree.ElementTree
 import h5py
 import numpy
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "results"))
-import seal  # noqa: E402, beside the other tests of archives
+from archives import seal
 
 EXPERIMENTS = 40
 
@@ -136,10 +135,11 @@ def check_baseline(check, archive, other_study):
     worse = check.folder / "worse.h5"
     shutil.copy(archive, worse)
     with h5py.File(worse, "r+") as file:
-        right = (file["status"][:] == 0) & (file["impactful"][:] == 1) & (file["predicted_cv"][:] == file["true_cv"][:])
+        predicted = file["predicted_cv"]
+        right = (file["flagged"][:, 0] == 1) & (predicted[:, 0] == file["true_cv"][:])
         lost = numpy.flatnonzero(right)[:5]
         for index in lost:
-            file["predicted_cv"][index] = (file["true_cv"][index] + 1) % 7
+            predicted[index, 0] = (file["true_cv"][index] + 1) % 7
     seal.seal(worse)
     text, suite = check.check(worse, baseline(archive.name), code=1)
     assert "located: 5 lost, 0 gained" in text and "p = 0.0312" in text, text

@@ -3,8 +3,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "bench/campaign_runner.hpp"
-#include "bench/record_bytes.hpp"
+#include "analysis/methods/method_table.hpp"
+#include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/serial_campaign.hpp"
+#include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -14,9 +16,10 @@ namespace {
 using namespace mpm;
 using Catch::Contains;
 using mpm::testing::TemporaryFolder;
+namespace fs = std::filesystem;
 
-CampaignOptions fourteen() {
-  CampaignOptions options;
+RunOptions fourteen() {
+  RunOptions options;
   options.experiments = 14;
   options.audit_share = 0.003;
   options.store = StorePolicy::all;
@@ -24,41 +27,87 @@ CampaignOptions fourteen() {
 }
 
 void check_same(const Campaign& one, const Campaign& other, std::size_t count) {
+  REQUIRE(one.records.size() >= count);
+  REQUIRE(other.records.size() >= count);
+  REQUIRE(method_names(one) == method_names(other));
+  const RecordBytes format(one.study, forms_of(one));
   for (std::size_t i = 0; i < count; ++i) {
     INFO("experiment " << i);
-    CHECK(to_bytes(one.records[i]) == to_bytes(other.records[i]));
+    CHECK(format.differences(one.records[i], other.records[i]) == std::vector<std::string>{});
   }
 }
 
-TEST_CASE("campaign: one, two and three threads and processes give the same records and the same audit") {
+void check_same_audit(const Campaign& one, const Campaign& other) {
+  REQUIRE(one.audit.size() == other.audit.size());
+  for (std::size_t i = 0; i < one.audit.size(); ++i) {
+    CHECK(one.audit[i].experiment == other.audit[i].experiment);
+    CHECK(one.audit[i].step == other.audit[i].step);
+    CHECK(one.audit[i].moves.x == other.audit[i].moves.x);
+    CHECK(one.audit[i].targets.x == other.audit[i].targets.x);
+  }
+}
+
+TEST_CASE("campaign: one, two and three threads and processes give what the serial loop gives") {
   const Study study = find_study("wood-berry");
-  CampaignOptions options = fourteen();
-  options.parallel = Parallel::processes;
-  const Campaign serial = run_campaign(study, options);
+  RunOptions options = fourteen();
+  const Campaign serial = run_serially(study, options);
+  REQUIRE(serial.records.size() == 14);
   REQUIRE(serial.audit.size() > 3);
   options.parallel = GENERATE(Parallel::threads, Parallel::processes);
   options.jobs = GENERATE(1, 2, 3);
   const Campaign parallel = run_campaign(study, options);
+  CHECK(parallel.basis.trajectory.y == serial.basis.trajectory.y);
+  CHECK(parallel.basis.sensitivity.static_gain() == serial.basis.sensitivity.static_gain());
   check_same(parallel, serial, 14);
-  REQUIRE(parallel.audit.size() == serial.audit.size());
-  for (std::size_t i = 0; i < serial.audit.size(); ++i) {
-    CHECK(parallel.audit[i].experiment == serial.audit[i].experiment);
-    CHECK(parallel.audit[i].step == serial.audit[i].step);
-    CHECK(parallel.audit[i].moves.x == serial.audit[i].moves.x);
-    CHECK(parallel.audit[i].targets.x == serial.audit[i].targets.x);
-  }
+  check_same_audit(parallel, serial);
 }
 
-TEST_CASE("campaign: loops on a nonlinear plant are the same in threads and processes") {
+TEST_CASE("campaign: loops on a nonlinear plant are those of the serial loop in threads and processes") {
   const Study study = find_study("chapter5-tank");
-  CampaignOptions options;
+  RunOptions options;
   options.experiments = 6;
   options.store = StorePolicy::all;
-  options.jobs = 1;
-  const Campaign serial = run_campaign(study, options);
   options.jobs = 3;
   options.parallel = GENERATE(Parallel::threads, Parallel::processes);
-  check_same(run_campaign(study, options), serial, 6);
+  check_same(run_campaign(study, options), run_serially(study, options), 6);
+}
+
+TEST_CASE("campaign: another seed is that of the options, and gives other experiments") {
+  const Study study = find_study("wood-berry");
+  RunOptions options;
+  options.experiments = 2;
+  options.seed = 7;
+  const Campaign campaign = run_campaign(study, options);
+  CHECK(campaign.study.seed == 7);
+  check_same(campaign, run_serially(study, options), 2);
+  options.seed = {};
+  const Campaign other = run_serially(study, options);
+  CHECK(campaign.records[0].draw.mismatches != other.records[0].draw.mismatches);
+  CHECK(campaign.records[0].solver.iterations != other.records[0].solver.iterations);
+}
+
+TEST_CASE("campaign: the methods of the options take the place of the study's, and change no other answer") {
+  const Study study = find_study("wood-berry");
+  RunOptions options;
+  options.experiments = 6;
+  options.parallel = GENERATE(Parallel::threads, Parallel::processes);
+  const Campaign chain = run_campaign(study, options);
+  CHECK(method_names(chain) == std::vector<std::string>{"botelho"});
+  options.methods = {"all"};
+  options.jobs = 2;
+  const Campaign all = run_campaign(study, options);
+  CHECK(method_names(all) == assessment_method_names());
+  CHECK(all.study.methods == assessment_method_names());
+  check_same(all, run_serially(study, options), 6);
+  const RecordBytes format(chain.study, forms_of(chain));
+  for (std::size_t i = 0; i < 6; ++i) {
+    ExperimentRecord alone = all.records[i];
+    alone.assessments = {*alone.by("botelho")};
+    CHECK(format.differences(alone, chain.records[i]) == std::vector<std::string>{});
+  }
+  options.methods = {"sse", "some"};
+  CHECK_THROWS_WITH(run_campaign(study, options),
+                    Contains("--methods: found 'some'; allowed: each once: botelho"));
 }
 
 TEST_CASE("campaign: an experiment whose plant cannot rest where its loop begins costs itself only") {
@@ -67,7 +116,7 @@ TEST_CASE("campaign: an experiment whose plant cannot rest where its loop begins
   study.scenarios = {{"none", "", {}, {}, {}},
                      {"integrates", "", {{0, 1, MismatchParameter::channel, 0.0, integrator}}, {}, {}},
                      {"none again", "", {}, {}, {}}};
-  CampaignOptions options;
+  RunOptions options;
   options.experiments = 3;
   options.parallel = GENERATE(Parallel::threads, Parallel::processes);
   const Campaign campaign = run_campaign(study, options);
@@ -80,7 +129,7 @@ TEST_CASE("campaign: an experiment whose plant cannot rest where its loop begins
 
 TEST_CASE("campaign: a longer one goes on where a shorter one ended") {
   const Study study = find_study("wood-berry");
-  CampaignOptions options = fourteen();
+  RunOptions options = fourteen();
   const Campaign longer = run_campaign(study, options);
   options.experiments = 9;
   check_same(longer, run_campaign(study, options), 9);
@@ -88,7 +137,7 @@ TEST_CASE("campaign: a longer one goes on where a shorter one ended") {
 
 TEST_CASE("campaign: the audit finds that both solvers agree, and does not change a result") {
   const Study study = find_study("wood-berry");
-  CampaignOptions options = fourteen();
+  RunOptions options = fourteen();
   const Campaign audited = run_campaign(study, options);
   const AuditSummary summary = summarise(audited.audit);
   CHECK(summary.disagreements == 0);
@@ -104,23 +153,19 @@ TEST_CASE("campaign: the audit finds that both solvers agree, and does not chang
 }
 
 TEST_CASE("campaign: Ipopt in worker processes is reproducible too") {
-  CampaignOptions options;
+  RunOptions options;
   options.solver = "ipopt";
   options.experiments = 2;
-  Study study = find_study("wood-berry");
-  options.jobs = 1;
-  const Campaign serial = run_campaign(study, options);
+  const Study study = find_study("wood-berry");
   options.jobs = 2;
-  const Campaign parallel = run_campaign(study, options);
-  for (std::size_t i = 0; i < 2; ++i)
-    CHECK(to_bytes(parallel.records[i]) == to_bytes(serial.records[i]));
+  check_same(run_campaign(study, options), run_serially(study, options), 2);
 }
 
 TEST_CASE("campaign: an unhealthy basis case stops it, unless it is allowed") {
   Study study = find_study("chapter6");
   for (SignalStep& step : study.simulation.steps)
     step.level *= 0.02;
-  CampaignOptions options;
+  RunOptions options;
   options.solver = "active-set";
   options.experiments = 1;
   CHECK_THROWS_AS(run_campaign(study, options), UnhealthyBasis);
@@ -129,84 +174,84 @@ TEST_CASE("campaign: an unhealthy basis case stops it, unless it is allowed") {
 }
 
 /// Stops a campaign after some experiments, in the way of a signal.
-Campaign interrupted(const Study& study, CampaignOptions options, int experiments) {
+Campaign interrupted(const Study& study, const RunOptions& options, const fs::path& shards, int experiments) {
   std::atomic<int> left = experiments;
-  options.on_done = [&](const ExperimentRecord&) { --left; };
-  options.stop = [&] { return left <= 0; };
-  return run_campaign(study, options);
+  const CampaignHooks hooks{.stop = [&] { return left <= 0; },
+                            .on_done = [&](const ExperimentRecord&) { --left; }};
+  return run_campaign(study, options, hooks, shards);
 }
 
-TEST_CASE("campaign: stopped and resumed until it is done, it is the campaign of one go") {
+TEST_CASE("campaign: stopped and resumed until it is done, it is what the serial loop gives") {
   const TemporaryFolder folder;
+  const fs::path shards = folder / "s";
   const Study study = find_study("wood-berry");
-  CampaignOptions options = fourteen();
-  const Campaign whole = run_campaign(study, options);
+  RunOptions options = fourteen();
+  const Campaign serial = run_serially(study, options);
   options.parallel = GENERATE(Parallel::threads, Parallel::processes);
   options.jobs = 2;
-  options.shards = ShardOptions{folder / "s", Leftovers::refuse};
-  CHECK_THROWS_WITH(interrupted(study, options, 3), Contains("of 14 experiments"));
-  CHECK_THROWS_WITH(run_campaign(study, options), Contains("--resume"));
-  options.shards->leftovers = Leftovers::resume;
-  CHECK_THROWS_AS(interrupted(study, options, 3), Interrupted);
+  CHECK_THROWS_WITH(interrupted(study, options, shards, 3), Contains("of 14 experiments"));
+  CHECK_THROWS_WITH(run_campaign(study, options, {}, shards), Contains("--resume"));
+  options.leftovers = Leftovers::resume;
+  CHECK_THROWS_AS(interrupted(study, options, shards, 3), Interrupted);
   std::int64_t done = -1;
-  options.on_start = [&](std::int64_t count) { done = count; };
-  const Campaign resumed = run_campaign(study, options);
+  const CampaignHooks hooks{.on_start = [&](std::int64_t earlier, std::int64_t count) {
+    done = earlier;
+    CHECK(count == 14);
+  }};
+  const Campaign resumed = run_campaign(study, options, hooks, shards);
   CHECK(done >= 6);
   CHECK(done < 14);
-  check_same(resumed, whole, 14);
-  REQUIRE(resumed.audit.size() == whole.audit.size());
-  for (std::size_t i = 0; i < whole.audit.size(); ++i) {
-    CHECK(resumed.audit[i].experiment == whole.audit[i].experiment);
-    CHECK(resumed.audit[i].step == whole.audit[i].step);
-    CHECK(resumed.audit[i].moves.x == whole.audit[i].moves.x);
-  }
+  check_same(resumed, serial, 14);
+  check_same_audit(resumed, serial);
 }
 
 TEST_CASE("campaign: a stop does not wait for the basis case, and keeps what is in shards") {
   const TemporaryFolder folder;
+  const fs::path shards = folder / "s";
   const Study study = find_study("wood-berry");
-  CampaignOptions options = fourteen();
-  options.shards = ShardOptions{folder / "s", Leftovers::resume};
+  RunOptions options = fourteen();
+  options.leftovers = Leftovers::resume;
   int asked = 0;
   bool started = false;
   const auto stop_early = [&] {
-    CampaignOptions stopped = options;
     asked = 0;
-    stopped.stop = [&] { return ++asked == 5; };  // once only: nobody after the basis case would see it
-    stopped.on_start = [&](std::int64_t) { started = true; };
-    return run_campaign(study, stopped);
+    const CampaignHooks hooks{.stop = [&] { return ++asked == 5; },  // nobody after the basis case sees it
+                              .on_start = [&](std::int64_t, std::int64_t) { started = true; }};
+    return run_campaign(study, options, hooks, shards);
   };
   CHECK_THROWS_WITH(stop_early(), Contains("0 of 14 experiments"));
   CHECK(asked == 5);
-  CHECK_FALSE(std::filesystem::exists(folder / "s"));
+  CHECK_FALSE(fs::exists(shards));
 
-  CHECK_THROWS_AS(interrupted(study, options, 3), Interrupted);
+  CHECK_THROWS_AS(interrupted(study, options, shards, 3), Interrupted);
   CHECK_THROWS_WITH(stop_early(), !Contains("stopped when 0 of") && Contains("of 14 experiments"));
   CHECK_FALSE(started);
-  CHECK(run_campaign(study, options).records.size() == 14);
+  CHECK(run_campaign(study, options, {}, shards).records.size() == 14);
 }
 
-TEST_CASE("campaign: shards of another seed, solver, audit, store policy or study are refused") {
+TEST_CASE(
+    "campaign: shards of another seed, solver, audit, store policy, study or other methods are refused") {
   const TemporaryFolder folder;
+  const fs::path shards = folder / "s";
   const Study study = find_study("wood-berry");
-  CampaignOptions options = fourteen();
-  options.shards = ShardOptions{folder / "s", Leftovers::resume};
-  CHECK_THROWS_AS(interrupted(study, options, 2), Interrupted);
-  const auto refusal = [&](const Study& other_study, const CampaignOptions& other) -> std::string {
+  RunOptions options = fourteen();
+  options.leftovers = Leftovers::resume;
+  CHECK_THROWS_AS(interrupted(study, options, shards, 2), Interrupted);
+  const auto refusal = [&](const Study& other_study, const RunOptions& other) -> std::string {
     try {
-      run_campaign(other_study, other);
+      run_campaign(other_study, other, {}, shards);
       return "accepted";
     } catch (const InputError& error) {
       return error.what();
     }
   };
   Study other_study = study;
-  other_study.seed += 1;
-  CHECK_THAT(refusal(other_study, options), Contains("another seed"));
-  other_study = study;
   other_study.source += "\n# a comment\n";
   CHECK_THAT(refusal(other_study, options), Contains("another study"));
-  CampaignOptions other = options;
+  RunOptions other = options;
+  other.seed = study.seed + 1;
+  CHECK_THAT(refusal(study, other), Contains("another seed"));
+  other = options;
   other.solver = "active-set";
   CHECK_THAT(refusal(study, other), Contains("another solver"));
   other = options;
@@ -215,19 +260,22 @@ TEST_CASE("campaign: shards of another seed, solver, audit, store policy or stud
   other = options;
   other.store = StorePolicy::none;
   CHECK_THAT(refusal(study, other), Contains("another store"));
-  CHECK(run_campaign(study, options).records.size() == 14);
+  other = options;
+  other.methods = {"botelho", "sse"};
+  CHECK_THAT(refusal(study, other), Contains("another methods: found botelho; allowed: botelho, sse"));
+  CHECK(run_campaign(study, options, {}, shards).records.size() == 14);
 }
 
 TEST_CASE("campaign: an exception on the way of an outcome ends threads and processes, and is passed on") {
-  CampaignOptions options = fourteen();
+  RunOptions options = fourteen();
   options.jobs = 2;
   options.parallel = GENERATE(Parallel::threads, Parallel::processes);
-  options.on_done = [](const ExperimentRecord&) { throw ArchiveError("disk full"); };
-  CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options), "disk full");
+  const CampaignHooks hooks{.on_done = [](const ExperimentRecord&) { throw ArchiveError("disk full"); }};
+  CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options, hooks), "disk full");
 }
 
 TEST_CASE("campaign: options that make no campaign are refused") {
-  CampaignOptions options;
+  RunOptions options;
   options.experiments = 0;
   CHECK_THROWS_AS(run_campaign(find_study("wood-berry"), options), InputError);
   options.experiments = 1;

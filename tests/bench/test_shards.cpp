@@ -6,9 +6,11 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "bench/outcome_bytes.hpp"
-#include "bench/shard_store.hpp"
+#include "bench/execution/experiment_work.hpp"
+#include "bench/outcome/outcome_bytes.hpp"
+#include "bench/shards/shard_store.hpp"
 #include "plants/error.hpp"
+#include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/file_seal.hpp"
@@ -23,10 +25,20 @@ namespace fs = std::filesystem;
 
 const ShardIdentity kIdentity{{"program", "p"}, {"study", "s"}, {"seed", "7"}};
 
+/// The study of the outcomes, which every method assesses.
+const Study& study() {
+  static const Study study = drawn_campaign().study;
+  return study;
+}
+
+const OutcomeBytes& format() {
+  static const OutcomeBytes format(study());
+  return format;
+}
+
 ExperimentOutcome outcome_of(std::int64_t index) {
   ExperimentOutcome outcome;
-  outcome.record.draw.index = index;
-  outcome.record.message = fmt::format("experiment {}", index);
+  outcome.record = lost_record(study(), index, fmt::format("experiment {}", index));
   outcome.audited.resize(2);
   outcome.audited.back().experiment = index;
   outcome.audit_seconds = 0.5;
@@ -36,7 +48,7 @@ ExperimentOutcome outcome_of(std::int64_t index) {
 fs::path written(const TemporaryFolder& folder, std::vector<std::int64_t> indices) {
   ShardBytes bytes;
   for (const std::int64_t index : indices)
-    bytes.add(outcome_of(index));
+    bytes.add(format().to_bytes(outcome_of(index)));
   bytes.write(folder / "a.shard", kIdentity, 1.5);
   return folder / "a.shard";
 }
@@ -48,8 +60,10 @@ void make_sealed(const fs::path& path, const std::string& content) {
 
 /// A store of five experiments, of which an earlier one was given some in a shard each.
 ShardStore store_of(const fs::path& folder, Leftovers leftovers, std::vector<std::string>* warnings = nullptr,
-                    std::int64_t count = 5, const ShardIdentity& identity = kIdentity) {
-  return ShardStore({folder, leftovers}, identity, count, [=](const std::string& text) {
+                    std::int64_t count = 5, const Study& of = study()) {
+  RunOptions options;
+  options.leftovers = leftovers;
+  return ShardStore(folder, options, of, count, [=](const std::string& text) {
     if (warnings != nullptr)
       warnings->push_back(text);
   });
@@ -73,39 +87,43 @@ using Indices = std::vector<std::int64_t>;
 
 TEST_CASE("shard: outcomes come back with every bit, loops and audits among them") {
   const TemporaryFolder folder;
-  const Campaign campaign = made_up_campaign();
+  const Campaign campaign = drawn_campaign();
   ShardBytes bytes;
   std::vector<std::string> expected;
   for (const ExperimentRecord& record : campaign.records) {
     ExperimentOutcome outcome = outcome_of(0);
     outcome.record = record;
-    bytes.add(outcome);
-    expected.push_back(to_bytes(outcome));
+    expected.push_back(format().to_bytes(outcome));
+    bytes.add(expected.back());
   }
   bytes.write(folder / "a.shard", kIdentity, 1.5);
   CHECK(bytes.empty());
-  const std::optional<Shard> shard = read_shard(folder / "a.shard", kIdentity);
+  const std::optional<Shard> shard = read_shard(folder / "a.shard", kIdentity, format());
   REQUIRE(shard);
   CHECK(shard->seconds == 1.5);
   REQUIRE(shard->outcomes.size() == expected.size());
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    CHECK(to_bytes(shard->outcomes[i]) == expected[i]);
+  const RecordBytes records(campaign.study, forms_of(campaign));
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CHECK(format().to_bytes(shard->outcomes[i]) == expected[i]);
+    CHECK(records.differences(shard->outcomes[i].record, campaign.records[i]) == std::vector<std::string>{});
+    CHECK(shard->outcomes[i].audited.size() == 2);
+  }
 }
 
 TEST_CASE("shard: cut off anywhere or with any byte changed, it is seen to be damaged") {
   const TemporaryFolder folder;
   const fs::path path = written(folder, {3});
   const std::string whole = file_content(path);
-  REQUIRE(read_shard(path, kIdentity));
+  REQUIRE(read_shard(path, kIdentity, format()));
   for (std::size_t i = 0; i < whole.size(); i += 7) {
     make_file(path, whole.substr(0, i));
-    CHECK_FALSE(read_shard(path, kIdentity));
+    CHECK_FALSE(read_shard(path, kIdentity, format()));
     std::string changed = whole;
     changed[i] = static_cast<char>(changed[i] ^ 0x10);
     make_file(path, changed);
-    CHECK_FALSE(read_shard(path, kIdentity));
+    CHECK_FALSE(read_shard(path, kIdentity, format()));
   }
-  CHECK_FALSE(read_shard(folder / "none.shard", kIdentity));
+  CHECK_FALSE(read_shard(folder / "none.shard", kIdentity, format()));
 }
 
 TEST_CASE("shard: one of another run, format version or file type is refused, and the difference named") {
@@ -113,24 +131,24 @@ TEST_CASE("shard: one of another run, format version or file type is refused, an
   const fs::path path = written(folder, {3});
   ShardIdentity other = kIdentity;
   other[2] = {"seed", "8"};
-  CHECK_THROWS_WITH(read_shard(path, other),
+  CHECK_THROWS_WITH(read_shard(path, other, format()),
                     Contains("a.shard") && Contains("another seed") && Contains("found 7; allowed: 8"));
   other = kIdentity;
   other.pop_back();
-  CHECK_THROWS_AS(read_shard(path, other), InputError);
+  CHECK_THROWS_AS(read_shard(path, other, format()), InputError);
   other = kIdentity;
   other.push_back({"solver", "auto"});
-  CHECK_THROWS_WITH(read_shard(path, other), Contains("another solver"));
+  CHECK_THROWS_WITH(read_shard(path, other, format()), Contains("another solver"));
 
   const std::string whole = file_content(path);
   std::string content = whole.substr(0, whole.size() - kSealBytes);
   const std::size_t version = std::string("mpmbench shard\n").size();
   content[version] = 9;
   make_sealed(path, content);
-  CHECK_THROWS_WITH(read_shard(path, kIdentity),
-                    Contains("format version") && Contains("found 9; allowed: 1"));
+  CHECK_THROWS_WITH(read_shard(path, kIdentity, format()),
+                    Contains("format version") && Contains("found 9; allowed: 2"));
   make_sealed(path, "some other file");
-  CHECK_THROWS_WITH(read_shard(path, kIdentity), Contains("a shard of mpmbench"));
+  CHECK_THROWS_WITH(read_shard(path, kIdentity, format()), Contains("a shard of mpmbench"));
 }
 
 TEST_CASE("shard store: what an earlier run has left is not missing, and is given once") {
@@ -175,10 +193,9 @@ TEST_CASE("shard store: shards are refused unless told otherwise, and stay until
   leave_behind(folder / "s", {0, 1});
   CHECK_THROWS_WITH(store_of(folder / "s", Leftovers::refuse),
                     Contains("2 shards") && Contains("--resume") && Contains("--discard"));
-  ShardIdentity other = kIdentity;
-  other[0] = {"program", "q"};
-  CHECK_THROWS_WITH(store_of(folder / "s", Leftovers::resume, nullptr, 5, other),
-                    Contains("another program"));
+  Study other = study();
+  other.seed = 8;
+  CHECK_THROWS_WITH(store_of(folder / "s", Leftovers::resume, nullptr, 5, other), Contains("another seed"));
   CHECK(store_of(folder / "s", Leftovers::resume).missing().size() == 3);
   CHECK(store_of(folder / "s", Leftovers::discard).missing().size() == 5);
   CHECK_FALSE(fs::exists(folder / "s"));  // nothing was added

@@ -4,7 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "bench/stop_signals.hpp"
+#include "bench/console/stop_signals.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include "bench/worker_pool.hpp"
+#include "bench/execution/worker_pool.hpp"
 
 namespace {
 

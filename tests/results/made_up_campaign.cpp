@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study_file.hpp"
@@ -20,12 +21,15 @@ std::string small_study() {
   return file_content(MPMBENCH_SOURCE_DIR "/tests/scenarios/data/small.toml");
 }
 
+constexpr const char* kMethods = "\n[methods]\nnames = ['all']\n";
+constexpr const char* kReplications = "\n[aggregate]\nbootstrap_replications = 200\n";
 constexpr const char* kS0Perturbation =
     "\n[s0_perturbation]\nmultipliers = [0.5, 1, 2]\nfixed_mvs = ['hot']\nfixed_active_cvs = ['level']\n";
 
 /// Numbers, one in eight of them an awkward one.
 class Numbers {
  public:
+  explicit Numbers(std::uint64_t which = 2) : stream_(which, 3, StreamId::measurement_noise) {}
   double next() {
     switch (stream_.below(40)) {
       case 0:
@@ -52,7 +56,7 @@ class Numbers {
   int index(Eigen::Index size) { return static_cast<int>(stream_.below(static_cast<std::uint64_t>(size))); }
 
  private:
-  RandomStream stream_{2, 3, StreamId::measurement_noise};
+  RandomStream stream_;
 };
 
 SolverStatistics solver(Numbers& numbers) {
@@ -90,16 +94,81 @@ AcfComparison acf(Numbers& numbers, Eigen::Index samples) {
   return made;
 }
 
-Diagnosis diagnosis(Numbers& numbers, Eigen::Index ny) {
-  Diagnosis made;
-  made.ivar = numbers.vector(ny);
-  made.ivar_diag = numbers.vector(ny);
-  made.ivar_basis = numbers.vector(ny);
-  made.impactful = numbers.index(2) == 1;
-  made.predicted_cv = numbers.index(ny);
-  made.predicted_source = numbers.index(2) == 1 ? ExperimentKind::mpm : ExperimentKind::ud;
-  made.indicator = indicator(numbers);
+CvDiagnosis cv_diagnosis(Numbers& numbers, const Study& study) {
+  CvDiagnosis made;
+  made.flagged = numbers.index(2) == 1;
+  if (made.flagged)
+    made.source = numbers.index(2) == 1 ? FaultSource::mpm : FaultSource::ud;
+  made.distribution = distribution(numbers);
+  made.acf = acf(numbers, study.simulation.samples);
+  made.sse = numbers.next();
   return made;
+}
+
+/// The numbers of the chain without a verdict; those of every CV in a study of named scenarios.
+Diagnosis diagnosis_numbers(Numbers& numbers, const Study& study) {
+  Diagnosis made;
+  made.ivar = numbers.vector(study.cv_count());
+  made.ivar_diag = numbers.vector(study.cv_count());
+  made.indicator = indicator(numbers);
+  made.alone = {numbers.next(), numbers.next(), numbers.next()};
+  if (study.names_scenarios())
+    for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+      made.cvs.push_back(cv_diagnosis(numbers, study));
+  return made;
+}
+
+Diagnosis diagnosis(Numbers& numbers, const Study& study) {
+  Diagnosis made = diagnosis_numbers(numbers, study);
+  made.impactful = numbers.index(2) == 1;
+  made.predicted_cv = numbers.index(study.cv_count());
+  made.predicted_source = numbers.index(2) == 1 ? FaultSource::mpm : FaultSource::ud;
+  return made;
+}
+
+/// One number of a method that this place allows: a word, or none; or any quantity.
+double number_for(Numbers& numbers, const NumberPlace& place) {
+  const auto words = static_cast<Eigen::Index>(place.info.words.size());
+  if (words == 0)
+    return numbers.next();
+  const int word = numbers.index(words + 1);
+  return word == words ? std::numeric_limits<double>::quiet_NaN() : word;
+}
+
+/// Any answer that a method may give, or none, mostly one.
+AssessmentRecord answer(Numbers& numbers, const Study& study, std::shared_ptr<const AssessmentForm> form) {
+  const MethodDescription& method = form->method();
+  AssessmentRecord made = unasked(std::move(form));
+  made.seconds = 1e-4 * numbers.index(1000);
+  made.status = static_cast<AssessmentStatus>(std::max(0, numbers.index(7) - 3));
+  if (made.status == AssessmentStatus::not_applicable || made.status == AssessmentStatus::failed)
+    made.reason = "no \xC3\xBC";
+  if (!made.answered())
+    return made;
+  made.flagged = numbers.index(2) == 1;
+  made.score = numbers.next();
+  const bool must_name_cv = made.flagged && method.locates_cvs;
+  made.predicted_cv =
+      must_name_cv ? numbers.index(study.cv_count()) : numbers.index(study.cv_count() + 1) - 1;
+  made.predicted_source = static_cast<FaultSource>(numbers.index(3));
+  made.numbers.resize(made.form->size());
+  for (const NumberPlace& place : made.form->places())
+    for (Eigen::Index i = 0; i < place.size(); ++i)
+      made.numbers(place.first + i) = number_for(numbers, place);
+  return made;
+}
+
+/// The chain always gives an answer, and the others any, where the loop ran to its end.
+void assess(Numbers& numbers, const Campaign& campaign, ExperimentRecord& record) {
+  for (const CampaignMethod& method : campaign.methods) {
+    record.assessments.push_back(unasked(method.form));
+    if (record.status != ExperimentStatus::ok)
+      continue;
+    if (method.form->method().name == kChainMethod)
+      set_chain(campaign.study, record, diagnosis(numbers, campaign.study));
+    else
+      record.assessments.back() = answer(numbers, campaign.study, method.form);
+  }
 }
 
 /// The small study with a setpoint beside the range of its first CV.
@@ -117,7 +186,11 @@ Trajectory trajectory(Numbers& numbers, const Study& study, ControlStatus status
           numbers.matrix(study.mv_count(), samples),
           numbers.matrix(study.md_count(), samples),
           study.controller.has_setpoints() ? numbers.matrix(study.cv_count(), samples) : Eigen::MatrixXd(),
-          solver(numbers)};
+          solver(numbers),
+          status == ControlStatus::failed ? LoopFailure::plant : LoopFailure::none,
+          status == ControlStatus::failed ? "it ran \xC3\xBC"
+                                            "ber"
+                                          : ""};
 }
 
 Mismatch made_up_mismatch(Numbers& numbers, const Study& study, Eigen::Index cv) {
@@ -133,39 +206,64 @@ Disturbance made_up_disturbance(Numbers& numbers, Eigen::Index cv) {
   return made;
 }
 
-ExperimentRecord record(Numbers& numbers, const Study& study, std::int64_t index) {
-  ExperimentRecord made;
-  made.draw.index = index;
-  made.draw.kind = static_cast<ExperimentKind>(1 + index % 3);
+/// An experiment with a fault of any kind and size, as no study would draw it.
+ExperimentDraw made_up_draw(Numbers& numbers, const Study& study, std::int64_t index) {
+  ExperimentDraw made;
+  made.index = index;
+  made.kind = static_cast<ExperimentKind>(1 + index % 3);
   const Eigen::Index cv = numbers.index(study.cv_count());
-  if (made.draw.kind != ExperimentKind::ud)
-    made.draw.mismatches = {made_up_mismatch(numbers, study, cv)};
-  if (made.draw.kind != ExperimentKind::mpm)
-    made.draw.disturbances = {made_up_disturbance(numbers, cv)};
-  made.status = static_cast<ExperimentStatus>(index % 5 == 3 ? 1 : index % 7 == 4 ? 2 : 0);
-  if (made.status == ExperimentStatus::ok)
-    made.diagnosis = diagnosis(numbers, study.cv_count());
-  if (made.status == ExperimentStatus::failed)
+  if (made.kind != ExperimentKind::ud)
+    made.mismatches = {made_up_mismatch(numbers, study, cv)};
+  if (made.kind != ExperimentKind::mpm)
+    made.disturbances = {made_up_disturbance(numbers, cv)};
+  return made;
+}
+
+ExperimentStatus made_up_status(std::int64_t index) {
+  return index % 5 == 3   ? ExperimentStatus::infeasible
+         : index % 7 == 4 ? ExperimentStatus::failed
+                          : ExperimentStatus::ok;
+}
+
+ControlStatus loop_status(ExperimentStatus status) {
+  return status == ExperimentStatus::ok           ? ControlStatus::ok
+         : status == ExperimentStatus::infeasible ? ControlStatus::infeasible
+                                                  : ControlStatus::failed;
+}
+
+ExperimentRecord record(Numbers& numbers, const Campaign& campaign, ExperimentDraw draw,
+                        ExperimentStatus status) {
+  const Study& study = campaign.study;
+  const bool ran = status == ExperimentStatus::ok;
+  const std::int64_t index = draw.index;
+  ExperimentRecord made;
+  made.draw = std::move(draw);
+  made.status = status;
+  if (ran)
+    made.ivar_basis = numbers.vector(study.cv_count());
+  if (status == ExperimentStatus::failed)
     made.message = "died: \xC3\xBC \xE6\xB8\xAC";
-  if (made.status == ExperimentStatus::ok && index % 4 == 1)
-    made.perturbed = {numbers.vector(3), numbers.vector(3)};
-  made.ivar_diag_mpm_alone = numbers.next();
-  made.ivar_diag_ud_alone = numbers.next();
-  made.dominance_mpm = numbers.next();
+  const auto multipliers = static_cast<Eigen::Index>(study.s0_perturbation.multipliers.size());
+  if (ran && multipliers > 0 && index % 4 == 1)
+    made.perturbed = {numbers.vector(multipliers), numbers.vector(multipliers)};
+  assess(numbers, campaign, made);
   made.solver = solver(numbers);
   if (index % 2 == 1)
-    made.loop = {
-        trajectory(numbers, study,
-                   made.status == ExperimentStatus::ok ? ControlStatus::ok : ControlStatus::infeasible),
-        numbers.matrix(study.cv_count(), study.simulation.samples)};
+    made.loop = {trajectory(numbers, study, loop_status(status)),
+                 numbers.matrix(study.cv_count(), study.simulation.samples)};
   return made;
+}
+
+void add_methods(Campaign& campaign) {
+  campaign.study.methods = assessment_method_names();
+  campaign.methods = made_up_methods(campaign.study);
 }
 
 AuditDifference difference(Numbers& numbers) {
   return {numbers.index(2) == 1, numbers.next(), numbers.next()};
 }
 
-BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<ActiveReference>& active) {
+BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<ActiveConstraint>& active) {
   const Eigen::Index ny = study.cv_count();
   const Eigen::Index samples = study.simulation.samples;
   BasisCase made;
@@ -177,26 +275,13 @@ BasisCase basis_case(Numbers& numbers, const Study& study, const std::vector<Act
     made.point.fixed_mvs.push_back(1);
   made.trajectory = trajectory(numbers, study, ControlStatus::ok);
   made.nominal = {numbers.matrix(ny, samples), numbers.matrix(ny, samples), numbers.matrix(ny, samples)};
-  made.diagnosis = diagnosis(numbers, ny);
+  made.diagnosis = diagnosis_numbers(numbers, study);
+  for (CvDiagnosis& cv : made.diagnosis.cvs) {
+    cv.flagged = false;
+    cv.source = FaultSource::none;
+  }
   made.healthy = true;
   made.explanation = "fine";
-  return made;
-}
-
-/// `ordinary`: with a verdict and a finite score.
-MethodVerdict verdict(Numbers& numbers, const Study& study, bool ordinary) {
-  MethodVerdict made;
-  made.seconds = numbers.next();
-  made.status = static_cast<AssessmentStatus>(ordinary ? 0 : std::max(0, numbers.index(6) - 3));  // mostly ok
-  if (made.status != AssessmentStatus::ok)
-    return made;
-  made.flagged = numbers.index(2) == 1;
-  made.score = ordinary ? 0.001 * numbers.index(1000) : numbers.next();
-  made.located_cv = numbers.index(study.cv_count() + 1) - 1;
-  made.source = static_cast<ExperimentKind>(numbers.index(3));
-  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    if (numbers.index(2) == 1)
-      made.flagged_channels.push_back({cv, numbers.index(study.mv_count())});
   return made;
 }
 
@@ -230,43 +315,101 @@ mismatch = [{cv = "heat", input = "cold", gain_factor = 0.1}]
 
 }  // namespace
 
+AssessmentRecord unasked(std::shared_ptr<const AssessmentForm> form) {
+  AssessmentRecord record;
+  record.form = std::move(form);
+  return record;
+}
+
+AssessmentRecord plain_verdict(std::shared_ptr<const AssessmentForm> form, bool flagged, double score) {
+  Assessment said;
+  said.flagged = flagged;
+  said.score = score;
+  AssessmentRecord record = kept(std::move(form), said);
+  if (flagged && record.form->method().locates_cvs)
+    record.predicted_cv = 0;
+  return record;
+}
+
+std::vector<CampaignMethod> made_up_methods(const Study& study) {
+  std::vector<CampaignMethod> methods;
+  for (auto& form : assessment_forms(study, assessment_method_names()))
+    methods.push_back({std::move(form), "1.3.0", "def", "mpmbench compare \xC3\xBC.h5"});
+  return methods;
+}
+
+AssessmentRecord made_up_answer(const Study& study, std::shared_ptr<const AssessmentForm> form,
+                                std::uint64_t which) {
+  Numbers numbers(which);
+  return answer(numbers, study, std::move(form));
+}
+
+void set_chain(const Study& study, ExperimentRecord& record, const Diagnosis& diagnosis) {
+  const auto chain =
+      std::find_if(record.assessments.begin(), record.assessments.end(),
+                   [](const AssessmentRecord& said) { return said.form->method().name == kChainMethod; });
+  if (chain == record.assessments.end())
+    throw std::logic_error("the chain is no method of this record");
+  Assessment said;
+  said.flagged = diagnosis.impactful;
+  said.score = 0.5;
+  for (Eigen::Index cv = 0; cv < diagnosis.ivar_diag.size(); ++cv) {
+    const double ivar_diag = diagnosis.ivar_diag(cv);
+    CvAssessment of_cv{study.diagnosis.has_impact(ivar_diag), std::abs(ivar_diag - 1.0),
+                       cv == diagnosis.predicted_cv ? diagnosis.predicted_source : FaultSource::none};
+    if (!diagnosis.cvs.empty()) {
+      const CvDiagnosis& alone = diagnosis.cvs[static_cast<std::size_t>(cv)];
+      of_cv.flagged = alone.flagged;
+      of_cv.source = alone.source;
+    }
+    said.cvs.push_back(of_cv);
+  }
+  said.numbers = chain_numbers(diagnosis);
+  *chain = kept(chain->form, said);
+  chain->predicted_cv = diagnosis.predicted_cv;
+  chain->predicted_source = diagnosis.predicted_source;
+  chain->seconds = 0.125;
+}
+
+void remove_methods(Campaign& campaign, const std::function<bool(const std::string& name)>& unwanted) {
+  const auto go = [&](auto& list, const auto& form_of) {
+    list.erase(std::remove_if(list.begin(), list.end(),
+                              [&](const auto& each) { return unwanted(form_of(each)->method().name); }),
+               list.end());
+  };
+  go(campaign.methods, [](const CampaignMethod& method) { return method.form; });
+  for (ExperimentRecord& record : campaign.records)
+    go(record.assessments, [](const AssessmentRecord& said) { return said.form; });
+  campaign.study.methods = method_names(campaign);
+}
+
 Campaign made_up_campaign() {
   Numbers numbers;
   Campaign campaign;
-  campaign.study = parse_study(
-      with_setpoint(small_study()) + "\n[aggregate]\nbootstrap_replications = 200\n" + kS0Perturbation,
-      "small");
+  campaign.study =
+      parse_study(with_setpoint(small_study()) + kReplications + kS0Perturbation + kMethods, "small");
   campaign.study.seed = 18446744073709551615U;  // not the one in the text, and above the signed range
   campaign.info = {"1.2.3", "abc+", "2015-04-01T12:00:00Z", "mpmbench run \xC3\xBC.toml", "ipopt", 0.1, 3,
                    0.25,    0.7};
+  add_methods(campaign);
   campaign.basis =
-      basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}, {0, ReferenceKind::setpoint}});
+      basis_case(numbers, campaign.study, {{1, ConstraintKind::upper_limit}, {0, ConstraintKind::setpoint}});
   campaign.basis.sensitivity_fixed =
-      NominalSensitivity{2, {{0, ReferenceKind::lower_limit}}, {numbers.matrix(2, 17)}};
+      NominalSensitivity{2, {{0, ConstraintKind::lower_limit}}, {numbers.matrix(2, 17)}};
   for (std::int64_t index = 0; index < 40; ++index)
-    campaign.records.push_back(record(numbers, campaign.study, index));
+    campaign.records.push_back(
+        record(numbers, campaign, made_up_draw(numbers, campaign.study, index), made_up_status(index)));
   for (std::int64_t step = 0; step < 5; ++step)
     campaign.audit.push_back(
         {numbers.whole(), step, difference(numbers), difference(numbers), numbers.next()});
-  campaign.comparison = made_up_comparison(campaign.study, campaign.records);
-  campaign.comparison_info = {"1.3.0", "def", "mpmbench compare \xC3\xBC.h5"};
   return campaign;
 }
 
-Comparison made_up_comparison(const Study& study, const std::vector<ExperimentRecord>& records) {
-  Numbers numbers;
-  Comparison made;
-  made.methods = assessment_method_names();
-  for (const ExperimentRecord& record : records) {
-    if (record.status != ExperimentStatus::ok)
-      continue;
-    made.loops.push_back({record.draw.index, {}});
-    for (std::size_t method = 0; method < made.methods.size(); ++method)
-      made.loops.back().verdicts.push_back(verdict(numbers, study, method == 0));
-  }
-  for (std::size_t method = 0; method < made.methods.size(); ++method)
-    made.reasons.push_back(method % 2 == 0 ? "" : "no \xC3\xBC");
-  return made;
+Campaign drawn_campaign() {
+  Campaign campaign = made_up_campaign();
+  for (ExperimentRecord& record : campaign.records)
+    record.draw = draw_experiment(campaign.study, record.draw.index);
+  return campaign;
 }
 
 Campaign faultless_campaign() {
@@ -275,15 +418,13 @@ Campaign faultless_campaign() {
   const std::string last_count = "mpm_ud = 1\n";
   text.replace(text.find(last_count), last_count.size(), "mpm_ud = 0\nhealthy = 3\ntuning = 8\n");
   Campaign campaign;
-  campaign.study = parse_study(text + "\n[aggregate]\nbootstrap_replications = 200\n", "small");
+  campaign.study = parse_study(text + kReplications + kMethods, "small");
   campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
-  campaign.basis = basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}});
-  for (std::int64_t index = 0; index < 48; ++index) {
-    ExperimentRecord made = record(numbers, campaign.study, index);
-    made.draw = draw_experiment(campaign.study, index);
-    made.perturbed = {};
-    campaign.records.push_back(std::move(made));
-  }
+  add_methods(campaign);
+  campaign.basis = basis_case(numbers, campaign.study, {{1, ConstraintKind::upper_limit}});
+  for (std::int64_t index = 0; index < 48; ++index)
+    campaign.records.push_back(
+        record(numbers, campaign, draw_experiment(campaign.study, index), made_up_status(index)));
   return campaign;
 }
 
@@ -302,6 +443,7 @@ Campaign empty_campaign() {
   remove("[[simulation.step]]", "[experiments]");
   Campaign campaign;
   campaign.study = parse_study(text, "small");
+  add_methods(campaign);
   campaign.basis = basis_case(numbers, campaign.study, {});
   return campaign;
 }
@@ -311,32 +453,19 @@ Campaign scenario_campaign() {
   std::string text = small_study();
   text.erase(text.find("[experiments]"));
   Campaign campaign;
-  campaign.study = parse_study(text + "[sensitivity]\nform = 'box-jenkins'\n" + kScenarios, "small");
+  campaign.study =
+      parse_study(text + "[sensitivity]\nform = 'box-jenkins'\n" + kMethods + kScenarios, "small");
   campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
-  campaign.basis = basis_case(numbers, campaign.study, {{1, ReferenceKind::upper_limit}});
+  add_methods(campaign);
+  campaign.basis = basis_case(numbers, campaign.study, {{1, ConstraintKind::upper_limit}});
   campaign.basis.sensitivity_direct = campaign.basis.sensitivity;
   campaign.basis.sensitivity_direct->step_response[0](1, 2) += 0.5;
-  for (int cv = 0; cv < 2; ++cv)
-    campaign.basis.acf.push_back(acf(numbers, campaign.study.simulation.samples));
   for (std::int64_t index = 0; index < campaign.study.experiment_count(); ++index) {
-    ExperimentRecord made = record(numbers, campaign.study, index);
-    made.draw = draw_experiment(campaign.study, index);
-    made.status = index == 3   ? ExperimentStatus::infeasible
-                  : index == 4 ? ExperimentStatus::failed
-                               : ExperimentStatus::ok;
-    made.message = index == 4 ? "died" : "";
-    made.diagnosis = {};
-    made.perturbed = {};
-    if (made.status == ExperimentStatus::ok) {
-      made.diagnosis = diagnosis(numbers, 2);
-      const Eigen::Index samples = campaign.study.simulation.samples;
-      for (int cv = 0; cv < 2; ++cv)
-        made.diagnosis.cvs.push_back({numbers.index(2) == 1, static_cast<ExperimentKind>(numbers.index(3)),
-                                      distribution(numbers), acf(numbers, samples), numbers.next()});
-    }
-    campaign.records.push_back(std::move(made));
+    const ExperimentStatus status = index == 3   ? ExperimentStatus::infeasible
+                                    : index == 4 ? ExperimentStatus::failed
+                                                 : ExperimentStatus::ok;
+    campaign.records.push_back(record(numbers, campaign, draw_experiment(campaign.study, index), status));
   }
-  campaign.comparison = made_up_comparison(campaign.study, campaign.records);
   return campaign;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,9 +13,14 @@ namespace mpm::testing {
 
 /// A campaign of the small study of tests/scenarios without a simulation: every number is another one, drawn
 /// from a written seed, among them NaN with a payload, infinities, -0 and denormals. It has a record of each
-/// kind and status, kept loops of complete and broken experiments, texts that are empty or not ASCII, and a
-/// comparison of methods.
+/// kind and status, kept loops of complete and broken experiments, texts that are empty or not ASCII, and
+/// every method of assessment: where a loop ran to its end the chain has an answer and each of the others one
+/// with any status.
 Campaign made_up_campaign();
+
+/// The same with the faults that the study draws in place of made-up ones: bytes of a record do not hold
+/// them.
+Campaign drawn_campaign();
 
 /// The same without experiments, kept loops, active limits and measured disturbances: every dimension that
 /// can be empty is.
@@ -25,9 +33,25 @@ Campaign faultless_campaign();
 /// whole channels, every signal, infeasible, failed; with numbers for every CV.
 Campaign scenario_campaign();
 
-/// Verdicts of every method on the experiments of `records` that ran to their end: any status, score and
-/// time, among them awkward ones, and channels. The first method always has a verdict and a finite score.
-Comparison made_up_comparison(const Study& study, const std::vector<ExperimentRecord>& records);
+/// Every method that this program has, on the loops of a study.
+std::vector<CampaignMethod> made_up_methods(const Study& study);
+
+/// A method that was not asked.
+AssessmentRecord unasked(std::shared_ptr<const AssessmentForm> form);
+
+/// The verdict on a loop, and nothing else but for the first CV where it must name one.
+AssessmentRecord plain_verdict(std::shared_ptr<const AssessmentForm> form, bool flagged, double score);
+
+/// An answer of this form: any status, score and numbers, among them awkward ones. Another one for each
+/// `which`.
+AssessmentRecord made_up_answer(const Study& study, std::shared_ptr<const AssessmentForm> form,
+                                std::uint64_t which);
+
+/// Lets the chain of the thesis, which must be a method of the record, say this.
+void set_chain(const Study& study, ExperimentRecord& record, const Diagnosis& diagnosis);
+
+/// Takes the methods with these names out of the campaign, and what they said.
+void remove_methods(Campaign& campaign, const std::function<bool(const std::string& name)>& unwanted);
 
 /// An empty folder that goes away with the test.
 class TemporaryFolder {

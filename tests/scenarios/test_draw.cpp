@@ -41,7 +41,7 @@ TEST_CASE("draw_experiment: values lie in the ranges of table 6.4 and cover the 
     CHECK_FALSE(draw.named);
     REQUIRE(draw.affected().size() == 1);
     CHECK(draw.affected().front().cv == draw.true_cv());
-    CHECK(draw.affected().front().by == draw.kind);
+    CHECK(draw.affected().front().by == source_of(draw.kind));
     for (const Disturbance& disturbance : draw.disturbances) {
       CHECK((disturbance.gain >= 0.1 && disturbance.gain <= 3.0));
       CHECK((disturbance.time_constant >= 30 && disturbance.time_constant <= 300));

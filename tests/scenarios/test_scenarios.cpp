@@ -88,7 +88,7 @@ TEST_CASE("experiment i of a study of named scenarios is scenario i", "[scenario
   const Study study = named(kAll);
   const ExperimentDraw healthy = draw_experiment(study, 0);
   CHECK(healthy.named);
-  CHECK(healthy.kind == ExperimentKind::none);
+  CHECK(healthy.kind == ExperimentKind::healthy);
   CHECK(healthy.affected().empty());
   CHECK(healthy.true_cv() == -1);
   CHECK(draw_experiment(study, 1).kind == ExperimentKind::mpm);
@@ -110,15 +110,15 @@ TEST_CASE("the truth of a scenario: CVs with a fault, unless the study says othe
                             "disturbance = [{cv = 'heat', white = 1}]\n");
   const std::vector<AffectedCv> a = draw_experiment(study, 0).affected();
   REQUIRE(a.size() == 2);
-  CHECK((a[0].cv == 0 && a[0].by == ExperimentKind::ud));
-  CHECK((a[1].cv == 1 && a[1].by == ExperimentKind::mpm_ud));
+  CHECK((a[0].cv == 0 && a[0].by == FaultSource::ud));
+  CHECK((a[1].cv == 1 && a[1].by == FaultSource::mpm_ud));
   CHECK(draw_experiment(study, 0).true_cv() == -1);
   const std::vector<AffectedCv> b = draw_experiment(study, 1).affected();
   REQUIRE(b.size() == 1);
-  CHECK((b[0].cv == 0 && b[0].by == ExperimentKind::ud));
+  CHECK((b[0].cv == 0 && b[0].by == FaultSource::ud));
   const std::vector<AffectedCv> c = draw_experiment(study, 2).affected();  // no fault of its own
   REQUIRE(c.size() == 1);
-  CHECK((c[0].cv == 0 && c[0].by == ExperimentKind::ud));
+  CHECK((c[0].cv == 0 && c[0].by == FaultSource::ud));
 
   const ExperimentDraw both = draw_experiment(study, 0);
   CHECK(both.mismatch_alone().kind == ExperimentKind::mpm);

@@ -210,8 +210,13 @@ TEST_CASE("the options of the diagnosis and of the aggregates are checked", "[st
        "simulation.samples: found 60; allowed: at least 80: the longest moving window has 60 samples"},
       {"", "[diagnosis]\nwindows = [0.1, 2]\n", "prediction_horizon",
        "controller.prediction_horizon: found 20 (the shortest moving window has 2 samples); allowed: windows "
-       "of "
-       "at least 4 samples"},
+       "of at least 4 samples"},
+      {"", "[diagnosis]\nwindows = [0.15, 2]\n", "prediction_horizon",
+       "controller.prediction_horizon: found 20 (the shortest moving window has 3 samples); allowed: windows "
+       "of at least 4 samples"},
+      {"", "[diagnosis]\nwindows = [0.51, 0.54]\n", "windows",
+       "diagnosis.windows: found [0.51, 0.54]; allowed: a whole number of samples between them, at a "
+       "prediction horizon of 20 samples"},
       {"", "[diagnosis]\nwindow_stride = 0\n", "window_stride",
        "diagnosis.window_stride: found 0; allowed: a whole number from 1 to 100000"},
       {"", "[diagnosis]\nsource_population = 'all'\n", "source_population",

@@ -149,7 +149,7 @@ TEST_CASE("simulate_experiment: a bad tuning is the loop of another controller w
 TEST_CASE("simulate_experiment: a healthy experiment is the basis case with another noise", "[tuning]") {
   Study study = short_study({.healthy = 1});
   const QpSolverFactory factory = qp_solver_factory("active-set");
-  CHECK(draw_experiment(study, 5).kind == ExperimentKind::none);
+  CHECK(draw_experiment(study, 5).kind == ExperimentKind::healthy);
   CHECK(simulate_experiment(study, draw_experiment(study, 5), factory).y !=
         simulate_experiment(study, basis_draw(), factory).y);
   study.simulation.noise_standard_deviation.setZero();

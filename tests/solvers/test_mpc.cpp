@@ -168,20 +168,6 @@ TEST_CASE("a solver that fails is reported and the MVs stay", "[mpc]") {
   CHECK(move.u == u);
 }
 
-TEST_CASE("the model runs along with the moves", "[mpc]") {
-  Mpc controller = small_controller("ipopt");
-  LinearPlant model(small_model(), small_options().sample_time);
-  controller.reset(Eigen::Vector2d(0.1, 0.2), md(0.3));
-  Eigen::VectorXd input(3);
-  input << 0.1, 0.2, 0.3;
-  model.reset(input);
-  for (int k = 0; k < 5; ++k) {
-    CHECK(controller.model_output() == model.output());  // the same arithmetic
-    input << controller.step(Eigen::Vector2d(0.1 * k, 0), md(0.1)).u, 0.1;
-    model.advance(input);
-  }
-}
-
 TEST_CASE("controller statuses have names", "[mpc]") {
   CHECK(to_string(ControlStatus::ok) == "ok");
   CHECK(to_string(ControlStatus::infeasible) == "infeasible");

@@ -3,7 +3,8 @@
 Rooms are named from left to right; a file includes only its own room and rooms to its left, by the path from
 the root of the repository. The folders of a room are ordered in the same way, where it has any: a file in the
 room itself may include all of them. Files in tests/ may include everything. The headers of Ceres, Ipopt, HDF5 and
-SUNDIALS stand in one .cpp each at most, and never in a header.
+SUNDIALS stand in one .cpp each at most, and never in a header. A source includes its own header first, so that
+compiling the source shows that the header needs nothing before it.
 """
 
 import re
@@ -57,6 +58,14 @@ def folder_complaint(relative, name):
     return None
 
 
+def own_header_complaint(root, relative, name):
+    """What is wrong with `name` as the first include of the file `relative`, or None."""
+    own = relative.with_suffix(".hpp")
+    if relative.suffix == ".cpp" and name != str(own) and (root / own).is_file():
+        return f'"{own}" belongs first'
+    return None
+
+
 def check(root):
     complaints = []
     users = {library: {} for library in CONFINED}  # library -> {.cpp file -> where it first includes it}
@@ -66,9 +75,11 @@ def check(root):
         if room not in tree.ROOMS and room != "tests":
             complaints.append(f"{relative}:1: C++ outside of the rooms")
             continue
-        for number, name, quoted in includes(path):
+        for position, (number, name, quoted) in enumerate(includes(path)):
             where = f"{relative}:{number}"
             complaint = room_complaint(root, room, name, quoted) or folder_complaint(relative, name)
+            if not complaint and position == 0:
+                complaint = own_header_complaint(root, relative, name)
             if complaint:
                 complaints.append(f"{where}: {complaint}")
             for library, pattern in CONFINED.items():

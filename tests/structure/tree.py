@@ -7,11 +7,14 @@ from pathlib import Path
 # From left to right: a file includes only its own room and rooms to its left.
 ROOMS = ["plants", "solvers", "scenarios", "analysis", "results", "bench"]
 
-# The folders of a room, in the same way: a file includes only its own folder and folders to its left.
+# The folders of a room, in the same way: a file includes only its own folder and folders to its left. A header of
+# the room itself that its folders may include stands here by its name.
 FOLDERS = {
     "analysis": ["statistics", "identification", "sensitivity", "indicators", "basis", "methods", "experiment",
                  "findings", "reproduction"],
     "results": ["files", "archive", "text", "plot", "summary", "gates", "report", "reproduction"],
+    "bench": ["version.hpp", "files", "outcome", "byte_stream.hpp", "record_bytes.hpp", "outcome_bytes.hpp", "execution",
+              "shards", "campaign", "comparison_runner.hpp", "console", "commands", "perf"],
 }
 
 # At the root: what .gitignore names and what tools leave there.

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/judgement.hpp"
 #include "plants/error.hpp"
 #include "plants/quadruple_tank.hpp"
 #include "scenarios/study_library.hpp"
@@ -64,14 +65,16 @@ TEST_CASE("a plant without a steady state to begin at fails the experiment, and 
   study.scenarios = {{"integrates", "", {{0, 1, MismatchParameter::channel, NAN, integrator}}, {}, {}},
                      {"none", "", {}, {}, {}}};
   const BasisCase basis = run_basis_case(study, kFactory);
-  ExperimentRunner runner(study, basis, kFactory);
+  ExperimentRunner runner(study, basis, {"botelho"}, kFactory);
   const ExperimentRecord failed = runner.run(0, StorePolicy::all);
   CHECK(failed.status == ExperimentStatus::failed);
   CHECK_THAT(failed.message,
              Contains("the plant has no steady state to begin at") && Contains("channel (0, 1) integrates"));
   CHECK(failed.loop->trajectory.samples_done == 0);
   CHECK(failed.solver.steps == 0);
-  CHECK_FALSE(failed.wrong());
+  REQUIRE(failed.assessments.size() == 1);
+  CHECK(failed.assessments[0].status == AssessmentStatus::not_assessed);
+  CHECK_FALSE(judge(study, failed, failed.assessments[0]).wrong());
   const ExperimentRecord next = runner.run(1, StorePolicy::none);  // the runner is none the worse for it
   CHECK(next.status == ExperimentStatus::ok);
   CHECK(next.message.empty());
@@ -85,7 +88,8 @@ TEST_CASE("a plant that cannot be integrated fails the experiment, not the basis
   };
   const BasisCase basis = run_basis_case(study, kFactory);
   REQUIRE(basis.trajectory.status == ControlStatus::ok);
-  const ExperimentRecord failed = ExperimentRunner(study, basis, kFactory).run(0, StorePolicy::none);
+  const ExperimentRecord failed =
+      ExperimentRunner(study, basis, {"botelho"}, kFactory).run(0, StorePolicy::none);
   CHECK(failed.status == ExperimentStatus::failed);
   CHECK(failed.message == "the plant could not be integrated");
 }

@@ -1,12 +1,12 @@
-#include <algorithm>
-
 #include <catch2/catch.hpp>
 
-#include "analysis/basis/own_basis.hpp"
-#include "analysis/experiment/verdict.hpp"
+#include "analysis/basis/tuned_basis.hpp"
+#include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/false_alarms.hpp"
-#include "analysis/findings/study_aggregate.hpp"
+#include "analysis/findings/study_findings.hpp"
+#include "analysis/sensitivity/nominal_estimator.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/analysis/made_up_record.hpp"
 
 namespace {
 
@@ -33,25 +33,23 @@ std::int64_t index_of(const Study& study, TuningParameter parameter) {
   return index;
 }
 
-/// A record without a loop; a source makes it impactful.
+/// A record without a loop; a source flags it.
 ExperimentRecord made_up(ExperimentKind kind, ExperimentStatus status,
-                         ExperimentKind source = ExperimentKind::none) {
+                         FaultSource source = FaultSource::none) {
   ExperimentRecord record;
   record.draw.kind = kind;
   if (kind == ExperimentKind::tuning)
     record.draw.tuning = TuningChange{TuningParameter::slack_weight, 0, 2.0};
   record.status = status;
-  record.diagnosis.impactful = source != ExperimentKind::none;
-  record.diagnosis.predicted_cv = 2;
-  record.diagnosis.predicted_source = source;
-  return record;
+  record.assessments = {testing::verdict(testing::chain_form(), source != FaultSource::none, 1.0, 2, source)};
+  return status == ExperimentStatus::ok ? record : testing::without_verdict(record, status);
 }
 
-TEST_CASE("own_basis: S0 of the changed controller, only where the study takes it", "[false_alarms]") {
+TEST_CASE("tuned_basis: S0 of the changed controller, only where the study takes it", "[false_alarms]") {
   Study study = tuning_study();
   const ExperimentDraw draw = draw_experiment(study, index_of(study, TuningParameter::move_suppression));
-  CHECK_FALSE(own_basis(study, basis_draw(), factory()));
-  const std::optional<OwnBasis> own = own_basis(study, draw, factory());
+  CHECK_FALSE(tuned_basis(study, basis_draw(), factory()));
+  const std::optional<TunedBasis> own = tuned_basis(study, draw, factory());
   REQUIRE(own);
   Study by_hand = study;
   by_hand.controller.move_suppression(draw.tuning->index) *= draw.tuning->factor;
@@ -68,33 +66,34 @@ TEST_CASE("own_basis: S0 of the changed controller, only where the study takes i
   CHECK(own->solver.largest_kkt_residual < 1e-6);
 
   study.tuning.sensitivity = TuningSensitivity::design;
-  CHECK_FALSE(own_basis(study, draw, factory()));
+  CHECK_FALSE(tuned_basis(study, draw, factory()));
 }
 
 TEST_CASE("a bad tuning is diagnosed by its own S0 against the basis case of the study", "[false_alarms]") {
   Study study = tuning_study();
   const BasisCase basis = run_basis_case(study, factory());
   const std::int64_t index = index_of(study, TuningParameter::move_suppression);
-  const ExperimentRecord record = ExperimentRunner(study, basis, factory()).run(index, StorePolicy::all);
+  const ExperimentRecord record =
+      ExperimentRunner(study, basis, {"botelho"}, factory()).run(index, StorePolicy::all);
   REQUIRE(record.status == ExperimentStatus::ok);
   const Trajectory& loop = record.loop->trajectory;
 
-  const std::optional<OwnBasis> own = own_basis(study, record.draw, factory());
+  const std::optional<TunedBasis> own = tuned_basis(study, record.draw, factory());
   const NominalOutputs nominal =
       NominalEstimator(own->study, own->basis.point, own->basis.sensitivity, factory()).estimate(loop);
-  const Diagnosis expected = DiagnosisChain(study).diagnose(loop.y, nominal, basis.trajectory.y);
-  CHECK(record.diagnosis.ivar == expected.ivar);
-  CHECK(record.diagnosis.ivar_basis == expected.ivar_basis);
-  CHECK(record.diagnosis.indicator.i_mpm == expected.indicator.i_mpm);
+  const Diagnosis expected = DiagnosisChain(study).diagnose(loop.y, nominal);
+  CHECK(record.chain().ivar == expected.ivar);
+  CHECK(record.chain().indicator.i_mpm == expected.indicator.i_mpm);
+  CHECK(record.ivar_basis == basis_variance_indices(study, loop.y, basis.trajectory.y));
   CHECK(record.perturbed.damping.size() == 0);
 
   study.tuning.sensitivity = TuningSensitivity::design;
-  const ExperimentRecord unnoticed = ExperimentRunner(study, basis, factory()).run(index, StorePolicy::none);
+  const ExperimentRecord unnoticed =
+      ExperimentRunner(study, basis, {"botelho"}, factory()).run(index, StorePolicy::none);
   const NominalOutputs of_design =
       NominalEstimator(study, basis.point, basis.sensitivity, factory()).estimate(loop);
-  CHECK(unnoticed.diagnosis.ivar ==
-        DiagnosisChain(study).diagnose(loop.y, of_design, basis.trajectory.y).ivar);
-  CHECK(unnoticed.diagnosis.ivar != record.diagnosis.ivar);
+  CHECK(unnoticed.chain().ivar == DiagnosisChain(study).diagnose(loop.y, of_design).ivar);
+  CHECK(unnoticed.chain().ivar != record.chain().ivar);
 }
 
 TEST_CASE("without noise no tuning makes an alarm, whatever S0", "[false_alarms]") {
@@ -104,14 +103,14 @@ TEST_CASE("without noise no tuning makes an alarm, whatever S0", "[false_alarms]
   for (const TuningSensitivity sensitivity : {TuningSensitivity::current, TuningSensitivity::design}) {
     study.tuning.sensitivity = sensitivity;
     const BasisCase basis = run_basis_case(study, factory());
-    ExperimentRunner runner(study, basis, factory());
+    ExperimentRunner runner(study, basis, {"botelho"}, factory());
     for (const TuningParameter parameter :
          {TuningParameter::move_suppression, TuningParameter::target_weight, TuningParameter::slack_weight}) {
       const ExperimentRecord record = runner.run(index_of(study, parameter), StorePolicy::none);
       REQUIRE(record.status == ExperimentStatus::ok);
-      CHECK((record.diagnosis.ivar.array() - 1.0).abs().maxCoeff() < 1e-6);
-      CHECK((record.diagnosis.ivar_diag.array() - 1.0).abs().maxCoeff() < 1e-6);
-      CHECK_FALSE(record.wrong());
+      CHECK((record.chain().ivar.array() - 1.0).abs().maxCoeff() < 1e-6);
+      CHECK((record.chain().ivar_diag.array() - 1.0).abs().maxCoeff() < 1e-6);
+      CHECK_FALSE(judge(study, record, record.assessments[0]).wrong());
     }
   }
 }
@@ -125,52 +124,37 @@ TEST_CASE("a controller that does not run on its own model makes the experiment 
   study.controller.cv_hard.upper *= 0.5;
   const BasisCase basis = run_basis_case(study, factory());
   REQUIRE(basis.trajectory.status == ControlStatus::ok);
-  ExperimentRunner runner(study, basis, factory());
+  ExperimentRunner runner(study, basis, {"botelho"}, factory());
   int only_own = 0;
   for (std::int64_t index = 25; index < 60; ++index) {
     const ExperimentDraw draw = draw_experiment(study, index);
-    const std::optional<OwnBasis> own = own_basis(study, draw, factory());
+    const std::optional<TunedBasis> own = tuned_basis(study, draw, factory());
     if (own->basis.trajectory.status == ControlStatus::ok)
       continue;
     CHECK_FALSE(own->basis.explanation.empty());
     const ExperimentRecord record = runner.run(index, StorePolicy::none);
     CHECK(record.status == ExperimentStatus::infeasible);
-    CHECK(record.diagnosis.ivar.size() == 0);
+    CHECK(record.chain().ivar.size() == 0);
     only_own += simulate_experiment(study, draw, factory()).status == ControlStatus::ok ? 1 : 0;
   }
   CHECK(only_own > 0);
 }
 
-TEST_CASE("any impact where model and plant agree is a wrong verdict on no CV and no source",
-          "[false_alarms]") {
-  const Study study = find_study("chapter6");
-  for (const ExperimentKind kind : {ExperimentKind::none, ExperimentKind::tuning}) {
-    const ExperimentRecord quiet = made_up(kind, ExperimentStatus::ok);
-    const ExperimentRecord alarm = made_up(kind, ExperimentStatus::ok, ExperimentKind::ud);
-    const ExperimentRecord lost = made_up(kind, ExperimentStatus::failed);
-    CHECK_FALSE(quiet.wrong());
-    CHECK(alarm.wrong());
-    CHECK_FALSE(lost.wrong());
-    CHECK(location_verdict(alarm) == Verdict::none);
-    CHECK(source_verdict(study, alarm) == Verdict::none);
-  }
-}
-
 TEST_CASE("false_alarms counts each kind, and each parameter that the controller has", "[false_alarms]") {
   Study study = find_study("chapter6");
-  CHECK(false_alarms(study, {}).empty());
+  CHECK(false_alarms(study, 0, {}).empty());
   study.experiments = {.mpm = 1, .healthy = 1, .tuning = 1};
-  const auto none = ExperimentKind::none, tuning = ExperimentKind::tuning;
+  const auto healthy = ExperimentKind::healthy, tuning = ExperimentKind::tuning;
   const std::vector<ExperimentRecord> records{
-      made_up(none, ExperimentStatus::ok),
-      made_up(none, ExperimentStatus::ok, ExperimentKind::mpm),
-      made_up(none, ExperimentStatus::ok),
-      made_up(none, ExperimentStatus::infeasible),
-      made_up(tuning, ExperimentStatus::ok, ExperimentKind::ud),
-      made_up(tuning, ExperimentStatus::ok, ExperimentKind::mpm),
+      made_up(healthy, ExperimentStatus::ok),
+      made_up(healthy, ExperimentStatus::ok, FaultSource::mpm),
+      made_up(healthy, ExperimentStatus::ok),
+      made_up(healthy, ExperimentStatus::infeasible),
+      made_up(tuning, ExperimentStatus::ok, FaultSource::ud),
+      made_up(tuning, ExperimentStatus::ok, FaultSource::mpm),
       made_up(tuning, ExperimentStatus::failed),
   };
-  const std::vector<FalseAlarms> groups = false_alarms(study, records);
+  const std::vector<FalseAlarms> groups = false_alarms(study, 0, records);
   REQUIRE(groups.size() == 5);  // without the setpoint weights, which no CV has
   CHECK(groups[0].name() == "healthy");
   CHECK(groups[0].experiments == 4);
@@ -185,15 +169,14 @@ TEST_CASE("false_alarms counts each kind, and each parameter that the controller
   CHECK(groups[4].name() == "tuning_slack_weight");
   CHECK(groups[4].false_alarm.total == 2);
 
-  const StudyAggregate total = aggregate(study, records);
-  CHECK(total.experiments == 7);
-  CHECK(total.kinds.size() == 1);  // the kinds with a fault
-  const auto values = named_values(total);
-  const auto found = std::find_if(values.begin(), values.end(), [](const AggregateValue& value) {
-    return value.name == "false_alarm_healthy";
-  });
-  REQUIRE(found != values.end());
+  const StudyFindings findings = study_findings(study, {testing::chain_form()}, records);
+  CHECK(findings.experiments == 7);
+  CHECK(findings.chain()->kinds.size() == 1);  // the kinds with a fault
+  CHECK(findings.chain()->false_alarms.size() == groups.size());
+  const Finding* const found = find_finding(findings.rows, "false_alarm_healthy");
+  REQUIRE(found != nullptr);
   CHECK(found->count == 3);
+  CHECK(found->hits == 1);
   // Wilson (1927) for 1 of 3 and z = 1.96: (1/3 + z^2/6 -+ z sqrt(2/27 + z^2/36)) / (1 + z^2/3).
   CHECK(found->interval.lower == Approx(0.0615).margin(5e-4));
   CHECK(found->interval.upper == Approx(0.7923).margin(5e-4));

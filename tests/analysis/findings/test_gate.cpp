@@ -14,20 +14,22 @@ using namespace mpm;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-AggregateValue measured(double value, double lower, double upper, std::int64_t count = 50) {
-  return {"x", "", value, {lower, upper}, count};
+Finding measured(double value, double lower, double upper, std::int64_t count = 50) {
+  Finding finding;
+  finding.name = "x";
+  return finding.with(value, {lower, upper}, count);
 }
 
-GateResult with_confidence(double minimum, double maximum, const AggregateValue& value) {
+GateResult with_confidence(double minimum, double maximum, const Finding& value) {
   return judge({"x", minimum, maximum, true}, value);
 }
 
-GateResult of_value(double minimum, double maximum, const AggregateValue& value) {
+GateResult of_value(double minimum, double maximum, const Finding& value) {
   return judge({"x", minimum, maximum, false}, value);
 }
 
 TEST_CASE("gate on a value: it passes or fails, and says by how much") {
-  const AggregateValue value = measured(0.7, 0.1, 0.9);  // the interval does not count
+  const Finding value = measured(0.7, 0.1, 0.9);  // the interval does not count
   CHECK(of_value(0.6, kInfinity, value).outcome == GateOutcome::pass);
   CHECK(of_value(0.6, kInfinity, value).margin == Approx(0.1));
   CHECK(of_value(0.75, kInfinity, value).outcome == GateOutcome::fail);
@@ -38,7 +40,7 @@ TEST_CASE("gate on a value: it passes or fails, and says by how much") {
 }
 
 TEST_CASE("gate with confidence: the whole interval within, the whole out, or neither") {
-  const AggregateValue value = measured(0.7, 0.6, 0.8);
+  const Finding value = measured(0.7, 0.6, 0.8);
   CHECK(with_confidence(0.5, kInfinity, value).outcome == GateOutcome::pass);
   CHECK(with_confidence(0.5, kInfinity, value).margin == Approx(0.1));
   CHECK(with_confidence(0.65, kInfinity, value).outcome == GateOutcome::inconclusive);

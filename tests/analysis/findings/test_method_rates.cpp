@@ -1,11 +1,11 @@
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "plants/error.hpp"
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/analysis/made_up_record.hpp"
@@ -13,7 +13,6 @@
 namespace mpm {
 namespace {
 
-using Catch::Contains;
 using testing::made_up_record;
 
 const Study& study() {
@@ -21,41 +20,42 @@ const Study& study() {
   return chapter6;
 }
 
-MethodVerdict verdict(bool flagged, double score = 0.0, Eigen::Index cv = -1,
-                      ExperimentKind source = ExperimentKind::none) {
-  MethodVerdict made;
-  made.status = AssessmentStatus::ok;
-  made.flagged = flagged;
-  made.score = score;
-  made.located_cv = cv;
-  made.source = source;
-  return made;
+AssessmentRecord verdict(bool flagged, double score = 0.0, Eigen::Index cv = -1,
+                         FaultSource source = FaultSource::none) {
+  return testing::verdict(testing::chain_form(), flagged, score, cv, source);
+}
+
+/// No verdict, for a reason of this sort.
+AssessmentRecord no_verdict(AssessmentStatus status) {
+  AssessmentRecord record;
+  record.form = testing::chain_form();
+  record.status = status;
+  return record;
 }
 
 ExperimentRecord healthy_record(std::int64_t index) {
   ExperimentRecord record = made_up_record(index, ExperimentKind::ud, 0, 0.0);
-  record.draw.kind = ExperimentKind::none;
+  record.draw.kind = ExperimentKind::healthy;
   record.draw.disturbances.clear();
   return record;
 }
 
-/// Loops with their truth, assessed by two methods; both are the first of the table, whose verdicts are made
-/// up.
+/// Loops with their truth, assessed by two methods whose verdicts are made up.
 struct Case {
   std::vector<ExperimentRecord> records;
-  Comparison comparison{{"botelho", "botelho"}, {"", ""}, {}};
 
-  void add(const ExperimentRecord& truth, const MethodVerdict& first, const MethodVerdict& second) {
-    records.push_back(truth);
-    comparison.loops.push_back({truth.draw.index, {first, second}});
+  void add(ExperimentRecord truth, const AssessmentRecord& first, const AssessmentRecord& second) {
+    truth.assessments = {first, second};
+    records.push_back(std::move(truth));
   }
-  void add(ExperimentKind kind, const MethodVerdict& first, const MethodVerdict& second = verdict(false)) {
+  void add(ExperimentKind kind, const AssessmentRecord& first,
+           const AssessmentRecord& second = verdict(false)) {
     const auto index = static_cast<std::int64_t>(records.size());
-    add(kind == ExperimentKind::none ? healthy_record(index) : made_up_record(index, kind, 1, 0.2), first,
+    add(kind == ExperimentKind::healthy ? healthy_record(index) : made_up_record(index, kind, 1, 0.2), first,
         second);
   }
-  ComparisonSummary summary() const { return summarise(comparison, records, study()); }
-  MethodRates rates() const { return summary().methods.at(0); }
+  MethodRates rates() const { return method_rates(study(), 0, records); }
+  std::vector<MethodPair> pairs() const { return method_pairs(study(), 2, records); }
 };
 
 void check_rate(const Rate& rate, std::int64_t hits, std::int64_t total) {
@@ -68,29 +68,29 @@ void check_rate(const Rate& rate, std::int64_t hits, std::int64_t total) {
 }
 
 constexpr ExperimentKind kMpm = ExperimentKind::mpm, kUd = ExperimentKind::ud, kBoth = ExperimentKind::mpm_ud,
-                         kNone = ExperimentKind::none;
+                         kNone = ExperimentKind::healthy;
+constexpr FaultSource kIsMpm = FaultSource::mpm, kIsUd = FaultSource::ud;
 
 }  // namespace
 
 TEST_CASE("rates of a method: every loop is counted where it belongs", "[method_rates]") {
   Case made;
-  made.add(kMpm, verdict(true, 1, 1, kMpm));   // all right
-  made.add(kMpm, verdict(true, 1, 1, kUd));    // wrong source
-  made.add(kMpm, verdict(true, 1, 3, kMpm));   // wrong CV
-  made.add(kMpm, verdict(false, 1, 1, kMpm));  // missed: neither located nor a source
-  made.add(kUd, verdict(true, 1, 1, kUd));
-  made.add(kUd, verdict(true, 1, 1, kMpm));
+  made.add(kMpm, verdict(true, 1, 1, kIsMpm));   // all right
+  made.add(kMpm, verdict(true, 1, 1, kIsUd));    // wrong source
+  made.add(kMpm, verdict(true, 1, 3, kIsMpm));   // wrong CV
+  made.add(kMpm, verdict(false, 1, 1, kIsMpm));  // missed: neither located nor a source
+  made.add(kUd, verdict(true, 1, 1, kIsUd));
+  made.add(kUd, verdict(true, 1, 1, kIsMpm));
   made.add(kUd, verdict(false));
-  made.add(kBoth, verdict(true, 1, 1, kMpm));  // two faults have no one source
+  made.add(kBoth, verdict(true, 1, 1, kIsMpm));  // two faults have no one source
   made.add(kNone, verdict(true));
   made.add(kNone, verdict(false));
-  made.add(kMpm, {});  // failed: in `answered` only
-  MethodVerdict not_applicable;
-  not_applicable.status = AssessmentStatus::not_applicable;
-  made.add(kNone, not_applicable);
+  made.add(kMpm, no_verdict(AssessmentStatus::failed));  // in `answered` only
+  made.add(kNone, no_verdict(AssessmentStatus::not_applicable));
+  made.add(kMpm, no_verdict(AssessmentStatus::not_assessed));  // nobody asked: it counts nowhere
 
   ExperimentRecord without_impact = made_up_record(100, kUd, 1, 0.2);
-  without_impact.diagnosis.ivar_basis.setOnes();
+  without_impact.ivar_basis.setOnes();
   made.add(without_impact, verdict(false), verdict(false));
 
   const MethodRates rates = made.rates();
@@ -134,7 +134,7 @@ TEST_CASE("rates of a method: a flagged loop with several affected CVs has no on
   ExperimentRecord two = made_up_record(0, kUd, 1, 0.2);
   two.draw.disturbances.push_back({3, 1.0, 50.0});
   REQUIRE(two.draw.true_cv() == -1);
-  made.add(two, verdict(true, 1, 1, kUd), verdict(false));
+  made.add(two, verdict(true, 1, 1, kIsUd), verdict(false));
   check_rate(made.rates().located, 0, 0);
   check_rate(made.rates().source, 1, 1);
 }
@@ -143,10 +143,14 @@ TEST_CASE("rates of a method: channels are counted for methods that name them, u
           "[method_rates]") {
   for (const AssessmentMethodInfo& info : assessment_methods()) {
     Case made;
-    made.comparison.methods = {info.name, info.name};
-    MethodVerdict right = verdict(true), wrong = verdict(true);
-    right.flagged_channels = {{0, 2}, {1, 0}};  // made_up_record() has its mismatch in MV 0 of the CV
-    wrong.flagged_channels = {{0, 1}, {1, 1}};
+    const auto names = [form = testing::form_of(study(), info.name)](std::vector<Channel> channels) {
+      Assessment said;
+      said.flagged = true;
+      said.flagged_channels = std::move(channels);
+      return kept(form, said);
+    };
+    // made_up_record() has its mismatch in MV 0 of the CV
+    const AssessmentRecord right = names({{0, 2}, {1, 0}}), wrong = names({{0, 1}, {1, 1}});
     made.add(kMpm, right);
     made.add(kMpm, wrong);
     made.add(kUd, right);
@@ -198,11 +202,11 @@ TEST_CASE("rates of a method: without healthy loops there is no curve, and its i
 TEST_CASE("rates of a method: the cost is the median over loops with a verdict", "[method_rates]") {
   Case made;
   for (const double seconds : {0.010, 0.001, std::nan(""), 0.002}) {
-    MethodVerdict answer = verdict(true);
+    AssessmentRecord answer = verdict(true);
     answer.seconds = seconds;
     made.add(kMpm, answer);
   }
-  MethodVerdict failed;
+  AssessmentRecord failed = no_verdict(AssessmentStatus::failed);
   failed.seconds = 100.0;
   made.add(kMpm, failed);
   CHECK(made.rates().milliseconds == Approx(2.0).epsilon(1e-12));
@@ -212,16 +216,16 @@ TEST_CASE("rates of a method: the cost is the median over loops with a verdict",
 TEST_CASE("paired methods: right is a flagged fault or a quiet healthy loop, on loops that both answer",
           "[method_rates]") {
   Case made;
-  made.add(kMpm, verdict(true), verdict(false));   // the first alone is right
-  made.add(kMpm, verdict(false), verdict(true));   // the second
-  made.add(kNone, verdict(true), verdict(false));  // the second
-  made.add(kNone, verdict(true), verdict(false));  // the second
-  made.add(kUd, verdict(true), verdict(true));     // both
-  made.add(kNone, verdict(true), verdict(true));   // neither
-  made.add(kMpm, {}, verdict(true));               // no verdict of the first
-  const ComparisonSummary summary = made.summary();
-  REQUIRE(summary.pairs.size() == 2);
-  const MethodPair& pair = summary.pairs[0];
+  made.add(kMpm, verdict(true), verdict(false));                        // the first alone is right
+  made.add(kMpm, verdict(false), verdict(true));                        // the second
+  made.add(kNone, verdict(true), verdict(false));                       // the second
+  made.add(kNone, verdict(true), verdict(false));                       // the second
+  made.add(kUd, verdict(true), verdict(true));                          // both
+  made.add(kNone, verdict(true), verdict(true));                        // neither
+  made.add(kMpm, no_verdict(AssessmentStatus::failed), verdict(true));  // none of the first
+  const std::vector<MethodPair> pairs = made.pairs();
+  REQUIRE(pairs.size() == 2);
+  const MethodPair& pair = pairs[0];
   CHECK(pair.truth == FlagTruth::fault);
   CHECK(pair.loops == 6);
   CHECK(pair.test.lost == 1);
@@ -234,32 +238,47 @@ TEST_CASE("paired methods: a fault without impact is to be flagged by the one tr
           "[method_rates]") {
   Case made;
   ExperimentRecord quiet = made_up_record(0, kMpm, 1, 0.2);
-  quiet.diagnosis.ivar_basis.setOnes();
+  quiet.ivar_basis.setOnes();
   made.add(quiet, verdict(true), verdict(false));
   made.add(kMpm, verdict(true), verdict(false));
-  const ComparisonSummary summary = made.summary();
-  REQUIRE(summary.pairs.size() == 2);
-  CHECK(summary.pairs[0].truth == FlagTruth::fault);
-  CHECK(summary.pairs[0].test.lost == 2);
-  CHECK(summary.pairs[0].test.gained == 0);
-  CHECK(summary.pairs[1].truth == FlagTruth::impact);
-  CHECK(summary.pairs[1].test.lost == 1);
-  CHECK(summary.pairs[1].test.gained == 1);
+  const std::vector<MethodPair> pairs = made.pairs();
+  REQUIRE(pairs.size() == 2);
+  CHECK(pairs[0].truth == FlagTruth::fault);
+  CHECK(pairs[0].test.lost == 2);
+  CHECK(pairs[0].test.gained == 0);
+  CHECK(pairs[1].truth == FlagTruth::impact);
+  CHECK(pairs[1].test.lost == 1);
+  CHECK(pairs[1].test.gained == 1);
 }
 
-TEST_CASE("a comparison with loops that are not in the campaign, or not in its order, is refused",
+TEST_CASE("paired methods: every pair once for each truth", "[method_rates]") {
+  CHECK(method_pairs(study(), 1, {}).empty());
+  const std::vector<MethodPair> pairs = method_pairs(study(), 3, {});
+  REQUIRE(pairs.size() == 6);
+  std::set<std::tuple<FlagTruth, std::size_t, std::size_t>> different;
+  for (const MethodPair& pair : pairs) {
+    CHECK(pair.first < pair.second);
+    CHECK(pair.second < 3);
+    CHECK(pair.loops == 0);
+    different.insert({pair.truth, pair.first, pair.second});
+  }
+  CHECK(different.size() == 6);
+}
+
+TEST_CASE("rates of a method: why there was no verdict is that of the first loop without one",
           "[method_rates]") {
   Case made;
   made.add(kMpm, verdict(true));
-  made.add(kMpm, verdict(true));
-  made.comparison.loops[1].experiment = 77;
-  CHECK_THROWS_WITH(made.summary(), Contains("comparison: found experiment 77"));
-  made.comparison.loops[0].experiment = 1;
-  made.comparison.loops[1].experiment = 0;
-  CHECK_THROWS_WITH(made.summary(), Contains("comparison: found experiment 0"));
+  CHECK(made.rates().reason.empty());
+  for (const char* reason : {"the first", "the second"}) {
+    AssessmentRecord failed = no_verdict(AssessmentStatus::failed);
+    failed.reason = reason;
+    made.add(kMpm, failed);
+  }
+  CHECK(made.rates().reason == "the first");
 }
 
-TEST_CASE("the rates have one list: every rate once, and named values for gates", "[method_rates]") {
+TEST_CASE("the rates have one list: every rate once, and a finding of its own", "[method_rates]") {
   std::set<std::string> names;
   std::set<const Rate*> members;
   const MethodRates none{};
@@ -274,18 +293,21 @@ TEST_CASE("the rates have one list: every rate once, and named values for gates"
   made.add(kMpm, verdict(true, 2.0));
   made.add(kMpm, verdict(false, 1.0));
   made.add(kNone, verdict(false, 0.0));
-  ComparisonSummary summary = made.summary();
-  summary.methods.pop_back();
-  const std::vector<AggregateValue> values = named_values(summary);
-  REQUIRE(values.size() == method_rate_infos().size() + 1);
-  CHECK(values[0].name == "compare.botelho.answered");
-  CHECK(values[1].name == "compare.botelho.detected");
-  CHECK(values[1].value == 0.5);
-  CHECK(values[1].count == 2);
-  CHECK(values[1].interval.lower == summary.methods[0].detected.interval.lower);
-  CHECK(values.back().name == "compare.botelho.roc_area");
-  CHECK(values.back().value == 1.0);
-  CHECK(values.back().count == 3);
+  const MethodRates rates = made.rates();
+  const std::vector<Finding> rows = rows_of(rates, testing::chain_form()->method());
+  REQUIRE(rows.size() == method_rate_infos().size() + 1);
+  CHECK(rows[0].name == "compare.botelho.answered");
+  CHECK(rows[1].name == "compare.botelho.detected");
+  CHECK(rows[1].value == 0.5);
+  CHECK(rows[1].count == 2);
+  CHECK(rows[1].hits == 1);
+  CHECK(rows[1].is_share());
+  CHECK(rows[1].method == "botelho");
+  CHECK(rows[1].interval.lower == rates.detected.interval.lower);
+  CHECK(rows.back().name == "compare.botelho.roc_area");
+  CHECK_FALSE(rows.back().is_share());
+  CHECK(rows.back().value == 1.0);
+  CHECK(rows.back().count == 3);
 }
 
 }  // namespace mpm

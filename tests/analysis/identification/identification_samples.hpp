@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -36,6 +38,11 @@ inline Eigen::MatrixXd white_inputs(Eigen::Index rows, Eigen::Index samples, std
   return signals;
 }
 
+/// A y = sum_j q^-delay B_j u_j + e, the same nb and delay for `nu` inputs.
+inline ModelOrder arx_order(Eigen::Index nu, Eigen::Index na, Eigen::Index nb, Eigen::Index delay = 1) {
+  return {na, std::vector<PathOrder>(static_cast<std::size_t>(nu), {nb, 0, delay}), 0, 0};
+}
+
 /// A y = B u + e of second order.
 inline PolynomialModel arx_sample() {
   PolynomialModel model;
@@ -64,10 +71,16 @@ inline PolynomialModel box_jenkins_sample() {
   return model;
 }
 
+/// The output of a model with the innovations e (N), from rest.
+inline Eigen::VectorXd simulate_noisy(const PolynomialModel& model, const Eigen::MatrixXd& u,
+                                      const Eigen::VectorXd& e) {
+  return simulate(model, u) + filter(Eigen::VectorXd::Ones(1), model.A, filter(model.C, model.D, e));
+}
+
 /// The output of a model with Gaussian innovations of its variance, from rest.
 inline Eigen::VectorXd noisy_output(const PolynomialModel& model, const Eigen::MatrixXd& u,
                                     std::uint64_t number) {
-  return simulate(model, u, std::sqrt(model.noise_variance) * white_noise(u.cols(), number));
+  return simulate_noisy(model, u, std::sqrt(model.noise_variance) * white_noise(u.cols(), number));
 }
 
 /// Largest difference between the coefficients of two models of the same orders.

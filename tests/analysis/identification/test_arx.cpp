@@ -8,11 +8,11 @@
 #include "plants/error.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
-using mpm::arx_order;
 using mpm::Identification;
 using mpm::IdentificationStatus;
 using mpm::identify_arx;
 using mpm::PolynomialModel;
+using mpm::testing::arx_order;
 using mpm::testing::noisy_output;
 using mpm::testing::parameter_distance;
 using mpm::testing::random_steps;

@@ -10,8 +10,10 @@
 
 #include "analysis/identification/prediction_error.hpp"
 #include "analysis/identification/prediction_error_fit.hpp"
-#include "analysis/identification/residual_tests.hpp"
+#include "analysis/methods/partial_correlation.hpp"
+#include "analysis/statistics/autocorrelation.hpp"
 #include "analysis/statistics/interval.hpp"
+#include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::Identification;
@@ -27,12 +29,32 @@ constexpr int kReplications = 200;
 /// M = J'J/sigma^2 at the true coefficients and L L' = M, z = L'(estimate - truth) has unit covariance when
 /// the bound is met, and mean 0 when there is no bias.
 struct Standardised {
-  Eigen::VectorXd sum;           ///< of z
-  double squares = 0.0;          ///< of |z|^2
-  double reported = 0.0;         ///< of trace(L' P L)/p, P the covariance that the estimate reports
-  std::int64_t white = 0;        ///< replications whose residuals pass the Ljung-Box test at 0.05
-  std::int64_t independent = 0;  ///< and whose residuals pass the test against the input
+  Eigen::VectorXd sum;     ///< of z
+  double squares = 0.0;    ///< of |z|^2
+  double reported = 0.0;   ///< of trace(L' P L)/p, P the covariance that the estimate reports
+  std::int64_t white = 0;  ///< replications whose residuals pass the Ljung-Box test at 0.05
+  std::int64_t independent =
+      0;  ///< and whose correlation with the input two samples before keeps to its band
 };
+
+double chi_squared_quantile(Eigen::Index degrees_of_freedom, double probability) {
+  return boost::math::quantile(boost::math::chi_squared(static_cast<double>(degrees_of_freedom)),
+                               probability);
+}
+
+/// Whether residuals pass the test of Ljung and Box (1978) at 0.05,
+///
+///   Q = N (N + 2) sum_{l=1}^{L} r_l^2 / (N - l),    Q ~ chi^2(L - p)
+///
+/// each of the p fitted coefficients of the noise model taking about one degree of freedom.
+bool is_white(const Eigen::VectorXd& e, Eigen::Index lags, Eigen::Index fitted) {
+  const auto N = static_cast<double>(e.size());
+  const Eigen::VectorXd r = mpm::autocorrelation(e, lags, 0.95, 0.0).values;
+  double sum = 0.0;
+  for (Eigen::Index l = 1; l <= lags; ++l)
+    sum += r(l) * r(l) / (N - static_cast<double>(l));
+  return N * (N + 2.0) * sum < chi_squared_quantile(lags - fitted, 0.95);
+}
 
 Standardised replicate(const PolynomialModel& truth, Eigen::Index samples, std::uint64_t first) {
   const mpm::ModelOrder order = truth.order();
@@ -53,16 +75,12 @@ Standardised replicate(const PolynomialModel& truth, Eigen::Index samples, std::
     result.squares += z.squaredNorm();
     result.reported += (L.transpose() * fit.covariance * L).trace() / static_cast<double>(p);
     const Eigen::VectorXd e = prediction_errors(fit.model, y, u).tail(fit.samples);
-    result.white += mpm::ljung_box_test(e, 25, order.na + order.nc + order.nd).p_value > 0.05 ? 1 : 0;
+    result.white += is_white(e, 25, order.na + order.nc + order.nd) ? 1 : 0;
     const Eigen::VectorXd input = u.row(0).tail(fit.samples).transpose();
-    result.independent += mpm::input_correlation(e, input, 20).test.p_value > 0.05 ? 1 : 0;
+    const mpm::PartialCorrelation correlation = mpm::partial_correlation(input, e, 2, 2, 0.95);
+    result.independent += correlation.is_strong() ? 0 : 1;
   }
   return result;
-}
-
-double chi_squared_quantile(Eigen::Index degrees_of_freedom, double probability) {
-  return boost::math::quantile(boost::math::chi_squared(static_cast<double>(degrees_of_freedom)),
-                               probability);
 }
 
 }  // namespace
@@ -90,6 +108,8 @@ TEST_CASE("estimates of each family are unbiased, meet the Cramer-Rao bound and 
   CHECK(result.reported / kReplications == Approx(1.0).epsilon(0.03));
   // The residuals pass 95 % of the tests of whiteness. The residuals of a model with its own input have a few
   // degrees of freedom less than the test counts, so that they pass more often.
-  CHECK(mpm::clopper_pearson_interval(result.white, kReplications, 1.0 - kFalseAlarm).contains(0.95));
-  CHECK(mpm::clopper_pearson_interval(result.independent, kReplications, 1.0 - kFalseAlarm).upper > 0.95);
+  CHECK(
+      mpm::testing::clopper_pearson_interval(result.white, kReplications, 1.0 - kFalseAlarm).contains(0.95));
+  CHECK(mpm::testing::clopper_pearson_interval(result.independent, kReplications, 1.0 - kFalseAlarm).upper >
+        0.95);
 }

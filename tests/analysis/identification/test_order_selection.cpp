@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/order_selection.hpp"
-#include "analysis/identification/percent_fit.hpp"
 #include "plants/error.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 

@@ -67,7 +67,7 @@ TEST_CASE("a fit ends at a minimum of the loss, in both families") {
   CHECK(offset(fit, y, u) < 1e-4);
   // Nothing nearby is better.
   const Eigen::VectorXd theta = fit.model.parameters();
-  const Eigen::VectorXd error = fit.standard_errors();
+  const Eigen::VectorXd error = fit.covariance.diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < theta.size(); ++i)
     for (const double sign : {-1.0, 1.0}) {
       Eigen::VectorXd moved = theta;
@@ -108,7 +108,6 @@ TEST_CASE("a fit is the same, bit for bit, when it is made again") {
   const Identification second = identify_prediction_error(y, u, truth.order());
   CHECK(first.model.parameters() == second.model.parameters());
   CHECK(first.covariance == second.covariance);
-  CHECK(first.iterations == second.iterations);
 }
 
 TEST_CASE("coefficients change with the units of the signals as they must") {
@@ -119,7 +118,7 @@ TEST_CASE("coefficients change with the units of the signals as they must") {
   const Identification other = identify_prediction_error(1e-5 * y, 1e3 * u, truth.order());
   REQUIRE(other.status == IdentificationStatus::ok);
   // Both searches end within 1e-4 sqrt(400) standard errors of the minimum, in fact much nearer.
-  const Eigen::VectorXd error = fit.standard_errors();
+  const Eigen::VectorXd error = fit.covariance.diagonal().cwiseSqrt();
   CHECK((other.model.inputs[0].B * 1e8 - fit.model.inputs[0].B).cwiseAbs().maxCoeff() < 1e-4 * error(0));
   CHECK((other.model.inputs[0].F - fit.model.inputs[0].F).cwiseAbs().maxCoeff() < 1e-4 * error(2));
 }
@@ -205,8 +204,7 @@ TEST_CASE("with one start allowed the search from the best one is all there is")
   CHECK(first.loss >= all.loss);
   const auto starts = mpm::prediction_error_starts(y, u, order, options);
   REQUIRE(starts.size() > 1);
-  CHECK(first.model.parameters() ==
-        mpm::search_prediction_error(starts[0], y, u, options).model.parameters());
+  CHECK(first.model.parameters() == mpm::search_prediction_error(starts[0], y, u, options).parameters());
 }
 
 TEST_CASE("an identification refuses what cannot be meant") {
@@ -214,7 +212,8 @@ TEST_CASE("an identification refuses what cannot be meant") {
   const Eigen::VectorXd y = white_noise(20, 46);
   CHECK_THROWS_WITH(identify_prediction_error(y.head(5), u.leftCols(5), box_jenkins_order(1, 2, 2, 1, 1)),
                     Catch::Contains("found 5 samples; allowed: 7"));
-  CHECK_THROWS_WITH(identify_prediction_error(y, u, mpm::arx_order(1, 1, 1)), Catch::Contains("na 0"));
+  CHECK_THROWS_WITH(identify_prediction_error(y, u, mpm::testing::arx_order(1, 1, 1)),
+                    Catch::Contains("na 0"));
   CHECK_THROWS_WITH(identify_prediction_error(y, u, output_error_order(1, 0, 1)),
                     Catch::Contains("coefficients of B of input 0: found 0"));
   PredictionErrorOptions options;
@@ -229,5 +228,5 @@ TEST_CASE("an identification refuses what cannot be meant") {
   options.first_sample = 18;
   CHECK_THROWS_WITH(identify_prediction_error(y, u, output_error_order(1, 1, 1), options),
                     Catch::Contains("allowed: 21 or more"));
-  CHECK_NOTHROW(identify(y, u, mpm::arx_order(1, 1, 1)));
+  CHECK_NOTHROW(identify(y, u, mpm::testing::arx_order(1, 1, 1)));
 }

@@ -157,12 +157,12 @@ TEST_CASE("the indicators of chapters 2 and 5 are their equations") {
   check_shape(found.shape.dskn, y0, e0, 17, 3, true);
 }
 
-TEST_CASE("I_MPM of the one scan is that of mpm_indicator, bit for bit") {
+TEST_CASE("I_MPM of the one scan is that of a scan for it alone, bit for bit") {
   const VectorXd y0 = autoregression(300, 0.9, 4);
   const VectorXd e0 = 0.4 * y0 + autoregression(300, 0.8, 5);
   const WindowScan scan{20, 60, 2};
   const auto found = indicators(y0 - e0, y0, y0, scan, 30);
-  const auto alone = mpm::mpm_indicator(y0, y0 - (y0 - e0), scan);
+  const auto alone = mpm::MpmScanner(300).scan(y0, y0 - (y0 - e0), scan);
   CHECK(found.mpm.i_mpm == alone.i_mpm);
   CHECK(found.mpm.co_kts == alone.co_kts);
   CHECK(found.means.kts.co == alone.co_kts);

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "analysis/findings/comparison.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/method_table.hpp"
@@ -71,9 +71,9 @@ TEST_CASE("a CV in a range has the steady state of the optimizer as setpoint: th
   const AssessedLoop loop = healthy_loop(study, point);
   const Limits& soft = study.controller.cv_soft;
   REQUIRE(point.active.size() == 3);  // y1, y2 and y7
-  for (const ActiveReference& active : point.active) {
+  for (const ActiveConstraint& active : point.active) {
     const double limit =
-        active.kind == ReferenceKind::upper_limit ? soft.upper(active.cv) : soft.lower(active.cv);
+        active.kind == ConstraintKind::upper_limit ? soft.upper(active.cv) : soft.lower(active.cv);
     INFO("CV " << active.cv);
     // The tolerance of the optimizer, with static gains up to 7.
     CHECK((loop.y_set.row(active.cv).array() - limit).abs().maxCoeff() < 1e-6);
@@ -197,36 +197,33 @@ TEST_CASE("a stored loop that did not reach its end gives no verdict, whatever t
           "[assessed_loop]") {
   const Study study = find_study("chapter6");
   const BasisCase basis = run_basis_case(study, kFactory);
-  ExperimentRecord record = ExperimentRunner(study, basis, kFactory).run(0, StorePolicy::all);
+  ExperimentRunner runner(study, basis, {"botelho", "sse"}, kFactory);
+  ExperimentRecord record = runner.run(0, StorePolicy::all);
   record.loop->trajectory.status = ControlStatus::infeasible;
-  MethodPanel panel(study, basis, {"botelho", "sse"}, kFactory);
-  std::vector<std::string> reasons;
-  for (const MethodVerdict& verdict : panel.assess(record, reasons).verdicts) {
-    CHECK(verdict.status == AssessmentStatus::failed);
-    CHECK_FALSE(verdict.flagged);
+  const std::vector<AssessmentRecord> assessments = runner.assess(record);
+  REQUIRE(assessments.size() == 2);
+  for (const AssessmentRecord& said : assessments) {
+    CHECK(said.status == AssessmentStatus::failed);
+    CHECK_FALSE(said.flagged);
+    CHECK_THAT(said.reason, Contains("does not run to its end"));
   }
-  REQUIRE(reasons.size() == 2);
-  CHECK_THAT(reasons[1], Contains("does not run to its end"));
 }
 
-TEST_CASE("a panel gives a stored loop and the same loop run again the same verdicts", "[assessed_loop]") {
+TEST_CASE("a panel has its methods in the order in which they are named, and no others", "[assessed_loop]") {
   const Study study = find_study("chapter6");
   const BasisCase basis = run_basis_case(study, kFactory);
-  ExperimentRunner runner(study, basis, kFactory);
-  ExperimentRecord record = runner.run(3, StorePolicy::all);
-  REQUIRE(record.loop);
-  MethodPanel panel(study, basis, {"botelho"}, kFactory);
-  std::vector<std::string> reasons;
-  const MethodVerdict stored = panel.assess(record, reasons).verdicts.at(0);
-  CHECK(reasons == std::vector<std::string>{""});
-  record.loop.reset();
-  const ComparedLoop again = panel.assess(record, reasons);
-  CHECK(again.experiment == 3);
-  CHECK(again.verdicts.at(0).flagged == stored.flagged);
-  CHECK(again.verdicts.at(0).score == stored.score);
-  // The verdict of the chain itself, which the experiment has.
-  CHECK(stored.flagged == record.diagnosis.impactful);
-  CHECK(stored.located_cv == record.diagnosis.predicted_cv);
+  MethodPanel panel(study, basis, {"sse", "botelho"}, kFactory);
+  REQUIRE(panel.forms().size() == 2);
+  const AssessedLoop loop = assessed_loop(study, basis.point, basis.trajectory);
+  const std::vector<AssessmentRecord> said = panel.assess(loop);
+  for (std::size_t method = 0; method < 2; ++method) {
+    CHECK(said[method].form == panel.forms()[method]);
+    CHECK(panel.assess_by(panel.forms()[method]->method().name, loop)->score == said[method].score);
+    CHECK(panel.unassessed()[method].form == panel.forms()[method]);
+    CHECK(panel.unassessed()[method].status == AssessmentStatus::not_assessed);
+  }
+  CHECK(said[0].form->method().name == "sse");
+  CHECK_FALSE(panel.assess_by("sun", loop));
   CHECK_THROWS_WITH(MethodPanel(study, basis, {"nobody"}, kFactory),
                     Contains("found 'nobody'; allowed: botelho"));
 }

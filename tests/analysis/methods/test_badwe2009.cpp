@@ -6,6 +6,7 @@
 #include "analysis/methods/badwe2009.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "plants/error.hpp"
+#include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::assess_badwe2009;
@@ -114,7 +115,7 @@ TEST_CASE("Badwe 2009: false alarms of a loop keep to the confidence that is sha
     alarms += any(named(assess_badwe2009(record))) ? 1 : 0;
     alarms_each_lag += any(named(assess_badwe2009(record, each_lag))) ? 1 : 0;
   }
-  CHECK(mpm::clopper_pearson_interval(alarms, kTrials, 0.999).lower < 0.05);
+  CHECK(mpm::testing::clopper_pearson_interval(alarms, kTrials, 0.999).lower < 0.05);
   CHECK(alarms_each_lag > kTrials / 2);  // 120 correlations at 5 % each
 }
 

@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "analysis/identification/percent_fit.hpp"
+#include "analysis/identification/identification.hpp"
 #include "analysis/methods/designed_output.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/error.hpp"

@@ -41,7 +41,7 @@ Identification by_arx(const Eigen::MatrixXd& y, const Eigen::MatrixXd& r, Eigen:
   Eigen::MatrixXd u(r.rows() + 1 + (others ? y.rows() - 1 : 0), y.cols());
   u.topRows(r.rows()) = r;
   u.row(r.rows()).setOnes();
-  ModelOrder orders = mpm::arx_order(u.rows(), order, order);
+  ModelOrder orders = mpm::testing::arx_order(u.rows(), order, order);
   orders.inputs[static_cast<std::size_t>(r.rows())].nb = 1;
   Eigen::Index next = r.rows() + 1;
   for (Eigen::Index i = 0; others && i < y.rows(); ++i)

@@ -38,8 +38,8 @@ TEST_CASE(
   model.inputs = {{Eigen::VectorXd::Ones(1), Eigen::VectorXd::Ones(1), 0}};
   model.C = G_d0.C;
   model.D = G_d0.D;
-  const Eigen::VectorXd y_hat = predict(model, y, y_sim.transpose());
-  CHECK((one_step_errors(G_d0, y, y_sim) - (y_hat - y)).cwiseAbs().maxCoeff() < 1e-12);
+  const Eigen::VectorXd e = prediction_errors(model, y, y_sim.transpose());
+  CHECK((one_step_errors(G_d0, y, y_sim) + e).cwiseAbs().maxCoeff() < 1e-12);  // e_p = y_hat - y
 }
 
 TEST_CASE("noise model: integrated noise predicts by the weighted past output errors") {

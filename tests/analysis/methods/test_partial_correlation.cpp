@@ -6,6 +6,7 @@
 #include "analysis/methods/partial_correlation.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "plants/error.hpp"
+#include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/signals.hpp"
 
 using mpm::partial_correlation;
@@ -88,11 +89,11 @@ TEST_CASE(
     outside_white += std::abs(correlation.peak) > correlation.white_band ? 1 : 0;
   }
   // The window of the band leaves out a little of P = (1 + 0.64)/(1 - 0.64), so the rate may be just above.
-  const mpm::Interval interval = mpm::clopper_pearson_interval(outside, kTrials, 0.999);
+  const mpm::Interval interval = mpm::testing::clopper_pearson_interval(outside, kTrials, 0.999);
   CHECK(interval.lower < 0.05);
   CHECK(interval.upper > 0.05);
   // A deviation of sqrt(4.56) = 2.13 bands: P(|Z| > 1.96/2.13) = 0.36.
-  CHECK(mpm::clopper_pearson_interval(outside_white, kTrials, 0.999).contains(0.36));
+  CHECK(mpm::testing::clopper_pearson_interval(outside_white, kTrials, 0.999).contains(0.36));
 }
 
 TEST_CASE("partial correlation: nothing left is no correlation, and bad arguments are refused") {

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_cases.hpp"
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/reproduction/scenario_quantities.hpp"
 #include "analysis/reproduction/table_reproduction.hpp"
@@ -72,16 +73,18 @@ TEST_CASE("the numbers of a table are those of the experiments of a run", "[repr
   table.rules = {rule_of(RuleKind::outside, 0.8, 1.2)};
   table.rows = {{"1", "", "Scen1", {{"y1", "ivar", 4.54}, {"y1", "ivar_diag", {}}, {"y1", "ivar_basis", {}}}},
                 {"basis", "", "", {{"y2", "ivar", 9.0}, {"y2", "ivar_diag", {}}, {"y2", "ivar_basis", {}}}}};
-  const ReproducedTable reproduced = reproduce(table, kFactory);
+  BasisCases basis_cases(kFactory);
+  const ReproducedTable reproduced = reproduce(table, kFactory, basis_cases);
   REQUIRE(reproduced.rows.size() == 2);
 
   const BasisCase basis = run_basis_case(study, kFactory);
-  ExperimentRunner runner(study, basis, kFactory);
-  const Diagnosis diagnosis = runner.run(1, StorePolicy::none).diagnosis;
+  const ExperimentRecord record =
+      ExperimentRunner(study, basis, {"botelho"}, kFactory).run(1, StorePolicy::none);
+  const Diagnosis diagnosis = record.chain();
   const std::vector<ReproducedCell>& cells = reproduced.rows[0].cells;
   CHECK(cells[0].ours == diagnosis.ivar(0));  // the same bits
   CHECK(cells[1].ours == diagnosis.ivar_diag(0));
-  CHECK(cells[2].ours == diagnosis.ivar_basis(0));
+  CHECK(cells[2].ours == record.ivar_basis(0));
   CHECK(cells[0].agrees() == true);
   CHECK_FALSE(cells[1].agrees());  // no rule
 
@@ -101,7 +104,8 @@ TEST_CASE("a loop that stops has a remark and no numbers", "[reproduction]") {
   table.heads = {"ivar"};
   table.rules = {rule_of(RuleKind::outside, 0.8, 1.2)};
   table.rows = {{"1", "", "Scen1", {{"y1", "ivar", 4.54}}}};
-  const ReproducedRow row = reproduce(table, kFactory).rows.at(0);
+  BasisCases basis_cases(kFactory);
+  const ReproducedRow row = reproduce(table, kFactory, basis_cases).rows.at(0);
   CHECK_FALSE(row.remark.empty());
   CHECK(std::isnan(row.cells[0].ours));
   CHECK(row.cells[0].agrees() == false);

@@ -57,7 +57,7 @@ double impulse(const NominalSensitivity& t0, Eigen::Index i, Eigen::Index j, Eig
   return step(i, l - 1) - (l > 1 ? step(i, l - 2) : 0.0);
 }
 
-const ActiveReference kSetpoint0{0, ReferenceKind::setpoint}, kSetpoint1{1, ReferenceKind::setpoint};
+const ActiveConstraint kSetpoint0{0, ConstraintKind::setpoint}, kSetpoint1{1, ConstraintKind::setpoint};
 
 }  // namespace
 
@@ -68,7 +68,7 @@ TEST_CASE("setpoints are always active, and an MV is fixed while it is at a limi
   for (std::size_t k = 0; k < structures.size(); ++k) {
     INFO(k);
     CHECK(structures[k].active ==
-          std::vector<ActiveReference>{kSetpoint0, kSetpoint1, {2, ReferenceKind::setpoint}});
+          std::vector<ActiveConstraint>{kSetpoint0, kSetpoint1, {2, ConstraintKind::setpoint}});
     const bool saturated = MadeUpLoop::saturated(static_cast<Eigen::Index>(k));
     CHECK(structures[k].fixed_mvs ==
           (saturated ? std::vector<Eigen::Index>{0} : std::vector<Eigen::Index>{}));
@@ -85,7 +85,7 @@ TEST_CASE("without targets a CV in a range is active at and beyond its limits, o
   made_up.loop.y.row(2).setZero();
   made_up.loop.y.row(2).head(5) << -1.5, -1.0, 0.0, 2.0, 2.5;
   const auto structures = control_structures(study, made_up.loop, made_up.loop.y);
-  const ActiveReference lower{2, ReferenceKind::lower_limit}, upper{2, ReferenceKind::upper_limit};
+  const ActiveConstraint lower{2, ConstraintKind::lower_limit}, upper{2, ConstraintKind::upper_limit};
   CHECK(structures[0].active == std::vector{kSetpoint0, kSetpoint1, lower});
   CHECK(structures[1].active == std::vector{kSetpoint0, kSetpoint1, lower});
   CHECK(structures[2].active == std::vector{kSetpoint0, kSetpoint1});
@@ -119,16 +119,16 @@ TEST_CASE("with targets the steady state that the optimizer aims at decides, not
   loop.y = y;
   const auto at_rest = control_structures(study, loop, y);
   CHECK(at_rest[0] == ControlStructure{});
-  CHECK(at_rest[1].active == std::vector<ActiveReference>{{0, ReferenceKind::lower_limit}});
-  CHECK(at_rest[2].active == std::vector<ActiveReference>{{1, ReferenceKind::upper_limit}});
+  CHECK(at_rest[1].active == std::vector<ActiveConstraint>{{0, ConstraintKind::lower_limit}});
+  CHECK(at_rest[2].active == std::vector<ActiveConstraint>{{1, ConstraintKind::upper_limit}});
 
   // The bias y - y_sim and the measured disturbance move that steady state.
   loop.y(1, 0) += 0.5;
   loop.d(0, 3) = 0.5 / gain(1, 2);
   loop.u_target(0, 2) = 0.5;
   const auto moved = control_structures(study, loop, y);
-  CHECK(moved[0].active == std::vector<ActiveReference>{{1, ReferenceKind::upper_limit}});
-  CHECK(moved[3].active == std::vector<ActiveReference>{{1, ReferenceKind::upper_limit}});
+  CHECK(moved[0].active == std::vector<ActiveConstraint>{{1, ConstraintKind::upper_limit}});
+  CHECK(moved[3].active == std::vector<ActiveConstraint>{{1, ConstraintKind::upper_limit}});
   CHECK(moved[2].fixed_mvs == std::vector<Eigen::Index>{0});
 }
 

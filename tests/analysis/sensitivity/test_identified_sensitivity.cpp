@@ -77,7 +77,7 @@ TEST_CASE("T0 of a simulation without noise is identified to rounding") {
   CHECK(T0.step_response[0](0, 79) == Approx(1.0).margin(1e-3));
   CHECK(T0.step_response[0](1, 79) == Approx(0.0).margin(1e-3));
   // The fourth CV does not move.
-  CHECK(T0.rows[3].at_rest);
+  CHECK(T0.rows[3].identification.status == IdentificationStatus::noise_free);
   CHECK(T0.step_response[1].row(3).isZero());
 }
 

@@ -45,7 +45,7 @@ TEST_CASE("a record of one reference is linear in its moves at a setpoint, and a
   const Study study = find_study("chapter4-shell");
   const QpSolverFactory factory = qp_solver_factory("active-set");
   const OperatingPoint point = operating_point(study, factory);
-  const ActiveReference reference = point.active.front();
+  const ActiveConstraint reference = point.active.front();
   Eigen::RowVectorXd moves = Eigen::RowVectorXd::Zero(60);
   moves.tail(50).setConstant(0.2);
   const Eigen::MatrixXd y = reference_record(study, point, reference, moves, factory);
@@ -57,21 +57,21 @@ TEST_CASE("a record of one reference is linear in its moves at a setpoint, and a
 TEST_CASE("a limit moves one way, out of its range or into it; a setpoint both ways") {
   const Study study = find_study("chapter6");
   const double size = study.sensitivity.step_size;
-  const auto steps = [&](ReferenceKind kind, bool into_range) -> Eigen::RowVectorXd {
+  const auto steps = [&](ConstraintKind kind, bool into_range) -> Eigen::RowVectorXd {
     const Eigen::RowVectorXd moves = identification_moves(study, {0, kind}, into_range);
     CHECK(moves(0) == 0.0);
     CHECK(moves.size() == std::max(600, 4 * study.sensitivity.samples));
     return moves.tail(moves.size() - 1) - moves.head(moves.size() - 1);
   };
-  const Eigen::RowVectorXd out = steps(ReferenceKind::upper_limit, false);
+  const Eigen::RowVectorXd out = steps(ConstraintKind::upper_limit, false);
   CHECK(out.minCoeff() == 0.0);
   CHECK(out.maxCoeff() > 0.0);
   CHECK(out.maxCoeff() <= 0.5 * size);
   CHECK((out.tail(out.size() / 3).array() > 0.0).any());  // the end of the record, for validation
-  CHECK(steps(ReferenceKind::upper_limit, true).isApprox(-out));
-  CHECK(steps(ReferenceKind::lower_limit, false).isApprox(-out));
-  CHECK(steps(ReferenceKind::lower_limit, true).isApprox(out));
-  const Eigen::RowVectorXd setpoint = identification_moves(study, {0, ReferenceKind::setpoint}, false);
+  CHECK(steps(ConstraintKind::upper_limit, true).isApprox(-out));
+  CHECK(steps(ConstraintKind::lower_limit, false).isApprox(-out));
+  CHECK(steps(ConstraintKind::lower_limit, true).isApprox(out));
+  const Eigen::RowVectorXd setpoint = identification_moves(study, {0, ConstraintKind::setpoint}, false);
   CHECK(setpoint.cwiseAbs().maxCoeff() <= size);
   CHECK(setpoint.minCoeff() < 0.0);
   CHECK(setpoint.maxCoeff() > 0.0);

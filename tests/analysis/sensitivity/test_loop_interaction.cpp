@@ -10,11 +10,11 @@
 #include "scenarios/study_library.hpp"
 
 using mpm::active_frequency_response;
+using mpm::ConstraintKind;
 using mpm::find_study;
 using mpm::loop_interaction;
 using mpm::LoopInteraction;
 using mpm::NominalSensitivity;
-using mpm::ReferenceKind;
 using mpm::relative_gains;
 using mpm::rpn_weight;
 using mpm::Study;
@@ -28,7 +28,7 @@ NominalSensitivity first_order_loops(Eigen::Index cvs, double a, Eigen::Index sa
   NominalSensitivity sensitivity;
   sensitivity.cv_count = cvs;
   for (Eigen::Index cv = 0; cv < cvs; ++cv) {
-    sensitivity.active.push_back({cv, ReferenceKind::setpoint});
+    sensitivity.active.push_back({cv, ConstraintKind::setpoint});
     Eigen::MatrixXd step = Eigen::MatrixXd::Zero(cvs, samples);
     for (Eigen::Index l = 0; l < samples; ++l)
       step(cv, l) = 1.0 - std::pow(a, static_cast<double>(l + 1));

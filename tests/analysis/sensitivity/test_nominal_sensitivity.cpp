@@ -8,6 +8,7 @@
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
 #include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/analysis/sensitivity/unsettled.hpp"
 
 namespace {
 
@@ -20,9 +21,9 @@ TEST_CASE("operating point of P1: y1, y2 at the lower limit, y7 at the upper one
   study.sensitivity.active_cvs.clear();  // found, not told
   const OperatingPoint point = operating_point(study, kFactory);
   REQUIRE(point.active.size() == 3);
-  CHECK(point.active[0] == ActiveReference{0, ReferenceKind::lower_limit});
-  CHECK(point.active[1] == ActiveReference{1, ReferenceKind::lower_limit});
-  CHECK(point.active[2] == ActiveReference{6, ReferenceKind::upper_limit});
+  CHECK(point.active[0] == ActiveConstraint{0, ConstraintKind::lower_limit});
+  CHECK(point.active[1] == ActiveConstraint{1, ConstraintKind::lower_limit});
+  CHECK(point.active[2] == ActiveConstraint{6, ConstraintKind::upper_limit});
   CHECK(point.fixed_mvs.empty());
 }
 
@@ -33,7 +34,7 @@ TEST_CASE("T0 of P1 has the static gains that section 6.3 demands, in both direc
     study.sensitivity.step_direction = direction;
     const OperatingPoint point = operating_point(study, kFactory);
     const NominalSensitivity t0 = nominal_sensitivity(study, point, kFactory);
-    CHECK(t0.unsettled() < 0.01);
+    CHECK(testing::unsettled(t0) < 0.01);
     const Eigen::MatrixXd gain = t0.static_gain();
     // The limits act through a finite soft weight, and the responses have settled to about 1e-3.
     for (const Eigen::Index j : {0, 1, 6}) {

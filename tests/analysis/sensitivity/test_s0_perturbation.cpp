@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
-#include "analysis/basis/s0_structure.hpp"
-#include "analysis/findings/s0_curves.hpp"
+#include "analysis/basis/s0_perturbation_structure.hpp"
+#include "analysis/findings/s0_perturbation_curves.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/sensitivity/s0_perturbation.hpp"
 #include "analysis/statistics/variance.hpp"
@@ -35,7 +35,7 @@ Eigen::RowVectorXd wandering(std::int64_t index) {
 NominalSensitivity second_order_sensitivity(double tau, double xi) {
   Eigen::MatrixXd response = Eigen::MatrixXd::Zero(7, 150);
   response.row(1) = second_order_response({tau, xi}, 4.0, 150);
-  return {7, {{1, ReferenceKind::lower_limit}}, {response}};
+  return {7, {{1, ConstraintKind::lower_limit}}, {response}};
 }
 
 Study study_with(const std::vector<double>& multipliers) {
@@ -110,7 +110,7 @@ TEST_CASE("S0 modified: nothing for other CVs, CVs that are not asked for, and w
 TEST_CASE("S0 modified: the runner looks at the affected CV of experiments on active CVs") {
   const Study study = find_study("chapter6");
   const BasisCase basis = run_basis_case(study, kFactory);
-  ExperimentRunner runner(study, basis, kFactory);
+  ExperimentRunner runner(study, basis, {"botelho"}, kFactory);
   int active = 0, inside = 0;
   for (std::int64_t index = 0; index < 20 && (active == 0 || inside == 0); ++index) {
     const Eigen::Index cv = draw_experiment(study, index).true_cv();
@@ -122,11 +122,12 @@ TEST_CASE("S0 modified: the runner looks at the affected CV of experiments on ac
       continue;
     ++seen;
     const auto multipliers = static_cast<Eigen::Index>(study.s0_perturbation.multipliers.size());
+    const double ivar_diag = record.by("botelho")->number("ivar_diag", cv);
     CHECK(record.perturbed.damping.size() == (&seen == &active ? multipliers : 0));
     for (Eigen::Index m = 0; m < record.perturbed.damping.size(); ++m)
       if (study.s0_perturbation.multipliers[static_cast<std::size_t>(m)] == 1.0) {
-        CHECK(record.perturbed.damping(m) == record.diagnosis.ivar_diag(cv));
-        CHECK(record.perturbed.time_constant(m) == record.diagnosis.ivar_diag(cv));
+        CHECK(record.perturbed.damping(m) == ivar_diag);
+        CHECK(record.perturbed.time_constant(m) == ivar_diag);
       }
   }
   CHECK(active == 1);
@@ -138,15 +139,13 @@ TEST_CASE("S0 curves: quartiles of the ratios, and changes within the tolerance 
   std::vector<ExperimentRecord> records;
   for (std::int64_t i = 0; i < 5; ++i) {
     records.push_back(testing::made_up_record(i, ExperimentKind::ud, 1, 0.0));
-    const double truth = records.back().diagnosis.ivar_diag(1);
+    const double truth = records.back().chain().ivar_diag(1);
     const double step = 0.1 * static_cast<double>(i);
     records.back().perturbed.time_constant = truth * Eigen::Vector4d(9.0, 1.0 - step, 1.0, 1.05);
     records.back().perturbed.damping = truth * Eigen::Vector4d(1.0, 1.0, 1.0, 1.0);
   }
   records.push_back(testing::made_up_record(5, ExperimentKind::ud, 3, 0.0));  // not looked at
-  records.push_back(records.front());
-  records.back().status = ExperimentStatus::infeasible;
-  records.back().diagnosis = {};
+  records.push_back(testing::without_verdict(records.front(), ExperimentStatus::infeasible));
   records.push_back(records.front());
   records.back().perturbed.time_constant.setConstant(std::numeric_limits<double>::infinity());
 
@@ -166,6 +165,9 @@ TEST_CASE("S0 curves: quartiles of the ratios, and changes within the tolerance 
   CHECK(curves[0].damping_change.within_band.hits == 6);
   CHECK(s0_changes(study, records).time_constant.largest == curves[0].time_constant_change.largest);
   CHECK(s0_curves(study_with({}), records).empty());
+  for (ExperimentRecord& record : records)
+    record.assessments.clear();
+  CHECK(s0_curves(study, records).empty());  // Ivar_diag is a number of the chain
   CHECK(std::isnan(s0_changes(study, {}).damping.largest));
 }
 

@@ -6,6 +6,7 @@
 
 #include "analysis/statistics/moving_moments.hpp"
 #include "plants/error.hpp"
+#include "scenarios/window_scan.hpp"
 #include "tests/analysis/signals.hpp"
 
 namespace {
@@ -66,6 +67,14 @@ double error(const VectorXd& signal, Index window) {
 }
 
 }  // namespace
+
+TEST_CASE("the kurtosis of three values is 3/2 whatever they are, of four it is free") {
+  const VectorXd signal = white_noise(60, 3);
+  const VectorXd three = moving(signal, mpm::kShortestWindow - 1).kurtosis;
+  CHECK((three.array() - 1.5).abs().maxCoeff() < 1e-9);  // kMovingMomentAccuracy
+  const VectorXd four = moving(signal, mpm::kShortestWindow).kurtosis;
+  CHECK(four.maxCoeff() - four.minCoeff() > 0.5);  // between 1 and 7/3
+}
 
 TEST_CASE("moving moments agree with the naive formulas within the stated accuracy") {
   for (const Index window : {3, 10, 38, 75, 150, 400}) {

@@ -3,6 +3,7 @@
 usage: check_archive.py WRITER FILE_FORMAT.md
 """
 
+import json
 import pathlib
 import re
 import subprocess
@@ -16,6 +17,7 @@ import xarray
 import seal
 
 TYPES = {"int8": "int8", "int32": "int32", "int64": "int64", "uint64": "uint64", "float64": "double", "object": "string"}
+COMMON_OF_METHODS = {"experiment", "reason", "cv", "mv", "cv_flagged", "cv_score", "cv_source", "channel_flagged"}
 BELONGS_TO_HDF5 = {"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}
 
 
@@ -23,7 +25,7 @@ def documented(text):
     """{group: {name: (type, dimensions)}}, {group: {attribute: type}} of the tables under each heading."""
     group, variables, attributes = None, {}, {}
     for line in text.splitlines():
-        heading = re.match(r"## `(/\w*)`", line)
+        heading = re.match(r"## `(/[\w/-]*)`", line)
         if heading:
             group = heading[1]
             variables[group], attributes[group] = {}, {}
@@ -75,20 +77,31 @@ def check_variable(data):
     assert data.id.get_create_plist().get_attr_creation_order() != 0, data.name
 
 
+def groups_of(file):
+    """{path: group} of all groups that have variables."""
+    groups = {"/": file}
+    file.visititems(lambda name, item: groups.update({"/" + name: item}) if isinstance(item, h5py.Group) else None)
+    del groups["/methods"]
+    return groups
+
+
+def variables_of(group):
+    return {key: variable_form(item) for key, item in group.items() if isinstance(item, h5py.Dataset)}
+
+
 def check_h5py(path, variables, attributes):
     with h5py.File(path) as file:
-        groups = {"/": file} | {"/" + name: item for name, item in file.items() if isinstance(item, h5py.Group)}
+        groups = groups_of(file)
         assert groups.keys() == variables.keys(), groups.keys() ^ variables.keys()
         for name, group in groups.items():
-            data = {key: item for key, item in group.items() if isinstance(item, h5py.Dataset)}
-            found = {key: variable_form(item) for key, item in data.items()}
+            found = variables_of(group)
             assert found == variables[name], (name, found.items() ^ variables[name].items())
             found = {key: attribute_form(value) for key, value in group.attrs.items()}
             assert found == attributes[name], (name, found.items() ^ attributes[name].items())
-            for item in data.values():
-                check_variable(item)
+            for key in variables[name]:
+                check_variable(group[key])
         assert file.attrs["filetype"] == "mpmbench archive"
-        assert list(file.attrs["format_version"]) == [1, 3]
+        assert list(file.attrs["format_version"]) == [2, 0]
         assert file.attrs["master_seed"] == 12345678901234567890
         assert file["message"].asstr()[4] == "ended by signal 9: \u00fc"
         assert file["message"].asstr()[0] == ""
@@ -102,58 +115,80 @@ def check_xarray(path, variables):
             assert set(dataset.variables) == set(names), (group, set(dataset.variables) ^ set(names))
             for name, (kind, dimensions) in names.items():
                 assert ", ".join(dataset[name].dims) == dimensions.replace("-", ""), (group, name)
-                assert TYPES[dataset[name].dtype.name] == kind, (group, name, dataset[name].dtype)
+                plain = dataset[name].dtype  # xarray shortens some texts to numpy's own strings
+                assert ("string" if plain.kind == "U" else TYPES[plain.name]) == kind, (group, name, plain)
             print(dataset)
     with xarray.open_dataset(path) as root:
-        assert dict(root.sizes) == {"experiment": 8, "cv": 7, "mv": 3, "md": 2}, root.sizes
+        assert dict(root.sizes) == {"experiment": 8, "cv": 7, "mv": 3, "md": 2, "method": 6}, root.sizes
         assert list(root.cv.values) == [f"y{i}" for i in range(1, 8)]
         assert list(root.status.values[2:5]) == [0, 1, 2]
-        assert numpy.isnan(root.ivar.sel(experiment=2, cv="y1")) and numpy.isinf(root.ivar_diag[2, 0])
-        assert numpy.isnan(root.ivar[3]).all()
+        methods = [str(name) for name in root.method.values]
+        assert methods[0] == "botelho" and root.flagged.dims == ("experiment", "method")
+        assert numpy.isnan(root.ivar_basis[3]).all()
+        unasked = root.assessment_status == 3
+        assert unasked[3].all() and (root.flagged.where(unasked, 0) == 0).all() and root.score.where(unasked).isnull().all()
+        answered, flagged = root.assessment_status == 0, root.flagged == 1
+    for method in methods:
+        with xarray.open_dataset(path, group=f"methods/{method}") as said:
+            assert said.attrs["title"] and said.attrs["mpmbench_version"]
+            numbers = [number["name"] for number in json.loads(said.attrs["description"])["numbers"]]
+            assert set(numbers) == variables[f"/methods/{method}"].keys() - COMMON_OF_METHODS, (method, numbers)
+            silent = ~answered.sel({"method": method})
+            assert (said.cv_flagged.where(silent, -1) == -1).all() and said.cv_score.where(silent).isnull().all(), method
+    with xarray.open_dataset(path, group="methods/botelho") as chain:
+        assert numpy.isnan(chain.ivar.sel(experiment=2, cv="y1")) and numpy.isinf(chain.ivar_diag[2, 0])
+        assert numpy.isnan(chain.ivar[3]).all()
     with xarray.open_dataset(path, group="nominal") as nominal:
         assert nominal.lag[0] == 1 and nominal.time[0] == 4 and nominal.time.dims == ("lag",)
         assert "time" in nominal.t0_step_response.coords
         assert list(nominal.active_cv.values) == ["y1", "y2", "y7"] and list(nominal.side.values) == [2, 0, 1]
-    with xarray.open_dataset(path, group="comparison") as comparison:
-        assert comparison.assessment_method[0] == "botelho" and list(comparison.experiment.values) == [0, 1, 2, 5, 6, 7]
-        answered = (comparison.status == 0).sum("experiment")  # what stands in /comparison fits together
-        assert (answered == comparison.hits.sel(rate="answered")).all()
-        rate = comparison.sel(rate="detected")
-        flagged = comparison.flagged.where(comparison.status == 0).sum("experiment")  # every loop has a fault
-        assert (flagged == rate.hits).all() and (answered == rate.total).all()
-        assert (rate.lower <= rate.value).all() and (rate.value <= rate.upper).all()
-        assert comparison.flagged_channel.dims == ("assessment_method", "experiment", "cv", "mv")
-        methods = comparison.sizes["assessment_method"]
-        assert comparison.sizes["pair"] == methods * (methods - 1)  # every pair once for each of two truths
-    with xarray.open_dataset(path, group="aggregate") as aggregate:
-        assert aggregate.reference.sel(name="infeasible") == 0.04
-        assert list(aggregate.kind.values) == ["mpm", "ud", "mpm_ud"]
+    with xarray.open_dataset(path, group="findings") as findings:
+        assert findings.reported.sel(finding="infeasible") == 0.04
+        assert list(findings.fault.values) == ["mpm", "ud", "mpm_ud"]
+        for method in methods:  # what stands in /findings fits together with the verdicts
+            of_rate = {rate: findings.sel(finding=f"compare.{method}.{rate}") for rate in ("answered", "detected")}
+            assert int(answered.sel({"method": method}).sum()) == of_rate["answered"].hits == of_rate["detected"]["count"]
+            assert int(flagged.sel({"method": method}).sum()) == of_rate["detected"].hits  # every loop has a fault
+        of_nothing = (findings.form == 0) & (findings["count"] == 0)
+        assert of_nothing.any() and findings.value.where(of_nothing).isnull().all()
+        assert (findings.lower.where(of_nothing, 0) == 0).all() and (findings.upper.where(of_nothing, 1) == 1).all()
+        shares = (findings.form == 0) & (findings["count"] > 0)
+        assert numpy.allclose((findings.hits / findings["count"]).where(shares, 0), findings.value.where(shares, 0))
+        assert ((findings.lower <= findings.value) & (findings.value <= findings.upper)).where(shares, True).all()
+        assert findings.sizes["pair"] == len(methods) * (len(methods) - 1)  # every pair once for each of two truths
 
 
 def check_ncdump(path, variables):
     header = subprocess.run(["ncdump", "-h", path], check=True, capture_output=True, text=True).stdout
     for group, names in variables.items():
-        assert group == "/" or f"group: {group[1:]} {{" in header, group
+        assert group == "/" or f"group: {group.split('/')[-1]} {{" in header, group
         for name, (_, dimensions) in names.items():
             assert f" {name}({dimensions})" in header or f" {name} ;" in header, (group, name)
     subprocess.run(["ncdump", path], check=True, capture_output=True)  # the data too
+
+
+def is_of_scenarios(name):
+    """A variable of the chain that only studies of named scenarios have."""
+    return name in ("lag", "lag_time") or name.startswith("cv_") and name not in ("cv_flagged", "cv_score", "cv_source")
 
 
 def check_scenarios(path, variables, attributes):
     """The group that only studies of named scenarios have, beside groups that are as in any archive."""
     group = "/scenarios"
     with h5py.File(path) as file:
-        assert "/s0_sensitivity" not in file and group in file
-        for name in group, "/nominal_direct":
-            found = {key: variable_form(item) for key, item in file[name].items()}
+        assert "/s0_perturbation" not in file and group in file
+        for name in group, "/nominal_direct", "/methods/botelho":
+            found = variables_of(file[name])
             assert found == variables[name], (name, found.items() ^ variables[name].items())
             assert {key: attribute_form(value) for key, value in file[name].attrs.items()} == attributes[name]
             for item in file[name].values():
                 check_variable(item)
+        more = {name for name in variables["/methods/botelho"] if is_of_scenarios(name)}
+        assert {name for name in file["basis"] if name.startswith("cv_")} == {name for name in more if name[:3] == "cv_"}
         assert list(file["kind"]) == [0, 1, 2, 3, 1] and list(file["true_cv"]) == [-1, -1, 1, -1, 1]
     with xarray.open_dataset(path, group=group) as scenarios:
         scenarios.load()
-        assert dict(scenarios.sizes) == {"experiment": 5, "cv": 2, "lag": 16}, scenarios.sizes
+        assert dict(scenarios.sizes) == {"experiment": 5, "cv": 2}, scenarios.sizes
         assert list(scenarios.name.values)[:2] == ["healthy", "channels"]
         assert scenarios.affected.values.tolist() == [[0, 0], [1, 1], [0, 2], [0, 0], [0, 1]]
         assert numpy.isnan(scenarios.tsse.values[3:]).all()
@@ -164,31 +199,31 @@ def check_scenarios(path, variables, attributes):
 
 def is_faultless(name):
     """A variable that only studies with healthy experiments or bad tunings have."""
-    return re.fullmatch(r"(tuning|faultless|false)(_\w+)?", name) is not None
+    return re.fullmatch(r"tuning_\w+", name) is not None
 
 
 def check_faultless(path, variables):
     with h5py.File(path) as file:
-        for group in "/", "/aggregate":
-            found = {key: variable_form(item) for key, item in file[group].items() if isinstance(item, h5py.Dataset)}
-            expected = {name: form for name, form in variables[group].items() if is_faultless(name)}
-            assert expected and expected.items() <= found.items(), (group, expected.items() - found.items())
-            assert found.items() <= variables[group].items(), (group, found.items() - variables[group].items())
-            for name in found:
-                check_variable(file[group][name])
-        assert file["kind"].attrs["flag_meanings"] == "none mpm ud mpm_ud tuning"
+        found = variables_of(file)
+        assert found == variables["/"], found.items() ^ variables["/"].items()
+        for name in found:
+            check_variable(file[name])
+        assert file["kind"].attrs["flag_meanings"] == "healthy mpm ud mpm_ud tuning"
         assert set(file["kind"]) == {0, 1, 2, 4} and set(file["tuning_parameter"]) == {-1, 0, 1, 2, 3}
         assert ((file["kind"][()] == 4) == (file["tuning_index"][()] >= 0)).all()
-    with xarray.open_dataset(path, group="aggregate") as aggregate:
-        names = [str(name) for name in aggregate.faultless.values]
-        assert names[:3] == ["healthy", "tuning", "tuning_move_suppression"] and len(names) == 6, names
-        assert aggregate.value.sel(name="false_alarm_tuning") == aggregate.false_alarm.sel(faultless="tuning")
+    with xarray.open_dataset(path, group="findings") as findings:
+        names = [str(name) for name in findings.finding.values]
+        assert {"false_alarm_healthy", "false_alarm_tuning", "false_alarm_tuning_move_suppression"} <= set(names), names
     subprocess.run(["ncdump", path], check=True, capture_output=True)
 
 
 def check_empty(path, variables):
     """A file whose dimensions have no length opens too."""
-    for group in variables.keys() - {"/scenarios", "/comparison", "/audit", "/nominal_fixed", "/nominal_direct", "/s0_sensitivity", "/trajectories"}:
+    missing = {"/scenarios", "/audit", "/nominal_fixed", "/nominal_direct", "/s0_perturbation", "/trajectories"}
+    with h5py.File(path) as file:
+        groups = groups_of(file).keys()
+    assert groups <= variables.keys() - missing and "/methods/botelho" in groups, groups
+    for group in groups:
         with xarray.open_dataset(path, group=None if group == "/" else group) as dataset:
             dataset.load()
     with xarray.open_dataset(path) as root:
@@ -203,7 +238,7 @@ def main(writer, file_format):
         subprocess.run([writer, path], check=True)
         assert seal.is_sealed(path)
         random = {
-            group: {name: form for name, form in names.items() if not is_faultless(name)}
+            group: {name: form for name, form in names.items() if not is_faultless(name) and not (group == "/methods/botelho" and is_of_scenarios(name))}
             for group, names in variables.items()
             if group not in ("/scenarios", "/nominal_direct")
         }

@@ -15,17 +15,34 @@ import numpy
 import seal
 
 # What follows from the rest of the file or is there for people: a reader does not need it.
-FOR_PEOPLE = {"/cv", "/mv", "/md", "/basis/cv", "/basis/mv", "/basis/md", "/basis/sample", "/basis/time",
-              "/basis/active_limit", "/basis/lag", "/basis/lag_time", "/basis/acf_y", "/basis/acf_y0",
-              "/basis/acf_y0_diag", "/nominal/cv", "/nominal/time", "/nominal_fixed/cv", "/nominal_fixed/time", "/trajectories/cv", "/trajectories/mv",
-              "/trajectories/md", "/trajectories/sample", "/trajectories/time"}
-READ_OF_S0_SENSITIVITY = {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"}
-READ_OF_COMPARISON = {"assessment_method", "reason", "experiment", "status", "flagged", "score", "located_cv", "source", "seconds",
-                      "flagged_channel"}
-READ_ATTRIBUTES_OF_COMPARISON = {"mpmbench_version", "git_sha", "command"}
-FOR_PEOPLE |= {"/scenarios/" + name for name in ("experiment", "cv", "name", "description", "affected", "tsse", "lag", "lag_time")}
-FOR_PEOPLE |= {"/nominal_direct/" + name for name in ("cv", "time", "largest_difference")}
-FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/basis/title"}
+FOR_PEOPLE = {"/cv", "/mv", "/md", "/impact", "/basis/cv", "/basis/mv", "/basis/md", "/basis/sample", "/basis/time",
+              "/basis/active_limit", "/nominal/cv", "/nominal/time", "/nominal_fixed/cv", "/nominal_fixed/time",
+              "/nominal_direct/cv", "/nominal_direct/time", "/nominal_direct/largest_difference", "/trajectories/cv",
+              "/trajectories/mv", "/trajectories/md", "/trajectories/sample", "/trajectories/time", "/audit",
+              "/trajectories"}
+# The same of groups: what of them is read, nothing when it is the group of figures alone.
+READ_OF = {"/s0_perturbation": {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"},
+           "/scenarios": set(), "/findings": set()}
+OF_EVERY_METHOD = {"cv", "mv", "lag", "lag_time"}
+FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/study_resolved", "/basis/title"}
+READ_ATTRIBUTES_OF_METHODS = {"description", "milliseconds", "mpmbench_version", "git_sha", "command"}
+
+
+def is_for_people(path):
+    """Whether a variable or a group may be missing."""
+    group, _, name = path.rpartition("/")
+    if group in READ_OF:
+        return name not in READ_OF[group]
+    if group.startswith("/methods/"):
+        return name in OF_EVERY_METHOD
+    return path in FOR_PEOPLE or path in ("/scenarios", "/findings") or group == "/basis" and name in (
+        "lag", "lag_time", "acf_y", "acf_y0", "acf_y0_diag")
+
+
+def is_attribute_for_people(group, name):
+    if group.startswith("/methods/"):
+        return name not in READ_ATTRIBUTES_OF_METHODS
+    return f"{group.rstrip('/')}/{name}" in FOR_PEOPLE_ATTRIBUTES or group not in ("/", "/basis")
 
 
 def objects(path):
@@ -77,29 +94,19 @@ class Damage:
         assert f"{self.copy}: the file is damaged" in self.read().stderr
         self.fresh_copy()
         with h5py.File(self.copy, "r+") as file:
-            file["ivar"][0, 0] = 7.0
+            file["ivar_basis"][0, 0] = 7.0
         assert f"{self.copy}: no checksum at its end" in self.read().stderr
 
     def missing_objects(self):
         variables, groups, attributes = objects(self.whole)
         for path in variables + groups:
             message = self.after(lambda file: file.pop(path))
-            if (path in FOR_PEOPLE or path.startswith("/aggregate") or path in ("/audit", "/comparison", "/trajectories")
-                    or (path.startswith("/s0_sensitivity/")
-                        and path.split("/")[-1] not in READ_OF_S0_SENSITIVITY)
-                    or (path.startswith("/comparison/") and path.split("/")[-1] not in READ_OF_COMPARISON)):
-                assert message is None, (path, message)
-            else:
-                assert message and f"'{path}': missing" in message, (path, message)
+            assert (message is None) if is_for_people(path) else f"'{path}': missing" in (message or ""), (path, message)
         for group, name in attributes:
-            path = group.rstrip("/") + "/" + name
             message = self.after(lambda file: file[group].attrs.pop(name))
-            if path in FOR_PEOPLE_ATTRIBUTES or (
-                    group == "/comparison" and name not in READ_ATTRIBUTES_OF_COMPARISON) or group in (
-                    "/nominal", "/nominal_fixed", "/nominal_direct", "/s0_sensitivity", "/audit", "/trajectories", "/aggregate", "/scenarios"):
-                assert message is None, (path, message)
-            else:
-                assert message and f"'{path}': missing" in message, (path, message)
+            path = f"{group.rstrip('/')}/{name}"
+            assert (message is None) if is_attribute_for_people(group, name) else (
+                f"'{path}': missing" in (message or "")), (path, message)
 
     def wrong_objects(self):
         def replace(path, data):
@@ -108,16 +115,18 @@ class Damage:
                 file[path] = data
             return self.after(change)
 
-        assert "'/ivar': another type" in replace("/ivar", numpy.zeros((8, 7), dtype="f4"))
-        assert "'/ivar': shape (8, 6) where (8, 7)" in replace("/ivar", numpy.zeros((8, 6)))
+        assert "'/ivar_basis': another type" in replace("/ivar_basis", numpy.zeros((8, 7), dtype="f4"))
+        assert "'/ivar_basis': shape (8, 6) where (8, 7)" in replace("/ivar_basis", numpy.zeros((8, 6)))
         assert "'/kind': another type" in replace("/kind", numpy.zeros(8))
         assert "'status': found 9" in self.after(lambda file: file["status"].__setitem__(0, 9))
         assert "'true_cv': found 7" in self.after(lambda file: file["true_cv"].__setitem__(0, 7))
-        impact = int(numpy.flatnonzero(self.values("impactful"))[0])
-        for name in "kind", "true_cv", "predicted_cv":
-            nothing = 0 if name == "kind" else -1
-            message = self.after(lambda file: file[name].__setitem__(impact, nothing))
-            assert f"'{name}': found none in experiment {impact}; allowed: " in message, message
+        place = [path for path in self.values("method")].index(b"botelho")
+        flagged = int(numpy.flatnonzero(self.values("flagged")[:, place])[0])
+        message = self.after(lambda file: file["predicted_cv"].__setitem__((flagged, place), -1))
+        assert f"'predicted_cv': found none in experiment {flagged}; allowed: " in message, message
+        for name, nothing in (("kind", 0), ("true_cv", -1)):
+            message = self.after(lambda file: file[name].__setitem__(flagged, nothing))
+            assert f"'{name}': found none in experiment {flagged}; allowed: " in message, message
         mismatch = int(numpy.flatnonzero(self.values("true_mv") >= 0)[0])
         for name in "true_mv", "parameter":
             message = self.after(lambda file: file[name].__setitem__(mismatch, -1))
@@ -127,21 +136,25 @@ class Damage:
         assert "'y9', which is no CV" in self.after(lambda file: file["nominal/active_cv"].__setitem__(0, "y9"))
         assert "found 77" in self.after(lambda file: file["trajectories/stored"].__setitem__(0, 77))
 
-    def wrong_comparison(self):
-        """Verdicts that no method gives, and loops that are not in the campaign."""
+    def wrong_answers(self):
+        """Answers that no method gives, and methods that are not those of the root group."""
         def after(name, place, value):
-            return self.after(lambda file: file["comparison/" + name].__setitem__(place, value))
+            return self.after(lambda file: file[name].__setitem__(place, value))
 
-        assert "'/comparison/assessment_method': found 'nobody'; allowed: botelho" in after("assessment_method", 0, "nobody")
-        assert "'/comparison/experiment': found 77; allowed" in after("experiment", 0, 77)
-        assert "'/comparison/experiment': found 0; allowed" in after("experiment", 1, 0)
-        assert "'status': found 5; allowed: 0 to 2" in after("status", (0, 0), 5)
+        assert "'assessment_status': found 5; allowed: 0 to 3" in after("assessment_status", (0, 0), 5)
         assert "'flagged': found 2; allowed: 0 to 1" in after("flagged", (0, 0), 2)
-        assert "'located_cv': found 7; allowed: -1 to 6" in after("located_cv", (0, 0), 7)
-        assert "'source': found -1; allowed" in after("source", (0, 0), -1)
-        assert "'flagged_channel': found 3; allowed: 0 to 1" in after("flagged_channel", (0, 0, 0, 0), 3)
-        assert after("seconds", (0, 0), numpy.nan) is None  # no order for a median has such a number
-        assert after("value", (0, 0), 9.0) is None  # follows from the verdicts
+        assert "'predicted_cv': found 7; allowed: -1 to 6" in after("predicted_cv", (0, 0), 7)
+        assert "'predicted_source': found -1; allowed" in after("predicted_source", (0, 0), -1)
+        left_out = int(numpy.flatnonzero(self.values("status"))[0])
+        assert f"'assessment_status': found none in experiment {left_out}; allowed: a verdict on a loop that" in after(
+            "assessment_status", (left_out, 0), 0)
+        assert "'/methods/nobody': missing" in after("method", 0, "nobody")
+        assert "found a description of 'sse'; allowed: one of 'botelho'" in self.after(
+            lambda file: file["methods/botelho"].attrs.__setitem__("description", file["methods/sse"].attrs["description"]))
+        assert "'channel_flagged': found 3; allowed: -1 to 1" in after("methods/badwe2009/channel_flagged", (0, 0, 0), 3)
+        assert "'cv_source': found 9; allowed: -1 to 3" in after("methods/botelho/cv_source", (0, 0), 9)
+        assert "/methods/sse/experiment" in after("methods/sse/experiment", 0, 77)
+        assert after("findings/value", 0, 9.0) is None  # follows from the verdicts
 
     def wrong_scenarios(self):
         """What a scenario does is in the study: a table that says something else is refused."""
@@ -149,13 +162,17 @@ class Damage:
             lambda file: file["kind"].__setitem__(1, 2))
         assert "'true_cv': found another value in experiment 4; allowed: 1" in self.after(
             lambda file: file["true_cv"].__setitem__(4, 0))
-        assert "'experiment': found 9; allowed: 0 to 4" in self.after(
-            lambda file: file["experiment"].__setitem__(4, 9))
-        assert "'loop_speed': found 4; allowed: 0 to 3" in self.after(
-            lambda file: file["scenarios/loop_speed"].__setitem__((0, 0), 4))
+        def other_scenario(file):
+            for group in (file, *file["methods"].values()):
+                group["experiment"][4] = 9
+
+        assert "'experiment': found 9; allowed: 0 to 4" in self.after(other_scenario)
+        assert "'cv_loop_speed': found 4; allowed: -1 to 3" in self.after(
+            lambda file: file["methods/botelho/cv_loop_speed"].__setitem__((0, 0), 4))
         assert "'/nominal_direct': found other references" in self.after(
             lambda file: file["nominal_direct/active_cv"].__setitem__(0, "level"))
-        assert "'flagged': found 7" in self.after(lambda file: file["scenarios/flagged"].__setitem__((0, 0), 7))
+        assert "'cv_flagged': found 7" in self.after(
+            lambda file: file["methods/botelho/cv_flagged"].__setitem__((0, 0), 7))
 
     def random_values(self, count):
         """Numbers that no campaign has: they are refused, or the summary can cope with them."""
@@ -188,7 +205,7 @@ def main(writer, reader):
         damage.broken_seal()
         damage.missing_objects()
         damage.wrong_objects()
-        damage.wrong_comparison()
+        damage.wrong_answers()
         damage.random_values(100)
         subprocess.run([writer, whole, "scenarios"], check=True)
         assert damage.after(lambda file: None) is None

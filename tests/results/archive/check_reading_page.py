@@ -23,7 +23,7 @@ def main(writer, page):
         names = {}
         for block in blocks:
             exec(compile(block, page, "exec"), names)
-        assert list(names["frame"].columns) == ["kind", "status", "true_cv", "predicted_cv", "i_mpm"]
+        assert list(names["frame"].columns) == ["kind", "status", "true_cv", "predicted_cv", "score"]
         assert len(names["frame"]) == 8 and names["cvs"] == [f"y{i}" for i in range(1, 8)]
         assert names["ok"].sum() == 6  # one is infeasible, one failed
         assert "[study]" in names["study"]
@@ -35,12 +35,12 @@ def main(writer, page):
         archived = names["table"].ivar_basis.isel(experiment=0).values[1:]
         assert numpy.allclose(names["ivar_basis"].values[1:], archived, rtol=1e-12)
         assert numpy.allclose(names["ivar_of_basis"].values[1:], names["basis"].ivar.values[1:], rtol=1e-12)
-        assert names["rates"].index[0] == "botelho" and names["rates"].columns[1] == "detected"
-        assert list(names["faults"].index) == list(names["experiments"].values) and len(names["faults"]) > 0
+        methods = [str(method) for method in names["table"].method.values]
+        assert list(names["rates"].index) == methods and "detected" in names["rates"].columns
         # Every loop has a fault, and the sample's verdicts are made up: the share of those with a verdict.
-        answered = int((names["comparison"].status.sel(assessment_method="botelho") == 0).sum())
-        assert names["rates"].loc["botelho", "detected"] == len(names["faults"]) / answered
-        for name in ("table", "nominal", "loops", "basis", "comparison"):
+        answered = int((names["table"].assessment_status.sel({"method": "sse"}) == 0).sum())
+        assert len(names["faults"]) > 0 and names["rates"].loc["sse", "detected"] == len(names["faults"]) / answered
+        for name in ("table", "nominal", "loops", "basis", "chain", "findings"):
             names[name].close()
         os.chdir("/")
 

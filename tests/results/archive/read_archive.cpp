@@ -12,10 +12,10 @@ int main(int argc, char** argv) {
     return 1;
   try {
     const mpm::Campaign campaign = mpm::read_archive(argv[1]);
-    std::printf("%s", mpm::summary_text(campaign, argv[1]).c_str());
-    std::printf("%s", mpm::summary_json(campaign).c_str());
-    if (campaign.comparison)
-      std::printf("%s%s", mpm::comparison_text(campaign).c_str(), mpm::comparison_json(campaign).c_str());
+    const mpm::StudyFindings findings = mpm::findings_of(campaign);
+    std::printf("%s", mpm::summary_text(campaign, findings, argv[1]).c_str());
+    std::printf("%s", mpm::summary_json(campaign, findings).c_str());
+    std::printf("%s", mpm::comparison_json(campaign, findings).c_str());
     return 0;
   } catch (const mpm::ArchiveError& error) {
     std::fprintf(stderr, "%s\n", error.what());

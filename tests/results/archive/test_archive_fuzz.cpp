@@ -39,7 +39,8 @@ class Reader {
   }
 
   std::string archive() const {
-    write_archive(file_, made_up_campaign());
+    const Campaign campaign = made_up_campaign();
+    write_archive(file_, campaign, findings_of(campaign));
     return file_content(file_);
   }
 

@@ -5,10 +5,13 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "analysis/findings/study_aggregate.hpp"
-#include "bench/record_bytes.hpp"
+#include "analysis/methods/chain_numbers.hpp"
 #include "results/archive/archive.hpp"
+#include "results/archive/hdf5_file.hpp"
+#include "results/archive/method_json.hpp"
+#include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
+#include "scenarios/study_file.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {
@@ -27,17 +30,18 @@ bool same_bits(const Matrix& a, const Matrix& b) {
           std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0);
 }
 
-/// The basis case in the shape of a record, which to_bytes() takes apart bit by bit.
-std::string basis_bytes(const BasisCase& basis) {
+/// The basis case in the shape of a record, which RecordBytes takes apart bit by bit.
+std::string basis_bytes(const Study& study, const BasisCase& basis) {
+  const AssessmentForms forms = assessment_forms(study, {std::string(kChainMethod)});
+  Assessment chain;
+  chain.numbers = chain_numbers(basis.diagnosis);
   ExperimentRecord record;
-  record.diagnosis = basis.diagnosis;
-  for (const AcfComparison& acf : basis.acf)
-    record.diagnosis.cvs.push_back({false, ExperimentKind::none, {}, acf, 0.0});
+  record.assessments = {kept(forms.front(), chain)};
   record.loop = {basis.trajectory, basis.nominal.y_sim};
-  return to_bytes(record);
+  return RecordBytes(study, forms).to_bytes(record);
 }
 
-void check_same_limits(const std::vector<ActiveReference>& a, const std::vector<ActiveReference>& b) {
+void check_same_limits(const std::vector<ActiveConstraint>& a, const std::vector<ActiveConstraint>& b) {
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     CHECK(a[i].cv == b[i].cv);
@@ -45,7 +49,7 @@ void check_same_limits(const std::vector<ActiveReference>& a, const std::vector<
   }
 }
 
-void check_same(const BasisCase& a, const BasisCase& b) {
+void check_same(const Study& study, const BasisCase& a, const BasisCase& b) {
   CHECK(same_bits(a.point.u, b.point.u));
   CHECK(same_bits(a.point.y, b.point.y));
   CHECK(a.point.fixed_mvs == b.point.fixed_mvs);
@@ -67,7 +71,7 @@ void check_same(const BasisCase& a, const BasisCase& b) {
     for (std::size_t i = 0; i < a.sensitivity_fixed->step_response.size(); ++i)
       CHECK(same_bits(a.sensitivity_fixed->step_response[i], b.sensitivity_fixed->step_response[i]));
   }
-  CHECK(basis_bytes(a) == basis_bytes(b));
+  CHECK(basis_bytes(study, a) == basis_bytes(study, b));
   CHECK(same_bits(a.nominal.y0, b.nominal.y0));
   CHECK(same_bits(a.nominal.y0_diag, b.nominal.y0_diag));
   CHECK(a.healthy == b.healthy);
@@ -99,57 +103,39 @@ void check_same(const std::vector<AuditedStep>& a, const std::vector<AuditedStep
     CHECK(a[i].step == b[i].step);
     check_same(a[i].targets, b[i].targets);
     check_same(a[i].moves, b[i].moves);
-    CHECK(same_bits(a[i].reference_kkt_residual, b[i].reference_kkt_residual));
+    CHECK(same_bits(a[i].ipopt_kkt_residual, b[i].ipopt_kkt_residual));
   }
 }
 
-void check_same(const Comparison& a, const Comparison& b) {
-  CHECK(a.methods == b.methods);
-  CHECK(a.reasons == b.reasons);
-  REQUIRE(a.loops.size() == b.loops.size());
-  for (std::size_t i = 0; i < a.loops.size(); ++i) {
-    CHECK(a.loops[i].experiment == b.loops[i].experiment);
-    REQUIRE(a.loops[i].verdicts.size() == b.loops[i].verdicts.size());
-    for (std::size_t m = 0; m < a.loops[i].verdicts.size(); ++m) {
-      INFO("loop " << i << ", method " << m);
-      const MethodVerdict &of_a = a.loops[i].verdicts[m], &of_b = b.loops[i].verdicts[m];
-      CHECK(of_a.status == of_b.status);
-      CHECK(of_a.flagged == of_b.flagged);
-      CHECK(same_bits(of_a.score, of_b.score));
-      CHECK(of_a.located_cv == of_b.located_cv);
-      CHECK(of_a.source == of_b.source);
-      CHECK(of_a.flagged_channels == of_b.flagged_channels);
-      CHECK(same_bits(of_a.seconds, of_b.seconds));
-    }
+void check_same(const std::vector<CampaignMethod>& a, const std::vector<CampaignMethod>& b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(method_description_json(a[i].form->method()) == method_description_json(b[i].form->method()));
+    CHECK(a[i].mpmbench_version == b[i].mpmbench_version);
+    CHECK(a[i].git_sha == b[i].git_sha);
+    CHECK(a[i].command == b[i].command);
   }
-}
-
-void check_same(const ComparisonInfo& a, const ComparisonInfo& b) {
-  CHECK(a.mpmbench_version == b.mpmbench_version);
-  CHECK(a.git_sha == b.git_sha);
-  CHECK(a.command == b.command);
 }
 
 void check_same(const Campaign& a, const Campaign& b) {
   CHECK(a.study.source == b.study.source);
   CHECK(a.study.seed == b.study.seed);
+  CHECK(a.study.methods == b.study.methods);
   check_same(a.info, b.info);
-  check_same(a.basis, b.basis);
+  check_same(b.study, a.basis, b.basis);
   check_same(a.audit, b.audit);
-  check_same(a.comparison_info, b.comparison_info);
-  REQUIRE(a.comparison.has_value() == b.comparison.has_value());
-  if (a.comparison)
-    check_same(*a.comparison, *b.comparison);
+  check_same(a.methods, b.methods);
   REQUIRE(a.records.size() == b.records.size());
+  const RecordBytes bytes(b.study, forms_of(b));
   for (std::size_t i = 0; i < a.records.size(); ++i) {
     INFO("experiment " << i);
-    CHECK(to_bytes(a.records[i]) == to_bytes(b.records[i]));
+    CHECK(bytes.differences(a.records[i], b.records[i]) == std::vector<std::string>{});
   }
 }
 
 Campaign there_and_back(const Campaign& campaign) {
   const TemporaryFolder folder;
-  write_archive(folder / "a.h5", campaign);
+  write_archive(folder / "a.h5", campaign, findings_of(campaign));
   return read_archive(folder / "a.h5");
 }
 
@@ -177,7 +163,7 @@ TEST_CASE("archive: healthy experiments and every change of the tuning come back
 /// What the reader says of an archive of this campaign.
 std::string refusal(const Campaign& campaign) {
   const TemporaryFolder folder;
-  write_archive(folder / "a.h5", campaign);
+  write_archive(folder / "a.h5", campaign, findings_of(campaign));
   try {
     read_archive(folder / "a.h5");
     return "accepted";
@@ -196,7 +182,7 @@ TEST_CASE("archive: a healthy experiment or a changed weight that the study cann
   Campaign tuning = made_up_campaign();
   tuning.records[5].draw = healthy.records[5].draw;
   tuning.records[5].draw.kind = ExperimentKind::tuning;
-  CHECK_THAT(refusal(tuning), Contains("'kind': found 4; allowed: 0 to 3"));
+  CHECK_THAT(refusal(tuning), Contains("'kind': found none in experiment 5; allowed: a kind that the study"));
 
   Campaign campaign = faultless_campaign();
   const auto changed = std::find_if(campaign.records.begin(), campaign.records.end(),
@@ -239,11 +225,10 @@ TEST_CASE("archive: a basis case whose loop broke comes back without a diagnosis
   check_same(there_and_back(campaign), campaign);
 }
 
-TEST_CASE("archive: the aggregate of what is read equals the aggregate of what was written") {
+TEST_CASE("archive: what is read has the findings of what was written") {
   const Campaign campaign = made_up_campaign();
-  const Campaign read = there_and_back(campaign);
-  const std::vector<AggregateValue> expected = named_values(aggregate(campaign.study, campaign.records));
-  const std::vector<AggregateValue> found = named_values(aggregate(read.study, read.records));
+  const std::vector<Finding> expected = findings_of(campaign).rows;
+  const std::vector<Finding> found = findings_of(there_and_back(campaign)).rows;
   REQUIRE(found.size() == expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     INFO(expected[i].name);
@@ -255,40 +240,33 @@ TEST_CASE("archive: the aggregate of what is read equals the aggregate of what w
   }
 }
 
-TEST_CASE("archive: a comparison of some experiments, of one method and of none comes back") {
+TEST_CASE("archive: one of methods without the chain and of one method comes back") {
   Campaign campaign = made_up_campaign();
-  campaign.comparison->loops.erase(campaign.comparison->loops.begin() + 3,
-                                   campaign.comparison->loops.begin() + 9);
-  check_same(there_and_back(campaign), campaign);
-  campaign.comparison->methods.resize(1);
-  campaign.comparison->reasons.resize(1);
-  for (ComparedLoop& loop : campaign.comparison->loops)
-    loop.verdicts.resize(1);
-  check_same(there_and_back(campaign), campaign);
-  campaign.comparison->loops.clear();
-  check_same(there_and_back(campaign), campaign);
-  campaign.comparison = {};
-  campaign.comparison_info = {};
-  check_same(there_and_back(campaign), campaign);
+  const auto without = [&](const std::function<bool(const std::string&)>& unwanted) {
+    remove_methods(campaign, unwanted);
+    check_same(there_and_back(campaign), campaign);
+  };
+  without([](const std::string& name) { return name == kChainMethod; });
+  without([](const std::string& name) { return name != "sse"; });
+  REQUIRE(campaign.methods.size() == 1);
 }
 
-TEST_CASE("archive: a second comparison takes the place of the first, which leaves no trace") {
-  Campaign campaign = made_up_campaign();
-  Campaign twice = there_and_back(campaign);
-  campaign.comparison->loops.resize(5);
-  campaign.comparison_info.command = "mpmbench compare again";
-  twice.comparison = campaign.comparison;
-  twice.comparison_info = campaign.comparison_info;
+TEST_CASE("archive: the resolved study is a root attribute, and makes the same study") {
   const TemporaryFolder folder;
-  write_archive(folder / "once.h5", campaign);
-  write_archive(folder / "twice.h5", twice);
-  CHECK(file_content(folder / "once.h5") == file_content(folder / "twice.h5"));
+  Campaign campaign = made_up_campaign();
+  campaign.study.seed = 77;
+  remove_methods(campaign, [](const std::string& name) { return name == "sun"; });
+  write_archive(folder / "a.h5", campaign, findings_of(campaign));
+  const std::string text = Hdf5File::open(folder / "a.h5").root().attribute<std::string>("study_resolved");
+  CHECK(text != campaign.study.source);
+  Study study = parse_study(text, "resolved");
+  study.source = campaign.study.source;
+  CHECK((study == campaign.study));
 }
 
 TEST_CASE("archive: records with gaps in their indices keep their indices and loops") {
   Campaign campaign = made_up_campaign();
   campaign.records.erase(campaign.records.begin() + 2, campaign.records.begin() + 9);
-  campaign.comparison = made_up_comparison(campaign.study, campaign.records);
   check_same(there_and_back(campaign), campaign);
 }
 

@@ -38,6 +38,9 @@ TEST_CASE("utf8: a proper text comes back, any other one becomes proper") {
         "a\n\"\\\xC3\xBC\xE6\xB8\xAC\xF0\x9F\x98\x80");
   CHECK(proper_utf8("\xFFz") == replacement + "z");
   CHECK(proper_utf8("z\xC3") == "z" + replacement);
+  CHECK(proper_utf8("\xE6\xB8z") == replacement + "z");      // cut off
+  CHECK(proper_utf8("\xED\xA0\x80z") == replacement + "z");  // a surrogate
+  CHECK(proper_utf8("\xC0\xAFz") == replacement + "z");      // '/' in two bytes
   CHECK(proper_utf8(std::string_view("a\0b", 3)) == "a" + replacement + "b");
 }
 

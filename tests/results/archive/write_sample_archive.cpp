@@ -13,10 +13,11 @@ int main(int argc, char** argv) {
     return 1;
   try {
     const std::string which = argc == 2 ? "" : argv[2];
-    mpm::write_archive(argv[1], which == "empty"       ? mpm::testing::empty_campaign()
-                                : which == "scenarios" ? mpm::testing::scenario_campaign()
-                                : which == "faultless" ? mpm::testing::faultless_campaign()
-                                                       : campaign_sample());
+    const mpm::Campaign campaign = which == "empty"       ? mpm::testing::empty_campaign()
+                                   : which == "scenarios" ? mpm::testing::scenario_campaign()
+                                   : which == "faultless" ? mpm::testing::faultless_campaign()
+                                                          : campaign_sample();
+    mpm::write_archive(argv[1], campaign, mpm::findings_of(campaign));
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/methods/chain_numbers.hpp"
 #include "plants/error.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_report.hpp"
@@ -17,13 +18,17 @@ using Catch::Contains;
 Campaign good_campaign() {
   Campaign campaign = made_up_campaign();
   campaign.study.aggregate.bootstrap_replications = 100;
-  campaign.comparison.reset();
+  remove_methods(campaign, [](const std::string& name) { return name != kChainMethod; });
   for (ExperimentRecord& record : campaign.records) {
     if (record.status == ExperimentStatus::failed)
       record.status = ExperimentStatus::infeasible;
-    record.diagnosis.impactful = true;
-    record.diagnosis.predicted_cv = record.draw.true_cv();
-    record.diagnosis.predicted_source = record.draw.kind;
+    if (record.status != ExperimentStatus::ok)
+      continue;
+    Diagnosis chain = record.chain();
+    chain.impactful = true;
+    chain.predicted_cv = record.draw.true_cv();
+    chain.predicted_source = source_of(record.draw.kind);
+    set_chain(campaign.study, record, chain);
   }
   return campaign;
 }
@@ -32,11 +37,11 @@ Campaign good_campaign() {
 void mislocate(Campaign& campaign, ExperimentKind kind, int count) {
   for (ExperimentRecord& record : campaign.records)
     if (record.draw.kind == kind && record.status == ExperimentStatus::ok && count-- > 0)
-      record.diagnosis.predicted_cv = 1 - record.draw.true_cv();
+      record.assessments.front().predicted_cv = 1 - record.draw.true_cv();
 }
 
 GateFile gates(const Campaign& campaign, const std::string& text) {
-  return parse_gates(text, "g.toml", gate_names(campaign.study));
+  return parse_gates(text, "g.toml", gate_findings(campaign.study));
 }
 
 const GateResult& result_of(const GateCheck& check, const std::string& name) {
@@ -131,20 +136,15 @@ TEST_CASE("gate check: a baseline of another study, seed or other experiments is
 
 TEST_CASE("gate check: the rates of a comparison of methods are judged as the numbers of a study are") {
   Campaign campaign = made_up_campaign();
-  ComparedLoop loop = campaign.comparison->loops.front();
-  campaign.comparison->loops.clear();
-  for (const ExperimentRecord& record : campaign.records) {
-    loop.experiment = record.draw.index;
-    for (MethodVerdict& verdict : loop.verdicts) {
-      verdict.status = AssessmentStatus::ok;
-      verdict.flagged = record.draw.index % 10 != 0;
-      verdict.score = 1.0;
-    }
-    campaign.comparison->loops.push_back(loop);
+  for (ExperimentRecord& record : campaign.records) {
+    record.status = ExperimentStatus::ok;
+    record.ivar_basis = Eigen::Vector2d::Ones();
+    for (AssessmentRecord& said : record.assessments)
+      said = plain_verdict(said.form, record.draw.index % 10 != 0, 1.0);
   }
   const auto outcome = [&](const std::string& gate) {
     const GateFile file =
-        parse_gates("[[gate]]\naggregate = \"compare.botelho." + gate, "g.toml", gate_names(campaign));
+        parse_gates("[[gate]]\naggregate = \"compare.sse." + gate, "g.toml", gate_findings(campaign));
     const GateResult result = check_gates(campaign, file).results.back();
     CHECK(result.measured.count == (gate.starts_with("false") ? 0 : 40));
     return result.outcome;
@@ -156,14 +156,11 @@ TEST_CASE("gate check: the rates of a comparison of methods are judged as the nu
   CHECK(outcome("detected\"\nminimum = 0.76\nwith_confidence = true\n") == GateOutcome::pass);
   CHECK(outcome("false_alarm_healthy\"\nmaximum = 0.1\n") == GateOutcome::inconclusive);  // no healthy loop
   CHECK_THROWS_WITH(outcome("detected\"\nminimum = 90\n"), Contains("minimum: found 90"));
-  CHECK_THROWS_WITH(outcome("detekted\"\nminimum = 0.9\n"), Contains("nearest: 'compare.botelho.detected'"));
+  CHECK_THROWS_WITH(outcome("detekted\"\nminimum = 0.9\n"), Contains("nearest: 'compare.sse.detected'"));
 
-  campaign.comparison.reset();
-  CHECK_THROWS_WITH(
-      outcome("detected\"\nminimum = 0.9\n"),
-      Contains("g.toml:2: gate[0].aggregate: found 'compare.botelho.detected', and the archive has "
-               "no comparison of methods; allowed: this number for an archive that `mpmbench "
-               "compare ARCHIVE -o OUT.h5` has written"));
+  remove_methods(campaign, [](const std::string& name) { return name == "sse"; });
+  CHECK_THROWS_WITH(outcome("detected\"\nminimum = 0.9\n"),
+                    Contains("g.toml:2: gate[0].aggregate: found 'compare.sse.detected'"));
 }
 
 TEST_CASE("gate report: the table names the distance, the reason and the experiments that changed") {
@@ -187,7 +184,7 @@ TEST_CASE("gate report: JUnit has a failure for what stops the campaign and skip
     return gates_junit(check_gates(campaign, gates(campaign, text)), campaign, "<a&b>.h5");
   };
   CHECK_THAT(junit(kSure), Contains("failures=\"1\" errors=\"0\" skipped=\"0\"") &&
-                               Contains("type=\"inconclusive\"") && Contains("&lt;a&amp;b&gt;.h5"));
+                               Contains("type=\"inconclusive\"") && Contains("&lt;a&amp;b>.h5"));
   CHECK_THAT(junit("inconclusive = \"pass\"\n" + kSure),
              Contains("failures=\"0\" errors=\"0\" skipped=\"1\"") && Contains("<skipped message="));
 }

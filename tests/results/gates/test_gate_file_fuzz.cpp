@@ -15,14 +15,14 @@ using namespace mpm::testing;
 /// Reads gate files and holds one campaign against those that can be read.
 class Reader {
  public:
-  Reader() : campaign_(made_up_campaign()), names_(gate_names(campaign_.study)) {
+  Reader() : campaign_(made_up_campaign()), findings_(gate_findings(campaign_.study)) {
     campaign_.study.aggregate.bootstrap_replications = 100;
   }
 
   /// True when the text was accepted. Another exception than InputError goes on and fails the test.
   bool accepts(const std::string& text) {
     try {
-      const GateFile file = parse_gates(text, "g.toml", names_);
+      const GateFile file = parse_gates(text, "g.toml", findings_);
       judge(file);
       return true;
     } catch (const InputError& error) {
@@ -45,7 +45,7 @@ class Reader {
   }
 
   Campaign campaign_;
-  std::vector<std::string> names_;
+  std::vector<Finding> findings_;
   int accepted_ = 0;
 };
 

@@ -55,7 +55,7 @@ TEST_CASE("plot text: numbers and intervals in tables") {
 TEST_CASE("plot text: the text of a scenario names all its faults, and each CV in its verdict") {
   const Campaign campaign = testing::scenario_campaign();
   const Study& study = campaign.study;
-  CHECK(experiment_title(study, campaign.records[0].draw) == "healthy (none): nothing");
+  CHECK(experiment_title(study, campaign.records[0].draw) == "healthy (healthy): nothing");
   CHECK(fault_text(study, campaign.records[2].draw) ==
         "disturbance on level: gain 0.5, time constant 6 s, white 1; "
         "disturbance on level: white 2 held for 3 samples; "
@@ -67,14 +67,19 @@ TEST_CASE("plot text: the text of a scenario names all its faults, and each CV i
   CHECK(heading[0] == "signals (UD): disturbance on level: gain 0.5, time constant 6 s, white 1;");
   CHECK(std::all_of(heading.begin(), heading.end(), [](const auto& line) { return line.size() <= 100; }));
   ExperimentRecord record = campaign.records[2];
-  record.diagnosis.cvs[0] = {true, ExperimentKind::mpm, {}, {}, 0.0};
-  record.diagnosis.cvs[1] = {true, ExperimentKind::mpm, {}, {}, 0.0};
+  Diagnosis chain = record.chain();
+  for (CvDiagnosis& cv : chain.cvs)
+    cv = {true, FaultSource::mpm, {}, {}, 0.0};
+  testing::set_chain(study, record, chain);
   CHECK(verdict_text(study, record) == "flagged level (MPM), heat (MPM); false alarm level; source of heat");
 }
 
 TEST_CASE("plot text: the text of an experiment names its fault and its verdict") {
-  const Study study = testing::made_up_campaign().study;
+  const Campaign campaign = testing::made_up_campaign();
+  const Study& study = campaign.study;
   ExperimentRecord record;
+  for (const auto& form : forms_of(campaign))
+    record.assessments.push_back(testing::unasked(form));
   record.draw.index = 12;
   record.draw.kind = ExperimentKind::mpm_ud;
   record.draw.mismatches = {{0, 1, MismatchParameter::dead_time, -1.5}};
@@ -87,9 +92,13 @@ TEST_CASE("plot text: the text of an experiment names its fault and its verdict"
   record.draw.disturbances.clear();
   record.draw.mismatches.front().parameter = MismatchParameter::gain;
   record.status = ExperimentStatus::ok;
-  record.diagnosis.predicted_cv = 1;
-  record.diagnosis.predicted_source = ExperimentKind::ud;
-  record.diagnosis.indicator.i_mpm = 0.0625;
+  CHECK(verdict_text(study, record) == "not assessed by the chain");
+  Diagnosis chain;
+  chain.ivar = chain.ivar_diag = Eigen::Vector2d::Ones();
+  chain.predicted_cv = 1;
+  chain.predicted_source = FaultSource::ud;
+  chain.indicator.i_mpm = 0.0625;
+  testing::set_chain(study, record, chain);
   CHECK(verdict_text(study, record) == "no impact, located heat, I_MPM 0.062: UD");
   CHECK_THAT(experiment_title(study, record.draw), Contains("gain of level/cold x -1.5"));
   CHECK(fault_text(study, {}) == "nothing");

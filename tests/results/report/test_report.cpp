@@ -1,10 +1,14 @@
 #include <algorithm>
+#include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 #include "analysis/findings/method_rates.hpp"
+#include "analysis/methods/chain_numbers.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/report/report.hpp"
 #include "results/report/report_sections.hpp"
@@ -22,6 +26,45 @@ const Campaign& sample() {
   return campaign;
 }
 
+/// What sections are made from; keeps the findings.
+class Input {
+ public:
+  explicit Input(const Campaign& campaign, std::string file = "f")
+      : findings_(findings_of(campaign)),
+        parts_(summary_content(campaign, findings_)),
+        input_{campaign, parts_, std::move(file)} {}
+
+  operator const ReportInput&() const { return input_; }
+
+ private:
+  StudyFindings findings_;
+  SummaryContent parts_;
+  ReportInput input_;
+};
+
+std::string page_of(const Campaign& campaign, const std::string& file) {
+  return report_html(campaign, findings_of(campaign), file);
+}
+
+std::vector<std::string> section_ids(const Campaign& campaign) {
+  std::vector<std::string> ids;
+  for (const ReportSection& section : report_sections(Input(campaign)))
+    ids.push_back(section.id);
+  return ids;
+}
+
+/// Lets the chain of each experiment that has an answer say something else.
+void change_chain(Campaign& campaign,
+                  const std::function<void(const ExperimentRecord&, Diagnosis&)>& change) {
+  for (ExperimentRecord& record : campaign.records) {
+    Diagnosis chain = record.chain();
+    if (chain.ivar.size() == 0)
+      continue;
+    change(record, chain);
+    set_chain(campaign.study, record, chain);
+  }
+}
+
 std::string html_of(const ReportSection& section) {
   std::string html;
   for (const auto& piece : section.content)
@@ -36,14 +79,13 @@ bool has_figure(const ReportSection& section) {
 }
 
 TEST_CASE("report: the page depends on the campaign and the name of the archive only") {
-  const std::string page = report_html(sample(), "some/folder/out.h5");
-  CHECK(page == report_html(sample(), "another/out.h5"));
+  const std::string page = page_of(sample(), "some/folder/out.h5");
+  CHECK(page == page_of(sample(), "another/out.h5"));
   CHECK_THAT(page, Contains("mpmbench replay out.h5 ") && !Contains("some/folder"));
 }
 
 TEST_CASE("report: headline numbers are those of the summary, beside the reported ones") {
-  const SummaryParts parts = summary_parts(sample());
-  const std::string html = html_of(rates_section({sample(), parts, "out.h5"}));
+  const std::string html = html_of(rates_section(Input(sample(), "out.h5")));
   // 1 of the 7 experiments that did not fail is infeasible; Wilson's interval of 1/7 is 2.6 to 51.3 %.
   CHECK_THAT(html,
              Contains("<td class=\"number\">14.3&nbsp;%</td><td class=\"number\">2.6 to 51.3&nbsp;%</td>"
@@ -53,33 +95,32 @@ TEST_CASE("report: headline numbers are those of the summary, beside the reporte
 TEST_CASE("report: a failed self-check cannot be overlooked") {
   Campaign unhealthy = sample();
   unhealthy.basis.healthy = false;
-  const SummaryParts parts = summary_parts(unhealthy);
-  CHECK_THAT(html_of(run_section({unhealthy, parts, "f"})), Contains("self-check FAILED"));
-  CHECK_THAT(html_of(run_section({sample(), parts, "f"})), Contains("self-check passed"));
+  CHECK_THAT(html_of(run_section(Input(unhealthy))), Contains("self-check FAILED"));
+  CHECK_THAT(html_of(run_section(Input(sample()))), Contains("self-check passed"));
 }
 
 TEST_CASE("report: each wrong verdict stands there with its numbers and its command") {
   Campaign campaign = sample();
-  for (ExperimentRecord& record : campaign.records)
-    record.diagnosis.impactful = false;
-  ExperimentRecord& wrong = campaign.records[5];
-  wrong.diagnosis.impactful = true;
-  wrong.diagnosis.predicted_cv = (wrong.draw.true_cv() + 1) % 7;
-  wrong.diagnosis.indicator.i_mpm = 0.4321;
-  const SummaryParts parts = summary_parts(campaign);
-  const std::string html = html_of(wrong_verdict_section({campaign, parts, "a b.h5"}));
-  CHECK_THAT(html,
-             Contains("<code>mpmbench replay a b.h5 5</code>") && Contains("0.432") &&
-                 Contains(fmt::format("<span class=\"no\">y{}</span>", wrong.diagnosis.predicted_cv + 1)));
+  constexpr std::int64_t kWrong = 5;
+  Eigen::Index found = 0;
+  change_chain(campaign, [&](const ExperimentRecord& record, Diagnosis& chain) {
+    chain.impactful = record.draw.index == kWrong;
+    if (!chain.impactful)
+      return;
+    chain.predicted_cv = found = (record.draw.true_cv() + 1) % 7;
+    chain.indicator.i_mpm = 0.4321;
+  });
+  const std::string html = html_of(wrong_verdict_section(Input(campaign, "a b.h5")));
+  CHECK_THAT(html, Contains("<code>mpmbench replay a b.h5 5</code>") && Contains("0.432") &&
+                       Contains(fmt::format("<span class=\"no\">y{}</span>", found + 1)));
   CHECK_THAT(html, Contains("ended by signal 9") && Contains("mpmbench replay a b.h5 4"));
   CHECK_THAT(html, !Contains("mpmbench replay a b.h5 6"));
 }
 
 TEST_CASE("report: a section without data says in one sentence why it is left out") {
   const Campaign campaign = empty_campaign();
-  const SummaryParts parts = summary_parts(campaign);
   int left_out = 0;
-  for (const ReportSection& section : report_sections({campaign, parts, "f"})) {
+  for (const ReportSection& section : report_sections(Input(campaign))) {
     INFO(section.id);
     CHECK_FALSE(section.content.empty());
     if (section.id == "run" || section.id == "basis")
@@ -88,40 +129,36 @@ TEST_CASE("report: a section without data says in one sentence why it is left ou
     CHECK_THAT(html_of(section), Contains("Left out: ") && Contains("."));
     ++left_out;
   }
-  CHECK(left_out == 12);
-  CHECK_THAT(report_html(campaign, "f.h5"),
-             Contains("Left out: it needs experiments with impact of both kinds; "
-                      "there are 0 with an MPM and 0 with a UD."));
+  CHECK(left_out == 13);
+  CHECK_THAT(page_of(campaign, "f.h5"), Contains("Left out: it needs experiments with impact of both kinds; "
+                                                 "there are 0 with an MPM and 0 with a UD."));
 }
 
 TEST_CASE("report: a study of named scenarios has their section in place of rates") {
   const Campaign campaign = scenario_campaign();
-  const SummaryParts parts = summary_parts(campaign);
-  std::vector<std::string> ids;
-  for (const ReportSection& section : report_sections({campaign, parts, "f"}))
-    ids.push_back(section.id);
-  CHECK(ids == std::vector<std::string>{"run", "scenarios", "comparison", "sensitivity", "interaction",
-                                        "s0-perturbation", "basis", "solver"});
-  const ReportSection section = scenarios_section({campaign, parts, "a b.h5"});
+  CHECK(section_ids(campaign) == std::vector<std::string>{"run", "scenarios", "comparison", "sensitivity",
+                                                          "interaction", "s0-perturbation", "basis",
+                                                          "solver"});
+  const ReportSection section = scenarios_section(Input(campaign, "a b.h5"));
   CHECK(has_figure(section));
   const std::string html = html_of(section);
   CHECK_THAT(html, Contains("mpmbench replay a b.h5 4") && Contains("&lt;b&gt; &#39;all&#39; &amp; more"));
   CHECK_THAT(html, Contains("level (MPM), heat (MPM)") && Contains("infeasible") && Contains("died"));
   CHECK_THAT(html, Contains("gain of level/hot x 1.5") && Contains("time constant of level/drain x 2") &&
                        Contains("heat/hot is (2 s + 1) / (30 s^2 + 12 s + 1) e^(-4 s)"));
-  CHECK_THAT(report_html(campaign, "f.h5"), Contains("figure-scenario-ivar") && !Contains("Headline rates"));
+  CHECK_THAT(page_of(campaign, "f.h5"), Contains("figure-scenario-ivar") && !Contains("Headline rates"));
 
   Campaign none = campaign;
   none.records.clear();
-  const SummaryParts of_none = summary_parts(none);
-  CHECK_THAT(html_of(scenarios_section({none, of_none, "f"})), Contains("Left out: "));
+  CHECK_THAT(html_of(scenarios_section(Input(none))), Contains("Left out: "));
 }
 
-TEST_CASE("report: methods stand side by side when the archive has a comparison, with curves where it can") {
+TEST_CASE("report: several methods stand side by side, with curves where it can") {
   Campaign campaign = scenario_campaign();
-  campaign.comparison->reasons[0] = "it needs <more>";
-  const SummaryParts parts = summary_parts(campaign);
-  const ReportSection section = comparison_section({campaign, parts, "f"});
+  for (ExperimentRecord& record : campaign.records)
+    if (record.status == ExperimentStatus::ok)
+      record.assessments[1] = kept(record.assessments[1].form, Assessment::not_applicable("it needs <more>"));
+  const ReportSection section = comparison_section(Input(campaign));
   std::vector<std::string> figures;
   for (const auto& piece : section.content)
     if (const Figure* const figure = std::get_if<Figure>(&piece))
@@ -131,36 +168,46 @@ TEST_CASE("report: methods stand side by side when the archive has a comparison,
   CHECK_THAT(html, Contains("the same 3 of 5 experiments") && Contains("it needs &lt;more&gt;"));
   for (const MethodRateInfo& info : method_rate_infos())
     CHECK_THAT(html, Contains(std::string("<strong>") + info.title + "</strong>: "));
-  for (const std::string& method : campaign.comparison->methods)
+  for (const std::string& method : method_names(campaign))
     CHECK_THAT(html, Contains(method));
 
   // Every loop of the sample has a fault, so that there is nothing to draw a curve with.
-  const SummaryParts of_sample = summary_parts(sample());
-  CHECK_THAT(html_of(comparison_section({sample(), of_sample, "f"})), Contains("ROC curves are left out"));
-  campaign.comparison.reset();
-  CHECK_THAT(report_html(campaign, "f.h5"), !Contains("Assessment methods compared"));
+  CHECK_THAT(html_of(comparison_section(Input(sample()))), Contains("ROC curves are left out"));
+  remove_methods(campaign, [](const std::string& name) { return name != kChainMethod; });
+  CHECK_THAT(page_of(campaign, "f.h5"), !Contains("Assessment methods compared"));
+}
+
+TEST_CASE("report: a campaign without the chain has no section of it") {
+  Campaign campaign =
+      GENERATE(made_up_campaign(), faultless_campaign(), scenario_campaign(), empty_campaign());
+  remove_methods(campaign, [](const std::string& name) { return name == kChainMethod; });
+  std::vector<std::string> ids{"run",         "rates",           "comparison", "sensitivity",
+                               "interaction", "s0-perturbation", "basis",      "solver"};
+  if (campaign.study.names_scenarios())
+    ids.erase(ids.begin() + 1);
+  CHECK(section_ids(campaign) == ids);
+  const std::string page = page_of(campaign, "f.h5");
+  CHECK_THAT(page,
+             Contains("Assessment methods compared") && !Contains("I<sub>MPM</sub>") && !Contains("botelho"));
 }
 
 TEST_CASE("report: false alarms have a section and rows where model and plant agree in some experiments") {
   Campaign campaign = faultless_campaign();
-  for (ExperimentRecord& record : campaign.records)
-    record.diagnosis.impactful = is_faultless(record.draw.kind);
-  const SummaryParts parts = summary_parts(campaign);
-  const ReportSection section = false_alarm_section({campaign, parts, "f"});
+  change_chain(campaign, [](const ExperimentRecord& record, Diagnosis& chain) {
+    chain.impactful = is_faultless(record.draw.kind);
+  });
+  const ReportSection section = false_alarm_section(Input(campaign));
   CHECK(has_figure(section));
   CHECK_THAT(html_of(section),
              Contains("healthy") && Contains("&emsp;setpoint weight") && Contains("100.0&nbsp;%") &&
                  Contains("S0 of an experiment with a bad tuning is that of the controller"));
-  CHECK_THAT(html_of(rates_section({campaign, parts, "f"})),
+  CHECK_THAT(html_of(rates_section(Input(campaign))),
              Contains("Model and plant agree") && Contains("false alarm, tuning slack weight"));
-  CHECK_THAT(html_of(wrong_verdict_section({campaign, parts, "f"})),
-             Contains("healthy") && Contains("tuning"));
+  CHECK_THAT(html_of(wrong_verdict_section(Input(campaign))), Contains("healthy") && Contains("tuning"));
 
   const auto has_section = [](const Campaign& of) {
-    const SummaryParts of_parts = summary_parts(of);
-    const auto sections = report_sections({of, of_parts, "f"});
-    return std::any_of(sections.begin(), sections.end(),
-                       [](const ReportSection& found) { return found.id == "false-alarms"; });
+    const std::vector<std::string> ids = section_ids(of);
+    return std::find(ids.begin(), ids.end(), "false-alarms") != ids.end();
   };
   CHECK(has_section(campaign));
   CHECK_FALSE(has_section(made_up_campaign()));
@@ -171,21 +218,23 @@ TEST_CASE("report: awkward numbers and foreign texts make no broken page") {
   campaign.study.title = "<script>alert(1)</script> `id` '\"&";
   campaign.study.plant.cvs[0].name = "a_b <i> `x` 'y'";
   campaign.info.command = "run \xFF <b>";
-  const std::string page = report_html(campaign, "<x>.h5");
+  const std::string page = page_of(campaign, "<x>.h5");
   CHECK_THAT(page, !Contains("<script") && !Contains("<i>") && !Contains("<b>") && !Contains("<x>"));
   CHECK_THAT(page, Contains("&lt;script&gt;alert(1)&lt;/script&gt; `id` &#39;&quot;&amp;"));
 }
 
 TEST_CASE("report: the same figures as files, and a folder that cannot be made") {
   const TemporaryFolder folder;
-  const auto files = write_figures(sample(), folder / "figures", FigureFormat::svg);
+  const auto files = write_figures(sample(), findings_of(sample()), folder / "figures", FigureFormat::svg);
   CHECK(files.size() == 13);
   for (const auto& file : files)
     CHECK_THAT(file_content(file), Contains("<svg ") && Contains("</svg>"));
   make_file(folder / "file", "");
-  CHECK_THROWS_AS(write_figures(sample(), folder / "file", FigureFormat::svg), ArchiveError);
-  CHECK_THROWS_WITH(write_figures(sample(), folder / "none/figures", FigureFormat::svg),
-                    Contains("none/figures: cannot make the folder"));
+  CHECK_THROWS_AS(write_figures(sample(), findings_of(sample()), folder / "file", FigureFormat::svg),
+                  ArchiveError);
+  CHECK_THROWS_WITH(
+      write_figures(sample(), findings_of(sample()), folder / "none/figures", FigureFormat::svg),
+      Contains("none/figures: cannot make the folder"));
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
+#include <algorithm>
 #include <cmath>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "analysis/findings/method_rates.hpp"
-#include "analysis/methods/method_table.hpp"
+#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_words.hpp"
 #include "results/summary/comparison.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -16,38 +17,39 @@ using namespace mpm::testing;
 using Catch::Contains;
 using Json = nlohmann::json;
 
-/// Four methods, which is more than stand side by side in one table of the text: those of the table from its
-/// start, again and again.
+/// Four methods, which is more than stand side by side in one table of the text. Every loop that ran to its
+/// end is flagged by all of them, but for some by the first one; the second one does not apply to some.
 Campaign four_methods() {
   Campaign campaign = made_up_campaign();
-  Comparison& comparison = *campaign.comparison;
-  const std::vector<std::string> known = assessment_method_names();
-  comparison.methods.clear();
-  comparison.reasons = {"", "it needs <more>", "", ""};
-  for (std::size_t method = 0; method < 4; ++method)
-    comparison.methods.push_back(known[method % known.size()]);
-  MethodVerdict answer;
-  answer.status = AssessmentStatus::ok;
-  answer.flagged = true;
-  answer.score = 0.5;
-  answer.seconds = 0.001;
-  for (ComparedLoop& loop : comparison.loops) {
-    loop.verdicts.assign(4, answer);
-    loop.verdicts[0].flagged = loop.experiment % 4 != 0;
-    loop.verdicts[1].status = loop.experiment < 10 ? AssessmentStatus::ok : AssessmentStatus::not_applicable;
+  remove_methods(campaign, [](const std::string& name) { return name == "yu-qin" || name == "sse"; });
+  REQUIRE(campaign.methods.size() == 4);
+  for (ExperimentRecord& record : campaign.records) {
+    if (record.status != ExperimentStatus::ok)
+      continue;
+    for (AssessmentRecord& said : record.assessments) {
+      said = plain_verdict(said.form, true, 0.5);
+      said.seconds = 0.001;
+    }
+    record.assessments[0].flagged = record.draw.index % 4 != 0;
+    if (record.draw.index >= 10)
+      record.assessments[1] = kept(record.assessments[1].form, Assessment::not_applicable("it needs <more>"));
   }
   return campaign;
+}
+
+std::int64_t experiments_that_ran(const Campaign& campaign) {
+  return std::count_if(campaign.records.begin(), campaign.records.end(),
+                       [](const auto& record) { return record.status == ExperimentStatus::ok; });
 }
 
 TEST_CASE(
     "comparison text: rates, intervals, reasons and pairs stand there; no line is wider than a terminal") {
   const Campaign campaign = four_methods();
-  const std::string text = comparison_text(campaign);
-  const ComparisonSummary summary = summarise(*campaign.comparison, campaign.records, campaign.study);
-  const Rate& detected = summary.methods[0].detected;
+  const StudyFindings findings = findings_of(campaign);
+  const std::string text = comparison_text(campaign, findings);
+  const Rate& detected = findings.methods[0].rates.detected;
   CHECK(detected.hits < detected.total);
-  CHECK_THAT(text,
-             Contains(std::to_string(campaign.comparison->loops.size()) + " of 40 experiments compared"));
+  CHECK_THAT(text, Contains(std::to_string(experiments_that_ran(campaign)) + " of 40 experiments compared"));
   for (const MethodRateInfo& info : method_rate_infos())
     CHECK_THAT(text, Contains(std::string("\n") + info.title));
   char share[16];
@@ -64,33 +66,28 @@ TEST_CASE(
 
 TEST_CASE("comparison text: one method has no pairs, and what was not counted is a dash") {
   Campaign campaign = four_methods();
-  Comparison& comparison = *campaign.comparison;
-  comparison.methods.resize(1);
-  comparison.reasons.resize(1);
-  for (ComparedLoop& loop : comparison.loops)
-    loop.verdicts.resize(1);
-  const std::string text = comparison_text(campaign);
+  remove_methods(campaign, [](const std::string& name) { return name != kChainMethod; });
+  const std::string text = comparison_text(campaign, findings_of(campaign));
   CHECK_THAT(text, !Contains("McNemar") && !Contains("because") && Contains("false alarms, bad tuning"));
   const std::size_t line = text.find("false alarms, bad tuning");
   CHECK(text.substr(0, text.find('\n', line)).ends_with(" -"));
 }
 
-TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the summary") {
+TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the findings") {
   Campaign campaign = four_methods();
   campaign.records[0].draw = {};  // a healthy one, so that there is a curve
-  campaign.records[0].draw.index = 0;
-  const ComparisonSummary summary = summarise(*campaign.comparison, campaign.records, campaign.study);
-  const Json json = Json::parse(comparison_json(campaign));
-  CHECK(json["loops"] == campaign.comparison->loops.size());
+  const StudyFindings findings = findings_of(campaign);
+  const Json json = Json::parse(comparison_json(campaign, findings));
+  CHECK(json["loops"] == experiments_that_ran(campaign));
   REQUIRE(json["methods"].size() == 4);
   for (std::size_t m = 0; m < 4; ++m) {
-    const MethodRates& method = summary.methods[m];
+    const MethodRates& rates = findings.methods[m].rates;
     const Json& of_json = json["methods"][m];
-    CHECK(of_json["name"] == method.method);
-    CHECK(of_json["reason"] == method.reason);
+    CHECK(of_json["name"] == findings.methods[m].name());
+    CHECK(of_json["reason"] == rates.reason);
     CHECK(of_json["rates"].size() == method_rate_infos().size());
     for (const MethodRateInfo& info : method_rate_infos()) {
-      const Rate& rate = method.*info.rate;
+      const Rate& rate = rates.*info.rate;
       const Json& share = of_json["rates"][info.name];
       CHECK(share["hits"] == rate.hits);
       CHECK(share["total"] == rate.total);
@@ -102,19 +99,20 @@ TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the 
       CHECK(share["upper"] == rate.interval.upper);
       CHECK(json["rates"][info.name] == info.meaning);
     }
-    CHECK(of_json["roc"]["threshold"].size() == method.roc.points.size());
+    CHECK(of_json["roc"]["threshold"].size() == rates.roc.points.size());
   }
-  REQUIRE(summary.methods[0].roc.defined());
-  CHECK(json["methods"][0]["roc"]["area"] == summary.methods[0].roc.area);
+  const MethodRates& first = findings.methods[0].rates;
+  REQUIRE(first.roc.defined());
+  CHECK(json["methods"][0]["roc"]["area"] == first.roc.area);
   CHECK(json["methods"][0]["roc"]["threshold"][0].is_null());  // infinity
-  CHECK(json["methods"][0]["milliseconds"] == summary.methods[0].milliseconds);
+  CHECK(json["methods"][0]["milliseconds"] == first.milliseconds);
   REQUIRE(json["pairs"].size() == 12);
   CHECK(json["pairs"][0]["truth"] == "fault");
   CHECK(json["pairs"][6]["truth"] == "impact");
-  CHECK(json["pairs"][0]["second"] == summary.methods[1].method);
-  CHECK(json["pairs"][0]["loops"] == summary.pairs[0].loops);
-  CHECK(json["pairs"][0]["first_alone"] == summary.pairs[0].test.lost);
-  CHECK(json["pairs"][0]["p_two_sided"] == summary.pairs[0].test.p_two_sided);
+  CHECK(json["pairs"][0]["second"] == findings.methods[1].name());
+  CHECK(json["pairs"][0]["loops"] == findings.pairs[0].loops);
+  CHECK(json["pairs"][0]["first_alone"] == findings.pairs[0].test.lost);
+  CHECK(json["pairs"][0]["p_two_sided"] == findings.pairs[0].test.p_two_sided);
 }
 
 TEST_CASE("comparison words: what a method needs and tells") {

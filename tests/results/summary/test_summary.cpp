@@ -1,11 +1,14 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "analysis/findings/study_aggregate.hpp"
+#include "analysis/findings/s0_perturbation_curves.hpp"
+#include "analysis/methods/chain_numbers.hpp"
+#include "results/summary/comparison.hpp"
 #include "results/summary/summary.hpp"
 #include "tests/results/campaign_sample.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -19,6 +22,25 @@ using Catch::Contains;
 const Campaign& sample() {
   static const Campaign campaign = campaign_sample();
   return campaign;
+}
+
+std::string text_of(const Campaign& campaign, const std::string& file = "out.h5") {
+  return summary_text(campaign, findings_of(campaign), file);
+}
+
+nlohmann::json json_of(const Campaign& campaign) {
+  return nlohmann::json::parse(summary_json(campaign, findings_of(campaign)));
+}
+
+/// Lets the chain of each experiment that has an answer say something else.
+void change_chain(Campaign& campaign, const std::function<void(Diagnosis&)>& change) {
+  for (ExperimentRecord& record : campaign.records) {
+    Diagnosis chain = record.chain();
+    if (chain.ivar.size() == 0)
+      continue;
+    change(chain);
+    set_chain(campaign.study, record, chain);
+  }
 }
 
 /// The line of the text that begins with this word; empty when there is none.
@@ -36,7 +58,7 @@ bool same(const nlohmann::json& json, double value) {
 }
 
 TEST_CASE("summary: the text says what was run and whether the basis case is healthy") {
-  const std::string text = summary_text(sample(), "out.h5");
+  const std::string text = text_of(sample());
   CHECK_THAT(line_of_text(text, "study"), Contains("chapter6: Shell fractionator 7x3"));
   CHECK_THAT(line_of_text(text, "plant"), Contains("shell-7x3: 7 CVs, 3 MVs, 2 MDs"));
   CHECK_THAT(line_of_text(text, "controller"), Contains("prediction horizon 75, control horizon 15"));
@@ -47,44 +69,47 @@ TEST_CASE("summary: the text says what was run and whether the basis case is hea
   CHECK_THAT(line_of_text(text, "self-check"), Contains("passed: Ivar of the nominal loop"));
   Campaign unhealthy = sample();
   unhealthy.basis.healthy = false;
-  CHECK_THAT(line_of_text(summary_text(unhealthy, "out.h5"), "self-check"), Contains("FAILED"));
+  CHECK_THAT(line_of_text(text_of(unhealthy), "self-check"), Contains("FAILED"));
 }
 
 TEST_CASE("summary: a measured share stands beside the reported one with its interval") {
   // 1 of the 7 experiments that did not fail is infeasible; Wilson's interval of 1/7 is 2.6 to 51.3 %.
-  const std::string line = line_of_text(summary_text(sample(), "out.h5"), "infeasible");
+  const std::string line = line_of_text(text_of(sample()), "infeasible");
   CHECK_THAT(line, Contains(" 14.3 % ") && Contains(" 2.6 to 51.3 % ") && Contains(" 7 ") &&
                        Contains(" 4.0 % ") && Contains("yes"));
   Campaign other = sample();
-  other.study.reference = {{"infeasible", 0.9}};
-  CHECK_THAT(line_of_text(summary_text(other, "out.h5"), "infeasible"), Contains(" 90.0 %  no"));
+  other.study.reported = {{"infeasible", 0.9}};
+  CHECK_THAT(line_of_text(text_of(other), "infeasible"), Contains(" 90.0 %  no"));
 }
 
 TEST_CASE("summary: without reported values there is no table of them, and every number is in the other") {
   Campaign campaign = made_up_campaign();
-  const std::string text = summary_text(campaign, "out.h5");
+  const std::string text = text_of(campaign);
   CHECK_THAT(text, !Contains("reported"));
-  for (const AggregateValue& value : named_values(aggregate(campaign.study, campaign.records)))
-    if (value.name.find("_at_dominance_") == std::string::npos)
-      CHECK_FALSE(line_of_text(text, value.name).empty());
+  for (const Finding& finding : findings_of(campaign).rows)
+    if (finding.prominence != Prominence::detail && finding.group != FindingGroup::dominance &&
+        finding.group != FindingGroup::method) {
+      INFO(finding.name);
+      CHECK_FALSE(line_of_text(text, finding.name).empty());
+    }
 }
 
 TEST_CASE(
     "summary: failures have their messages, wrong verdicts the command that replays them, ten at most") {
   Campaign campaign = made_up_campaign();
-  for (ExperimentRecord& record : campaign.records)
-    if (record.status == ExperimentStatus::ok)
-      record.diagnosis.impactful = false;
-  CHECK_THAT(summary_text(campaign, "out.h5"), Contains("0 experiments with impact got a wrong verdict\n"));
+  change_chain(campaign, [](Diagnosis& chain) { chain.impactful = false; });
+  CHECK_THAT(text_of(campaign), Contains("0 experiments with impact got a wrong verdict\n"));
 
   for (std::int64_t i = 0; i < 13; ++i) {
     ExperimentRecord& record = campaign.records[static_cast<std::size_t>(i)];
     record.status = ExperimentStatus::ok;
-    record.diagnosis = campaign.basis.diagnosis;
-    record.diagnosis.impactful = true;
-    record.diagnosis.predicted_cv = 1 - record.draw.true_cv();
+    record.ivar_basis = Eigen::Vector2d::Ones();
+    Diagnosis chain = campaign.basis.diagnosis;
+    chain.impactful = true;
+    chain.predicted_cv = 1 - record.draw.true_cv();
+    set_chain(campaign.study, record, chain);
   }
-  const std::string text = summary_text(campaign, "out.h5");
+  const std::string text = text_of(campaign);
   CHECK_THAT(text, Contains("13 experiments with impact got a wrong verdict:\n") &&
                        Contains("mpmbench replay out.h5 0 ") && Contains("mpmbench replay out.h5 9 ") &&
                        !Contains("mpmbench replay out.h5 10 ") && Contains("and 3 more"));
@@ -92,9 +117,9 @@ TEST_CASE(
 }
 
 TEST_CASE("summary: fits and changes of a modified S0, and S0 with MVs fixed, in both forms") {
-  const std::string text = summary_text(sample(), "out.h5");
+  const std::string text = text_of(sample());
   CHECK_THAT(text, Contains("S0 modified, 0.75 to 1.25 times") && Contains("S0 with u1 fixed"));
-  const nlohmann::json json = nlohmann::json::parse(summary_json(sample()))["s0_perturbation"];
+  const nlohmann::json json = json_of(sample())["s0_perturbation"];
   REQUIRE(json["fits"].size() == 3);  // y1, y2, y7
   CHECK(json["fits"][2]["cv"] == "y7");
   CHECK(json["fixed_mvs"].size() == 2);
@@ -104,12 +129,14 @@ TEST_CASE("summary: fits and changes of a modified S0, and S0 with MVs fixed, in
   CHECK(json["changes"][0]["experiments"] == curves[0].experiments);
   CHECK(same(json["changes"][0]["damping"]["largest_change"], curves[0].damping_change.largest));
 
-  const std::string without = summary_text(empty_campaign(), "out.h5");
+  const std::string without = text_of(empty_campaign());
   CHECK_THAT(without, !Contains("S0 modified") && !Contains("fixed"));
 }
 
 TEST_CASE("summary: no line of the sample is longer than 100 columns or ends with a blank") {
-  std::istringstream lines(summary_text(sample(), "out.h5"));
+  Campaign campaign = sample();  // without the comparison, which may be wider
+  remove_methods(campaign, [](const std::string& name) { return name != kChainMethod; });
+  std::istringstream lines(text_of(campaign));
   for (std::string line; std::getline(lines, line);) {
     INFO(line);
     CHECK(line.size() <= 100);
@@ -117,22 +144,27 @@ TEST_CASE("summary: no line of the sample is longer than 100 columns or ends wit
   }
 }
 
-TEST_CASE("summary: the JSON form has the numbers of the aggregate and the reported ones") {
-  const nlohmann::json json = nlohmann::json::parse(summary_json(sample()));
-  const StudyAggregate total = aggregate(sample().study, sample().records);
-  const std::vector<AggregateValue> values = named_values(total);
-  REQUIRE(json["aggregates"].size() == values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const nlohmann::json& found = json["aggregates"][i];
-    CHECK(found["name"] == values[i].name);
-    CHECK(found["description"] == values[i].description);
-    CHECK(found["count"] == values[i].count);
-    CHECK(same(found["value"], values[i].value));
-    CHECK(same(found["lower"], values[i].interval.lower));
-    CHECK(same(found["upper"], values[i].interval.upper));
+TEST_CASE("summary: the JSON form has the findings and the reported numbers") {
+  const nlohmann::json json = json_of(sample());
+  const StudyFindings findings = findings_of(sample());
+  REQUIRE(json["findings"].size() == findings.rows.size());
+  for (std::size_t i = 0; i < findings.rows.size(); ++i) {
+    const nlohmann::json& found = json["findings"][i];
+    const Finding& expected = findings.rows[i];
+    CHECK(found["name"] == expected.name);
+    CHECK(found["meaning"] == expected.meaning);
+    CHECK(found["form"] == to_string(expected.form));
+    CHECK(found["count"] == expected.count);
+    CHECK(same(found["value"], expected.value));
+    CHECK(same(found["lower"], expected.interval.lower));
+    CHECK(same(found["upper"], expected.interval.upper));
   }
-  CHECK(json["aggregates"][0]["reported"] == 0.04);
-  CHECK(json["dominance"].size() == total.dominance.size());
+  CHECK(json["methods"] == method_names(sample()));
+  const auto infeasible = std::find_if(json["findings"].begin(), json["findings"].end(),
+                                       [](const auto& finding) { return finding["name"] == "infeasible"; });
+  REQUIRE(infeasible != json["findings"].end());
+  CHECK((*infeasible)["reported"] == 0.04);
+  CHECK(json["dominance"].size() == findings.dominance.size());
   CHECK(json["study"] == "chapter6");
   CHECK(json["seed"].get<std::uint64_t>() == 12345678901234567890U);
   CHECK(json["experiments"] == 8);
@@ -146,16 +178,18 @@ TEST_CASE("summary: the JSON form has the numbers of the aggregate and the repor
 
 TEST_CASE("summary: a study of named scenarios shows each with its truth and its verdict") {
   Campaign campaign = scenario_campaign();
-  std::vector<CvDiagnosis>& channels = campaign.records[1].diagnosis.cvs;
-  channels[0] = {true, ExperimentKind::mpm, {}, {}, 1.5};
-  channels[1] = {false, ExperimentKind::none, {}, {}, 0.25};
+  Diagnosis chain = campaign.records[1].chain();
+  std::vector<CvDiagnosis>& channels = chain.cvs;
+  channels[0] = {true, FaultSource::mpm, {}, {}, 1.5};
+  channels[1] = {false, FaultSource::none, {}, {}, 0.25};
   channels[0].acf.speed = LoopSpeed::slower;
   channels[0].acf.y.oscillation.verdict = Oscillation::present;
   channels[0].acf.y0.oscillation.verdict = Oscillation::absent;
   channels[0].acf.origin = ErrorOrigin::others;
   channels[0].distribution.means.dkts.ce = 0.375;
-  campaign.records[1].diagnosis.ivar_diag = Eigen::Vector2d(2.5, 1.0);
-  const std::string text = summary_text(campaign, "out.h5");
+  chain.ivar_diag = Eigen::Vector2d(2.5, 1.0);
+  set_chain(campaign.study, campaign.records[1], chain);
+  const std::string text = text_of(campaign);
   CHECK_THAT(line_of_text(text, "experiments"),
              Contains("5 (named scenarios) of 60 samples; 1 infeasible, 1 failed"));
   CHECK_THAT(line_of_text(text, "channels"), Contains("level (MPM), heat (MPM)") &&
@@ -166,7 +200,7 @@ TEST_CASE("summary: a study of named scenarios shows each with its truth and its
   const std::string acf = text.substr(text.find("\nACF") + 1);
   CHECK_THAT(line_of_text(acf, "channels"),
              Contains("level") && Contains("slower than designed, oscillates; models of other CVs"));
-  const auto cv = nlohmann::json::parse(summary_json(campaign))["scenarios"][1]["cvs"][0];
+  const auto cv = json_of(campaign)["scenarios"][1]["cvs"][0];
   CHECK(cv["distribution"]["ce_dkts"] == 0.375);
   CHECK(cv["acf"]["loop_speed"] == "slower");
   CHECK(cv["acf"]["oscillation_y"] == "present");
@@ -174,7 +208,7 @@ TEST_CASE("summary: a study of named scenarios shows each with its truth and its
   CHECK_THAT(indicators.substr(indicators.find("channels")), !Contains("channels        heat"));
   CHECK_THAT(text, Contains("2.5*") && !Contains("measured against reported") && !Contains("other numbers"));
 
-  const nlohmann::json json = nlohmann::json::parse(summary_json(campaign));
+  const nlohmann::json json = json_of(campaign);
   REQUIRE(json["scenarios"].size() == 5);
   const nlohmann::json& found = json["scenarios"][1];
   CHECK(found["name"] == "channels");
@@ -186,40 +220,63 @@ TEST_CASE("summary: a study of named scenarios shows each with its truth and its
   CHECK(found["cvs"][0]["ivar_diag"] == 2.5);
   CHECK(found["cvs"][1]["source"] == "none");
   CHECK(json["scenarios"][3]["tsse"].is_null());
-  CHECK(nlohmann::json::parse(summary_json(sample()))["scenarios"].empty());
+  CHECK(json_of(sample())["scenarios"].empty());
 }
 
 TEST_CASE("summary: healthy experiments and bad tunings are counted, and their alarms are wrong verdicts") {
   Campaign campaign = faultless_campaign();
-  for (ExperimentRecord& record : campaign.records)
-    record.diagnosis.impactful = false;
+  change_chain(campaign, [](Diagnosis& chain) { chain.impactful = false; });
   ExperimentRecord& healthy =
       *std::find_if(campaign.records.begin(), campaign.records.end(), [](const auto& record) {
-        return record.draw.kind == ExperimentKind::none && record.status == ExperimentStatus::ok;
+        return record.draw.kind == ExperimentKind::healthy && record.status == ExperimentStatus::ok;
       });
-  healthy.diagnosis.impactful = true;
-  healthy.diagnosis.predicted_cv = 1;
-  healthy.diagnosis.predicted_source = ExperimentKind::mpm;
-  const std::string text = summary_text(campaign, "out.h5");
-  CHECK_THAT(line_of_text(text, "experiments"), Contains("9 mpm, 6 ud, 9 healthy, 24 tuning"));
+  Diagnosis chain = healthy.chain();
+  chain.impactful = true;
+  chain.predicted_cv = 1;
+  chain.predicted_source = FaultSource::mpm;
+  set_chain(campaign.study, healthy, chain);
+  const std::string text = text_of(campaign);
+  CHECK_THAT(line_of_text(text, "experiments"), Contains("9 MPM, 6 UD, 9 healthy, 24 tuning"));
   CHECK_THAT(text, Contains("1 experiment with impact got a wrong verdict") &&
                        Contains("# healthy, found mpm on heat"));
-  const nlohmann::json json = nlohmann::json::parse(summary_json(campaign));
+  const nlohmann::json json = json_of(campaign);
   CHECK(json["kinds"] == nlohmann::json{{"mpm", 9}, {"ud", 6}, {"healthy", 9}, {"tuning", 24}});
   CHECK(json["wrong_verdicts"] == nlohmann::json{healthy.draw.index});
-  for (const auto& value : json["aggregates"])
+  for (const auto& value : json["findings"])
     if (value["name"] == "false_mpm_healthy")
       CHECK(value["value"].get<double>() == Approx(1.0 / value["count"].get<double>()));
+}
+
+TEST_CASE("summary: several methods are compared, and one is not") {
+  Campaign campaign = made_up_campaign();
+  CHECK_THAT(text_of(campaign), Contains(comparison_text(campaign, findings_of(campaign))));
+  remove_methods(campaign, [](const std::string& name) { return name != kChainMethod; });
+  CHECK_THAT(text_of(campaign), !Contains("experiments compared"));
+  CHECK(json_of(campaign)["methods"] == nlohmann::json{"botelho"});
+}
+
+TEST_CASE("summary: a campaign without the chain says nothing of it, and all that the others say") {
+  Campaign campaign =
+      GENERATE(made_up_campaign(), faultless_campaign(), scenario_campaign(), empty_campaign());
+  remove_methods(campaign, [](const std::string& name) { return name == kChainMethod; });
+  const std::string text = text_of(campaign);
+  CHECK_THAT(text, !Contains("wrong verdict") && !Contains("I_MPM") && !Contains("botelho") &&
+                       Contains(comparison_text(campaign, findings_of(campaign))));
+  const nlohmann::json json = json_of(campaign);
+  CHECK(json["wrong_verdicts"].empty());
+  CHECK(json["dominance"].empty());
+  for (const nlohmann::json& finding : json["findings"])
+    CHECK_THAT(finding["name"].get<std::string>(), !Contains("i_mpm") && !Contains("botelho"));
 }
 
 TEST_CASE("summary: infinite and missing numbers and broken texts still make valid JSON") {
   Campaign campaign = made_up_campaign();
   campaign.info.command = "\xFF";
-  const nlohmann::json json = nlohmann::json::parse(summary_json(campaign));
+  const nlohmann::json json = json_of(campaign);
   CHECK(json["run"]["command"] == "\xEF\xBF\xBD");
-  CHECK(json["aggregates"][0]["reported"].is_null());
-  CHECK(nlohmann::json::parse(summary_json(empty_campaign()))["experiments"] == 0);
-  CHECK_THAT(summary_text(empty_campaign(), "f"), Contains("0 experiments with impact"));
+  CHECK(json["findings"][0]["reported"].is_null());
+  CHECK(json_of(empty_campaign())["experiments"] == 0);
+  CHECK_THAT(text_of(empty_campaign()), Contains("0 experiments with impact"));
 }
 
 }  // namespace

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "analysis/basis/basis_case.hpp"
+
+namespace mpm {
+
+/// The basis cases of several studies, each made once however many ask for it, from any thread.
+class BasisCases {
+ public:
+  explicit BasisCases(QpSolverFactory factory);
+  ~BasisCases();
+  BasisCases(const BasisCases&) = delete;
+  BasisCases& operator=(const BasisCases&) = delete;
+
+  /// The basis case of this study, which lives as long as the collection. Throws InputError as
+  /// run_basis_case().
+  const BasisCase& of(const Study& study);
+
+ private:
+  struct Entry;
+
+  /// The entry of an equal study, made unless it is there.
+  Entry& entry_of(const Study& study);
+
+  QpSolverFactory factory_;
+  std::mutex mutex_;  ///< of the list, not of its entries
+  std::vector<std::unique_ptr<Entry>> entries_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,120 @@
+#include "analysis/experiment/judgement.hpp"
+
+#include <algorithm>
+
+namespace mpm {
+namespace {
+
+Correctness correctness(bool right) {
+  return right ? Correctness::right : Correctness::wrong;
+}
+
+FaultSource source_on(const std::vector<AffectedCv>& affected, Eigen::Index cv) {
+  const auto place =
+      std::find_if(affected.begin(), affected.end(), [cv](const auto& each) { return each.cv == cv; });
+  return place == affected.end() ? FaultSource::none : place->by;
+}
+
+CvJudgement judge_cvs(const ExperimentRecord& record, const AssessmentRecord& assessment) {
+  CvJudgement judgement;
+  const std::vector<AffectedCv> affected = record.draw.affected();
+  const Eigen::MatrixXd flags = assessment.values("cv_flagged");
+  for (Eigen::Index cv = 0; cv < flags.rows(); ++cv) {
+    const bool flagged = flags(cv) == 1.0;
+    const FaultSource truth = source_on(affected, cv);
+    if (truth == FaultSource::none) {
+      if (flagged)
+        judgement.false_alarms.push_back(cv);
+      continue;
+    }
+    (flagged ? judgement.found : judgement.missed).push_back(cv);
+    if (!flagged || truth == FaultSource::mpm_ud || !assessment.form->method().tells_sources)
+      continue;
+    judgement.judged_source = true;
+    if (assessment.number("cv_source", cv) != static_cast<double>(truth))
+      judgement.wrong_source.push_back(cv);
+  }
+  return judgement;
+}
+
+/// The channel of the only mismatch, when it is one of an MV; none otherwise.
+std::optional<Channel> mismatched_channel(const Study& study, const ExperimentDraw& draw) {
+  if (draw.mismatches.size() != 1 || draw.mismatches[0].input >= study.mv_count())
+    return std::nullopt;
+  return Channel{draw.mismatches[0].cv, draw.mismatches[0].input};
+}
+
+}  // namespace
+
+std::string_view to_string(Correctness correctness) {
+  switch (correctness) {
+    case Correctness::not_judged:
+      return "not judged";
+    case Correctness::wrong:
+      return "wrong";
+    case Correctness::right:
+      return "right";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(FlagTruth truth) {
+  return truth == FlagTruth::fault ? "fault" : "impact";
+}
+
+Correctness Judgement::location() const {
+  return cvs ? correctness(cvs->located()) : predicted_cv;
+}
+
+Correctness Judgement::source() const {
+  if (!cvs)
+    return predicted_source;
+  return cvs->judged_source ? correctness(cvs->wrong_source.empty()) : Correctness::not_judged;
+}
+
+bool Judgement::wrong() const {
+  if (cvs)
+    return !cvs->right();
+  return flagged && (flagged_without_fault || predicted_cv == Correctness::wrong ||
+                     predicted_source == Correctness::wrong);
+}
+
+Judgement judge(const Study& study, const ExperimentRecord& record, const AssessmentRecord& assessment) {
+  Judgement judgement;
+  const ExperimentDraw& draw = record.draw;
+  if (record.status != ExperimentStatus::ok || !assessment.answered())
+    return judgement;
+  const MethodDescription& method = assessment.form->method();
+  const bool faulty = !is_faultless(draw.kind);
+  const Eigen::Index true_cv = draw.true_cv();
+  judgement.flagged = assessment.flagged;
+  judgement.flagged_without_fault = assessment.flagged && !faulty;
+  if (method.locates_cvs && assessment.flagged && faulty && true_cv >= 0)
+    judgement.predicted_cv = correctness(assessment.predicted_cv == true_cv);
+  const bool single = draw.kind == ExperimentKind::mpm || draw.kind == ExperimentKind::ud;
+  if (method.tells_sources && single && in_source_population(study, assessment))
+    judgement.predicted_source = correctness(assessment.predicted_source == source_of(draw.kind));
+  const std::optional<Channel> channel = mismatched_channel(study, draw);
+  if (method.names_channels && assessment.flagged && channel)
+    judgement.channel = correctness(assessment.names(*channel));
+  if (draw.named && method.locates_cvs)
+    judgement.cvs = judge_cvs(record, assessment);
+  return judgement;
+}
+
+bool has_impact(const DiagnosisOptions& options, const ExperimentRecord& record) {
+  return std::any_of(record.ivar_basis.begin(), record.ivar_basis.end(),
+                     [&](double ivar) { return options.has_impact(ivar); });
+}
+
+bool in_source_population(const Study& study, const AssessmentRecord& assessment) {
+  return assessment.answered() &&
+         (assessment.flagged || study.diagnosis.source_population == SourcePopulation::feasible);
+}
+
+bool to_be_flagged(const Study& study, const ExperimentRecord& record, FlagTruth truth) {
+  return !is_faultless(record.draw.kind) &&
+         (truth == FlagTruth::fault || has_impact(study.diagnosis, record));
+}
+
+}  // namespace mpm

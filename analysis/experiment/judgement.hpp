@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "analysis/experiment/experiment.hpp"
+
+// What is right and what is wrong: the one place where the answer of a method is held against the truth.
+
+namespace mpm {
+
+/// What one question about an answer came to.
+enum class Correctness : std::int8_t {
+  not_judged,  ///< the question does not arise: no verdict, or the experiment is outside of the population
+  wrong,
+  right,
+};
+
+/// "not judged", "wrong", "right"
+std::string_view to_string(Correctness correctness);
+
+/// What a method says of a named scenario, CV by CV, against what the study says of it.
+struct CvJudgement {
+  std::vector<Eigen::Index> found;         ///< affected CVs that are flagged
+  std::vector<Eigen::Index> missed;        ///< affected CVs that are not
+  std::vector<Eigen::Index> false_alarms;  ///< other CVs that are
+  /// Found CVs with one sort of fault that the method takes for the other. With both sorts on a CV, either is
+  /// right.
+  std::vector<Eigen::Index> wrong_source;
+  bool judged_source = false;  ///< some found CV has one sort of fault
+
+  bool located() const { return missed.empty() && false_alarms.empty(); }
+  bool right() const { return located() && wrong_source.empty(); }
+};
+
+/// The answer of a method on one experiment against the truth.
+///
+/// | member    | question                                          | of experiments with a verdict |
+/// |-----------|---------------------------------------------------|--------------------------------------------|
+/// | predicted_cv | is the worst CV the affected one               | flagged, a fault that affects one CV |
+/// | predicted_source | is its source the right one                | with a single fault,
+/// in_source_population() | | channel   | is the mismatched channel among the named         | flagged, with
+/// one mismatch, of an MV       | | cvs       | is every CV of a named scenario judged rightly    | named
+/// scenarios                            |
+struct Judgement {
+  Correctness predicted_cv = Correctness::not_judged;
+  Correctness predicted_source = Correctness::not_judged;
+  Correctness channel = Correctness::not_judged;
+  std::optional<CvJudgement> cvs;
+  bool flagged = false;                ///< the loop is
+  bool flagged_without_fault = false;  ///< it is, and model and plant agree
+
+  /// Where the fault is: by every CV of a named scenario, by the worst CV otherwise.
+  Correctness location() const;
+  /// What it is, in the same way.
+  Correctness source() const;
+  /// Something that was asked is wrong: the loop of a random experiment is flagged without a fault, or with a
+  /// wrong CV or source; a CV of a named scenario is judged wrongly.
+  bool wrong() const;
+};
+
+/// Throws nothing; every question is not judged without a verdict.
+Judgement judge(const Study& study, const ExperimentRecord& record, const AssessmentRecord& assessment);
+
+/// The truth about what a fault costs: some Ivar_basis (6.22), the variance of a CV against the same loop
+/// without fault, lies outside the band of impact of the study. No method has a part in it.
+bool has_impact(const DiagnosisOptions& options, const ExperimentRecord& record);
+
+/// The experiments over which the study counts what a method says of the source of a fault: those that it
+/// flags, or all with a verdict (diagnosis.source_population).
+bool in_source_population(const Study& study, const AssessmentRecord& assessment);
+
+/// Which loops a method is right to flag, and no others.
+enum class FlagTruth : std::int8_t {
+  fault = 0,   ///< those with a fault: what a monitor of the model should see
+  impact = 1,  ///< those with a fault that has an impact: what a monitor of the performance should see
+};
+
+/// "fault", "impact"
+std::string_view to_string(FlagTruth truth);
+
+/// Is the loop of this experiment to be flagged?
+bool to_be_flagged(const Study& study, const ExperimentRecord& record, FlagTruth truth);
+
+}  // namespace mpm

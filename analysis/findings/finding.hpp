@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/statistics/interval.hpp"
+#include "analysis/statistics/sample_summary.hpp"
+#include "scenarios/fault.hpp"
+
+namespace mpm {
+
+/// How people read a finding.
+enum class FindingForm : std::int8_t {
+  share,   ///< of experiments, 0 ... 1: a percentage
+  number,  ///< any other
+};
+
+/// "share", "number"
+std::string_view to_string(FindingForm form);
+
+/// Under which heading a table of findings has it.
+enum class FindingGroup : std::int8_t {
+  study,      ///< all experiments
+  kind,       ///< the experiments of one kind: Finding::kind
+  dominance,  ///< experiments with both faults, by the dominance of the mismatch
+  s0,         ///< what an error in S0 costs
+  faultless,  ///< experiments in which model and plant agree
+  method,     ///< a method on all loops, as methods are compared: Finding::method
+};
+
+/// Who shows a finding besides archive, gates and JSON, which have all of them.
+enum class Prominence : std::int8_t {
+  headline,  ///< the first ones that a reader asks for: figures and the table of a sweep as well
+  table,     ///< the tables of summary and report
+  detail,    ///< nobody
+};
+
+/// One number that a study has found: its name, what it means, and its value with its uncertainty. Archive,
+/// summary, report, gates, sweep and the reported numbers of a study iterate over these rows, and none of
+/// them takes a name apart to learn what it means.
+struct Finding {
+  std::string name;     ///< by which studies, gates and people refer to it: "mpm.located"
+  std::string label;    ///< for tables under the heading of its group, with the marks of plot labels
+  std::string meaning;  ///< which experiments are looked at, and what of them is counted
+  FindingForm form = FindingForm::number;
+  FindingGroup group = FindingGroup::study;
+  Prominence prominence = Prominence::table;
+  std::optional<ExperimentKind> kind = {};  ///< of the experiments; none: of several kinds
+  std::string method = {};                  ///< whose answers they are; empty: of no method
+  bool has_interval = true;                 ///< can it have one? Least and largest values never do
+  double value = std::numeric_limits<double>::quiet_NaN();
+  Interval interval{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  std::int64_t count = 0;                                      ///< experiments, pairs or loops behind it
+  std::int64_t hits = -1;                                      ///< of a share, those that count; -1: no share
+  double reported = std::numeric_limits<double>::quiet_NaN();  ///< by others, as the study says; NaN: nothing
+
+  bool is_share() const { return form == FindingForm::share; }
+  bool has_reported() const { return reported == reported; }
+
+  /// The finding with this value.
+  Finding with(const Rate& rate) const;
+  Finding with(double number, const Interval& interval, std::int64_t count) const;
+};
+
+/// The finding `like` with a number of experiments, which has no interval.
+Finding counted(Finding like, std::int64_t experiments);
+
+/// The rows least, mean and largest of a summary, named NAME_min, NAME_mean and NAME_max.
+std::vector<Finding> summary_findings(const Finding& of, const SampleSummary& summary);
+
+/// The finding of this name; null when there is none.
+const Finding* find_finding(const std::vector<Finding>& findings, std::string_view name);
+
+}  // namespace mpm

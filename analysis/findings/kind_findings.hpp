@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/finding.hpp"
+#include "analysis/statistics/confusion_matrix.hpp"
+#include "analysis/statistics/interval.hpp"
+#include "analysis/statistics/regression.hpp"
+#include "analysis/statistics/sample_summary.hpp"
+
+namespace mpm {
+
+/// What a method says of the experiments of one kind with a fault.
+struct KindFindings {
+  ExperimentKind kind = ExperimentKind::healthy;
+  std::int64_t experiments = 0;
+  std::int64_t failed = 0;
+  Rate infeasible;  ///< of the experiments that did not fail
+  Rate flagged;     ///< of those with a verdict; of the chain: with impact
+  /// Ivar_basis against the method's estimate of it over all CVs of all experiments with a verdict
+  /// (figures 6.18, 6.22), and CV by CV. Without pairs for a method that estimates none.
+  LinearFitIntervals regression;
+  std::vector<LinearFitIntervals> regression_of_cv;
+  ConfusionMatrix confusion{1};  ///< true CV against predicted CV over the flagged experiments (6.20, 6.23)
+  Rate located;                  ///< its accuracy
+  /// Experiments whose source is the right one (6.21), over in_source_population(). No trials for experiments
+  /// with both faults.
+  Rate source_recognised;
+  /// Of each number of the method that is to be summarised, over the same population.
+  std::vector<SampleSummary> summaries;
+};
+
+/// The kinds with a fault that the study has: mpm, ud, mpm_ud. `method` is the place of the method in the
+/// assessments of each record; the order of `records` does not matter beyond the last bits.
+std::vector<KindFindings> kind_findings(const Study& study, const AssessmentForm& form, std::size_t method,
+                                        std::span<const ExperimentRecord> records);
+
+/// Its rows; names begin with `prefix`.
+std::vector<Finding> rows_of(const KindFindings& kind, const Study& study, const AssessmentForm& form,
+                             const std::string& prefix);
+
+/// The numbers of the method that are summarised, in the order of KindFindings::summaries.
+std::vector<const AssessmentNumberInfo*> summarised_numbers(const AssessmentForm& form);
+
+/// I_MPM of the experiments with both faults whose dominance lies in [lower, upper) (figure 6.24).
+struct DominanceBin {
+  double lower, upper;
+  SampleSummary i_mpm;
+  Rate above_threshold;
+};
+
+/// Edges 0, 0.3, 0.5, 0.7, 1; empty without experiments of both faults. `method` is the place of the chain.
+std::vector<DominanceBin> dominance_bins(const Study& study, std::size_t method,
+                                         std::span<const ExperimentRecord> records);
+
+std::vector<Finding> rows_of(const std::vector<DominanceBin>& bins);
+
+}  // namespace mpm

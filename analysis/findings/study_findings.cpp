@@ -1,0 +1,140 @@
+#include "analysis/findings/study_findings.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/methods/chain_numbers.hpp"
+#include "analysis/methods/method_table.hpp"
+#include "plants/error.hpp"
+#include "scenarios/toml_table.hpp"
+
+namespace mpm {
+namespace {
+
+void append(std::vector<Finding>&& rows, std::vector<Finding>& to) {
+  for (Finding& row : rows)
+    to.push_back(std::move(row));
+}
+
+std::vector<Finding> rows_of(const std::string& parameter, const char* words, const S0Change& change) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const std::string of = fmt::format("{} of S0 within tolerance", words);
+  const Finding largest{.name = parameter + ".largest_change",
+                        .label = fmt::format("largest relative change of Ivar_{{diag}}, {}", of),
+                        .meaning = fmt::format("largest relative change of Ivar_diag, {}", of),
+                        .group = FindingGroup::s0,
+                        .method = std::string(kChainMethod),
+                        .has_interval = false};
+  const Finding within{.name = parameter + ".within_band",
+                       .label = fmt::format("Ivar_{{diag}} stays in band, {}", of),
+                       .meaning = fmt::format("experiments whose Ivar_diag stays in band, {}", of),
+                       .group = FindingGroup::s0,
+                       .method = std::string(kChainMethod)};
+  return {largest.with(change.largest, {kNaN, kNaN}, change.within_band.total),
+          within.with(change.within_band)};
+}
+
+void count(const Study& study, std::span<const ExperimentRecord> records, StudyFindings& findings) {
+  std::int64_t infeasible = 0;
+  for (const ExperimentRecord& record : records) {
+    ++findings.experiments;
+    findings.failed += record.status == ExperimentStatus::failed ? 1 : 0;
+    infeasible += record.status == ExperimentStatus::infeasible ? 1 : 0;
+  }
+  findings.infeasible = rate(infeasible, findings.experiments - findings.failed, study.aggregate.confidence);
+}
+
+/// The rows of the chain have no prefix: they are what the thesis reports.
+std::vector<Finding> all_rows(const Study& study, const StudyFindings& findings) {
+  const Finding infeasible{.name = "infeasible",
+                           .label = "infeasible",
+                           .meaning = "share of infeasible experiments",
+                           .group = FindingGroup::study,
+                           .prominence = Prominence::headline};
+  const auto count = [](const char* name, const char* meaning, std::int64_t experiments) {
+    return counted({.name = name, .label = name, .meaning = meaning, .prominence = Prominence::detail},
+                   experiments);
+  };
+  std::vector<Finding> rows{count("experiments", "number of experiments", findings.experiments),
+                            count("failed", "number of experiments without a result", findings.failed),
+                            infeasible.with(findings.infeasible)};
+  if (const MethodFindings* const chain = findings.chain()) {
+    for (const KindFindings& kind : chain->kinds)
+      append(rows_of(kind, study, *chain->form, ""), rows);
+    append(rows_of(findings.dominance), rows);
+    if (findings.s0_changes) {
+      append(rows_of("s0_time_constant", "time constant", findings.s0_changes->time_constant), rows);
+      append(rows_of("s0_damping", "damping", findings.s0_changes->damping), rows);
+    }
+    for (const FalseAlarms& group : chain->false_alarms)
+      append(rows_of(group, chain->name()), rows);
+  }
+  for (const MethodFindings& method : findings.methods)
+    if (method.name() != kChainMethod)
+      for (const KindFindings& kind : method.kinds)
+        append(rows_of(kind, study, *method.form, method.name() + "."), rows);
+  for (const MethodFindings& method : findings.methods)
+    append(rows_of(method.rates, method.form->method()), rows);
+  return rows;
+}
+
+}  // namespace
+
+const MethodFindings* StudyFindings::of(std::string_view method) const {
+  const auto found = std::find_if(methods.begin(), methods.end(),
+                                  [method](const MethodFindings& each) { return each.name() == method; });
+  return found == methods.end() ? nullptr : &*found;
+}
+
+const MethodFindings* StudyFindings::chain() const {
+  return of(kChainMethod);
+}
+
+StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
+                             std::span<const ExperimentRecord> records) {
+  StudyFindings findings;
+  count(study, records, findings);
+  for (std::size_t method = 0; method < forms.size(); ++method) {
+    const AssessmentForm& form = *forms[method];
+    findings.methods.push_back({forms[method], kind_findings(study, form, method, records),
+                                false_alarms(study, method, records), method_rates(study, method, records)});
+    if (form.method().name == kChainMethod) {
+      findings.dominance = dominance_bins(study, method, records);
+      if (!study.s0_perturbation.multipliers.empty())
+        findings.s0_changes = s0_changes(study, records);
+    }
+  }
+  findings.pairs = method_pairs(study, forms.size(), records);
+  findings.rows = all_rows(study, findings);
+  for (Finding& row : findings.rows)
+    for (const ReportedValue& reported : study.reported)
+      if (reported.name == row.name)
+        row.reported = reported.value;
+  return findings;
+}
+
+std::vector<std::string> finding_names(Study study) {
+  study.experiments = {.mpm = 1, .ud = 1, .mpm_ud = 1, .healthy = 1, .tuning = 1};
+  study.s0_perturbation.multipliers = {1.0};
+  std::vector<std::string> names;
+  for (const Finding& row :
+       study_findings(study, assessment_forms(study, assessment_method_names()), {}).rows)
+    names.push_back(row.name);
+  return names;
+}
+
+void check_reported(const Study& study) {
+  if (study.reported.empty())
+    return;
+  const std::vector<std::string> names = finding_names(study);
+  for (const ReportedValue& reported : study.reported)
+    if (std::find(names.begin(), names.end(), reported.name) == names.end())
+      throw InputError(reported.where, "unknown finding " + with_nearest(reported.name, names),
+                       fmt::format("{}", fmt::join(names, ", ")));
+}
+
+}  // namespace mpm

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/findings/false_alarms.hpp"
+#include "analysis/findings/finding.hpp"
+#include "analysis/findings/kind_findings.hpp"
+#include "analysis/findings/method_rates.hpp"
+#include "analysis/findings/s0_perturbation_curves.hpp"
+
+namespace mpm {
+
+using AssessmentForms = std::vector<std::shared_ptr<const AssessmentForm>>;
+
+/// What a study shows of one method.
+struct MethodFindings {
+  std::shared_ptr<const AssessmentForm> form;
+  std::vector<KindFindings> kinds;        ///< the kinds with a fault that the study has
+  std::vector<FalseAlarms> false_alarms;  ///< empty without healthy experiments and bad tunings
+  MethodRates rates;                      ///< over all loops, as methods are compared
+
+  const std::string& name() const { return form->method().name; }
+};
+
+/// All that a study reports, computed once, each number with its uncertainty.
+struct StudyFindings {
+  std::int64_t experiments = 0;
+  std::int64_t failed = 0;
+  Rate infeasible;
+  std::vector<MethodFindings> methods;  ///< in the order of the study
+  std::vector<MethodPair> pairs;        ///< of all methods
+  std::vector<DominanceBin> dominance;  ///< of the chain; empty without experiments of both faults
+  std::optional<S0Changes> s0_changes;  ///< of the chain; none in a study that does not perturb S0
+  /// The table of all of the above: first those of the study, of the chain by kind and where model and plant
+  /// agree, then those of the other methods by kind, then every method as they are compared.
+  std::vector<Finding> rows;
+
+  /// The findings of the method of this name; null when it is none of the study.
+  const MethodFindings* of(std::string_view method) const;
+  /// Those of the thesis's chain; null when it is none of the study.
+  const MethodFindings* chain() const;
+};
+
+/// The findings of a study from its experiments, which need not be all; the order of `records` does not
+/// matter beyond the last bits. Each record has an assessment of each of `forms`, in their order.
+StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
+                             std::span<const ExperimentRecord> records);
+
+/// The names of all findings that a study of this plant can have, with any experiments and all methods.
+std::vector<std::string> finding_names(Study study);
+
+/// Errors: InputError for a number that is reported under a name that no finding has.
+void check_reported(const Study& study);
+
+}  // namespace mpm

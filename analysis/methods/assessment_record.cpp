@@ -1,0 +1,142 @@
+#include "analysis/methods/assessment_record.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "analysis/methods/method_table.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+const std::vector<std::string>& no_yes() {
+  static const std::vector<std::string> words{"no", "yes"};
+  return words;
+}
+
+std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& method) {
+  std::vector<AssessmentNumberInfo> numbers;
+  if (method.locates_cvs) {
+    numbers.push_back({"cv_flagged", NumberScope::cv, "the method flags the CV", "1", no_yes()});
+    numbers.push_back({"cv_score", NumberScope::cv, "how far the CV is from being flagged, larger is worse"});
+  }
+  if (method.tells_sources)
+    numbers.push_back({"cv_source",
+                       NumberScope::cv,
+                       "source that the method sees in a flagged CV or the worst one",
+                       "1",
+                       {"none", "mpm", "ud", "mpm_ud"}});
+  if (method.names_channels)
+    numbers.push_back({"channel_flagged", NumberScope::channel, "the method names this channel of the model",
+                       "1", no_yes()});
+  return numbers;
+}
+
+}  // namespace
+
+AssessmentForm::AssessmentForm(MethodDescription method, const Study& study) : method_(std::move(method)) {
+  for (AssessmentNumberInfo& info : implied_numbers(method_))
+    add(std::move(info), study);
+  for (const AssessmentNumberInfo& info : method_.numbers)
+    add(info, study);
+}
+
+void AssessmentForm::add(AssessmentNumberInfo info, const Study& study) {
+  const bool of_loop = info.scope == NumberScope::loop;
+  const Eigen::Index columns = info.scope == NumberScope::channel  ? study.mv_count()
+                               : info.scope == NumberScope::cv_lag ? lag_count(study)
+                                                                   : 1;
+  places_.push_back({std::move(info), size_, of_loop ? 1 : study.cv_count(), columns});
+  size_ += places_.back().size();
+}
+
+const NumberPlace* AssessmentForm::find(std::string_view name) const {
+  const auto place = std::find_if(places_.begin(), places_.end(),
+                                  [name](const NumberPlace& each) { return each.info.name == name; });
+  return place == places_.end() ? nullptr : &*place;
+}
+
+Eigen::Index lag_count(const Study& study) {
+  return study.simulation.samples / 4 + 1;
+}
+
+std::vector<std::shared_ptr<const AssessmentForm>> assessment_forms(const Study& study,
+                                                                    const std::vector<std::string>& methods) {
+  std::vector<std::shared_ptr<const AssessmentForm>> forms;
+  for (const std::string& name : methods) {
+    const AssessmentMethodInfo& info = assessment_method(name);
+    MethodDescription description = info;
+    if (study.names_scenarios() && info.scenario_numbers)
+      for (AssessmentNumberInfo& number : info.scenario_numbers())
+        description.numbers.push_back(std::move(number));
+    forms.push_back(std::make_shared<const AssessmentForm>(std::move(description), study));
+  }
+  return forms;
+}
+
+double AssessmentRecord::number(std::string_view name, Eigen::Index row, Eigen::Index column) const {
+  const NumberPlace* const place = form ? form->find(name) : nullptr;
+  if (place == nullptr || numbers.size() == 0)
+    return kNaN;
+  assert(row >= 0 && row < place->rows && column >= 0 && column < place->columns);
+  return numbers(place->first + row * place->columns + column);
+}
+
+Eigen::MatrixXd AssessmentRecord::values(std::string_view name) const {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const NumberPlace* const place = form ? form->find(name) : nullptr;
+  if (place == nullptr || numbers.size() == 0)
+    return {};
+  return Eigen::Map<const RowMajor>(numbers.data() + place->first, place->rows, place->columns);
+}
+
+void AssessmentRecord::set_number(std::string_view name, double value, Eigen::Index row,
+                                  Eigen::Index column) {
+  const NumberPlace* const place = form->find(name);
+  assert(place != nullptr && row < place->rows && column < place->columns);
+  numbers(place->first + row * place->columns + column) = value;
+}
+
+bool AssessmentRecord::names(const Channel& channel) const {
+  return number("channel_flagged", channel.cv, channel.mv) == 1.0;
+}
+
+AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessment& assessment) {
+  AssessmentRecord record;
+  record.form = std::move(form);
+  record.status = assessment.status;
+  record.reason = assessment.reason;
+  if (assessment.status != AssessmentStatus::ok)
+    return record;
+  const MethodDescription& method = record.form->method();
+  record.flagged = assessment.flagged;
+  record.score = assessment.score;
+  record.numbers = Eigen::VectorXd::Constant(record.form->size(), kNaN);
+  if (const std::optional<Eigen::Index> worst = assessment.worst_cv()) {
+    record.predicted_cv = *worst;
+    record.predicted_source = assessment.cvs[static_cast<std::size_t>(*worst)].source;
+  }
+  for (std::size_t i = 0; i < assessment.cvs.size() && method.locates_cvs; ++i) {
+    const CvAssessment& of_cv = assessment.cvs[i];
+    const auto cv = static_cast<Eigen::Index>(i);
+    if (of_cv.flagged)
+      record.set_number("cv_flagged", *of_cv.flagged ? 1.0 : 0.0, cv);
+    record.set_number("cv_score", of_cv.score, cv);
+    if (method.tells_sources)
+      record.set_number("cv_source", static_cast<double>(of_cv.source), cv);
+  }
+  if (method.names_channels) {
+    const NumberPlace& place = *record.form->find("channel_flagged");
+    record.numbers.segment(place.first, place.size()).setZero();
+    for (const Channel& channel : assessment.flagged_channels)
+      record.set_number("channel_flagged", 1.0, channel.cv, channel.mv);
+  }
+  for (const AssessmentNumber& number : assessment.numbers)
+    record.set_number(number.name, number.value, std::max<Eigen::Index>(number.cv, 0),
+                      std::max<Eigen::Index>(number.column, 0));
+  return record;
+}
+
+}  // namespace mpm

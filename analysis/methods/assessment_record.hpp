@@ -1,0 +1,97 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/assessment.hpp"
+#include "analysis/methods/assessment_method.hpp"
+#include "scenarios/study.hpp"
+
+// The answers of methods as they are kept for all loops of a study: one vector of numbers a loop, and one
+// form a method that says where in it each number stands.
+
+namespace mpm {
+
+/// Where one number of a method stands in AssessmentRecord::numbers: rows x columns of them, row by row.
+///
+/// | scope   | rows | columns      |
+/// |---------|------|--------------|
+/// | loop    | 1    | 1            |
+/// | cv      | ny   | 1            |
+/// | channel | ny   | nu           |
+/// | cv_lag  | ny   | lags         |
+struct NumberPlace {
+  AssessmentNumberInfo info;
+  Eigen::Index first, rows, columns;
+
+  Eigen::Index size() const { return rows * columns; }
+};
+
+/// The form of the answers of one method on the loops of one study: its own numbers, after those that follow
+/// from what it tells:
+///
+/// | name            | scope   | of methods that |
+/// |-----------------|---------|-----------------|
+/// | cv_flagged      | cv      | locate CVs: 1 flagged, 0 not; NaN: nothing is said of it |
+/// | cv_score        | cv      | locate CVs: CvAssessment::score                          |
+/// | cv_source       | cv      | tell sources: FaultSource of a flagged CV or the worst one |
+/// | channel_flagged | channel | name channels: 1 for a channel that is named, 0 for others |
+class AssessmentForm {
+ public:
+  AssessmentForm(MethodDescription method, const Study& study);
+
+  /// Without the numbers that follow from what it tells.
+  const MethodDescription& method() const { return method_; }
+  const std::vector<NumberPlace>& places() const { return places_; }
+  /// Numbers in all.
+  Eigen::Index size() const { return size_; }
+  /// The place of the number of this name; null when there is none.
+  const NumberPlace* find(std::string_view name) const;
+
+ private:
+  void add(AssessmentNumberInfo info, const Study& study);
+
+  MethodDescription method_;
+  std::vector<NumberPlace> places_;
+  Eigen::Index size_ = 0;
+};
+
+/// Lags of the numbers with the scope cv_lag: 0 ... a quarter of the record, as AcfComparisonOptions has it.
+Eigen::Index lag_count(const Study& study);
+
+/// The forms of these methods on the loops of a study. Throws InputError for an unknown method.
+std::vector<std::shared_ptr<const AssessmentForm>> assessment_forms(const Study& study,
+                                                                    const std::vector<std::string>& methods);
+
+/// What a method said of one loop, as it is kept. The form is that of its method.
+struct AssessmentRecord {
+  std::shared_ptr<const AssessmentForm> form;
+  AssessmentStatus status = AssessmentStatus::not_assessed;
+  std::string reason;  ///< why there is no verdict; empty when there is one, or when nobody asked
+  bool flagged = false;
+  double score = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Index predicted_cv = -1;                    ///< Assessment::worst_cv(), -1 for none
+  FaultSource predicted_source = FaultSource::none;  ///< of that CV
+  Eigen::VectorXd numbers = {};                      ///< as the form has them; empty unless the status is ok
+  double seconds = std::numeric_limits<double>::quiet_NaN();  ///< processor time; differs from run to run
+
+  bool answered() const { return status == AssessmentStatus::ok; }
+  /// The number of this name; NaN when there is none, or no verdict.
+  double number(std::string_view name, Eigen::Index row = 0, Eigen::Index column = 0) const;
+  /// All numbers of this name, rows x columns of its place; empty when there is none, or no verdict.
+  Eigen::MatrixXd values(std::string_view name) const;
+  /// Puts a number in its place, which must be there.
+  void set_number(std::string_view name, double value, Eigen::Index row = 0, Eigen::Index column = 0);
+  /// Whether the method names this channel.
+  bool names(const Channel& channel) const;
+};
+
+/// The answer in the form in which it is kept.
+AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessment& assessment);
+
+}  // namespace mpm

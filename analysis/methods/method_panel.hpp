@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/basis/tuned_basis.hpp"
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/assessment_method.hpp"
+#include "analysis/methods/assessment_record.hpp"
+
+namespace mpm {
+
+/// The methods of a study, each with what it has learnt of the controller. One a thread; an answer depends on
+/// the loop only.
+class MethodPanel {
+ public:
+  /// `study` and `basis` must outlive the panel; the basis case must have status ok and is the benchmark.
+  /// Throws InputError for an unknown method.
+  MethodPanel(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,
+              QpSolverFactory factory);
+  MethodPanel(const MethodPanel&) = delete;
+  MethodPanel& operator=(const MethodPanel&) = delete;
+
+  /// What each method says of a loop that ran to its end under the controller of the study, or under another
+  /// one with the basis case `own`, whose status must be ok. `y_sim` is that of assessed_loop().
+  std::vector<AssessmentRecord> assess(const AssessedLoop& loop, const TunedBasis* own = nullptr);
+
+  /// The same by one method: null when it is not one of the panel.
+  std::optional<AssessmentRecord> assess_by(std::string_view method, const AssessedLoop& loop,
+                                            const TunedBasis* own = nullptr);
+
+  const std::vector<std::shared_ptr<const AssessmentForm>>& forms() const { return forms_; }
+  /// Records of a loop that nobody assesses.
+  std::vector<AssessmentRecord> unassessed() const;
+
+ private:
+  AssessmentRecord assessed(std::size_t method, Assessor& assessor, const AssessedLoop& loop) const;
+
+  QpSolverFactory factory_;
+  AssessmentContext context_;
+  std::vector<std::shared_ptr<const AssessmentForm>> forms_;
+  std::vector<Assessor> assessors_;  ///< of loops under the controller of the study
+};
+
+}  // namespace mpm

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "bench/execution/run_options.hpp"
+#include "bench/execution/stop_request.hpp"
+#include "plants/error.hpp"
+#include "results/archive/campaign.hpp"
+
+namespace mpm {
+
+/// How a campaign is watched and stopped; each may be empty.
+struct CampaignHooks {
+  /// Asked at each step of the basis case, and before each experiment.
+  StopRequest stop = {};
+  /// Called once before the first experiment: an earlier run has left `done` of the `count` experiments.
+  std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
+  /// Called after each experiment that is done, in the order of completion.
+  std::function<void(const ExperimentRecord&)> on_done = {};
+  /// Called with a text that the user must see.
+  std::function<void(const std::string&)> on_warning = {};
+};
+
+/// The basis case of the study failed its self-check: its verdicts would mean nothing.
+class UnhealthyBasis : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Runs the basis case, checks it, and then the experiments, in threads or processes. The records stand in
+/// the order of their index; an experiment whose worker process died is marked `failed` and the campaign goes
+/// on. Basis case, records and audit are those of run_serially(), bit for bit, for any number of jobs, and
+/// whether the campaign was run in one go or resumed. Finished experiments wait in shards in the folder
+/// `shards`, in memory without one. The shards are still there when it returns: they may go when the archive
+/// is written.
+///
+/// Throws InputError for options that make no campaign (threads for a solver that is not thread-safe),
+/// UnhealthyBasis as above (or, when the basis case does not even run through, in any case),
+/// Interrupted when a stop was requested, InputError and ArchiveError of ShardStore,
+/// std::system_error when no worker process can be made.
+Campaign run_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks = {},
+                      const std::optional<std::filesystem::path>& shards = {});
+
+}  // namespace mpm

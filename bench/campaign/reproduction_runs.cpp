@@ -1,0 +1,48 @@
+#include "bench/campaign/reproduction_runs.hpp"
+
+#include <exception>
+#include <optional>
+#include <utility>
+
+#include "analysis/reproduction/seeded_reproduction.hpp"
+
+namespace mpm {
+
+namespace {
+
+/// All tables with one seed. Tables that have a study in common find its basis case made.
+std::vector<ReproducedTable> run_seed(const std::vector<ThesisTable>& tables, std::uint64_t offset,
+                                      const QpSolverFactory& factory, int jobs) {
+  BasisCases basis_cases(factory);
+  std::vector<ReproducedTable> done(tables.size());
+  std::vector<std::exception_ptr> failures(tables.size());  // none may leave a thread
+#pragma omp parallel for schedule(dynamic) num_threads(jobs)
+  for (std::size_t table = 0; table < tables.size(); ++table) {
+    try {
+      done[table] = reproduce(with_seed_offset(tables[table], offset), factory, basis_cases);
+    } catch (...) {
+      failures[table] = std::current_exception();
+    }
+  }
+  for (const std::exception_ptr& failure : failures)
+    if (failure)
+      std::rethrow_exception(failure);
+  return done;
+}
+
+}  // namespace
+
+std::vector<std::vector<ReproducedTable>> run_tables(const std::vector<ThesisTable>& tables, int seed_count,
+                                                     const RunOptions& options) {
+  const QpSolverFactory factory = qp_solver_factory(options.solver);
+  const int jobs = options.solver == "active-set" ? options.jobs : 1;  // Ipopt has no threads
+  std::vector<std::vector<ReproducedTable>> result(tables.size());
+  for (int seed = 0; seed < seed_count; ++seed) {
+    std::vector<ReproducedTable> of_seed = run_seed(tables, static_cast<std::uint64_t>(seed), factory, jobs);
+    for (std::size_t table = 0; table < tables.size(); ++table)
+      result[table].push_back(std::move(of_seed[table]));
+  }
+  return result;
+}
+
+}  // namespace mpm

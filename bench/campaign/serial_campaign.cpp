@@ -1,0 +1,28 @@
+#include "bench/campaign/serial_campaign.hpp"
+
+#include <utility>
+
+#include "bench/campaign/comparison_runner.hpp"
+#include "bench/execution/experiment_work.hpp"
+
+namespace mpm {
+
+Campaign run_serially(Study study, const RunOptions& options) {
+  Campaign campaign;
+  campaign.study = study_to_run(std::move(study), options);
+  campaign.methods = methods_of(campaign.study, "");
+  const QpSolverFactory factory = qp_solver_factory(options.solver);
+  campaign.basis = run_basis_case(campaign.study, factory);
+
+  ExperimentWork work(campaign.study, campaign.basis, options, factory);
+  const std::int64_t count = options.experiments.value_or(campaign.study.experiment_count());
+  for (std::int64_t index = 0; index < count; ++index) {
+    ExperimentOutcome outcome = work.run(index);
+    work.audit(outcome);
+    campaign.records.push_back(std::move(outcome.record));
+    campaign.audit.insert(campaign.audit.end(), outcome.audited.begin(), outcome.audited.end());
+  }
+  return campaign;
+}
+
+}  // namespace mpm

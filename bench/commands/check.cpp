@@ -1,0 +1,49 @@
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/files/archive_input.hpp"
+#include "bench/files/output_file.hpp"
+#include "results/gates/gate_check.hpp"
+#include "results/gates/gate_file.hpp"
+#include "results/gates/gate_report.hpp"
+
+namespace mpm {
+namespace {
+
+struct Options {
+  std::string archive;
+  std::string gates;
+  std::string junit;  ///< no file when empty
+};
+
+ExitCode check(const Options& options) {
+  const Campaign campaign = read_input(options.archive);
+  const GateFile gates = load_gates(options.gates, gate_findings(campaign));
+  std::optional<Campaign> baseline;
+  if (gates.baseline)
+    baseline = read_input(gates.baseline->archive.string());
+  const GateCheck result = check_gates(campaign, gates, baseline ? &*baseline : nullptr);
+  if (!options.junit.empty())
+    write_text(options.junit, gates_junit(result, campaign, options.archive));
+  fmt::print("{}", gates_text(result));
+  return result.passed() ? ExitCode::done : ExitCode::comparison_failed;
+}
+
+}  // namespace
+
+void add_check(CommandSet& commands) {
+  const auto options = std::make_shared<Options>();
+  CLI::App& app = commands.add("check", "Hold an archive against the limits of a gate file",
+                               [options] { return check(*options); });
+  add_archive(app, options->archive);
+  app.add_option("--gates", options->gates, "Gate file (TOML)")->required();
+  app.add_option("--junit", options->junit, "JUnit XML to write");
+}
+
+}  // namespace mpm

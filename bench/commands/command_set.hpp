@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace mpm {
+
+/// Exit codes of the program (README.md).
+enum class ExitCode : int {
+  done = 0,
+  comparison_failed = 1,  ///< a replay that differs, a gate that stops a campaign
+  bad_input = 2,          ///< wrong usage, or a file that is not what it should be
+  not_finished = 3,       ///< the run could not be finished
+};
+
+/// The commands of the program, and what each of them does.
+class CommandSet {
+ public:
+  /// Does the command by the options that were read: results on stdout, progress on stderr. Its exceptions
+  /// become messages and exit codes in execute().
+  using Work = std::function<ExitCode()>;
+
+  /// `program` must outlive it. `command_line` is what the user has typed.
+  CommandSet(CLI::App& program, std::string command_line);
+
+  /// One more command; its options are to be declared in what is returned.
+  CLI::App& add(const std::string& name, const std::string& description, Work work);
+
+  /// What the user has typed, as a shell reads it back; goes into archives.
+  const std::string& command_line() const { return command_line_; }
+
+  /// Does the command that the user has named; there must be one.
+  ExitCode work() const;
+
+ private:
+  CLI::App& program_;
+  std::string command_line_;
+  std::vector<std::pair<const CLI::App*, Work>> commands_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "bench/commands/command_set.hpp"
+
+namespace mpm {
+
+/// Adds a command to the program. A new command is a file commands/NAME.cpp and a line here.
+using AddCommand = void(CommandSet& commands);
+
+AddCommand add_run;        // runs a study and writes its archive
+AddCommand add_replay;     // runs one experiment of an archive again
+AddCommand add_summary;    // what a study found, as text or JSON
+AddCommand add_sweep;      // runs a study once for each value of its open choices
+AddCommand add_check;      // holds an archive against limits
+AddCommand add_report;     // what a study found, as a page and figures
+AddCommand add_plot;       // draws the loop of one experiment
+AddCommand add_compare;    // several methods of assessment on the loops of an archive
+AddCommand add_reproduce;  // the tables of the thesis
+AddCommand add_export;     // a table of an archive as CSV
+AddCommand add_list;       // the shipped studies
+
+/// In the order of the help.
+inline constexpr AddCommand* kCommands[] = {add_run,       add_replay, add_summary, add_sweep,
+                                            add_check,     add_report, add_plot,    add_compare,
+                                            add_reproduce, add_export, add_list};
+
+}  // namespace mpm

@@ -1,0 +1,48 @@
+#include "bench/commands/common_options.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+#include "solvers/qp_solver.hpp"
+
+namespace mpm {
+
+void add_archive(CLI::App& app, std::string& archive) {
+  app.add_option("ARCHIVE", archive, "Archive")->required();
+}
+
+void add_index(CLI::App& app, std::int64_t& index) {
+  app.add_option("INDEX", index, "Index of the experiment")->required()->check(CLI::NonNegativeNumber);
+}
+
+void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments,
+                     const std::string& description) {
+  app.add_option("--experiments", experiments, description)->check(CLI::PositiveNumber);
+}
+
+void add_jobs(CLI::App& app, int& jobs, const std::string& description) {
+  jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  app.add_option("--jobs", jobs, description)->check(CLI::Range(1, 1024))->capture_default_str();
+}
+
+void add_solver(CLI::App& app, std::string& solver) {
+  app.add_option("--solver", solver, "QP solver")
+      ->check(CLI::IsMember(qp_solver_names()))
+      ->capture_default_str();
+}
+
+void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description) {
+  app.add_option("--methods", methods, description)->delimiter(',');
+}
+
+void add_json(CLI::App& app, bool& json) {
+  app.add_flag("--json", json, "As JSON");
+}
+
+void add_quiet(CLI::App& app, bool& quiet, const std::string& description) {
+  app.add_flag("--quiet", quiet, description);
+}
+
+}  // namespace mpm

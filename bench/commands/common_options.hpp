@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace mpm {
+
+// Arguments and options that several commands have, each declared once.
+
+void add_archive(CLI::App& app, std::string& archive);
+void add_index(CLI::App& app, std::int64_t& index);
+void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments, const std::string& description);
+/// As many as there are cores, unless the user says otherwise.
+void add_jobs(CLI::App& app, int& jobs, const std::string& description);
+void add_solver(CLI::App& app, std::string& solver);
+/// Names of methods of assessment; their check is left to the command, which knows what it can be asked for.
+void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description);
+void add_json(CLI::App& app, bool& json);
+void add_quiet(CLI::App& app, bool& quiet, const std::string& description = "No progress");
+
+}  // namespace mpm

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "analysis/methods/method_table.hpp"
+#include "bench/campaign/comparison_runner.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/console/progress.hpp"
+#include "bench/files/archive_input.hpp"
+#include "bench/files/output_file.hpp"
+#include "bench/version.hpp"
+#include "plants/error.hpp"
+#include "results/archive/archive.hpp"
+#include "results/summary/comparison.hpp"
+
+namespace mpm {
+namespace {
+
+struct Options {
+  std::string archive;
+  std::vector<std::string> methods;  ///< empty: all
+  std::string output;                ///< archive with the comparison; none when empty
+  std::optional<std::int64_t> experiments;
+  int jobs = 1;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// Throws InputError for a method that neither this program nor the archive has, or one that is named twice.
+std::vector<std::string> in_archive_or_known(const Campaign& campaign,
+                                             const std::vector<std::string>& named) {
+  const std::vector<std::string> archived = method_names(campaign);
+  std::vector<std::string> others;
+  for (auto method = named.begin(); method != named.end(); ++method) {
+    if (std::find(named.begin(), method, *method) != method)
+      throw InputError("--methods", fmt::format("'{}' twice", *method), "each method once");
+    if (std::find(archived.begin(), archived.end(), *method) == archived.end())
+      others.push_back(*method);
+  }
+  if (!others.empty())
+    known_methods(others, "--methods");
+  return named;
+}
+
+/// Those that the user names, or every method of this program and of the archive.
+std::vector<std::string> asked_methods(const Campaign& campaign, const std::vector<std::string>& named) {
+  if (!named.empty() && named != std::vector<std::string>{"all"})
+    return in_archive_or_known(campaign, named);
+  std::vector<std::string> methods = assessment_method_names();
+  for (const std::string& method : method_names(campaign))
+    if (std::find(methods.begin(), methods.end(), method) == methods.end())
+      methods.push_back(method);
+  return methods;
+}
+
+/// The methods that are asked for and that the archive does not have on all loops that are asked for.
+std::vector<std::string> missing_methods(const Campaign& campaign, const std::vector<std::string>& asked,
+                                         const std::optional<std::int64_t>& experiments) {
+  std::vector<std::string> missing;
+  std::copy_if(asked.begin(), asked.end(), std::back_inserter(missing),
+               [&](const std::string& method) { return !has_answers(campaign, method, experiments); });
+  return missing;
+}
+
+/// Assesses the loops of an archive by the methods that it does not have yet, prints how often each of those
+/// that are asked for is right, and writes the archive with them when an output is asked for. Loops that the
+/// archive has not kept are run again from (study, seed, index).
+ExitCode compare(const Options& options, const std::string& command_line) {
+  Campaign campaign = read_input(options.archive);
+  if (!options.output.empty())
+    require_output_folder(options.output, "archive");
+  const std::int64_t loops = compared_loops(campaign, options.experiments);
+  if (loops == 0)
+    throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
+  const std::vector<std::string> asked = asked_methods(campaign, options.methods);
+  const std::vector<std::string> missing = missing_methods(campaign, asked, options.experiments);
+  if (!missing.empty()) {
+    Progress progress(options.quiet);
+    progress.begin(loops);
+    const auto on_done = [&] {
+      progress.advance();
+      progress.end_when_requested();
+    };
+    add_methods(campaign, {missing, options.experiments, options.jobs, on_done}, command_line);
+  }
+  if (!options.output.empty())
+    write_archive(options.output, campaign, findings_of(campaign));
+  const Campaign shown = with_methods(std::move(campaign), asked, options.experiments);
+  const StudyFindings findings = findings_of(shown);
+  fmt::print("{}", options.json ? comparison_json(shown, findings) : comparison_text(shown, findings));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_compare(CommandSet& commands) {
+  const auto options = std::make_shared<Options>();
+  CLI::App& app =
+      commands.add("compare", "Assess the loops of an archive by several methods: how often is each right?",
+                   [options, &commands] { return compare(*options, commands.command_line()); });
+  add_archive(app, options->archive);
+  add_methods_option(app, options->methods, "Methods, separated by commas, or all");
+  app.add_option("-o,--output", options->output,
+                 "Archive to write with the comparison in it (HDF5); may be ARCHIVE itself");
+  add_experiments(app, options->experiments, "Compare on the first N experiments only");
+  add_jobs(app, options->jobs, "How many loops are assessed at once");
+  add_json(app, options->json);
+  add_quiet(app, options->quiet);
+}
+
+}  // namespace mpm

@@ -1,0 +1,80 @@
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "analysis/basis/tuned_basis.hpp"
+#include "analysis/sensitivity/nominal_estimator.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/files/archive_input.hpp"
+#include "bench/files/output_file.hpp"
+#include "plants/error.hpp"
+#include "results/plot/figure_drawing.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/plot/trajectory_figure.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+struct Options {
+  std::string archive;
+  std::int64_t index = 0;
+  std::string output;  ///< its extension names the format
+};
+
+/// The loop that was diagnosed: the one in the archive, or the same once more.
+LoopRecord loop_of(const Campaign& campaign, const ExperimentRecord& record) {
+  if (record.loop)
+    return *record.loop;
+  ExperimentRunner runner(campaign.study, campaign.basis, {}, qp_solver_factory(campaign.info.solver));
+  return std::move(*runner.run(record.draw.index, StorePolicy::all).loop);
+}
+
+/// y0 of the loop, from the S0 by which it was diagnosed. A loop without one of its own gets that of the
+/// study.
+NominalOutputs nominal_of(const Campaign& campaign, const ExperimentRecord& record, const LoopRecord& loop) {
+  const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
+  const std::optional<TunedBasis> own = tuned_basis(campaign.study, record.draw, factory);
+  const bool takes_own = own && own->basis.trajectory.status == ControlStatus::ok;
+  const Study& study = takes_own ? own->study : campaign.study;
+  const BasisCase& basis = takes_own ? own->basis : campaign.basis;
+  return NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(loop.trajectory);
+}
+
+ExitCode plot(const Options& options) {
+  const FigureFormat format = figure_format_of(options.output);
+  require_output_folder(options.output, "figure");
+  const Campaign campaign = read_input(options.archive);
+  const ExperimentRecord& record = experiment_of(campaign, options.index);
+  const LoopRecord loop = loop_of(campaign, record);
+  if (loop.trajectory.samples_done == 0)
+    throw InputError(
+        "INDEX",
+        fmt::format("{}, whose closed loop has no samples ({})", options.index, to_string(record.status)),
+        "an experiment that ran");
+  Figure figure =
+      trajectory_figure(campaign.study, loop.trajectory, nominal_of(campaign, record, loop), "experiment");
+  for (const std::string& line : experiment_heading(campaign.study, record))
+    figure.heading.push_back(as_label(line));
+  write_text(options.output, draw_figure(figure, format));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_plot(CommandSet& commands) {
+  const auto options = std::make_shared<Options>();
+  CLI::App& app =
+      commands.add("plot", "Draw the closed loop of one experiment", [options] { return plot(*options); });
+  add_archive(app, options->archive);
+  add_index(app, options->index);
+  app.add_option("-o,--output", options->output, "Figure to write: NAME.svg, NAME.pdf or NAME.png")
+      ->required();
+}
+
+}  // namespace mpm

@@ -1,0 +1,53 @@
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/files/archive_input.hpp"
+#include "results/archive/record_bytes.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+struct Options {
+  std::string archive;
+  std::int64_t index = 0;
+};
+
+ExitCode replay(const Options& options) {
+  const Campaign campaign = read_input(options.archive);
+  const ExperimentRecord& archived = experiment_of(campaign, options.index);
+
+  // From (study, seed, index) alone: the basis case is made again too.
+  const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
+  const BasisCase basis = run_basis_case(campaign.study, factory);
+  const ExperimentRecord again =
+      ExperimentRunner(campaign.study, basis, method_names(campaign), factory)
+          .run(options.index, archived.loop ? StorePolicy::all : StorePolicy::none);
+  const std::vector<std::string> differences =
+      RecordBytes(campaign.study, forms_of(campaign)).differences(archived, again);
+  fmt::print("experiment {}: {}, {}\n", options.index, to_string(again.draw.kind), to_string(again.status));
+  fmt::print("{}\n", experiment_line(campaign.study, again));
+  if (differences.empty())
+    fmt::print("bit-identical to the archive\n");
+  else
+    fmt::print("DIFFERS from the archive: {}\n", fmt::join(differences, ", "));
+  return differences.empty() ? ExitCode::done : ExitCode::comparison_failed;
+}
+
+}  // namespace
+
+void add_replay(CommandSet& commands) {
+  const auto options = std::make_shared<Options>();
+  CLI::App& app =
+      commands.add("replay", "Run one experiment of an archive again and say whether it is bit-identical",
+                   [options] { return replay(*options); });
+  add_archive(app, options->archive);
+  add_index(app, options->index);
+}
+
+}  // namespace mpm

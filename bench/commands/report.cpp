@@ -1,0 +1,60 @@
+#include "results/report/report.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/files/archive_input.hpp"
+#include "bench/files/output_file.hpp"
+
+namespace mpm {
+namespace {
+
+struct Options {
+  std::string archive;
+  std::string output;   ///< no page when empty
+  std::string figures;  ///< folder; no figures as files when empty
+  std::string format = "svg";
+};
+
+ExitCode report(const Options& options) {
+  const FigureFormat format = figure_format(options.format);
+  if (!options.output.empty())
+    require_output_folder(options.output, "page");
+  const Campaign campaign = read_input(options.archive);
+  const StudyFindings findings = findings_of(campaign);
+  if (!options.output.empty()) {
+    write_text(options.output, report_html(campaign, findings, options.archive));
+    fmt::print("{}\n", options.output);
+  }
+  if (!options.figures.empty())
+    for (const std::filesystem::path& file : write_figures(campaign, findings, options.figures, format))
+      fmt::print("{}\n", file.string());
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_report(CommandSet& commands) {
+  const auto options = std::make_shared<Options>();
+  CLI::App& app =
+      commands.add("report", "Write what a study found as one HTML page, and its figures as files",
+                   [options] { return report(*options); });
+  add_archive(app, options->archive);
+  CLI::Option_group* const outputs = app.add_option_group("outputs", "What to write, one or both");
+  outputs->add_option("-o,--output", options->output, "Page to write (HTML)");
+  CLI::Option* const figures =
+      outputs->add_option("--figures", options->figures, "Folder to write the figures into, one file each");
+  outputs->require_option(1, 2);
+  app.add_option("--format", options->format, "Format of these files")
+      ->check(CLI::IsMember(figure_format_names()))
+      ->needs(figures)
+      ->capture_default_str();
+}
+
+}  // namespace mpm

@@ -1,0 +1,139 @@
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "bench/campaign/campaign_runner.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/console/progress.hpp"
+#include "bench/files/output_file.hpp"
+#include "bench/shards/shard_folder.hpp"
+#include "plants/error.hpp"
+#include "results/archive/archive.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/study_library.hpp"
+
+namespace mpm {
+namespace {
+
+struct Options {
+  std::string study;
+  std::string output;
+  RunOptions run;
+  bool quiet = false;
+};
+
+/// The end of a message about a run that was not finished; empty when no shard is left to go on with.
+std::string how_to_go_on(const Options& options, std::string command_line) {
+  if (!has_shards(options.output))
+    return "";
+  constexpr std::string_view kDiscard = " --discard";
+  if (options.run.leftovers == Leftovers::discard)
+    command_line.erase(command_line.rfind(kDiscard), kDiscard.size());
+  return fmt::format("\nWhat is done is kept in {}. To go on with it:\n  {}{}",
+                     shard_folder_of(options.output).string(), command_line,
+                     options.run.leftovers == Leftovers::resume ? "" : " --resume");
+}
+
+/// After the archive is written: removes the shards, and what killed runs have left.
+void clean_up(const std::filesystem::path& output) {
+  ShardFolder shards(shard_folder_of(output));
+  shards.clear();
+  remove_abandoned_files(output);
+}
+
+ExitCode run(const Options& options, const std::string& command_line) {
+  const Study study = find_study(options.study);
+  require_output_folder(options.output, "archive");
+
+  Progress progress(options.quiet);
+  try {
+    Campaign campaign = run_campaign(study, options.run, hooks_of(progress), shard_folder_of(options.output));
+    note_command(campaign, command_line);
+    const StudyFindings findings = findings_of(campaign);
+    write_archive(options.output, campaign, findings);
+    clean_up(options.output);
+    if (!options.quiet)
+      fmt::print("{}", summary_text(campaign, findings, options.output));
+  } catch (const InputError&) {
+    throw;
+  } catch (const Interrupted& error) {
+    throw std::runtime_error(progress.explain(error) + how_to_go_on(options, command_line));
+  } catch (const std::exception& error) {
+    throw std::runtime_error(error.what() + how_to_go_on(options, command_line));
+  }
+  return ExitCode::done;
+}
+
+void add_parallel(CLI::App& app, Parallel& parallel) {
+  const std::map<std::string, Parallel> ways{
+      {"by-solver", Parallel::by_solver}, {"threads", Parallel::threads}, {"processes", Parallel::processes}};
+  app.add_option("--parallel", parallel,
+                 "Run experiments in threads (auto, active-set only) or in worker processes (all solvers)")
+      ->transform(CLI::CheckedTransformer(ways))
+      ->default_str("by-solver");
+}
+
+void add_audit(CLI::App& app, double& share) {
+  app.add_option("--audit", share,
+                 "Share of the steps whose problems Ipopt solves once more, with the solver auto")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+}
+
+void add_store(CLI::App& app, StorePolicy& store) {
+  const std::map<std::string, StorePolicy> policies{
+      {"none", StorePolicy::none}, {"flagged", StorePolicy::flagged}, {"all", StorePolicy::all}};
+  app.add_option("--store", store,
+                 "Keep the loop data of no experiment, of those with a wrong verdict, of all")
+      ->transform(CLI::CheckedTransformer(policies))
+      ->default_str("flagged");
+}
+
+/// `run` must live until the command line is read.
+void add_interruption(CLI::App& app, RunOptions& run) {
+  CLI::Option* const resume = app.add_flag_callback(
+      "--resume", [&run] { run.leftovers = Leftovers::resume; },
+      "Go on with an interrupted run of this output: run only what is missing");
+  app.add_flag_callback(
+         "--discard", [&run] { run.leftovers = Leftovers::discard; },
+         "Delete what an interrupted run of this output has done, and start anew")
+      ->excludes(resume);
+  app.add_option(
+         "--shard-interval", run.shard_interval,
+         "Seconds between two shards, which keep what is finished: as much is lost when a run is killed")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_run(CommandSet& commands) {
+  const auto options = std::make_shared<Options>();
+  CLI::App& app = commands.add("run", "Run a study and write its archive",
+                               [options, &commands] { return run(*options, commands.command_line()); });
+  app.add_option("STUDY", options->study, "Study file, or name of a shipped study")->required();
+  app.add_option("-o,--output", options->output, "Archive to write (HDF5)")->required();
+  add_experiments(app, options->run.experiments, "Run the first N experiments; any N keeps the proportions");
+  app.add_option("--seed", options->run.seed, "Master seed instead of the study's");
+  add_methods_option(app, options->run.methods,
+                     "Methods that assess the loops, separated by commas, or all; in place of the study's");
+  add_jobs(app, options->run.jobs, "How many experiments run at once");
+  add_solver(app, options->run.solver);
+  add_parallel(app, options->run.parallel);
+  add_audit(app, options->run.audit_share);
+  add_store(app, options->run.store);
+  app.add_flag("--allow-unhealthy-basis", options->run.allow_unhealthy_basis,
+               "Run although the basis case fails its self-check");
+  add_interruption(app, options->run);
+  add_quiet(app, options->quiet, "No progress and no summary");
+}
+
+}  // namespace mpm

@@ -1,0 +1,38 @@
+#include "results/summary/summary.hpp"
+
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/files/archive_input.hpp"
+
+namespace mpm {
+namespace {
+
+struct Options {
+  std::string archive;
+  bool json = false;
+};
+
+ExitCode summary(const Options& options) {
+  const Campaign campaign = read_input(options.archive);
+  const StudyFindings findings = findings_of(campaign);
+  fmt::print("{}", options.json ? summary_json(campaign, findings)
+                                : summary_text(campaign, findings, options.archive));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_summary(CommandSet& commands) {
+  const auto options = std::make_shared<Options>();
+  CLI::App& app = commands.add("summary", "Print what a study found, beside what was reported",
+                               [options] { return summary(*options); });
+  add_archive(app, options->archive);
+  add_json(app, options->json);
+}
+
+}  // namespace mpm

@@ -1,0 +1,106 @@
+#include "bench/console/progress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace mpm {
+namespace {
+
+std::string duration(double seconds) {
+  const auto whole = std::lround(seconds);
+  return whole < 60     ? fmt::format("{} s", whole)
+         : whole < 3600 ? fmt::format("{}:{:02} min", whole / 60, whole % 60)
+                        : fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
+}
+
+}  // namespace
+
+Progress::Progress(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  end_line();
+}
+
+void Progress::begin(std::int64_t total, std::int64_t done) {
+  end_line();
+  total_ = total;
+  earlier_ = done_ = done;
+  failed_ = 0;
+  start_ = shown_ = Clock::now();
+  if (done > 0)
+    note(fmt::format("{} of {} experiments are done already", done, total));
+}
+
+void Progress::advance(bool failed) {
+  ++done_;
+  if (failed)
+    ++failed_;
+  const auto pause = terminal_ ? std::chrono::milliseconds(200) : std::chrono::seconds(10);
+  if (!quiet_ && (Clock::now() - shown_ >= pause || done_ >= total_))
+    show();
+}
+
+void Progress::note(const std::string& text) {
+  if (quiet_)
+    return;
+  end_line();
+  fmt::print(stderr, "{}\n", text);
+}
+
+void Progress::warn(const std::string& text) {
+  end_line();
+  fmt::print(stderr, "mpmbench: warning: {}\n", text);
+}
+
+std::string Progress::explain(const Interrupted& error) const {
+  return fmt::format("{}: {}", signals_.name(), error.what());
+}
+
+void Progress::end_when_requested() const {
+  if (stop_requested() && done_ < total_)
+    throw std::runtime_error(explain(Interrupted(done_, total_)));
+}
+
+void Progress::show() {
+  shown_ = Clock::now();
+  const double seconds = std::chrono::duration<double>(shown_ - start_).count();
+  const double rate = static_cast<double>(done_ - earlier_) / std::max(seconds, 1e-9);
+  const std::string text = fmt::format("{}/{} experiments, {:.3g}/s, {} left{}", done_, total_, rate,
+                                       duration(static_cast<double>(total_ - done_) / rate),
+                                       failed_ > 0 ? fmt::format(", {} failed", failed_) : "");
+  if (terminal_) {
+    constexpr int kWidth = 30;
+    const auto filled = static_cast<int>(kWidth * done_ / std::max<std::int64_t>(total_, 1));
+    fmt::print(stderr, "\r[{:<{}}] {}\033[K", std::string(static_cast<std::size_t>(filled), '#'), kWidth,
+               text);
+    std::fflush(stderr);
+    in_line_ = true;
+    if (done_ >= total_)
+      end_line();
+  } else {
+    fmt::print(stderr, "{}\n", text);
+  }
+}
+
+void Progress::end_line() {
+  if (in_line_)
+    fmt::print(stderr, "\n");
+  in_line_ = false;
+}
+
+CampaignHooks hooks_of(Progress& progress) {
+  return {.stop = [&progress] { return progress.stop_requested(); },
+          .on_start = [&progress](std::int64_t done, std::int64_t count) { progress.begin(count, done); },
+          .on_done =
+              [&progress](const ExperimentRecord& record) {
+                progress.advance(record.status == ExperimentStatus::failed);
+              },
+          .on_warning = [&progress](const std::string& text) { progress.warn(text); }};
+}
+
+}  // namespace mpm

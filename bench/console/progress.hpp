@@ -1,0 +1,57 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "bench/campaign/campaign_runner.hpp"
+#include "bench/console/stop_signals.hpp"
+#include "bench/execution/stop_request.hpp"
+
+namespace mpm {
+
+/// Long work as the user sees it, made once by a command: shows on stderr how far it has come (a line that is
+/// rewritten on a terminal, a plain line every now and then otherwise), and takes Ctrl-C and SIGTERM as a
+/// request to stop. Its end, also by an exception, ends the line. At most one at a time.
+class Progress {
+ public:
+  /// `quiet`: shows nothing but warnings.
+  explicit Progress(bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Work of `total` experiments begins; `done` of them were done before and do not count in the rate.
+  void begin(std::int64_t total, std::int64_t done = 0);
+  /// One more is done; `failed` when it is worth mentioning. One call at a time.
+  void advance(bool failed = false);
+
+  /// A line of its own, unless quiet.
+  void note(const std::string& text);
+  /// The same, quiet or not.
+  void warn(const std::string& text);
+
+  /// From any thread.
+  bool stop_requested() const { return signals_.received(); }
+  /// What stopped the work, and where: "SIGINT: stopped when ...".
+  std::string explain(const Interrupted& error) const;
+  /// Throws std::runtime_error with that text when a stop was requested and something is left to do.
+  void end_when_requested() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void show();
+  void end_line();
+
+  const StopSignals signals_;
+  const bool quiet_, terminal_;
+  std::int64_t total_ = 0, earlier_ = 0, done_ = 0, failed_ = 0;
+  Clock::time_point start_, shown_;
+  bool in_line_ = false;  ///< the line on the terminal is not ended
+};
+
+/// The hooks that show a campaign, and stop it.
+CampaignHooks hooks_of(Progress& progress);
+
+}  // namespace mpm

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "bench/execution/run_options.hpp"
+#include "bench/execution/stop_request.hpp"
+#include "bench/outcome/experiment_outcome.hpp"
+
+namespace mpm {
+
+/// The experiments that are to be run.
+struct ExecutionPlan {
+  const Study& study;
+  const BasisCase& basis;
+  const RunOptions& options;
+  std::vector<std::int64_t> indices;  ///< each once
+};
+
+/// Takes the outcome of each experiment, its audits done, in the order in which they come; one call at a
+/// time, but from any thread. An exception from it ends the execution and is passed on.
+using OutcomeSink = std::function<void(ExperimentOutcome)>;
+
+// When a stop is requested, both give out no more experiments and return: without those in worker processes,
+// which may take minutes, and with those in threads, which take milliseconds, unless they wait for an audit.
+
+/// Runs the experiments in `options.jobs` worker processes: any solver, and a crash costs one experiment
+/// only. The process must have no other thread.
+void execute_in_processes(const ExecutionPlan& plan, const StopRequest& stop, const OutcomeSink& deliver);
+
+/// Runs the experiments in `options.jobs` OpenMP threads by the active-set method. Only the solvers `auto`
+/// and `active-set` can run so. What needs Ipopt goes to worker processes, which are forked before the first
+/// thread starts: audits, and with `auto` the experiments in which some answer was not certified, as a whole.
+/// The outcomes are those of execute_in_processes(), bit for bit.
+void execute_in_threads(const ExecutionPlan& plan, const StopRequest& stop, const OutcomeSink& deliver);
+
+}  // namespace mpm

@@ -1,0 +1,63 @@
+#include "bench/execution/experiment_work.hpp"
+
+#include <ctime>
+#include <exception>
+#include <utility>
+
+#include "analysis/methods/method_table.hpp"
+
+namespace mpm {
+namespace {
+
+double processor_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+}  // namespace
+
+ExperimentWork::ExperimentWork(const Study& study, const BasisCase& basis, const RunOptions& options,
+                               const QpSolverFactory& factory)
+    : study_(study), options_(options), runner_(study, basis, study_methods(study), factory) {}
+
+ExperimentOutcome ExperimentWork::run(std::int64_t index) {
+  ExperimentOutcome outcome;
+  try {
+    AuditSampler sampler(study_.seed, index, audited_share(options_));
+    outcome.record =
+        runner_.run(index, options_.store, [&](const Mpc& controller) { sampler.observe(controller); });
+    outcome.samples = sampler.take();
+  } catch (const std::exception& error) {
+    outcome = {};
+    outcome.record = lost_record(study_, index, error.what());
+  }
+  return outcome;
+}
+
+void ExperimentWork::audit(ExperimentOutcome& outcome) {
+  if (outcome.samples.empty())
+    return;
+  const double start = processor_seconds();
+  if (!auditor_)
+    auditor_.emplace(study_, qp_solver_factory("ipopt"));
+  std::optional<Auditor> own;  // weights are in the structure of a problem
+  if (outcome.record.draw.tuning)
+    own.emplace(with_tuning(study_, outcome.record.draw), qp_solver_factory("ipopt"));
+  for (const AuditSample& sample : outcome.samples)
+    outcome.audited.push_back((own ? *own : *auditor_).check(sample));
+  outcome.samples.clear();
+  outcome.audit_seconds += processor_seconds() - start;
+}
+
+ExperimentRecord lost_record(const Study& study, std::int64_t index, std::string why) {
+  ExperimentRecord record;
+  record.draw = draw_experiment(study, index);
+  record.status = ExperimentStatus::failed;
+  record.message = std::move(why);
+  for (auto& form : assessment_forms(study, study_methods(study))) {
+    record.assessments.emplace_back();
+    record.assessments.back().form = std::move(form);
+  }
+  return record;
+}
+
+}  // namespace mpm

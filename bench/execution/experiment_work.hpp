@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "bench/execution/run_options.hpp"
+#include "bench/outcome/experiment_outcome.hpp"
+
+namespace mpm {
+
+/// The work of a campaign, as one worker does it: runs experiments and audits steps. Belongs to one thread or
+/// process.
+class ExperimentWork {
+ public:
+  /// `study`, `basis` and `options` must outlive it. `factory` makes the solvers of the controllers: that of
+  /// `options.solver`, or the part of it that bears threads.
+  ExperimentWork(const Study& study, const BasisCase& basis, const RunOptions& options,
+                 const QpSolverFactory& factory);
+
+  /// Experiment `index` without its audits. An exception makes a record `failed` with its text.
+  ExperimentOutcome run(std::int64_t index);
+
+  /// Audits the samples of an outcome. Calls Ipopt.
+  void audit(ExperimentOutcome& outcome);
+
+ private:
+  const Study& study_;
+  const RunOptions& options_;
+  ExperimentRunner runner_;
+  std::optional<Auditor> auditor_;  ///< made when first needed
+};
+
+/// The record of an experiment that was lost, with the reason.
+ExperimentRecord lost_record(const Study& study, std::int64_t index, std::string why);
+
+}  // namespace mpm

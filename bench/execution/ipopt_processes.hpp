@@ -1,0 +1,38 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "bench/execution/experiment_execution.hpp"
+#include "bench/execution/experiment_work.hpp"
+#include "bench/execution/worker_pool.hpp"
+#include "bench/outcome/outcome_bytes.hpp"
+
+namespace mpm {
+
+/// Worker processes beside threads, for what needs Ipopt. They are forked by the constructor, which must run
+/// before the first thread starts.
+class IpoptProcesses {
+ public:
+  /// `options.jobs` processes. What `plan` refers to must outlive them.
+  explicit IpoptProcesses(const ExecutionPlan& plan);
+
+  /// An outcome with samples waits for their audit; one without, for its experiment to be run anew.
+  void add(ExperimentOutcome outcome) { waiting_.push_back(std::move(outcome)); }
+
+  /// Works off everything that was added, unless it is to stop.
+  void finish(const StopRequest& stop, const OutcomeSink& deliver);
+
+ private:
+  ExperimentOutcome lost(const TaskResult& result);
+
+  const Study& study_;
+  OutcomeBytes bytes_;
+  std::shared_ptr<ExperimentWork> work_;
+  WorkerPool pool_;
+  std::deque<ExperimentOutcome> waiting_;
+  std::vector<ExperimentOutcome> under_way_;
+};
+
+}  // namespace mpm

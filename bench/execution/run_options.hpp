@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "analysis/experiment/experiment.hpp"
+
+namespace mpm {
+
+/// What runs experiments at the same time. `by_solver`: threads for `auto` and `active-set`, whose
+/// experiments take milliseconds; processes for the others, because Ipopt with sequential MUMPS is not
+/// thread-safe.
+enum class Parallel { by_solver, threads, processes };
+
+/// What becomes of the shards of an interrupted run.
+enum class Leftovers { refuse, resume, discard };
+
+/// How studies are run: filled by the command line, and handed down unchanged to the worker.
+struct RunOptions {
+  // These decide what comes out.
+  std::optional<std::int64_t> experiments = {};  ///< the first N experiments instead of one full study
+  std::optional<std::uint64_t> seed = {};        ///< master seed instead of the study's
+  std::vector<std::string> methods = {};         ///< of assessment instead of the study's; empty: those
+  std::string solver = "auto";                   ///< a name that qp_solver_factory knows
+  double audit_share = 0.001;                    ///< share of the steps that Ipopt audits; with `auto` only
+  StorePolicy store = StorePolicy::flagged;      ///< which loops are kept
+  bool allow_unhealthy_basis = false;            ///< run although the basis case fails its self-check
+
+  // These change no number.
+  int jobs = 1;  ///< how many experiments run at once
+  Parallel parallel = Parallel::by_solver;
+  Leftovers leftovers = Leftovers::refuse;
+  /// A shard is written when the last one is this old, in s, >= 0. A run that is killed loses as much at
+  /// most, beside what is under way; with 2 s, ten hours make 18000 files, which a folder holds well.
+  double shard_interval = 2.0;
+};
+
+/// The study that is run with these options: with their seed and methods, all of them spelled out. Throws
+/// InputError for an unknown method.
+Study study_to_run(Study study, const RunOptions& options);
+
+/// The share of the steps that is audited: the other solvers have nothing to be audited by.
+inline double audited_share(const RunOptions& options) {
+  return options.solver == "auto" ? options.audit_share : 0.0;
+}
+
+}  // namespace mpm

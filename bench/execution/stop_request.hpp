@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+
+namespace mpm {
+
+/// Says whether work is to stop; asked by several threads at once. May be empty: it never is.
+using StopRequest = std::function<bool()>;
+
+inline bool requested(const StopRequest& stop) {
+  return stop && stop();
+}
+
+/// Work was stopped before its end.
+class Interrupted : public std::runtime_error {
+ public:
+  /// "stopped when `done` of `count` experiments were done"
+  Interrupted(std::int64_t done, std::int64_t count);
+};
+
+}  // namespace mpm

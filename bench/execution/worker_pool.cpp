@@ -1,0 +1,233 @@
+#include "bench/execution/worker_pool.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace mpm {
+namespace {
+
+/// Header of a message: its length and, for an answer, whether it is one.
+struct Header {
+  std::int64_t failed;
+  std::int64_t size;
+};
+
+bool send_all(int socket, const void* data, std::size_t size) {
+  const char* next = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t sent = ::send(socket, next, size, MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR)
+      continue;
+    if (sent <= 0)
+      return false;
+    next += sent;
+    size -= static_cast<std::size_t>(sent);
+  }
+  return true;
+}
+
+bool receive_all(int socket, void* data, std::size_t size) {
+  char* next = static_cast<char*>(data);
+  while (size > 0) {
+    const ssize_t received = ::recv(socket, next, size, 0);
+    if (received < 0 && errno == EINTR)
+      continue;
+    if (received <= 0)
+      return false;
+    next += received;
+    size -= static_cast<std::size_t>(received);
+  }
+  return true;
+}
+
+bool send_message(int socket, const std::string& bytes, bool failed) {
+  const Header header{failed ? 1 : 0, static_cast<std::int64_t>(bytes.size())};
+  return send_all(socket, &header, sizeof header) && send_all(socket, bytes.data(), bytes.size());
+}
+
+bool receive_message(int socket, std::string& bytes, bool& failed) {
+  Header header{};
+  if (!receive_all(socket, &header, sizeof header))
+    return false;
+  failed = header.failed != 0;
+  bytes.resize(static_cast<std::size_t>(header.size));
+  return receive_all(socket, bytes.data(), bytes.size());
+}
+
+[[noreturn]] void work_until_closed(int socket, const WorkerPool::Work& work) {
+  std::string request, answer;
+  bool failed = false;
+  while (receive_message(socket, request, failed)) {
+    try {
+      answer = work(request);
+      failed = false;
+    } catch (const std::exception& error) {
+      answer = error.what();
+      failed = true;
+    }
+    if (!send_message(socket, answer, failed))
+      break;
+  }
+  // Not exit(): destructors and buffers belong to the parent.
+  ::_exit(0);
+}
+
+}  // namespace
+
+/// One worker process and the parent's end of its socket.
+class WorkerPool::Worker {
+ public:
+  Worker(const Work& work, const std::vector<std::unique_ptr<Worker>>& siblings) {
+    int ends[2];
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+      throw std::system_error(errno, std::generic_category(), "no socket for a worker process");
+    const pid_t parent = ::getpid();
+    pid_ = ::fork();
+    if (pid_ < 0) {
+      const int error = errno;
+      ::close(ends[0]);
+      ::close(ends[1]);
+      throw std::system_error(error, std::generic_category(), "no worker process");
+    }
+    if (pid_ == 0) {
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+      if (::getppid() != parent)
+        ::_exit(0);  // the parent died before the line above
+      ::close(ends[0]);
+      for (const auto& sibling : siblings)
+        ::close(sibling->socket_);
+      work_until_closed(ends[1], work);
+    }
+    ::close(ends[1]);
+    socket_ = ends[0];
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  ~Worker() {
+    ::close(socket_);
+    if (pid_ <= 0)
+      return;
+    ::kill(pid_, SIGKILL);  // idle, or given up: there is nothing it could still finish
+    while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+
+  /// A worker that is gone shows when its answer is read.
+  void start(std::int64_t task, const std::string& request) {
+    task_ = task;
+    send_message(socket_, request, false);
+  }
+
+  /// The answer to the task under way; blocks until it is whole.
+  TaskResult finish() {
+    TaskResult result{std::exchange(task_, kNoTask), true, {}};
+    if (!receive_message(socket_, result.bytes, result.crashed)) {
+      result.crashed = true;
+      result.bytes = how_it_ended();
+    }
+    return result;
+  }
+
+  bool idle() const { return task_ == kNoTask; }
+  int socket() const { return socket_; }
+  bool alive() const { return pid_ > 0; }
+
+ private:
+  static constexpr std::int64_t kNoTask = -1;
+
+  std::string how_it_ended() {
+    int status = 0;
+    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    }
+    pid_ = -1;
+    return WIFSIGNALED(status) ? fmt::format("worker process ended by signal {} ({})", WTERMSIG(status),
+                                             ::strsignal(WTERMSIG(status)))
+                               : fmt::format("worker process ended with code {}", WEXITSTATUS(status));
+  }
+
+  pid_t pid_ = -1;
+  int socket_ = -1;
+  std::int64_t task_ = kNoTask;
+};
+
+WorkerPool::WorkerPool(int jobs, Work work) : work_(std::move(work)) {
+  const auto wanted = static_cast<std::size_t>(std::max(jobs, 1));
+  workers_.reserve(wanted);
+  while (workers_.size() < wanted)
+    workers_.push_back(std::make_unique<Worker>(work_, workers_));
+}
+
+WorkerPool::~WorkerPool() = default;
+
+bool WorkerPool::has_idle() const {
+  return std::any_of(workers_.begin(), workers_.end(), [](const auto& worker) { return worker->idle(); });
+}
+
+bool WorkerPool::has_busy() const {
+  return std::any_of(workers_.begin(), workers_.end(), [](const auto& worker) { return !worker->idle(); });
+}
+
+void WorkerPool::start(std::int64_t id, const std::string& request) {
+  const auto idle =
+      std::find_if(workers_.begin(), workers_.end(), [](const auto& worker) { return worker->idle(); });
+  assert(idle != workers_.end());
+  (*idle)->start(id, request);
+}
+
+TaskResult WorkerPool::wait() {
+  constexpr std::chrono::milliseconds kForever(-1);  // as poll() has it
+  for (;;)
+    if (std::optional<TaskResult> result = wait_for(kForever))
+      return std::move(*result);
+}
+
+std::optional<TaskResult> WorkerPool::wait_for(std::chrono::milliseconds longest) {
+  assert(has_busy());
+  std::vector<pollfd> watched(workers_.size());
+  for (std::size_t w = 0; w < workers_.size(); ++w)  // poll() passes over negative descriptors
+    watched[w] = {workers_[w]->idle() ? -1 : workers_[w]->socket(), POLLIN, 0};
+  const int count = ::poll(watched.data(), watched.size(), static_cast<int>(longest.count()));
+  if (count < 0 && errno != EINTR)
+    throw std::system_error(errno, std::generic_category(), "waiting for worker processes");
+  if (count <= 0)
+    return std::nullopt;
+  std::size_t ready = 0;
+  while (watched[ready].revents == 0)
+    ++ready;
+  return finish(ready);
+}
+
+TaskResult WorkerPool::finish(std::size_t position) {
+  TaskResult result = workers_[position]->finish();
+  if (!workers_[position]->alive()) {
+    workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(position));
+    workers_.push_back(std::make_unique<Worker>(work_, workers_));
+  }
+  return result;
+}
+
+std::optional<TaskResult> next_finding(WorkerPool& pool, const StopRequest& stop) {
+  constexpr std::chrono::milliseconds kLook(100);
+  std::optional<TaskResult> result = pool.wait_for(kLook);
+  if (result && result->crashed && requested(stop))
+    return std::nullopt;
+  return result;
+}
+
+}  // namespace mpm

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include "results/archive/campaign.hpp"
+
+namespace mpm {
+
+/// An archive that was to be read and cannot be: wrong input, where one that cannot be written is a run that
+/// cannot be finished.
+class BadArchive : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// read_archive() for an archive that a command was given. Throws BadArchive.
+Campaign read_input(const std::string& archive);
+
+/// The experiment of this index. Throws InputError, which names the indices that there are.
+const ExperimentRecord& experiment_of(const Campaign& campaign, std::int64_t index);
+
+}  // namespace mpm

@@ -1,0 +1,26 @@
+#include "bench/files/output_file.hpp"
+
+#include <span>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "results/files/archive_error.hpp"
+#include "results/files/atomic_file.hpp"
+
+namespace mpm {
+
+void require_output_folder(const std::filesystem::path& output, std::string_view what) {
+  const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder) || ::access(folder.c_str(), W_OK) != 0)
+    throw ArchiveError(fmt::format("{}: no {} can be written: its folder does not exist or is not writable",
+                                   output.string(), what));
+  if (std::filesystem::is_directory(output))
+    throw ArchiveError(fmt::format("{}: no {} can be written: it is a folder", output.string(), what));
+}
+
+void write_text(const std::filesystem::path& output, std::string_view text) {
+  write_file_atomically(output, std::as_bytes(std::span(text)));
+}
+
+}  // namespace mpm

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace mpm {
+
+/// Refuses an output that is sure to fail before work is spent on it; `what` is to be written. Throws
+/// ArchiveError.
+void require_output_folder(const std::filesystem::path& output, std::string_view what);
+
+/// Writes a page, a table or another text, all or nothing. Throws ArchiveError when it cannot be written.
+void write_text(const std::filesystem::path& output, std::string_view text);
+
+}  // namespace mpm

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "bench/outcome/experiment_outcome.hpp"
+#include "results/archive/record_bytes.hpp"
+
+namespace mpm {
+
+/// Outcomes of the experiments of one study as bytes, for the way between a process and its workers, and into
+/// shards.
+class OutcomeBytes {
+ public:
+  /// For the methods of the study, which must outlive it.
+  explicit OutcomeBytes(const Study& study);
+
+  std::string to_bytes(const ExperimentOutcome& outcome) const;
+
+  /// The outcome again. Throws std::runtime_error when the bytes are too short or too long, InputError for an
+  /// experiment that the study has not.
+  ExperimentOutcome from_bytes(std::string_view bytes) const;
+
+ private:
+  RecordBytes records_;
+};
+
+}  // namespace mpm

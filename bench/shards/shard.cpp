@@ -1,0 +1,110 @@
+#include "bench/shards/shard.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "bench/outcome/outcome_bytes.hpp"
+#include "plants/error.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/files/byte_stream.hpp"
+#include "results/files/file_seal.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::string_view kFileType = "mpmbench shard\n";
+
+std::string heading(const ShardIdentity& identity, double seconds) {
+  ByteWriter writer;
+  writer.block(kFileType.data(), kFileType.size());
+  const std::size_t entries = identity.size();
+  transfer_all(writer, kShardVersion, entries);
+  for (const IdentityEntry& entry : identity)
+    transfer_all(writer, entry.name, entry.value);
+  transfer(writer, seconds);
+  return writer.take();
+}
+
+void require_version(ByteReader& reader, const std::string& file) {
+  std::int32_t version = 0;
+  transfer(reader, version);
+  if (version != kShardVersion)
+    throw InputError(file + ": format version of the shard", fmt::format("{}", version),
+                     fmt::format("{}", kShardVersion));
+}
+
+ShardIdentity read_identity(ByteReader& reader) {
+  std::size_t entries = 0;
+  transfer(reader, entries);
+  ShardIdentity identity;
+  for (std::size_t i = 0; i < entries; ++i) {  // a wrong number ends with the bytes
+    IdentityEntry& entry = identity.emplace_back();
+    transfer_all(reader, entry.name, entry.value);
+  }
+  return identity;
+}
+
+ExperimentOutcome read_outcome(ByteReader& reader, const OutcomeBytes& format, std::size_t number) {
+  std::string bytes;
+  transfer(reader, bytes);
+  try {
+    return format.from_bytes(bytes);
+  } catch (const std::exception& error) {  // a part of an outcome may refuse its numbers by an InputError
+    throw std::runtime_error(fmt::format("outcome {}: {}", number, error.what()));
+  }
+}
+
+/// What follows the type of the file. Throws InputError for another version or identity, std::runtime_error
+/// for bytes that are no shard.
+Shard read_content(std::string_view content, const ShardIdentity& identity, const OutcomeBytes& format,
+                   const std::string& file) {
+  ByteReader reader(content);
+  require_version(reader, file);
+  require_same(read_identity(reader), identity, file);
+  Shard shard;
+  transfer(reader, shard.seconds);
+  while (reader.left() > 0)
+    shard.outcomes.push_back(read_outcome(reader, format, shard.outcomes.size()));
+  return shard;
+}
+
+}  // namespace
+
+void ShardBytes::add(const std::string& outcome) {
+  ByteWriter writer;
+  transfer(writer, outcome);
+  outcomes_ += writer.take();
+}
+
+void ShardBytes::write(const std::filesystem::path& path, const ShardIdentity& identity, double seconds) {
+  const std::string content = heading(identity, seconds) + outcomes_;
+  const auto bytes = std::as_bytes(std::span(content));
+  write_file_atomically(path, sealed({bytes.begin(), bytes.end()}));
+  outcomes_.clear();
+}
+
+std::optional<Shard> read_shard(const std::filesystem::path& path, const ShardIdentity& identity,
+                                const OutcomeBytes& format) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  std::optional<std::string_view> content = unsealed(bytes);
+  if (!content)
+    return std::nullopt;
+  if (!content->starts_with(kFileType))
+    throw InputError(path.string(), "a whole file of another type", "a shard of mpmbench");
+  content->remove_prefix(kFileType.size());
+
+  try {
+    return read_content(*content, identity, format, path.string());
+  } catch (const std::runtime_error& error) {
+    throw InputError(path.string(), fmt::format("a whole shard with unreadable content ({})", error.what()),
+                     "what mpmbench writes; or --discard to start anew");
+  }
+}
+
+}  // namespace mpm

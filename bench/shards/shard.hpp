@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/outcome/outcome_bytes.hpp"
+#include "bench/shards/shard_identity.hpp"
+
+namespace mpm {
+
+/// Version of the format of a shard; a reader knows its own only.
+inline constexpr std::int32_t kShardVersion = 2;
+
+/// Finished experiments of a run that is not (docs/resume.md).
+struct Shard {
+  double seconds = 0.0;  ///< wall-clock time that they took
+  std::vector<ExperimentOutcome> outcomes;
+};
+
+/// Collects the bytes of a shard. The format: "mpmbench shard" and a line end, version, identity, seconds,
+/// the outcomes to the end, all as results/files/byte_stream writes them, and the seal of results/file_seal.
+/// Bytes and not HDF5, because the reader is the program that wrote them: every number keeps its bits, and
+/// there is no second description of a record that could differ from the first.
+class ShardBytes {
+ public:
+  /// One more outcome, as OutcomeBytes has it.
+  void add(const std::string& outcome);
+  bool empty() const { return outcomes_.empty(); }
+  std::size_t size() const { return outcomes_.size(); }
+
+  /// Writes what was added as a shard, all or nothing, and is empty then. Throws ArchiveError when the file
+  /// cannot be written; nothing is lost from the object then.
+  void write(const std::filesystem::path& path, const ShardIdentity& identity, double seconds);
+
+ private:
+  std::string outcomes_;
+};
+
+/// Reads a shard; none when it is cut off or damaged (its checksum does not fit) or cannot be read. Throws
+/// InputError for a whole file that is no shard of this format version and identity, or whose content cannot
+/// be read although its checksum fits.
+std::optional<Shard> read_shard(const std::filesystem::path& path, const ShardIdentity& identity,
+                                const OutcomeBytes& format);
+
+}  // namespace mpm

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/execution/run_options.hpp"
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// One of the things that decide what an experiment gives.
+struct IdentityEntry {
+  std::string name;
+  std::string value;
+
+  bool operator==(const IdentityEntry&) const = default;
+};
+
+/// What two runs must have in common for the experiments of one to be experiments of the other: program (the
+/// bits of a result belong to one build), study, seed, methods, solver, audit share and which loops are
+/// stored. Not the number of experiments, so that a longer run takes up a shorter one, nor jobs, threads and
+/// processes.
+using ShardIdentity = std::vector<IdentityEntry>;
+
+ShardIdentity shard_identity(const Study& study, const RunOptions& options);
+
+/// Throws InputError, which names the first entry that differs and both values. `found_in` names what `found`
+/// was read from.
+void require_same(const ShardIdentity& found, const ShardIdentity& expected, const std::string& found_in);
+
+}  // namespace mpm

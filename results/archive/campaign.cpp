@@ -1,0 +1,47 @@
+#include "results/archive/campaign.hpp"
+
+#include <algorithm>
+
+#include "analysis/methods/chain_numbers.hpp"
+
+namespace mpm {
+
+AssessmentForms forms_of(const Campaign& campaign) {
+  AssessmentForms forms;
+  for (const CampaignMethod& method : campaign.methods)
+    forms.push_back(method.form);
+  return forms;
+}
+
+std::vector<std::string> method_names(const Campaign& campaign) {
+  std::vector<std::string> names;
+  for (const CampaignMethod& method : campaign.methods)
+    names.push_back(method.form->method().name);
+  return names;
+}
+
+void note_command(Campaign& campaign, const std::string& command_line) {
+  campaign.info.command = command_line;
+  for (CampaignMethod& method : campaign.methods)
+    method.command = command_line;
+}
+
+std::size_t chain_place(const Campaign& campaign) {
+  const std::vector<std::string> names = method_names(campaign);
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), kChainMethod) - names.begin());
+}
+
+std::int64_t assessed_loops(const Campaign& campaign) {
+  const auto looked_at = [](const AssessmentRecord& said) {
+    return said.status != AssessmentStatus::not_assessed;
+  };
+  return std::count_if(campaign.records.begin(), campaign.records.end(), [&](const ExperimentRecord& record) {
+    return std::any_of(record.assessments.begin(), record.assessments.end(), looked_at);
+  });
+}
+
+StudyFindings findings_of(const Campaign& campaign) {
+  return study_findings(campaign.study, forms_of(campaign), campaign.records);
+}
+
+}  // namespace mpm

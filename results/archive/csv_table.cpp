@@ -1,0 +1,193 @@
+#include "results/archive/csv_table.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "plants/error.hpp"
+#include "results/archive/record_tables.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* kExperiments = "experiments";
+constexpr const char* kFindings = "findings";
+constexpr const char* kLoops = "loops";
+
+/// A field, in quotes where it must be.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos)
+    return text;
+  std::string quoted = "\"";
+  for (const char c : text)
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string number(double value) {
+  return value != value ? "NaN" : fmt::format("{}", value);
+}
+
+template <class T>
+std::string cell(const VariableText& text, const T& value) {
+  if constexpr (std::is_same_v<T, std::string>)
+    return field(value);
+  else if constexpr (std::is_same_v<T, double>)
+    return number(value);
+  else {
+    const auto& [values, meanings] = text.flags;
+    const auto place = std::find(values.begin(), values.end(), static_cast<int>(value));
+    return place == values.end() ? fmt::format("{}", value)
+                                 : field(meanings[static_cast<std::size_t>(place - values.begin())]);
+  }
+}
+
+/// The coordinates of a dimension, by name where they have one.
+std::vector<std::string> coordinates(const Campaign& campaign, const std::string& dimension,
+                                     std::size_t length) {
+  const Study& study = campaign.study;
+  std::vector<std::string> names;
+  const auto take = [&](const std::vector<PlantModel::Variable>& variables) {
+    for (const PlantModel::Variable& variable : variables)
+      names.push_back(variable.name);
+  };
+  if (dimension == "cv")
+    take(study.plant.cvs);
+  else if (dimension == "mv")
+    take(study.plant.mvs);
+  else if (dimension == "md")
+    take(study.plant.mds);
+  else if (dimension == "method")
+    names = method_names(campaign);
+  else
+    for (std::size_t i = 0; i < length; ++i)
+      names.push_back(fmt::format("{}", i));
+  return names;
+}
+
+/// The headings of the columns of a variable, in the order of its values.
+std::vector<std::string> headings(const Campaign& campaign, const RecordVariable& variable,
+                                  std::size_t dimensions) {
+  std::vector<std::string> list{variable.text.name};
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    std::vector<std::string> longer;
+    for (const std::string& heading : list)
+      for (const std::string& name : coordinates(campaign, variable.dimensions[d], variable.shape[d]))
+        longer.push_back(heading + "." + name);
+    list = std::move(longer);
+  }
+  return list;
+}
+
+/// The cells of a variable of one record.
+std::vector<std::string> cells(const RecordVariable& variable, const ExperimentRecord& record) {
+  std::vector<std::string> list;
+  std::visit(
+      [&]<class T>(const RecordAccess<T>& access) {
+        std::vector<T> values(variable.size());
+        access.get(record, values.data());
+        for (const T& value : values)
+          list.push_back(cell(variable.text, value));
+      },
+      variable.access);
+  return list;
+}
+
+std::string line(const std::vector<std::string>& fields) {
+  return fmt::format("{}\n", fmt::join(fields, ","));
+}
+
+void append(std::vector<std::string>&& more, std::vector<std::string>& list) {
+  std::move(more.begin(), more.end(), std::back_inserter(list));
+}
+
+/// One row an experiment with the variables of the tables of this group.
+std::string record_csv(const Campaign& campaign, const std::string& group) {
+  std::vector<RecordVariable> variables;
+  for (RecordTable& table : record_tables(campaign.study, forms_of(campaign)))
+    if (table.group == group)
+      for (RecordVariable& variable : table.variables)
+        if (variable.use != RecordUse::bytes_only)
+          variables.push_back(std::move(variable));
+  std::vector<std::string> head{"experiment"};
+  for (const RecordVariable& variable : variables)
+    for (const std::string& heading : headings(campaign, variable, variable.dimensions.size()))
+      head.push_back(field(heading));
+  std::string text = line(head);
+  for (const ExperimentRecord& record : campaign.records) {
+    std::vector<std::string> row{fmt::format("{}", record.draw.index)};
+    for (const RecordVariable& variable : variables)
+      append(cells(variable, record), row);
+    text += line(row);
+  }
+  return text;
+}
+
+std::string findings_csv(const Campaign& campaign) {
+  std::string text = "name,meaning,form,value,lower,upper,count,hits,reported\n";
+  for (const Finding& finding : findings_of(campaign).rows)
+    text +=
+        line({field(finding.name), field(finding.meaning), std::string(to_string(finding.form)),
+              number(finding.value), number(finding.interval.lower), number(finding.interval.upper),
+              fmt::format("{}", finding.count), fmt::format("{}", finding.hits), number(finding.reported)});
+  return text;
+}
+
+/// One row a sample of the loops that were kept.
+std::string loops_csv(const Campaign& campaign) {
+  std::vector<RecordVariable> signals;
+  for (RecordTable& table : record_tables(campaign.study, forms_of(campaign)))
+    if (table.group == "trajectories")
+      for (RecordVariable& variable : table.variables)
+        if (!variable.dimensions.empty() && variable.dimensions.back() == "sample")
+          signals.push_back(std::move(variable));
+  std::vector<std::string> head{"experiment", "sample", "time"};
+  for (const RecordVariable& signal : signals)
+    for (const std::string& heading : headings(campaign, signal, 1))
+      head.push_back(field(heading));
+  std::string text = line(head);
+  const auto samples = static_cast<std::size_t>(campaign.study.simulation.samples);
+  for (const ExperimentRecord& record : campaign.records) {
+    if (!record.loop)
+      continue;
+    std::vector<std::vector<std::string>> columns;  // of each signal, row by row
+    for (const RecordVariable& signal : signals)
+      columns.push_back(cells(signal, record));
+    for (std::size_t sample = 0; sample < samples; ++sample) {
+      std::vector<std::string> row{
+          fmt::format("{}", record.draw.index), fmt::format("{}", sample),
+          number(static_cast<double>(sample) * campaign.study.controller.sample_time)};
+      for (const std::vector<std::string>& column : columns)
+        for (std::size_t at = sample; at < column.size(); at += samples)
+          row.push_back(column[at]);
+      text += line(row);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> csv_table_names(const Campaign& campaign) {
+  std::vector<std::string> names{kExperiments, kFindings, kLoops};
+  append(method_names(campaign), names);
+  return names;
+}
+
+std::string csv_table(const Campaign& campaign, const std::string& name) {
+  if (name == kExperiments)
+    return record_csv(campaign, "");
+  if (name == kFindings)
+    return findings_csv(campaign);
+  if (name == kLoops)
+    return loops_csv(campaign);
+  const std::vector<std::string> methods = method_names(campaign);
+  if (std::find(methods.begin(), methods.end(), name) == methods.end())
+    throw InputError("--table", fmt::format("'{}'", name),
+                     fmt::format("{}", fmt::join(csv_table_names(campaign), ", ")));
+  return record_csv(campaign, "methods/" + name);
+}
+
+}  // namespace mpm

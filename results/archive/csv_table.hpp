@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "results/archive/campaign.hpp"
+
+namespace mpm {
+
+/// The tables of a campaign that can be written as CSV: "experiments" (one row an experiment: what was drawn,
+/// how it ended, the truth, the verdicts), one a method under its name (its numbers), "findings", and "loops"
+/// (one row a sample of each loop that was kept).
+std::vector<std::string> csv_table_names(const Campaign& campaign);
+
+/// A table as CSV (RFC 4180, UTF-8, '.' as decimal point, one heading line): flags as their words, CVs and
+/// MVs by name, NaN for what does not exist. A variable with a dimension has a column for each of its
+/// coordinates, "ivar.y1", "flagged.sse". Throws InputError for another name.
+std::string csv_table(const Campaign& campaign, const std::string& name);
+
+}  // namespace mpm

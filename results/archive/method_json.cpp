@@ -1,0 +1,105 @@
+#include "results/archive/method_json.hpp"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "results/files/archive_error.hpp"
+
+namespace mpm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::pair<NumberScope, const char*>, 4> kScopes{{{NumberScope::loop, "loop"},
+                                                                      {NumberScope::cv, "cv"},
+                                                                      {NumberScope::channel, "channel"},
+                                                                      {NumberScope::cv_lag, "cv_lag"}}};
+
+const char* name_of(NumberScope scope) {
+  for (const auto& [known, name] : kScopes)
+    if (known == scope)
+      return name;
+  return "";
+}
+
+NumberScope scope_of(const std::string& name) {
+  for (const auto& [scope, known] : kScopes)
+    if (known == name)
+      return scope;
+  throw std::invalid_argument(fmt::format("scope '{}'", name));
+}
+
+AssessmentNumberInfo number_of(const Json& json) {
+  return {.name = json.at("name"),
+          .scope = scope_of(json.at("scope")),
+          .meaning = json.at("meaning"),
+          .unit = json.at("unit"),
+          .words = json.at("words"),
+          .summarised = json.at("summarised"),
+          .label = json.at("label"),
+          .estimates_ivar_basis = json.at("estimates_ivar_basis")};
+}
+
+}  // namespace
+
+Json method_json(const MethodDescription& method) {
+  const AssessmentRequirements& needs = method.requirements;
+  return {
+      {"name", method.name},
+      {"title", method.title},
+      {"verdict", method.verdict},
+      {"needs",
+       {{"setpoints", needs.setpoints},
+        {"moving_setpoints", needs.moving_setpoints},
+        {"benchmark", needs.benchmark},
+        {"moving_mvs", needs.moving_mvs}}},
+      {"answers",
+       {{"cv", method.locates_cvs}, {"channel", method.names_channels}, {"source", method.tells_sources}}}};
+}
+
+std::string method_description_json(const MethodDescription& method) {
+  Json json = method_json(method);
+  json["numbers"] = Json::array();
+  for (const AssessmentNumberInfo& number : method.numbers)
+    json["numbers"].push_back({{"name", number.name},
+                               {"scope", name_of(number.scope)},
+                               {"meaning", number.meaning},
+                               {"unit", number.unit},
+                               {"words", number.words},
+                               {"summarised", number.summarised},
+                               {"label", number.label},
+                               {"estimates_ivar_basis", number.estimates_ivar_basis}});
+  return json.dump();
+}
+
+MethodDescription method_description(const std::string& text, const std::string& file) {
+  try {
+    const Json json = Json::parse(text);
+    const Json& needs = json.at("needs");
+    const Json& answers = json.at("answers");
+    MethodDescription method{.name = json.at("name"),
+                             .title = json.at("title"),
+                             .verdict = json.at("verdict"),
+                             .requirements = {.setpoints = needs.at("setpoints"),
+                                              .moving_setpoints = needs.at("moving_setpoints"),
+                                              .benchmark = needs.at("benchmark"),
+                                              .moving_mvs = needs.at("moving_mvs")},
+                             .locates_cvs = answers.at("cv"),
+                             .names_channels = answers.at("channel"),
+                             .tells_sources = answers.at("source"),
+                             .numbers = {}};
+    for (const Json& number : json.at("numbers"))
+      method.numbers.push_back(number_of(number));
+    return method;
+  } catch (const std::exception& error) {
+    throw ArchiveError(fmt::format(
+        "{}: attribute 'description' of a method: found {}; allowed: the description of a method as "
+        "JSON",
+        file, error.what()));
+  }
+}
+
+}  // namespace mpm

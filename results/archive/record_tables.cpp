@@ -1,0 +1,446 @@
+#include "results/archive/record_tables.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+
+#include "analysis/experiment/judgement.hpp"
+#include "results/archive/columns.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+using Record = ExperimentRecord;
+
+std::size_t count_of(Eigen::Index length) {
+  return static_cast<std::size_t>(length);
+}
+
+/// One value a record.
+template <class T>
+RecordVariable scalar(VariableText text, std::function<T(const Record&)> get,
+                      std::function<void(Record&, T)> set) {
+  RecordAccess<T> access{[get = std::move(get)](const Record& record, T* value) { *value = get(record); },
+                         {}};
+  if (set)
+    access.set = [set = std::move(set)](Record& record, const T* value) { set(record, *value); };
+  return {std::move(text), {}, {}, std::move(access)};
+}
+
+/// A variable of a part of a record from the column that describes it; `of` gives the part.
+template <class Part, class Of>
+RecordVariable of_column(const Column<Part>& column, Of of) {
+  return std::visit(
+      [&]<class T>(const Access<Part, T>& access) {
+        return scalar<T>(
+            column.text, [get = access.get, of](const Record& record) { return get(of(record)); },
+            [set = access.set, of](Record& record, T value) { set(of(record), std::move(value)); });
+      },
+      column.access);
+}
+
+/// A member that is in the file as it is in memory, but for its type.
+template <class T, class Member>
+RecordVariable plain(VariableText text, Member Record::*member) {
+  return scalar<T>(
+      std::move(text), [member](const Record& record) { return static_cast<T>(record.*member); },
+      [member](Record& record, T value) { record.*member = static_cast<Member>(std::move(value)); });
+}
+
+/// A vector of every record, NaN in the file where it is empty. `present` says of which records it is not.
+RecordVariable vector(VariableText text, const std::string& dimension, Eigen::Index size,
+                      std::function<const Eigen::VectorXd&(const Record&)> get,
+                      std::function<void(Record&, Eigen::VectorXd)> set) {
+  RecordAccess<double> access{[get = std::move(get), size](const Record& record, double* values) {
+                                const Eigen::VectorXd& vector = get(record);
+                                std::fill_n(std::copy(vector.begin(), vector.end(), values),
+                                            size - vector.size(), kNaN);
+                              },
+                              [set = std::move(set), size](Record& record, const double* values) {
+                                set(record, Eigen::Map<const Eigen::VectorXd>(values, size));
+                              }};
+  return {std::move(text), {dimension}, {count_of(size)}, std::move(access)};
+}
+
+/// A matrix, row by row; NaN where it is empty.
+template <class Of>
+RecordVariable matrix(VariableText text, std::vector<std::string> dimensions, Eigen::Index rows,
+                      Eigen::Index columns, Of of) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  RecordAccess<double> access{[of, rows, columns](const Record& record, double* values) {
+                                const Eigen::MatrixXd& from = of(record);
+                                if (from.size() == 0)
+                                  std::fill_n(values, rows * columns, kNaN);
+                                else
+                                  Eigen::Map<RowMajor>(values, rows, columns) = from;
+                              },
+                              [of, rows, columns](Record& record, const double* values) {
+                                of(record) = Eigen::Map<const RowMajor>(values, rows, columns);
+                              }};
+  return {std::move(text), std::move(dimensions), {count_of(rows), count_of(columns)}, std::move(access)};
+}
+
+// --- What was drawn ---------------------------------------------------------------------------------------
+
+Flags with_none(Flags flags) {
+  flags.values.insert(flags.values.begin(), -1);
+  flags.meanings.insert(flags.meanings.begin(), "none");
+  return flags;
+}
+
+/// Makes room for the faults of this kind.
+void set_kind(Record& record, std::int8_t value) {
+  ExperimentDraw& draw = record.draw;
+  draw.kind = static_cast<ExperimentKind>(value);
+  if (draw.kind == ExperimentKind::mpm || draw.kind == ExperimentKind::mpm_ud)
+    draw.mismatches.emplace_back();
+  if (draw.kind == ExperimentKind::ud || draw.kind == ExperimentKind::mpm_ud)
+    draw.disturbances.emplace_back();
+  if (draw.kind == ExperimentKind::tuning)
+    draw.tuning.emplace();
+}
+
+/// With two random faults both are on the same CV.
+void set_true_cv(Record& record, std::int32_t value) {
+  for (Mismatch& mismatch : record.draw.mismatches)
+    mismatch.cv = value;
+  for (Disturbance& disturbance : record.draw.disturbances)
+    disturbance.cv = value;
+}
+
+/// A member of the fault of a random experiment, `none` without one. The faults of a named scenario are in
+/// the study, and in no variable.
+template <class T, class Fault, class Member>
+RecordVariable of_fault(VariableText text, std::vector<Fault> ExperimentDraw::*faults, Member Fault::*member,
+                        T none) {
+  return scalar<T>(
+      std::move(text),
+      [=](const Record& record) {
+        const std::vector<Fault>& list = record.draw.*faults;
+        return record.draw.named || list.empty() ? none : static_cast<T>(list.front().*member);
+      },
+      [=](Record& record, T value) {
+        for (Fault& fault : record.draw.*faults)
+          fault.*member = static_cast<Member>(value);
+      });
+}
+
+/// A member of the change of the tuning, `none` without one.
+template <class T, class Member>
+RecordVariable of_tuning(VariableText text, Member TuningChange::*member, T none) {
+  return scalar<T>(
+      std::move(text),
+      [=](const Record& record) {
+        return record.draw.tuning ? static_cast<T>((*record.draw.tuning).*member) : none;
+      },
+      [=](Record& record, T value) {
+        if (record.draw.tuning)
+          (*record.draw.tuning).*member = static_cast<Member>(value);
+      });
+}
+
+VariableText kind_text(const Study& study) {
+  VariableText text{"kind", "what is wrong in the experiment", "1",
+                    "mpm: model-plant mismatch; ud: unmeasured disturbance; mpm_ud: both",
+                    enum_flags(std::array{ExperimentKind::healthy, ExperimentKind::mpm, ExperimentKind::ud,
+                                          ExperimentKind::mpm_ud, ExperimentKind::tuning})};
+  if (study.experiments.tuning > 0)
+    text.comment += "; tuning: a weight of the controller";
+  return text;
+}
+
+RecordTable drawn(const Study& study) {
+  const std::string time = unit_text(study.plant.time_unit);
+  using M = ExperimentDraw;
+  RecordTable table;
+  table.dimension = "experiment";
+  table.from_draw = true;
+  table.variables = {
+      scalar<std::int8_t>(
+          kind_text(study), [](const Record& r) { return static_cast<std::int8_t>(r.draw.kind); }, set_kind),
+      scalar<std::int32_t>(
+          {"true_cv", "position of the affected CV in cv", "1", "-1: none, or more than one",
+           index_flags(study.plant.cvs)},
+          [](const Record& r) { return static_cast<std::int32_t>(r.draw.true_cv()); }, set_true_cv),
+      of_fault<std::int32_t>({"true_mv", "position of the MV of the mismatched channel in mv", "1",
+                              "-1: no mismatch, or a named scenario", index_flags(study.plant.mvs)},
+                             &M::mismatches, &Mismatch::input, -1),
+      of_fault<std::int8_t>(
+          {"parameter", "parameter of the channel that differs from the model", "1",
+           "-1: no mismatch, or a named scenario",
+           with_none(enum_flags(std::array{MismatchParameter::gain, MismatchParameter::time_constant,
+                                           MismatchParameter::dead_time}))},
+          &M::mismatches, &Mismatch::parameter, -1),
+      of_fault<double>({"parameter_value", "size of the mismatch", "1",
+                        "factor of gain or time constant; shift of the dead time in " + time +
+                            "; NaN: no mismatch, or a named scenario"},
+                       &M::mismatches, &Mismatch::value, kNaN),
+      of_fault<double>({"ud_gain", "gain of the unmeasured disturbance model", common_unit(study.plant.cvs),
+                        "in the unit of the affected CV; NaN: no disturbance, or a named scenario"},
+                       &M::disturbances, &Disturbance::gain, kNaN),
+      of_fault<double>({"ud_time_constant", "time constant of the unmeasured disturbance model", time,
+                        "NaN: no disturbance, or a named scenario"},
+                       &M::disturbances, &Disturbance::time_constant, kNaN),
+  };
+  if (study.experiments.tuning == 0)
+    return table;
+  table.variables.push_back(of_tuning<std::int8_t>(
+      {"tuning_parameter", "weight of the controller that is changed", "1",
+       "move_suppression, target_weight: of an MV; slack_weight, setpoint_weight: of a CV",
+       with_none(enum_flags(kTuningParameters))},
+      &TuningChange::parameter, -1));
+  table.variables.push_back(of_tuning<std::int32_t>(
+      {"tuning_index", "position of the MV in mv, or of the CV in cv, whose weight is changed", "1",
+       "-1: none"},
+      &TuningChange::index, -1));
+  table.variables.push_back(of_tuning<double>({"tuning_factor", "factor of the weight", "1", "NaN: none"},
+                                              &TuningChange::factor, kNaN));
+  return table;
+}
+
+// --- How it ended, the truth, and the verdicts
+// --------------------------------------------------------------
+
+/// One value a method of each record; `member` of AssessmentRecord.
+template <class T, class Member>
+RecordVariable of_methods(VariableText text, const AssessmentForms& forms, Member AssessmentRecord::*member) {
+  const std::size_t methods = forms.size();
+  RecordAccess<T> access{[=](const Record& record, T* values) {
+                           for (std::size_t m = 0; m < methods; ++m)
+                             values[m] = static_cast<T>(record.assessments[m].*member);
+                         },
+                         [=](Record& record, const T* values) {
+                           for (std::size_t m = 0; m < methods; ++m)
+                             record.assessments[m].*member = static_cast<Member>(values[m]);
+                         }};
+  return {std::move(text), {"method"}, {methods}, std::move(access)};
+}
+
+Flags source_flags() {
+  return enum_flags(std::array{FaultSource::none, FaultSource::mpm, FaultSource::ud, FaultSource::mpm_ud});
+}
+
+RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
+  RecordTable table;
+  table.dimension = "experiment";
+  // A record comes with room for every method; `status` comes first, since it says what else there is.
+  table.make = [forms](Record& record) {
+    record.assessments.resize(forms.size());
+    for (std::size_t m = 0; m < forms.size(); ++m)
+      record.assessments[m].form = forms[m];
+  };
+  table.variables = {
+      plain<std::int8_t>(
+          {"status", "how the experiment ended", "1",
+           "infeasible: an MPC problem had no solution, the experiment is left out; failed: see "
+           "message",
+           enum_flags(
+               std::array{ExperimentStatus::ok, ExperimentStatus::infeasible, ExperimentStatus::failed})},
+          &Record::status),
+      plain<std::string>({"message", "why the experiment failed", "1", "empty unless the status is failed"},
+                         &Record::message),
+      vector(
+          {"ivar_basis", "Ivar_basis = var y / var y of the basis case", "1", "NaN unless the status is ok"},
+          "cv", study.cv_count(), [](const Record& r) -> const Eigen::VectorXd& { return r.ivar_basis; },
+          [](Record& r, Eigen::VectorXd values) {
+            if (r.status == ExperimentStatus::ok)
+              r.ivar_basis = std::move(values);
+          }),
+      scalar<std::int8_t>({"impact", "some Ivar_basis lies outside the band of impact", "1",
+                           "the truth about what is wrong; no method has a part in it", yes_no_flags()},
+                          [options = study.diagnosis](const Record& r) {
+                            return static_cast<std::int8_t>(has_impact(options, r));
+                          },
+                          {}),
+      of_methods<std::int8_t>(
+          {"assessment_status", "how the assessment by a method ended", "1",
+           "see reason of the method's group",
+           enum_flags(std::array{AssessmentStatus::ok, AssessmentStatus::not_applicable,
+                                 AssessmentStatus::failed, AssessmentStatus::not_assessed})},
+          forms, &AssessmentRecord::status),
+      of_methods<std::int8_t>({"flagged", "the method says that something is wrong with the loop", "1",
+                               "no unless the assessment status is ok", yes_no_flags()},
+                              forms, &AssessmentRecord::flagged),
+      of_methods<double>({"score", "how far the loop is from being flagged, larger is worse", "1",
+                          "comparable between loops of one method; NaN unless the assessment status is ok"},
+                         forms, &AssessmentRecord::score),
+      of_methods<std::int32_t>({"predicted_cv", "position in cv of the CV with the largest score", "1",
+                                "-1: none", index_flags(study.plant.cvs)},
+                               forms, &AssessmentRecord::predicted_cv),
+      of_methods<std::int8_t>({"predicted_source", "source that the method sees in the predicted CV", "1",
+                               "none: the method tells none", source_flags()},
+                              forms, &AssessmentRecord::predicted_source),
+      of_methods<double>({"seconds", "processor time of the assessment", "s"}, forms,
+                         &AssessmentRecord::seconds),
+  };
+  table.variables[3].use = RecordUse::archive_only;
+  table.variables.back().use = RecordUse::bytes_only;
+  for (const Column<SolverStatistics>& column : solver_columns())
+    table.variables.push_back(of_column(
+        column, [](auto& record) -> auto& { return record.solver; }));
+  return table;
+}
+
+// --- The numbers of a method
+// --------------------------------------------------------------------------------
+
+std::vector<std::string> dimensions_of(NumberScope scope) {
+  switch (scope) {
+    case NumberScope::loop:
+      return {};
+    case NumberScope::cv:
+      return {"cv"};
+    case NumberScope::channel:
+      return {"cv", "mv"};
+    case NumberScope::cv_lag:
+      return {"cv", "lag"};
+  }
+  return {};
+}
+
+std::vector<std::size_t> shape_of(const NumberPlace& place) {
+  std::vector<std::size_t> shape{count_of(place.rows), count_of(place.columns)};
+  shape.resize(dimensions_of(place.info.scope).size());
+  return shape;
+}
+
+VariableText text_of(const NumberPlace& place) {
+  VariableText text{place.info.name, place.info.meaning, place.info.unit, "NaN without a verdict"};
+  if (place.info.scope == NumberScope::cv_lag)
+    text.coordinates = "lag_time";
+  if (place.info.words.empty())
+    return text;
+  text.comment = "-1: nothing is said";
+  text.flags = {{-1}, {"no_answer"}};
+  for (std::size_t word = 0; word < place.info.words.size(); ++word) {
+    text.flags.values.push_back(static_cast<int>(word));
+    text.flags.meanings.push_back(flag_word(place.info.words[word]));
+  }
+  return text;
+}
+
+/// A quantity: as it is. Words: their position, -1 for NaN.
+RecordVariable of_number(const NumberPlace& place, std::size_t method) {
+  const Eigen::Index first = place.first, size = place.size();
+  const auto get = [=]<class T>(const Record& record, T* values, T none) {
+    const Eigen::VectorXd& numbers = record.assessments[method].numbers;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const double number = numbers.size() == 0 ? kNaN : numbers(first + i);
+      values[i] = std::is_same_v<T, double> || number == number ? static_cast<T>(number) : none;
+    }
+  };
+  const auto set = [=]<class T>(Record& record, const T* values) {
+    AssessmentRecord& assessment = record.assessments[method];
+    if (!assessment.answered())
+      return;
+    assessment.numbers.conservativeResize(assessment.form->size());
+    for (Eigen::Index i = 0; i < size; ++i)
+      assessment.numbers(first + i) =
+          !std::is_same_v<T, double> && values[i] < T{} ? kNaN : static_cast<double>(values[i]);
+  };
+  RecordVariable variable{text_of(place), dimensions_of(place.info.scope), shape_of(place),
+                          RecordAccess<double>{}};
+  if (place.info.words.empty())
+    variable.access =
+        RecordAccess<double>{[get](const Record& record, double* values) { get(record, values, kNaN); }, set};
+  else
+    variable.access = RecordAccess<std::int8_t>{
+        [get](const Record& record, std::int8_t* values) { get(record, values, std::int8_t{-1}); }, set};
+  return variable;
+}
+
+// --- Kept loops, and Ivar_diag with a modified S0
+// -----------------------------------------------------------
+
+RecordTable kept_loops(const Study& study) {
+  RecordTable table{.group = "trajectories",
+                    .dimension = "stored",
+                    .title = "Closed-loop records of the experiments that kept theirs",
+                    .has = [](const Record& record) { return record.loop.has_value(); },
+                    .make = [](Record& record) { record.loop.emplace(); }};
+  const auto trajectory = [](auto& record) -> auto& {
+    return record.loop->trajectory;
+  };
+  for (const Column<Trajectory>& column : loop_columns())
+    table.variables.push_back(of_column(column, trajectory));
+  for (const Column<SolverStatistics>& column : solver_columns())
+    table.variables.push_back(of_column(
+        column, [](auto& record) -> auto& { return record.loop->trajectory.solver; }));
+  const Eigen::Index samples = study.simulation.samples;
+  for (const SignalColumn& column : signal_columns(study))
+    table.variables.push_back(matrix(
+        column.text, {column.rows, "sample"}, row_count(column, study),
+        samples, [member = column.member](auto& record) -> auto& {
+          return record.loop->trajectory.*member;
+        }));
+  table.variables.push_back(matrix(
+      y_sim_text(study), {"cv", "sample"}, study.cv_count(), samples,
+      [](auto& record) -> auto& { return record.loop->y_sim; }));
+  return table;
+}
+
+RecordTable perturbed(const Study& study) {
+  RecordTable table{.group = "s0_perturbation",
+                    .dimension = "perturbed",
+                    .title = "Ivar_diag with S0_diag modified in time constant or damping",
+                    .has = [](const Record& record) { return record.perturbed.time_constant.size() > 0; }};
+  const auto of = [&](const char* name, const char* meaning, Eigen::VectorXd PerturbedIvar::*member) {
+    table.variables.push_back(vector(
+        {name, meaning}, "multiplier", static_cast<Eigen::Index>(study.s0_perturbation.multipliers.size()),
+        [member](const Record& record) -> const Eigen::VectorXd& { return record.perturbed.*member; },
+        [member](Record& record, Eigen::VectorXd values) { record.perturbed.*member = std::move(values); }));
+  };
+  of("ivar_diag_time_constant", "Ivar_diag of the affected CV, time constant of S0 multiplied",
+     &PerturbedIvar::time_constant);
+  of("ivar_diag_damping", "Ivar_diag of the affected CV, damping of S0 multiplied", &PerturbedIvar::damping);
+  return table;
+}
+
+// A member more in one of these and this does not compile: it is then to be added to a table above.
+[[maybe_unused]] void every_member_is_in_a_table(const Record& record, const AssessmentRecord& assessment,
+                                                 const LoopRecord& loop, const SolverStatistics& statistics) {
+  [[maybe_unused]] const auto& [draw, status, message, ivar_basis, assessments, perturbed, solver, kept] =
+      record;
+  [[maybe_unused]] const auto& [form, ended, reason, flagged, score, cv, source, numbers, seconds] =
+      assessment;
+  [[maybe_unused]] const auto& [trajectory, y_sim] = loop;
+  [[maybe_unused]] const auto& [loop_status, samples_done, y, u, u_target, d, y_set, of_loop, failure, what] =
+      trajectory;
+  [[maybe_unused]] const auto& [steps, iterations, fallbacks, residual] = statistics;
+}
+
+}  // namespace
+
+std::size_t RecordVariable::size() const {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+RecordTable method_table(const AssessmentForm& form, std::size_t method) {
+  RecordTable table{.group = "methods/" + form.method().name,
+                    .dimension = "experiment",
+                    .title = form.method().title + ": what it says of each loop"};
+  table.variables.push_back(scalar<std::string>(
+      {"reason", "why there is no verdict", "1", "empty when there is one, or when the method was not asked"},
+      [method](const Record& r) { return r.assessments[method].reason; },
+      [method](Record& r, std::string text) { r.assessments[method].reason = std::move(text); }));
+  for (const NumberPlace& place : form.places())
+    table.variables.push_back(of_number(place, method));
+  return table;
+}
+
+std::vector<RecordTable> record_tables(const Study& study, const AssessmentForms& forms) {
+  std::vector<RecordTable> tables{drawn(study), outcomes(study, forms)};
+  for (std::size_t m = 0; m < forms.size(); ++m)
+    tables.push_back(method_table(*forms[m], m));
+  tables.push_back(kept_loops(study));
+  if (!study.s0_perturbation.multipliers.empty())
+    tables.push_back(perturbed(study));
+  return tables;
+}
+
+}  // namespace mpm

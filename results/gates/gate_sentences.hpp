@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/findings/gate.hpp"
+#include "results/gates/gate_check.hpp"
+
+namespace mpm {
+
+// A judged gate in words, the same for people and for JUnit.
+
+/// What is claimed: ">= 90.0 %", "0.2 to 0.4".
+std::string limit_text(const GateResult& result);
+/// What was measured: "97.2 %"; "-" when nothing was.
+std::string measured_text(const GateResult& result);
+/// Its interval: "90.3 to 99.2 %"; "-" without one.
+std::string interval_text(const GateResult& result);
+/// By how much the gate passed or fell, with a sign: "+7.2 pp" (percentage points) for a share, "-0.13".
+std::string margin_text(const GateResult& result);
+/// The outcome in a sentence, with the number, the limit and the reason of the limit.
+std::string explanation(const GateResult& result, double confidence);
+
+/// The experiments whose verdicts changed, one a line: "     17  lost    right -> wrong".
+std::string changes_text(const JudgementChanges& changes);
+
+/// Everything about a gate that did not pass which is not in its explanation: the changed experiments for a
+/// gate on the baseline, otherwise nothing.
+std::string details_text(const GateCheck& check, const GateResult& result);
+
+}  // namespace mpm

@@ -1,0 +1,34 @@
+#include "scenarios/resolved_study.hpp"
+
+#include <cstdint>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "scenarios/study_file_keys.hpp"
+#include "scenarios/study_file_parts.hpp"
+#include "scenarios/toml_draft.hpp"
+
+namespace mpm {
+
+std::string resolved_study(const Study& study) {
+  TomlDraft draft(study_file_keys(""));
+  Study read = read_study(study.source, study.name, &draft);
+  read.seed = study.seed;
+  read.methods = study.methods;
+  if (read != study)
+    throw InputError(fmt::format("defaults of the study '{}'", study.name),
+                     "a study that was changed after it was read",
+                     "a study as its text says it, with any seed and methods");
+  TomlDraft& heading = draft.table("study", study_file_keys("study"));
+  constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+  if (study.seed <= static_cast<std::uint64_t>(kLargestSeed))
+    heading.set("seed", static_cast<std::int64_t>(study.seed));
+  else
+    heading.comment("seed", fmt::format("{}, above what a study file can say, {}", study.seed, kLargestSeed));
+  draft.table("methods", study_file_keys("methods")).set("names", study.methods);
+  return draft.text();
+}
+
+}  // namespace mpm

@@ -1,0 +1,71 @@
+#include <set>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/methods/method_table.hpp"
+#include "plants/error.hpp"
+#include "scenarios/study_library.hpp"
+
+namespace mpm {
+namespace {
+
+using Catch::Contains;
+
+using Names = std::vector<std::string>;
+
+const std::string kKnown = "botelho, sun, badwe2009, badwe2010, yu-qin, sse";
+
+}  // namespace
+
+TEST_CASE("methods by name: as they are asked for, and all of them by one word") {
+  CHECK(known_methods({"sse", "botelho"}, "x") == Names{"sse", "botelho"});
+  CHECK(known_methods({"all"}, "x") == assessment_method_names());
+  CHECK(assessment_method_names().front() == "botelho");
+  for (const std::string& name : assessment_method_names())
+    CHECK(assessment_method(name).name == name);
+}
+
+TEST_CASE("methods by name: no method, an unknown one, and one twice are refused under the name of the key") {
+  const std::string allowed = "; allowed: each once: " + kKnown + "; or all";
+  CHECK_THROWS_WITH(known_methods({}, "--methods"), "--methods: found no method" + allowed);
+  CHECK_THROWS_WITH(known_methods({"sse", "nobody"}, "k"), "k: found 'nobody'" + allowed);
+  CHECK_THROWS_WITH(known_methods({"sse", "sun", "sse"}, "k"), "k: found 'sse' twice" + allowed);
+  CHECK_THROWS_WITH(known_methods({"all", "sse"}, "k"), "k: found 'all'" + allowed);
+  CHECK_THROWS_AS(known_methods({}, "k"), InputError);
+  CHECK_THROWS_WITH(assessment_method("nobody"), "method: found 'nobody'; allowed: " + kKnown);
+}
+
+TEST_CASE("methods of a study: those of its file, the thesis's chain when it names none") {
+  Study study = find_study("chapter6");
+  CHECK(study_methods(study) == Names{"botelho"});
+  study.methods = {"all"};
+  CHECK(study_methods(study) == assessment_method_names());
+  study.methods.clear();
+  CHECK_THROWS_WITH(study_methods(study), Contains("methods.names: found no method"));
+}
+
+TEST_CASE("every method describes itself, and each of its numbers once") {
+  std::set<std::string> names;
+  for (const AssessmentMethodInfo& method : assessment_methods()) {
+    INFO(method.name);
+    CHECK(names.insert(method.name).second);
+    CHECK_FALSE(method.title.empty());
+    CHECK_FALSE(method.verdict.empty());
+    CHECK(method.make);
+    std::vector<AssessmentNumberInfo> numbers = method.numbers;
+    if (method.scenario_numbers)
+      for (const AssessmentNumberInfo& number : method.scenario_numbers())
+        numbers.push_back(number);
+    // The names that every method has for what it tells.
+    std::set<std::string> of_method{"cv_flagged", "cv_score", "cv_source", "channel_flagged", "reason"};
+    for (const AssessmentNumberInfo& number : numbers) {
+      INFO(number.name);
+      CHECK(of_method.insert(number.name).second);
+      CHECK_FALSE(number.meaning.empty());
+      CHECK_FALSE(number.unit.empty());
+      CHECK((!number.summarised || (number.scope == NumberScope::loop && !number.label.empty())));
+    }
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,125 @@
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "analysis/methods/chain_numbers.hpp"
+#include "results/archive/archive.hpp"
+#include "results/archive/csv_table.hpp"
+#include "results/archive/record_bytes.hpp"
+#include "results/report/report.hpp"
+#include "results/summary/comparison.hpp"
+#include "results/summary/summary.hpp"
+#include "tests/results/made_up_campaign.hpp"
+
+// A method that this program does not have: an archive says all about it that a reader needs.
+
+namespace {
+
+using namespace mpm;
+using namespace mpm::testing;
+using Catch::Contains;
+
+MethodDescription foreign_description() {
+  MethodDescription method;
+  method.name = "foreign";
+  method.title = "Somebody (2031)";
+  method.verdict = "something <new> is wrong";
+  method.requirements.benchmark = true;
+  method.locates_cvs = method.names_channels = method.tells_sources = true;
+  method.numbers = {
+      {.name = "novelty",
+       .scope = NumberScope::loop,
+       .meaning = "how new",
+       .unit = "K",
+       .summarised = true,
+       .label = "N_{new}"},
+      {.name = "verdict", .scope = NumberScope::loop, .meaning = "in words", .words = {"good", "very bad"}},
+      {.name = "shape", .scope = NumberScope::cv, .meaning = "of each CV", .estimates_ivar_basis = true},
+      {.name = "gain", .scope = NumberScope::channel, .meaning = "of each channel"},
+      {.name = "memory", .scope = NumberScope::cv_lag, .meaning = "of each CV at each lag"}};
+  return method;
+}
+
+/// The made-up campaign, in which the foreign method has assessed every loop, too, in any way.
+Campaign with_foreign() {
+  Campaign campaign = made_up_campaign();
+  const auto form = std::make_shared<const AssessmentForm>(foreign_description(), campaign.study);
+  campaign.methods.push_back({form, "9.9.9", "fff", "mpmbench compare --methods foreign"});
+  campaign.study.methods = method_names(campaign);
+  std::uint64_t which = 0;
+  for (ExperimentRecord& record : campaign.records)
+    record.assessments.push_back(record.status == ExperimentStatus::ok
+                                     ? made_up_answer(campaign.study, form, ++which)
+                                     : unasked(form));
+  return campaign;
+}
+
+Campaign read_back(const TemporaryFolder& folder, const Campaign& campaign) {
+  write_archive(folder / "a.h5", campaign, findings_of(campaign));
+  return read_archive(folder / "a.h5");
+}
+
+TEST_CASE("foreign method: an archive brings its description and every number of it") {
+  const TemporaryFolder folder;
+  const Campaign campaign = with_foreign();
+  const Campaign read = read_back(folder, campaign);
+  REQUIRE(method_names(read) == method_names(campaign));
+  const MethodDescription& found = read.methods.back().form->method();
+  CHECK(found.title == "Somebody (2031)");
+  CHECK(found.verdict == "something <new> is wrong");
+  CHECK((found.requirements.benchmark && !found.requirements.setpoints));
+  CHECK((found.locates_cvs && found.names_channels && found.tells_sources));
+  REQUIRE(found.numbers.size() == 5);
+  CHECK(found.numbers[1].words == std::vector<std::string>{"good", "very bad"});
+  CHECK(read.methods.back().git_sha == "fff");
+  const RecordBytes format(campaign.study, forms_of(campaign));
+  bool answered = false;
+  for (std::size_t i = 0; i < read.records.size(); ++i) {
+    CHECK(format.differences(read.records[i], campaign.records[i]) == std::vector<std::string>{});
+    answered = answered || read.records[i].by("foreign")->answered();
+  }
+  CHECK(answered);
+}
+
+TEST_CASE("foreign method: it is in findings, summary, comparison, report and tables") {
+  const TemporaryFolder folder;
+  const Campaign campaign = read_back(folder, with_foreign());
+  const StudyFindings findings = findings_of(campaign);
+  REQUIRE(findings.of("foreign") != nullptr);
+  CHECK(find_finding(findings.rows, "compare.foreign.detected") != nullptr);
+  std::size_t means = 0;
+  for (const Finding& finding : findings.rows)
+    means += finding.method == "foreign" && finding.name.ends_with("novelty_mean") ? 1 : 0;
+  CHECK(means == 3);  // one of each kind
+  CHECK_THAT(comparison_text(campaign, findings), Contains("foreign"));
+  CHECK_THAT(summary_text(campaign, findings, "a.h5"), Contains("foreign"));
+  const nlohmann::json json = nlohmann::json::parse(comparison_json(campaign, findings));
+  CHECK(json["methods"].back()["title"] == "Somebody (2031)");
+  CHECK(nlohmann::json::parse(summary_json(campaign, findings))["methods"].back() == "foreign");
+  CHECK_THAT(report_html(campaign, findings, "a.h5"),
+             Contains("Somebody (2031)") && Contains("something &lt;new&gt; is wrong"));
+  CHECK_THAT(csv_table(campaign, "foreign"), Contains("novelty") && Contains("very_bad"));
+}
+
+TEST_CASE("foreign method: what was read is written as the same bytes again") {
+  const TemporaryFolder folder;
+  const Campaign read = read_back(folder, with_foreign());
+  write_archive(folder / "b.h5", read, findings_of(read));
+  CHECK(file_content(folder / "a.h5") == file_content(folder / "b.h5"));
+}
+
+TEST_CASE("foreign method: alone in an archive it needs nothing of the methods that this program has") {
+  const TemporaryFolder folder;
+  Campaign campaign = with_foreign();
+  remove_methods(campaign, [](const std::string& name) { return name != "foreign"; });
+  const Campaign read = read_back(folder, campaign);
+  const StudyFindings findings = findings_of(read);
+  CHECK(findings.chain() == nullptr);
+  CHECK_THAT(summary_text(read, findings, "a.h5"), Contains("compare") || Contains("experiments"));
+  CHECK_THAT(report_html(read, findings, "a.h5"), Contains("Assessment methods compared"));
+}
+
+}  // namespace

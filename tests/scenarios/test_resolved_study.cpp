@@ -1,0 +1,321 @@
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <toml++/toml.h>
+
+#include "scenarios/resolved_study.hpp"
+#include "scenarios/study_file.hpp"
+#include "scenarios/study_file_keys.hpp"
+#include "scenarios/study_library.hpp"
+#include "scenarios/study_variant.hpp"
+#include "scenarios/sweep_file.hpp"
+#include "scenarios/table_file.hpp"
+#include "scenarios/toml_file.hpp"
+#include "scenarios/toml_text.hpp"
+#include "scenarios/toml_values.hpp"
+#include "tests/scenarios/study_texts.hpp"
+
+// The text of a study with every default written out.
+
+namespace mpm {
+namespace {
+
+namespace fs = std::filesystem;
+
+using namespace testing;
+
+using Keys = std::set<std::pair<std::string, std::string>>;  // table as in study_file_tables(), key
+
+std::vector<fs::path> toml_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".toml")
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// The variants of a study that a table file makes.
+void add_variants(const fs::path& table_file, std::vector<Study>& studies) {
+  const std::string name = table_file.string();
+  const toml::table toml = parse_toml(read_toml_file(table_file, "a table file"), name);
+  const TomlTable document(toml, name, {"table", "variant", "column", "rule", "row"});
+  if (!document.has("variant"))
+    return;
+  const TomlTable heading =
+      document.table("table", {"chapter", "number", "figure", "title", "study", "note"});
+  const Study base = read_base_study(heading, table_file.parent_path());
+  const toml::table text = parse_toml(base.source, name);
+  for (const TomlTable& variant : document.tables("variant", {"name", "remove", "set"}))
+    studies.push_back(read_study_variant(variant, text, name));
+}
+
+/// Every study that the program comes with.
+std::vector<Study> shipped() {
+  std::vector<Study> studies;
+  for (const fs::path& file : toml_files(study_directory()))
+    studies.push_back(load_study(file));
+  for (const fs::path& file : toml_files(table_directory()))
+    add_variants(file, studies);
+  for (const fs::path& file : toml_files(study_directory().parent_path() / "sweeps"))
+    for (SweepVariant& variant : load_sweep(file).variants)
+      studies.push_back(std::move(variant.study));
+  return studies;
+}
+
+/// The small study with every reported number and with keys of random experiments that shipped studies leave
+/// out.
+std::string random_study_text() {
+  std::string text = replaced(small_study(), "[controller.cv.level]\n",
+                              "[controller.cv.level]\nsetpoint_weight = 4\nsetpoint = 0.1\n");
+  text = replaced(text, "noise_standard_deviation = 0.01",
+                  "noise_standard_deviation = {level = 0.01, heat = 0.3}\n"
+                  "[[simulation.step]]\ncv = \"level\"\nsample = 5\nlevel = 0.2\n");
+  text +=
+      "healthy = 4\ntuning = 5\n"
+      "[mismatch]\nparameter_weights = {gain = 1, time_constant = 0, dead_time = 0.1}\n"
+      "dead_time_shift = {normal = [0.1, 0.5]}\ngain_factor = {constant = 0.7}\n"
+      "[tuning]\nparameter_weights = {move_suppression = 1, target_weight = 2, slack_weight = 3, "
+      "setpoint_weight = 4}\n"
+      "[sensitivity]\nactive_cvs = ['level']\nfixed_mvs = ['cold']\n"
+      "[s0_perturbation]\ncvs = ['level']\nfixed_mvs = ['hot']\nfixed_active_cvs = ['heat']\n"
+      "multipliers = [0.25";
+  for (int i = 1; i < 80; ++i)
+    text += ", " + std::to_string(0.25 + 0.1 * i) + (i % 30 == 0 ? "\n" : "");
+  text += "]\n[reference]\n";
+  for (const std::string& key : study_file_keys("reference"))
+    text += "\"" + key + "\" = 0.123\n";
+  return text;
+}
+
+/// The small study with a title that has to be quoted with care, random steps, and faults in all forms.
+std::string scenario_study_text() {
+  std::string text = replaced(small_study(), "\"A small study\"", "'A \"small\" study \\o/'");
+  text = text.substr(0, text.find("[[simulation.step]]")) +
+         "[simulation.random_steps]\nlevel = {uniform = [-1, 1]}\n";
+  return text + R"(
+[[scenario]]
+name = "healthy"
+description = "nothing is wrong"
+
+[[scenario]]
+name = "plant"
+affected = []
+mismatch = [{cv = "level", input = "hot", gain_factor = 0.5, time_constant_factor = 2, dead_time_shift = -1},
+            {cv = "heat", input = "hot", gain = 1, time_constant = 3},
+            {cv = "level", input = "drain", numerator = [-1], denominator = [3, 1], dead_time = 0.1}]
+
+[[scenario]]
+name = "disturbances"
+affected = ["heat", "level"]
+
+[[scenario.disturbance]]
+cv = "level"
+gain = 0.1
+time_constant = 0.3
+
+[[scenario.disturbance]]
+cv = "level"
+numerator = [1]
+denominator = [2, 0]
+dead_time = 4
+white = 2
+hold = 3
+
+[[scenario.disturbance]]
+cv = "heat"
+sine = {amplitude = 0.1, period = 7}
+
+[[scenario.disturbance]]
+cv = "heat"
+ramp = {slope = 0.01}
+
+[[scenario.disturbance]]
+cv = "heat"
+steps = [{sample = 3, level = 1}, {sample = 9, level = 0}]
+)";
+}
+
+/// The nonlinear tank with changed parameters and a disturbance of an inner input.
+std::string nonlinear_study_text() {
+  std::string text = project_file("tests/scenarios/data/quadruple-tank.toml");
+  text = replaced(text, "catalogue = \"quadruple-tank\"\n",
+                  "catalogue = \"quadruple-tank\"\nsimulated = \"nonlinear\"\nrelative_tolerance = 1e-7\n");
+  return text.substr(0, text.find("[experiments]")) + R"(
+[[scenario]]
+name = "tank"
+affected = ["h1"]
+parameter = [{name = "cd1", value = 7.86}, {name = "A4", factor = 0.125}]
+disturbance = [{input = "D4", gain = 8, time_constant = 70}]
+)";
+}
+
+/// Studies of the tests, among them those with the keys that no shipped one has.
+std::vector<Study> of_tests() {
+  std::vector<Study> studies;
+  for (const std::string& text :
+       {small_study(), random_study_text(), scenario_study_text(), nonlinear_study_text()})
+    studies.push_back(parse_study(text, "s.toml"));
+  return studies;
+}
+
+bool is_known(const std::string& table) {
+  const std::vector<StudyFileTable>& tables = study_file_tables();
+  return std::any_of(tables.begin(), tables.end(),
+                     [&](const StudyFileTable& known) { return known.name == table; });
+}
+
+/// The keys in `table`, which stands under `name`, and below it.
+void collect(const toml::table& table, const std::string& name, Keys& keys) {
+  for (const auto& [key, node] : table) {
+    keys.emplace(name, key.str());
+    const std::string below = (name.empty() ? "" : name + ".") + std::string(key.str());
+    if (const toml::array* const list = node.as_array(); list != nullptr && is_known(below + "[]"))
+      for (const toml::node& entry : *list)
+        collect(*entry.as_table(), below + "[]", keys);
+    const toml::table* const inner = node.as_table();
+    if (inner == nullptr || below == "simulation.noise_standard_deviation")
+      continue;
+    if (is_known(below + ".NAME"))
+      for (const auto& [variable, of_variable] : *inner)
+        collect(*of_variable.as_table(), below + ".NAME", keys);
+    else
+      collect(*inner, is_known(below) ? below : "DISTRIBUTION", keys);
+  }
+}
+
+Keys keys_of(const Study& study) {
+  Keys keys;
+  collect(parse_toml(resolved_study(study), "resolved"), "", keys);
+  return keys;
+}
+
+void check_round_trip(const Study& study) {
+  INFO(study.name << ": " << study.title);
+  const std::string text = resolved_study(study);
+  Study read = parse_study(text, "resolved " + study.name);
+  CHECK(resolved_study(read) == text);
+  CHECK(read.source == text);
+  read.source = study.source;
+  CHECK(read == study);
+}
+
+TEST_CASE("a resolved study is read as the same study", "[resolved_study]") {
+  const std::vector<Study> studies = shipped();
+  REQUIRE(studies.size() > 50);  // or the folders were not found
+  for (const Study& study : studies)
+    check_round_trip(study);
+  for (const Study& study : of_tests())
+    check_round_trip(study);
+}
+
+TEST_CASE("every key of a study file comes out in a resolved study", "[resolved_study]") {
+  Keys written;
+  for (const std::vector<Study>& studies : {shipped(), of_tests()})
+    for (const Study& study : studies)
+      written.merge(keys_of(study));
+  for (const StudyFileTable& table : study_file_tables())
+    for (const std::string& key : table.keys) {
+      INFO("in no resolved study; give a study in tests/scenarios/data the key: [" << table.name << "] "
+                                                                                   << key);
+      CHECK(written.count({table.name, key}) == 1);
+    }
+}
+
+TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolved_study]") {
+  const Keys written = keys_of(parse_study(small_study(), "small.toml"));
+  const Keys without_value{{"sensitivity", "active_cvs"}, {"sensitivity", "fixed_mvs"}};
+  for (const char* name :
+       {"experiments", "mismatch", "mismatch.parameter_weights", "disturbance", "tuning",
+        "tuning.parameter_weights", "sensitivity", "diagnosis", "assessment", "assessment.sun",
+        "assessment.badwe2009", "assessment.badwe2010", "assessment.yu-qin", "assessment.sse", "aggregate"})
+    for (const std::string& key : study_file_keys(name)) {
+      INFO("[" << name << "] " << key);
+      CHECK(written.count({name, key}) != without_value.count({name, key}));
+    }
+  for (const char* key : {"weight_convention", "slack", "target_violation_cost"})
+    CHECK(written.count({"controller", key}) == 1);
+}
+
+TEST_CASE("a resolved study begins as the document of the study file does", "[resolved_study]") {
+  const std::string text = resolved_study(parse_study(small_study(), "small.toml"));
+  CHECK(
+      text.starts_with("[study]\n"
+                       "name = \"small\"\n"
+                       "title = \"A small study\"\n"
+                       "seed = 7\n"
+                       "\n"
+                       "[plant]\n"
+                       "simulated = \"linear\"\n"
+                       "name = \"mixer\"\n"
+                       "title = \"A mixer\"\n"
+                       "time_unit = \"s\"\n"
+                       "\n"
+                       "[[plant.cv]]\n"
+                       "name = \"level\"\n"));
+  CHECK_THAT(text, Catch::Contains("\n[controller.mv.cold]\ncost = 6.0\nmove_suppression = 7.0\n"
+                                   "target_weight = 0.0\nhard = [-inf, inf]\n") &&
+                       Catch::Contains("\ndenominator = [20.0, 12.0, 1.0]\n") &&
+                       Catch::Contains("\ngain_factor = {uniform = [0.3, 1.5]}\n") &&
+                       Catch::Contains("\norders = [20]\n"));
+  const std::vector<std::string> order{"[study]",       "[plant]",     "[controller]",  "[simulation]",
+                                       "[experiments]", "[mismatch]",  "[disturbance]", "[tuning]",
+                                       "[sensitivity]", "[diagnosis]", "[assessment]",  "[aggregate]"};
+  CHECK(std::is_sorted(order.begin(), order.end(), [&text](const std::string& a, const std::string& b) {
+    return line_of(text, a) < line_of(text, b);
+  }));
+}
+
+TEST_CASE("a resolved study has the seed in force", "[resolved_study]") {
+  Study study = parse_study(small_study(), "small.toml");
+  study.seed = 9223372036854775807U;
+  CHECK(parse_study(resolved_study(study), "resolved").seed == study.seed);
+  ++study.seed;  // no TOML file can have it
+  CHECK(refusal(resolved_study(study)) ==
+        "s.toml:1: study.seed: found nothing; allowed: a whole number from 0 to 9223372036854775807");
+  CHECK_THAT(resolved_study(study), Catch::Contains("\n# seed: 9223372036854775808, above what"));
+}
+
+TEST_CASE("a study that is not what its text says is refused", "[resolved_study]") {
+  Study study = parse_study(small_study(), "small.toml");
+  study.simulation.samples += 1;
+  CHECK_THROWS_WITH(
+      resolved_study(study),
+      "defaults of the study 'small': found a study that was changed after it was read; allowed: a "
+      "study as its text says it, with any seed and methods");
+}
+
+TEST_CASE("studies differ by each part, and by the length of a vector", "[resolved_study]") {
+  const Study study = parse_study(small_study(), "small.toml");
+  const auto differs = [&study](auto change) {
+    Study changed = study;
+    change(changed);
+    return changed != study;
+  };
+  CHECK_FALSE(differs([](Study&) {}));
+  CHECK(differs([](Study& s) { s.plant.G(0, 0) = TransferFunction::zero(); }));
+  CHECK(differs([](Study& s) { s.plant.cvs[1].unit = "C"; }));
+  CHECK(differs([](Study& s) { s.controller.mv_cost(1) = 5; }));
+  CHECK(differs([](Study& s) { s.controller.mv_cost.conservativeResize(1); }));
+  CHECK(differs([](Study& s) { s.controller.cv_soft.upper(1) = 0.4; }));
+  CHECK(differs([](Study& s) { s.simulation.noise_standard_deviation(0) = 0; }));
+  CHECK(differs([](Study& s) { s.simulation.steps[0].level = 0; }));
+  CHECK(differs([](Study& s) { s.mismatch.parameter_weight[2] = 0; }));
+  CHECK(differs([](Study& s) { s.assessment.badwe2009.nf = 3; }));
+}
+
+TEST_CASE("a dead time of 0 that is written out leaves a disturbance as it is", "[resolved_study]") {
+  const std::string text = scenario_study_text();
+  const std::string model = "gain = 0.1\ntime_constant = 0.3\n";
+  const Study without = parse_study(text, "s.toml");
+  const Study with = parse_study(replaced(text, model, model + "dead_time = 0\n"), "s.toml");
+  CHECK(with.scenarios == without.scenarios);
+}
+
+}  // namespace
+}  // namespace mpm
