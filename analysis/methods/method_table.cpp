@@ -45,7 +45,7 @@ std::vector<std::string> study_methods(const Study& study) {
 }
 
 std::vector<std::string> known_methods(const std::vector<std::string>& names, const std::string& key) {
-  const std::vector<std::string> known = assessment_method_names();
+  std::vector<std::string> known = assessment_method_names();
   const auto refuse = [&](const std::string& found) {
     throw InputError(key, found, fmt::format("each once: {}; or all", fmt::join(known, ", ")));
   };
