@@ -75,7 +75,7 @@ std::vector<std::string> headings(const Campaign& campaign, const RecordVariable
     std::vector<std::string> longer;
     for (const std::string& heading : list)
       for (const std::string& name : coordinates(campaign, variable.dimensions[d], variable.shape[d]))
-        longer.push_back(heading + "." + name);
+        longer.push_back(fmt::format("{}.{}", heading, name));
     list = std::move(longer);
   }
   return list;
