@@ -34,7 +34,7 @@ struct AuditSample {
   AuditedProblem targets, moves;
 };
 
-/// How one problem's answer compares with that of the reference.
+/// How one problem's answer compares with that of Ipopt.
 struct AuditDifference {
   bool same_status = false;
   double x = 0.0;          ///< largest difference of a variable, in MV units; NaN unless both are solved
@@ -46,13 +46,13 @@ struct AuditedStep {
   std::int64_t experiment = 0;
   std::int64_t step = 0;
   AuditDifference targets, moves;
-  double ipopt_kkt_residual = 0.0;  ///< the larger one of the reference's answers
+  double ipopt_kkt_residual = 0.0;  ///< the larger one of its two answers
 };
 
 /// What a whole audit found. The largest differences are 0 without audited steps.
 struct AuditSummary {
   std::int64_t steps = 0;
-  std::int64_t disagreements = 0;  ///< steps with another status than the reference's, in either problem
+  std::int64_t disagreements = 0;  ///< steps with another status than Ipopt's, in either problem
   double largest_target = 0.0;     ///< difference of a target, in MV units
   double largest_move = 0.0;       ///< difference of a planned move, in MV units
   double largest_objective = 0.0;  ///< relative, of either problem

@@ -30,7 +30,7 @@ struct ControlMove {
   Eigen::VectorXd u_target;   ///< targets of the optimizer, nu
   double kkt_residual = 0.0;  ///< the larger of the two problems' residuals
   int iterations = 0;         ///< of the solver, both problems
-  int fallbacks = 0;          ///< problems whose answer is the reference's, see CertifiedSolver
+  int fallbacks = 0;          ///< problems whose answer is Ipopt's, see CertifiedSolver
 };
 
 /// Model predictive control to setpoints, within ranges, or both, with a target optimizer above it where MVs

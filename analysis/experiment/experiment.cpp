@@ -135,7 +135,7 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
       record.perturbed = perturbation_.ivar_diag(true_cv, Eigen::RowVectorXd(main.trajectory.y.row(true_cv)),
                                                  Eigen::RowVectorXd(main.assessed.y_sim.row(true_cv)));
   } else {
-    record.assessments = panel_.unassessed();
+    record.assessments = unassessed(panel_.forms());
   }
   if (store == StorePolicy::all || (store == StorePolicy::flagged && !record.assessments.empty() &&
                                     judge(study_, record, record.assessments.front()).wrong()))
@@ -154,7 +154,7 @@ std::vector<AssessmentRecord> ExperimentRunner::assess(const ExperimentRecord& r
                     simulate(record.draw.disturbance_alone(), {}));
     return assessments;
   }
-  std::vector<AssessmentRecord> failed = panel_.unassessed();
+  std::vector<AssessmentRecord> failed = unassessed(panel_.forms());
   for (AssessmentRecord& assessment : failed) {
     assessment.status = AssessmentStatus::failed;
     assessment.reason = loop.own ? "its controller has no S0 of its own: " + loop.own->basis.explanation

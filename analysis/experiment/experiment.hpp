@@ -52,7 +52,7 @@ struct ExperimentRecord {
   ExperimentStatus status = ExperimentStatus::failed;
   std::string message;                        ///< why it failed; empty otherwise
   Eigen::VectorXd ivar_basis;                 ///< ny, basis_variance_indices(); empty unless the status is ok
-  std::vector<AssessmentRecord> assessments;  ///< one a method of the study, in their order
+  std::vector<AssessmentRecord> assessments;  ///< by each method of the study, in their order
   PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for
   SolverStatistics solver;  ///< of all loops of the experiment
   std::optional<LoopRecord> loop;  ///< the loop that was assessed, when it was asked for

@@ -10,14 +10,11 @@ namespace {
 
 FalseAlarms counted(FalseAlarms group, std::size_t method, std::span<const ExperimentRecord> records,
                     double confidence) {
-  std::int64_t infeasible = 0, feasible = 0, verdicts = 0, flagged = 0, mpm = 0, ud = 0;
+  std::int64_t verdicts = 0, flagged = 0, mpm = 0, ud = 0;
   for (const ExperimentRecord& record : records) {
     if (!group.has(record.draw))
       continue;
-    ++group.experiments;
-    group.failed += record.status == ExperimentStatus::failed ? 1 : 0;
-    infeasible += record.status == ExperimentStatus::infeasible ? 1 : 0;
-    feasible += record.status == ExperimentStatus::ok ? 1 : 0;
+    group.add(record.status);
     const AssessmentRecord& said = record.assessments[method];
     if (!said.answered())
       continue;
@@ -28,7 +25,7 @@ FalseAlarms counted(FalseAlarms group, std::size_t method, std::span<const Exper
     mpm += said.predicted_source == FaultSource::mpm ? 1 : 0;
     ud += said.predicted_source == FaultSource::ud ? 1 : 0;
   }
-  group.infeasible = rate(infeasible, infeasible + feasible, confidence);
+  group.finish(confidence);
   group.false_alarm = rate(flagged, verdicts, confidence);
   group.false_mpm = rate(mpm, verdicts, confidence);
   group.false_ud = rate(ud, verdicts, confidence);

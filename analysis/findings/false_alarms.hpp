@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/endings.hpp"
 #include "analysis/findings/finding.hpp"
 #include "analysis/statistics/interval.hpp"
 
@@ -14,15 +15,12 @@ namespace mpm {
 
 /// How often a method flags loops in which model and plant agree: the healthy experiments of a study, those
 /// with a bad tuning, or those of them in which one parameter was changed.
-struct FalseAlarms {
+struct FalseAlarms : Endings {
   ExperimentKind kind = ExperimentKind::healthy;
   std::optional<TuningParameter> parameter;  ///< none: all experiments of the kind
-  std::int64_t experiments = 0;
-  std::int64_t failed = 0;
-  Rate infeasible;   ///< of the experiments that did not fail
-  Rate false_alarm;  ///< of those with a verdict: flagged
-  Rate false_mpm;    ///< of those with a verdict: flagged, and the source is called a mismatch
-  Rate false_ud;     ///< of those with a verdict: flagged, and the source is called a disturbance
+  Rate false_alarm;                          ///< of those with a verdict: flagged
+  Rate false_mpm;  ///< of those with a verdict: flagged, and the source is called a mismatch
+  Rate false_ud;   ///< of those with a verdict: flagged, and the source is called a disturbance
 
   /// "healthy", "tuning", "tuning_move_suppression", ...
   std::string name() const;

@@ -75,15 +75,12 @@ KindFindings findings_of(const Study& study, const AssessmentForm& form, std::si
   KindFindings result;
   result.kind = kind;
   result.confusion = ConfusionMatrix(study.cv_count());
-  std::int64_t feasible = 0, infeasible = 0, verdicts = 0, flagged = 0, judged = 0, recognised = 0;
+  std::int64_t verdicts = 0, flagged = 0, judged = 0, recognised = 0;
   std::vector<std::vector<double>> values(numbers.size());
   for (const ExperimentRecord& record : records) {
     if (record.draw.kind != kind)
       continue;
-    ++result.experiments;
-    result.failed += record.status == ExperimentStatus::failed ? 1 : 0;
-    infeasible += record.status == ExperimentStatus::infeasible ? 1 : 0;
-    feasible += record.status == ExperimentStatus::ok ? 1 : 0;
+    result.add(record.status);
     const AssessmentRecord& said = record.assessments[method];
     if (!said.answered())
       continue;
@@ -98,7 +95,7 @@ KindFindings findings_of(const Study& study, const AssessmentForm& form, std::si
       for (std::size_t n = 0; n < numbers.size(); ++n)
         values[n].push_back(said.number(numbers[n]->name));
   }
-  result.infeasible = rate(infeasible, feasible + infeasible, confidence);
+  result.finish(confidence);
   result.flagged = rate(flagged, verdicts, confidence);
   result.located = result.confusion.accuracy(confidence);
   result.source_recognised = rate(recognised, judged, confidence);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/endings.hpp"
 #include "analysis/findings/finding.hpp"
 #include "analysis/statistics/confusion_matrix.hpp"
 #include "analysis/statistics/interval.hpp"
@@ -15,12 +16,9 @@
 namespace mpm {
 
 /// What a method says of the experiments of one kind with a fault.
-struct KindFindings {
+struct KindFindings : Endings {
   ExperimentKind kind = ExperimentKind::healthy;
-  std::int64_t experiments = 0;
-  std::int64_t failed = 0;
-  Rate infeasible;  ///< of the experiments that did not fail
-  Rate flagged;     ///< of those with a verdict; of the chain: with impact
+  Rate flagged;  ///< of those with a verdict; of the chain: with impact
   /// Ivar_basis against the method's estimate of it over all CVs of all experiments with a verdict
   /// (figures 6.18, 6.22), and CV by CV. Without pairs for a method that estimates none.
   LinearFitIntervals regression;

@@ -30,11 +30,6 @@ struct Count {
   Rate rate(double confidence) const { return mpm::rate(hits, total, confidence); }
 };
 
-/// A time in ms that an archive gives back bit for bit, after the way through seconds.
-double whole_nanoseconds(double milliseconds) {
-  return std::round(1e6 * milliseconds) / 1e6;
-}
-
 struct Counts {
   Count answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
       false_alarm_healthy, false_alarm_tuning, located, source, channel;
@@ -44,8 +39,8 @@ struct Counts {
     answered.add(said.answered());
     if (!said.answered())
       return;
-    if (!std::isnan(said.seconds))  // it would break the order for the median
-      milliseconds.push_back(1e3 * said.seconds);
+    if (!std::isnan(said.milliseconds))  // it would break the order for the median
+      milliseconds.push_back(said.milliseconds);
     const ExperimentKind kind = record.draw.kind;
     if (kind == ExperimentKind::tuning) {
       false_alarm_tuning.add(said.flagged);
@@ -139,7 +134,7 @@ MethodRates method_rates(const Study& study, std::size_t method, std::span<const
     rates.roc_area = area_interval(rates.roc.area, rates.roc.positives, rates.roc.negatives, confidence);
   if (!counts.milliseconds.empty()) {
     std::sort(counts.milliseconds.begin(), counts.milliseconds.end());
-    rates.milliseconds = whole_nanoseconds(sorted_quantile(counts.milliseconds, 0.5));
+    rates.milliseconds = sorted_quantile(counts.milliseconds, 0.5);
   }
   return rates;
 }

@@ -38,16 +38,6 @@ std::vector<Finding> rows_of(const std::string& parameter, const char* words, co
           within.with(change.within_band)};
 }
 
-void count(const Study& study, std::span<const ExperimentRecord> records, StudyFindings& findings) {
-  std::int64_t infeasible = 0;
-  for (const ExperimentRecord& record : records) {
-    ++findings.experiments;
-    findings.failed += record.status == ExperimentStatus::failed ? 1 : 0;
-    infeasible += record.status == ExperimentStatus::infeasible ? 1 : 0;
-  }
-  findings.infeasible = rate(infeasible, findings.experiments - findings.failed, study.aggregate.confidence);
-}
-
 /// The rows of the chain have no prefix: they are what the thesis reports.
 std::vector<Finding> all_rows(const Study& study, const StudyFindings& findings) {
   const Finding infeasible{.name = "infeasible",
@@ -97,7 +87,9 @@ const MethodFindings* StudyFindings::chain() const {
 StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
                              std::span<const ExperimentRecord> records) {
   StudyFindings findings;
-  count(study, records, findings);
+  for (const ExperimentRecord& record : records)
+    findings.add(record.status);
+  findings.finish(study.aggregate.confidence);
   for (std::size_t method = 0; method < forms.size(); ++method) {
     const AssessmentForm& form = *forms[method];
     findings.methods.push_back({forms[method], kind_findings(study, form, method, records),

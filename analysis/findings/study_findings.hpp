@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/findings/endings.hpp"
 #include "analysis/findings/false_alarms.hpp"
 #include "analysis/findings/finding.hpp"
 #include "analysis/findings/kind_findings.hpp"
@@ -15,8 +16,6 @@
 #include "analysis/findings/s0_perturbation_curves.hpp"
 
 namespace mpm {
-
-using AssessmentForms = std::vector<std::shared_ptr<const AssessmentForm>>;
 
 /// What a study shows of one method.
 struct MethodFindings {
@@ -29,10 +28,7 @@ struct MethodFindings {
 };
 
 /// All that a study reports, computed once, each number with its uncertainty.
-struct StudyFindings {
-  std::int64_t experiments = 0;
-  std::int64_t failed = 0;
-  Rate infeasible;
+struct StudyFindings : Endings {
   std::vector<MethodFindings> methods;  ///< in the order of the study
   std::vector<MethodPair> pairs;        ///< of all methods
   std::vector<DominanceBin> dominance;  ///< of the chain; empty without experiments of both faults

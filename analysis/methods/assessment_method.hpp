@@ -44,7 +44,7 @@ struct AssessmentNumberInfo {
 };
 
 /// A method that has learnt what it may know and now assesses loops, one after the other. Keeps workspaces
-/// between them: one a thread. An answer depends on the loop alone, not on those before.
+/// between them: each thread needs its own. An answer depends on the loop alone, not on those before.
 class AssessmentMethod {
  public:
   AssessmentMethod() = default;

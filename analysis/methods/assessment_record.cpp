@@ -62,9 +62,8 @@ Eigen::Index lag_count(const Study& study) {
   return study.simulation.samples / 4 + 1;
 }
 
-std::vector<std::shared_ptr<const AssessmentForm>> assessment_forms(const Study& study,
-                                                                    const std::vector<std::string>& methods) {
-  std::vector<std::shared_ptr<const AssessmentForm>> forms;
+AssessmentForms assessment_forms(const Study& study, const std::vector<std::string>& methods) {
+  AssessmentForms forms;
   for (const std::string& name : methods) {
     const AssessmentMethodInfo& info = assessment_method(name);
     MethodDescription description = info;
@@ -101,6 +100,13 @@ void AssessmentRecord::set_number(std::string_view name, double value, Eigen::In
 
 bool AssessmentRecord::names(const Channel& channel) const {
   return number("channel_flagged", channel.cv, channel.mv) == 1.0;
+}
+
+std::vector<AssessmentRecord> unassessed(const AssessmentForms& forms) {
+  std::vector<AssessmentRecord> records(forms.size());
+  for (std::size_t method = 0; method < forms.size(); ++method)
+    records[method].form = forms[method];
+  return records;
 }
 
 AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessment& assessment) {

@@ -12,8 +12,8 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "scenarios/study.hpp"
 
-// The answers of methods as they are kept for all loops of a study: one vector of numbers a loop, and one
-// form a method that says where in it each number stands.
+// The answers of methods as they are kept for all loops of a study: a vector of numbers for each loop, and a
+// form for each method that says where in it each number stands.
 
 namespace mpm {
 
@@ -64,9 +64,11 @@ class AssessmentForm {
 /// Lags of the numbers with the scope cv_lag: 0 ... a quarter of the record, as AcfComparisonOptions has it.
 Eigen::Index lag_count(const Study& study);
 
+/// Of several methods, in their order.
+using AssessmentForms = std::vector<std::shared_ptr<const AssessmentForm>>;
+
 /// The forms of these methods on the loops of a study. Throws InputError for an unknown method.
-std::vector<std::shared_ptr<const AssessmentForm>> assessment_forms(const Study& study,
-                                                                    const std::vector<std::string>& methods);
+AssessmentForms assessment_forms(const Study& study, const std::vector<std::string>& methods);
 
 /// What a method said of one loop, as it is kept. The form is that of its method.
 struct AssessmentRecord {
@@ -78,7 +80,8 @@ struct AssessmentRecord {
   Eigen::Index predicted_cv = -1;                    ///< Assessment::worst_cv(), -1 for none
   FaultSource predicted_source = FaultSource::none;  ///< of that CV
   Eigen::VectorXd numbers = {};                      ///< as the form has them; empty unless the status is ok
-  double seconds = std::numeric_limits<double>::quiet_NaN();  ///< processor time; differs from run to run
+  double milliseconds =
+      std::numeric_limits<double>::quiet_NaN();  ///< processor time; differs from run to run
 
   bool answered() const { return status == AssessmentStatus::ok; }
   /// The number of this name; NaN when there is none, or no verdict.
@@ -90,6 +93,9 @@ struct AssessmentRecord {
   /// Whether the method names this channel.
   bool names(const Channel& channel) const;
 };
+
+/// The records of a loop that no method has assessed.
+std::vector<AssessmentRecord> unassessed(const AssessmentForms& forms);
 
 /// The answer in the form in which it is kept.
 AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessment& assessment);

@@ -13,8 +13,8 @@
 
 namespace mpm {
 
-/// The methods of a study, each with what it has learnt of the controller. One a thread; an answer depends on
-/// the loop only.
+/// The methods of a study, each with what it has learnt of the controller. Each thread has its
+/// own; an answer depends on the loop only.
 class MethodPanel {
  public:
   /// `study` and `basis` must outlive the panel; the basis case must have status ok and is the benchmark.
@@ -32,16 +32,15 @@ class MethodPanel {
   std::optional<AssessmentRecord> assess_by(std::string_view method, const AssessedLoop& loop,
                                             const TunedBasis* own = nullptr);
 
-  const std::vector<std::shared_ptr<const AssessmentForm>>& forms() const { return forms_; }
-  /// Records of a loop that nobody assesses.
-  std::vector<AssessmentRecord> unassessed() const;
+  const AssessmentForms& forms() const { return forms_; }
 
  private:
-  AssessmentRecord assessed(std::size_t method, Assessor& assessor, const AssessedLoop& loop) const;
+  AssessmentRecord assessed(std::size_t method, const AssessedLoop& loop, const TunedBasis* own);
+  AssessmentRecord timed(std::size_t method, Assessor& assessor, const AssessedLoop& loop) const;
 
   QpSolverFactory factory_;
   AssessmentContext context_;
-  std::vector<std::shared_ptr<const AssessmentForm>> forms_;
+  AssessmentForms forms_;
   std::vector<Assessor> assessors_;  ///< of loops under the controller of the study
 };
 

@@ -4,7 +4,7 @@ namespace mpm {
 
 // Whether a signal of the controller is at one of its limits. Targets and moves are exact to the tolerance of
 // the solver; a limit counts as met well above that, within 1e-5 of max(1, |limit|), in the unit of the
-// signal. A limit that is none (infinite) is never met.
+// signal. An infinite limit is never met.
 
 /// |value - limit| is within the tolerance.
 bool at_limit(double value, double limit);

@@ -35,12 +35,6 @@ bool needs_ipopt(const Campaign& campaign, const ExperimentRecord& record) {
   return campaign.info.solver == "ipopt" || record.solver.fallbacks > 0;
 }
 
-AssessmentRecord unassessed(std::shared_ptr<const AssessmentForm> form) {
-  AssessmentRecord record;
-  record.form = std::move(form);
-  return record;
-}
-
 void remove(Campaign& campaign, const std::string& method) {
   const std::vector<std::string> names = method_names(campaign);
   const auto place = std::find(names.begin(), names.end(), method) - names.begin();
@@ -58,7 +52,7 @@ void append(Campaign& campaign, const AssessmentForms& forms, const Records& rec
     remove(campaign, form->method().name);
     campaign.methods.push_back({form, mpmbench_version(), source_revision(), command});
     for (ExperimentRecord& record : campaign.records)
-      record.assessments.push_back(unassessed(form));
+      record.assessments.push_back(unassessed({form}).front());
   }
   for (std::size_t i = 0; i < records.size(); ++i)
     std::move(assessments[i].begin(), assessments[i].end(),
@@ -100,7 +94,7 @@ void add_methods(Campaign& campaign, const ComparisonOptions& options, const std
   std::vector<std::unique_ptr<ExperimentRunner>> runners;
   for (int thread = 0; thread < threads; ++thread)
     runners.push_back(runner_of("active-set"));
-  const std::unique_ptr<ExperimentRunner> reference = runner_of(campaign.info.solver);
+  const std::unique_ptr<ExperimentRunner> by_campaign_solver = runner_of(campaign.info.solver);
   std::vector<std::vector<AssessmentRecord>> assessments(records.size());
   std::vector<std::exception_ptr> failures(records.size());  // none may leave a thread
   std::atomic<std::size_t> first_failure{records.size()};    // only loops before it can still matter
@@ -110,9 +104,9 @@ void add_methods(Campaign& campaign, const ComparisonOptions& options, const std
     if (i > first_failure)
       continue;
     try {
-      if (reference->runs_loops(*records[i]) && needs_ipopt(campaign, *records[i])) {
+      if (by_campaign_solver->runs_loops(*records[i]) && needs_ipopt(campaign, *records[i])) {
         const std::lock_guard alone(ipopt);
-        assessments[i] = reference->assess(*records[i]);
+        assessments[i] = by_campaign_solver->assess(*records[i]);
       } else {
         assessments[i] = runners[static_cast<std::size_t>(omp_get_thread_num())]->assess(*records[i]);
       }
@@ -128,7 +122,7 @@ void add_methods(Campaign& campaign, const ComparisonOptions& options, const std
   }
   if (first_failure < records.size())
     std::rethrow_exception(failures[first_failure]);
-  append(campaign, reference->forms(), records, std::move(assessments), command);
+  append(campaign, by_campaign_solver->forms(), records, std::move(assessments), command);
 }
 
 Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods,
@@ -145,10 +139,10 @@ Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods
   };
   campaign.methods = chosen(campaign.methods);
   for (ExperimentRecord& record : campaign.records) {
-    record.assessments = chosen(record.assessments);
     if (experiments && record.draw.index >= *experiments)
-      for (AssessmentRecord& assessment : record.assessments)
-        assessment = unassessed(assessment.form);
+      record.assessments = unassessed(forms_of(campaign));
+    else
+      record.assessments = chosen(record.assessments);
   }
   return campaign;
 }

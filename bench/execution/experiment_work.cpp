@@ -1,20 +1,12 @@
 #include "bench/execution/experiment_work.hpp"
 
-#include <ctime>
 #include <exception>
 #include <utility>
 
 #include "analysis/methods/method_table.hpp"
+#include "plants/thread_clock.hpp"
 
 namespace mpm {
-namespace {
-
-double processor_seconds() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-}  // namespace
-
 ExperimentWork::ExperimentWork(const Study& study, const BasisCase& basis, const RunOptions& options,
                                const QpSolverFactory& factory)
     : study_(study), options_(options), runner_(study, basis, study_methods(study), factory) {}
@@ -36,7 +28,7 @@ ExperimentOutcome ExperimentWork::run(std::int64_t index) {
 void ExperimentWork::audit(ExperimentOutcome& outcome) {
   if (outcome.samples.empty())
     return;
-  const double start = processor_seconds();
+  const double start = thread_seconds();
   if (!auditor_)
     auditor_.emplace(study_, qp_solver_factory("ipopt"));
   std::optional<Auditor> own;  // weights are in the structure of a problem
@@ -45,7 +37,7 @@ void ExperimentWork::audit(ExperimentOutcome& outcome) {
   for (const AuditSample& sample : outcome.samples)
     outcome.audited.push_back((own ? *own : *auditor_).check(sample));
   outcome.samples.clear();
-  outcome.audit_seconds += processor_seconds() - start;
+  outcome.audit_seconds += thread_seconds() - start;
 }
 
 ExperimentRecord lost_record(const Study& study, std::int64_t index, std::string why) {
@@ -53,10 +45,7 @@ ExperimentRecord lost_record(const Study& study, std::int64_t index, std::string
   record.draw = draw_experiment(study, index);
   record.status = ExperimentStatus::failed;
   record.message = std::move(why);
-  for (auto& form : assessment_forms(study, study_methods(study))) {
-    record.assessments.emplace_back();
-    record.assessments.back().form = std::move(form);
-  }
+  record.assessments = unassessed(assessment_forms(study, study_methods(study)));
   return record;
 }
 

@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// Says whether work is to stop; asked by several threads at once. May be empty: it never is.
+/// Says whether work is to stop; asked by several threads at once. An empty one never says so.
 using StopRequest = std::function<bool()>;
 
 inline bool requested(const StopRequest& stop) {

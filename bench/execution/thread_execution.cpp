@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How long threads run before what they have added for the reference processes is worked off: much longer
+/// How long threads run before what they have added for the processes with Ipopt is worked off: much longer
 /// than an experiment, so that waiting for the last one is little, and no more than a killed run may lose.
 constexpr std::chrono::seconds kRound(2);
 
@@ -56,7 +56,7 @@ class IndexQueue {
   Clock::time_point end_;
 };
 
-using ThreadWork = std::vector<std::unique_ptr<ExperimentWork>>;  // one a thread
+using ThreadWork = std::vector<std::unique_ptr<ExperimentWork>>;  // one for each thread
 
 /// Runs experiments of the queue until it gives out no more. No exception may leave the threads: the first
 /// one of `deliver` is kept until they have ended.
@@ -82,9 +82,9 @@ void run_threads(const ThreadWork& work, IndexQueue& queue, const OutcomeSink& d
 
 void execute_in_threads(const ExecutionPlan& plan, const StopRequest& stop, const OutcomeSink& deliver) {
   const bool fall_back = plan.options.solver == "auto";
-  std::optional<IpoptProcesses> reference;
+  std::optional<IpoptProcesses> ipopt;
   if (fall_back || audited_share(plan.options) > 0.0)
-    reference.emplace(plan);  // before the first thread starts
+    ipopt.emplace(plan);  // before the first thread starts
   const QpSolverFactory in_thread = qp_solver_factory("active-set");
   ThreadWork work;
   for (int thread = 0; thread < plan.options.jobs; ++thread)
@@ -95,14 +95,14 @@ void execute_in_threads(const ExecutionPlan& plan, const StopRequest& stop, cons
       outcome.samples.clear();
     else if (outcome.samples.empty())
       return deliver(std::move(outcome));
-    reference->add(std::move(outcome));
+    ipopt->add(std::move(outcome));
   };
   IndexQueue queue(plan.indices, stop);
   while (!queue.done()) {
-    queue.open_until(reference ? Clock::now() + kRound : Clock::time_point::max());
+    queue.open_until(ipopt ? Clock::now() + kRound : Clock::time_point::max());
     run_threads(work, queue, sort_out);
-    if (reference)
-      reference->finish(stop, deliver);
+    if (ipopt)
+      ipopt->finish(stop, deliver);
   }
 }
 

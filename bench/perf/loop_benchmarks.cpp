@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "bench/perf/benchmarks.hpp"
-#include "bench/perf/thread_clock.hpp"
 #include "bench/perf/timed_plant.hpp"
 #include "plants/linear_plant.hpp"
+#include "plants/thread_clock.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/signals.hpp"
 #include "scenarios/study_library.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "analysis/statistics/quantile.hpp"
-#include "bench/perf/thread_clock.hpp"
+#include "plants/thread_clock.hpp"
 
 namespace mpm {
 namespace {

@@ -1,6 +1,6 @@
 #include "bench/perf/timed_plant.hpp"
 
-#include "bench/perf/thread_clock.hpp"
+#include "plants/thread_clock.hpp"
 
 namespace mpm {
 

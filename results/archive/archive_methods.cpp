@@ -55,7 +55,7 @@ void read_method_times(const Hdf5Group& root, Campaign& campaign) {
         root.group(kGroup).group(campaign.methods[m].form->method().name).attribute<double>("milliseconds");
     for (ExperimentRecord& record : campaign.records)
       if (record.assessments[m].answered())
-        record.assessments[m].seconds = milliseconds / 1e3;
+        record.assessments[m].milliseconds = milliseconds;
   }
 }
 

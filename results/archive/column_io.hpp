@@ -34,12 +34,9 @@ void write_columns(Hdf5Group& group, const std::vector<std::string>& dimensions,
 /// Throws ArchiveError when a flag has a value without a meaning.
 template <class T>
 void require_flags(const VariableText& text, const std::vector<T>& values, const std::string& file) {
-  if constexpr (std::is_integral_v<T>) {
-    for (const T value : values)
-      if (!text.flags.values.empty() && !text.flags.contains(value))
-        throw ArchiveError(fmt::format("{}: variable '{}': found {}; allowed: {} to {}", file, text.name,
-                                       value, text.flags.values.front(), text.flags.values.back()));
-  }
+  if (const T* const value = value_without_meaning(text, values))
+    throw ArchiveError(fmt::format("{}: variable '{}': found {}; allowed: {} to {}", file, text.name, *value,
+                                   text.flags.values.front(), text.flags.values.back()));
 }
 
 /// The reverse of write_columns(); `file` is for messages.

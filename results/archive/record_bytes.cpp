@@ -34,15 +34,6 @@ void write(ByteWriter& writer, const RecordVariable& variable, const ExperimentR
       variable.access);
 }
 
-template <class T>
-void require_flags(const RecordVariable& variable, const std::vector<T>& values) {
-  if constexpr (std::is_integral_v<T>)
-    for (const T value : values)
-      if (!variable.text.flags.values.empty() && !variable.text.flags.contains(value))
-        throw std::runtime_error(
-            fmt::format("{} is {}, which is none of its values", variable.text.name, value));
-}
-
 void read(ByteReader& reader, const RecordVariable& variable, ExperimentRecord& record) {
   std::visit(
       [&]<class T>(const RecordAccess<T>& access) {
@@ -53,7 +44,9 @@ void read(ByteReader& reader, const RecordVariable& variable, ExperimentRecord& 
         } else {
           reader.block(values.data(), values.size() * sizeof(T));
         }
-        require_flags(variable, values);
+        if (const T* const value = value_without_meaning(variable.text, values))
+          throw std::runtime_error(
+              fmt::format("{} is {}, which is none of its values", variable.text.name, *value));
         access.set(record, values.data());
       },
       variable.access);

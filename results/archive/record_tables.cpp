@@ -21,7 +21,13 @@ std::size_t count_of(Eigen::Index length) {
   return static_cast<std::size_t>(length);
 }
 
-/// One value a record.
+/// The variable where it has this use alone.
+RecordVariable only(RecordUse use, RecordVariable variable) {
+  variable.use = use;
+  return variable;
+}
+
+/// One value of each record.
 template <class T>
 RecordVariable scalar(VariableText text, std::function<T(const Record&)> get,
                       std::function<void(Record&, T)> set) {
@@ -85,7 +91,7 @@ RecordVariable matrix(VariableText text, std::vector<std::string> dimensions, Ei
   return {std::move(text), std::move(dimensions), {count_of(rows), count_of(columns)}, std::move(access)};
 }
 
-// --- What was drawn ---------------------------------------------------------------------------------------
+// --- What was drawn ---
 
 Flags with_none(Flags flags) {
   flags.values.insert(flags.values.begin(), -1);
@@ -203,8 +209,7 @@ RecordTable drawn(const Study& study) {
   return table;
 }
 
-// --- How it ended, the truth, and the verdicts
-// --------------------------------------------------------------
+// --- How it ended, the truth, and the verdicts ---
 
 /// One value a method of each record; `member` of AssessmentRecord.
 template <class T, class Member>
@@ -229,11 +234,7 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
   RecordTable table;
   table.dimension = "experiment";
   // A record comes with room for every method; `status` comes first, since it says what else there is.
-  table.make = [forms](Record& record) {
-    record.assessments.resize(forms.size());
-    for (std::size_t m = 0; m < forms.size(); ++m)
-      record.assessments[m].form = forms[m];
-  };
+  table.make = [forms](Record& record) { record.assessments = unassessed(forms); };
   table.variables = {
       plain<std::int8_t>(
           {"status", "how the experiment ended", "1",
@@ -251,12 +252,13 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
             if (r.status == ExperimentStatus::ok)
               r.ivar_basis = std::move(values);
           }),
-      scalar<std::int8_t>({"impact", "some Ivar_basis lies outside the band of impact", "1",
-                           "the truth about what is wrong; no method has a part in it", yes_no_flags()},
-                          [options = study.diagnosis](const Record& r) {
-                            return static_cast<std::int8_t>(has_impact(options, r));
-                          },
-                          {}),
+      only(RecordUse::archive_only,
+           scalar<std::int8_t>({"impact", "some Ivar_basis lies outside the band of impact", "1",
+                                "the truth about what is wrong; no method has a part in it", yes_no_flags()},
+                               [options = study.diagnosis](const Record& r) {
+                                 return static_cast<std::int8_t>(has_impact(options, r));
+                               },
+                               {})),
       of_methods<std::int8_t>(
           {"assessment_status", "how the assessment by a method ended", "1",
            "see reason of the method's group",
@@ -275,19 +277,17 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
       of_methods<std::int8_t>({"predicted_source", "source that the method sees in the predicted CV", "1",
                                "none: the method tells none", source_flags()},
                               forms, &AssessmentRecord::predicted_source),
-      of_methods<double>({"seconds", "processor time of the assessment", "s"}, forms,
-                         &AssessmentRecord::seconds),
+      only(RecordUse::bytes_only,
+           of_methods<double>({"milliseconds", "processor time of the assessment", "ms"}, forms,
+                              &AssessmentRecord::milliseconds)),
   };
-  table.variables[3].use = RecordUse::archive_only;
-  table.variables.back().use = RecordUse::bytes_only;
   for (const Column<SolverStatistics>& column : solver_columns())
     table.variables.push_back(of_column(
         column, [](auto& record) -> auto& { return record.solver; }));
   return table;
 }
 
-// --- The numbers of a method
-// --------------------------------------------------------------------------------
+// --- The numbers of a method ---
 
 std::vector<std::string> dimensions_of(NumberScope scope) {
   switch (scope) {
@@ -354,8 +354,7 @@ RecordVariable of_number(const NumberPlace& place, std::size_t method) {
   return variable;
 }
 
-// --- Kept loops, and Ivar_diag with a modified S0
-// -----------------------------------------------------------
+// --- Kept loops, and Ivar_diag with a modified S0 ---
 
 RecordTable kept_loops(const Study& study) {
   RecordTable table{.group = "trajectories",
@@ -406,7 +405,7 @@ RecordTable perturbed(const Study& study) {
                                                  const LoopRecord& loop, const SolverStatistics& statistics) {
   [[maybe_unused]] const auto& [draw, status, message, ivar_basis, assessments, perturbed, solver, kept] =
       record;
-  [[maybe_unused]] const auto& [form, ended, reason, flagged, score, cv, source, numbers, seconds] =
+  [[maybe_unused]] const auto& [form, ended, reason, flagged, score, cv, source, numbers, milliseconds] =
       assessment;
   [[maybe_unused]] const auto& [trajectory, y_sim] = loop;
   [[maybe_unused]] const auto& [loop_status, samples_done, y, u, u_target, d, y_set, of_loop, failure, what] =

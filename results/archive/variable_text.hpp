@@ -49,6 +49,16 @@ Attributes attributes(const VariableText& text) {
   return list;
 }
 
+/// The first of the values of a flag variable that has no meaning; null when there is none.
+template <class T>
+const T* value_without_meaning(const VariableText& text, const std::vector<T>& values) {
+  if constexpr (std::is_integral_v<T>)
+    for (const T& value : values)
+      if (!text.flags.values.empty() && !text.flags.contains(value))
+        return &value;
+  return nullptr;
+}
+
 /// A word of `Flags::meanings`: with '_' for blanks, which separate them in a file.
 std::string flag_word(std::string text);
 /// 0: no, 1: yes.

@@ -27,20 +27,20 @@ std::string difference_text(const Study& study, const BasisCase& basis) {
                         html_text(cv_name(study, basis.sensitivity.active[static_cast<std::size_t>(a)].cv)),
                         html_number(largest(a)));
   return "<p>T<sub>0</sub> is identified as Box-Jenkins models (appendix A3). Largest difference from the "
-         "direct step responses, by reference: " +
+         "direct step responses, by constraint: " +
          html + ".</p>\n";
 }
 
 Panel step_panel(const Study& study, const NominalSensitivity& sensitivity,
                  const std::optional<NominalSensitivity>& direct, std::size_t a) {
-  const ActiveConstraint& reference = sensitivity.active[a];
+  const ActiveConstraint& constraint = sensitivity.active[a];
   const Eigen::MatrixXd& response = sensitivity.step_response[a];
   std::vector<double> time{0.0};
   for (Eigen::Index l = 0; l < response.cols(); ++l)
     time.push_back(study.controller.sample_time * static_cast<double>(l + 1));
-  const std::string cv = cv_name(study, reference.cv);
+  const std::string cv = cv_name(study, constraint.cv);
   PanelScript panel(fmt::format("t0_{}", a),
-                    fmt::format("step of the {} of {}", to_string(reference.kind), as_label(cv)),
+                    fmt::format("step of the {} of {}", to_string(constraint.kind), as_label(cv)),
                     {.label = "time (" + as_label(unit_text(study.plant.time_unit)) + ")",
                      .lower = 0.0,
                      .upper = time.back()},
@@ -54,9 +54,9 @@ Panel step_panel(const Study& study, const NominalSensitivity& sensitivity,
     for (Eigen::Index i = 0; i < response.rows(); ++i)
       draw(direct->step_response[a], i, kDirect);
   for (Eigen::Index i = 0; i < response.rows(); ++i)
-    draw(response, i, cv_pen(i, i == reference.cv));
+    draw(response, i, cv_pen(i, i == constraint.cv));
   return panel.finish(
-      fmt::format("Responses of all CVs to a unit step of the {} of {}.", to_string(reference.kind), cv));
+      fmt::format("Responses of all CVs to a unit step of the {} of {}.", to_string(constraint.kind), cv));
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ void add_made_up_answers(Campaign& campaign) {
   for (ExperimentRecord& record : campaign.records) {
     const bool ran = record.status == ExperimentStatus::ok;
     if (ran)
-      record.assessments.front().seconds = 0.125;
+      record.assessments.front().milliseconds = 125.0;
     for (std::size_t method = 1; method < forms.size(); ++method)
       record.assessments.push_back(ran ? made_up_answer(campaign.study, forms[method], ++which)
                                        : unasked(forms[method]));

@@ -139,7 +139,7 @@ double number_for(Numbers& numbers, const NumberPlace& place) {
 AssessmentRecord answer(Numbers& numbers, const Study& study, std::shared_ptr<const AssessmentForm> form) {
   const MethodDescription& method = form->method();
   AssessmentRecord made = unasked(std::move(form));
-  made.seconds = 1e-4 * numbers.index(1000);
+  made.milliseconds = 0.1 * numbers.index(1000);
   made.status = static_cast<AssessmentStatus>(std::max(0, numbers.index(7) - 3));
   if (made.status == AssessmentStatus::not_applicable || made.status == AssessmentStatus::failed)
     made.reason = "no \xC3\xBC";
@@ -368,7 +368,7 @@ void set_chain(const Study& study, ExperimentRecord& record, const Diagnosis& di
   *chain = kept(chain->form, said);
   chain->predicted_cv = diagnosis.predicted_cv;
   chain->predicted_source = diagnosis.predicted_source;
-  chain->seconds = 0.125;
+  chain->milliseconds = 125.0;
 }
 
 void remove_methods(Campaign& campaign, const std::function<bool(const std::string& name)>& unwanted) {

@@ -203,11 +203,11 @@ TEST_CASE("rates of a method: the cost is the median over loops with a verdict",
   Case made;
   for (const double seconds : {0.010, 0.001, std::nan(""), 0.002}) {
     AssessmentRecord answer = verdict(true);
-    answer.seconds = seconds;
+    answer.milliseconds = 1e3 * seconds;
     made.add(kMpm, answer);
   }
   AssessmentRecord failed = no_verdict(AssessmentStatus::failed);
-  failed.seconds = 100.0;
+  failed.milliseconds = 1e5;
   made.add(kMpm, failed);
   CHECK(made.rates().milliseconds == Approx(2.0).epsilon(1e-12));
   CHECK(std::isnan(Case().rates().milliseconds));

@@ -219,8 +219,8 @@ TEST_CASE("a panel has its methods in the order in which they are named, and no 
   for (std::size_t method = 0; method < 2; ++method) {
     CHECK(said[method].form == panel.forms()[method]);
     CHECK(panel.assess_by(panel.forms()[method]->method().name, loop)->score == said[method].score);
-    CHECK(panel.unassessed()[method].form == panel.forms()[method]);
-    CHECK(panel.unassessed()[method].status == AssessmentStatus::not_assessed);
+    CHECK(unassessed(panel.forms())[method].form == panel.forms()[method]);
+    CHECK(unassessed(panel.forms())[method].status == AssessmentStatus::not_assessed);
   }
   CHECK(said[0].form->method().name == "sse");
   CHECK_FALSE(panel.assess_by("sun", loop));

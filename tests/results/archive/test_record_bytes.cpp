@@ -147,7 +147,7 @@ std::vector<MemberChange> member_changes() {
       {"steps", solver(&S::steps), {"solver_steps"}},
       {"iterations", solver(&S::iterations), {"solver_iterations"}},
       {"fallbacks", solver(&S::fallbacks), {"solver_fallbacks"}},
-      {"time", sse([](A& a) { a.seconds = 17.0; }), {}},  // differs from run to run
+      {"time", sse([](A& a) { a.milliseconds = 17.0; }), {}},  // differs from run to run
       {"assessment status", sse([](A& a) { a.status = AssessmentStatus::failed; }), {"assessment_status"}},
       {"reason", sse([](A& a) { a.reason += "why"; }), {"methods/sse/reason"}},
       {"flagged", sse([](A& a) { a.flagged = !a.flagged; }), {"flagged"}},

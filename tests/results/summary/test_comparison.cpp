@@ -28,7 +28,7 @@ Campaign four_methods() {
       continue;
     for (AssessmentRecord& said : record.assessments) {
       said = plain_verdict(said.form, true, 0.5);
-      said.seconds = 0.001;
+      said.milliseconds = 1.0;
     }
     record.assessments[0].flagged = record.draw.index % 4 != 0;
     if (record.draw.index >= 10)

@@ -1,4 +1,4 @@
-#include "bench/perf/thread_clock.hpp"
+#include "plants/thread_clock.hpp"
 
 #include <ctime>
 
