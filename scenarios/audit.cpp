@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -12,7 +13,7 @@ AuditedProblem copy_of(const SolvedQp& problem) {
 }
 
 AuditDifference compare(const AuditedProblem& problem, const QpResult& reference) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNone = kNaN;
   AuditDifference difference{problem.status == reference.status, kNone, kNone};
   if (problem.status == QpStatus::solved && reference.status == QpStatus::solved) {
     difference.x = (problem.x - reference.x).lpNorm<Eigen::Infinity>();

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -61,15 +61,15 @@ double Distribution::sample(RandomStream& stream) const {
       return a_ + b_ * stream.normal();
   }
   assert(false);
-  return std::numeric_limits<double>::quiet_NaN();
+  return kNaN;
 }
 
 double Distribution::minimum() const {
-  return kind_ == Kind::normal ? -std::numeric_limits<double>::infinity() : a_;
+  return kind_ == Kind::normal ? -kInfinity : a_;
 }
 
 double Distribution::maximum() const {
-  return kind_ == Kind::normal ? std::numeric_limits<double>::infinity() : b_;
+  return kind_ == Kind::normal ? kInfinity : b_;
 }
 
 }  // namespace mpm

@@ -1,14 +1,15 @@
 #pragma once
 
-#include <limits>
 #include <string>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
 /// Which numbers a key of a study file takes: an interval with open or closed ends.
 struct NumberRule {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
+  double low = -kInfinity;
+  double high = kInfinity;
   bool low_included = false;
   bool high_included = false;
 

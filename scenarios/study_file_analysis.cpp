@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include <fmt/format.h>
 
+#include "plants/non_finite.hpp"
 #include "scenarios/study_file_keys.hpp"
 #include "scenarios/study_file_parts.hpp"
 #include "scenarios/toml_values.hpp"
@@ -43,7 +43,7 @@ std::vector<Eigen::Index> read_active_cvs(const TomlTable& table, const PlantMod
 /// A step of a soft limit into the range must not cross the opposite one. CVs without a range (equal limits)
 /// have no opposite one.
 double narrowest_range(const MpcOptions& controller, const std::vector<Eigen::Index>& active) {
-  double narrowest = std::numeric_limits<double>::infinity();
+  double narrowest = kInfinity;
   for (Eigen::Index i = 0; i < controller.cv_soft.lower.size(); ++i) {
     const double width = controller.cv_soft.upper(i) - controller.cv_soft.lower(i);
     const bool counts = active.empty() || std::find(active.begin(), active.end(), i) != active.end();

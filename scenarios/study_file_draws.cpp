@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include <fmt/format.h>
 
+#include "plants/non_finite.hpp"
 #include "scenarios/study_file_keys.hpp"
 #include "scenarios/study_file_parts.hpp"
 #include "scenarios/toml_values.hpp"
@@ -29,7 +29,7 @@ void read_weights(const TomlTable& table, const std::array<std::string_view, n>&
 
 /// Smallest dead time of the channels that a mismatch can change.
 double shortest_dead_time(const PlantModel& plant) {
-  double shortest = std::numeric_limits<double>::infinity();
+  double shortest = kInfinity;
   for (Eigen::Index row = 0; row < plant.G.rows(); ++row) {
     for (std::size_t mv = 0; mv < plant.mvs.size(); ++mv) {
       const TransferFunction& channel = plant.G(row, static_cast<Eigen::Index>(mv));

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "plants/catalogue.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/study_file_keys.hpp"
 #include "scenarios/study_file_parts.hpp"
 #include "scenarios/toml_values.hpp"
@@ -55,7 +55,7 @@ double largest_real_part_of_roots(const Eigen::VectorXd& p) {
   }
   companion.diagonal(-1).setOnes();
   if (!companion.allFinite()) {
-    return std::numeric_limits<double>::quiet_NaN();
+    return kNaN;
   }
   return mean_root * companion.eigenvalues().real().maxCoeff();
 }

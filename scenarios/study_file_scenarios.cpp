@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "plants/non_finite.hpp"
 #include "scenarios/study_file_keys.hpp"
 #include "scenarios/study_file_parts.hpp"
 #include "scenarios/toml_values.hpp"
@@ -18,8 +18,6 @@ namespace {
 // Bounds on what a file can make the program do; far above any table of scenarios.
 constexpr std::size_t kMaxScenarios = 1000;
 constexpr std::size_t kMaxFaults = 200;  // of one sort in a scenario
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 bool has_any(const TomlTable& table, std::initializer_list<const char*> keys) {
   return std::any_of(keys.begin(), keys.end(), [&table](const char* key) { return table.has(key); });

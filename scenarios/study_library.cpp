@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExtension = ".toml";
+constexpr const char* kStudyExtension = ".toml";
 
 /// The study files of a folder, sorted.
 std::vector<fs::path> study_files(const fs::path& directory) {
@@ -24,7 +24,7 @@ std::vector<fs::path> study_files(const fs::path& directory) {
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
     std::error_code no_status;
-    if (entry->path().extension() == kExtension && entry->is_regular_file(no_status)) {
+    if (entry->path().extension() == kStudyExtension && entry->is_regular_file(no_status)) {
       files.push_back(entry->path());
     }
   }
@@ -68,11 +68,11 @@ std::vector<StudyEntry> shipped_studies(const fs::path& directory) {
 
 Study find_study(const std::string& path_or_name, const fs::path& directory) {
   const bool names_a_path =
-      path_or_name.find('/') != std::string::npos || fs::path(path_or_name).extension() == kExtension;
+      path_or_name.find('/') != std::string::npos || fs::path(path_or_name).extension() == kStudyExtension;
   if (names_a_path) {
     return load_study(path_or_name);
   }
-  const fs::path shipped = directory / (path_or_name + kExtension);
+  const fs::path shipped = directory / (path_or_name + kStudyExtension);
   if (!path_or_name.empty() && is_file(shipped)) {
     return load_study(shipped);
   }

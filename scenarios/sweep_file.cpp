@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExtension = ".toml";
+constexpr const char* kSweepExtension = ".toml";
 
 SweepVariant read_variant(const TomlTable& variant, const toml::table& base, const std::string& file_name) {
   SweepVariant result;
@@ -44,7 +44,7 @@ Sweep load_sweep(const fs::path& path) {
 }
 
 Sweep find_sweep(const std::string& path_or_name) {
-  const fs::path shipped = study_directory().parent_path() / "sweeps" / (path_or_name + kExtension);
+  const fs::path shipped = study_directory().parent_path() / "sweeps" / (path_or_name + kSweepExtension);
   std::error_code no_status;
   return load_sweep(path_or_name.find('/') == std::string::npos && fs::is_regular_file(shipped, no_status)
                         ? shipped

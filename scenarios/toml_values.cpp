@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "plants/non_finite.hpp"
 #include "scenarios/toml_text.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kLongestName = 64;
 
 template <class Value>
@@ -23,7 +22,7 @@ Value recorded(const TomlTable& table, std::string_view key, Value value) {
 
 /// NaN, which no rule takes, for what is no number.
 double number_in(const toml::node& node) {
-  return node.value<double>().value_or(std::numeric_limits<double>::quiet_NaN());
+  return node.value<double>().value_or(kNaN);
 }
 
 std::string describe_pair(double low, double high) {

@@ -1,7 +1,8 @@
 #include "solvers/active_set_certificate.hpp"
 
 #include <cmath>
-#include <limits>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -12,7 +13,7 @@ constexpr double kRounding = 1e-12;
 
 double proven_violation(const QpStructure& structure, const QpData& data, const Eigen::VectorXd& y,
                         Eigen::VectorXd& scratch) {
-  const double nothing = -std::numeric_limits<double>::infinity();
+  const double nothing = -kInfinity;
   const double total = y.lpNorm<1>();
   if (!(total > 0.0) || !std::isfinite(total))
     return nothing;

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A limit whose normal leaves less than this of its squared length beside the working set depends on it.
 constexpr double kDependent = 1e-12;
 constexpr int kRefinements = 6;

@@ -1,16 +1,10 @@
 #include "solvers/active_set_limits.hpp"
 
-#include <limits>
-
 #include <Eigen/Cholesky>
 
+#include "plants/non_finite.hpp"
+
 namespace mpm {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
 LimitGeometry::LimitGeometry(const ActiveSetProblem& problem) : problem_(problem) {
   const QpStructure& structure = *problem.structure;
   const Eigen::Index n = structure.variable_count();

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -24,7 +25,7 @@ ActiveSetNewton::ActiveSetNewton(const ActiveSetProblem& problem, std::size_t fa
   for (Eigen::VectorXd* vector : {&z, &centre, &linear, &gradient, &direction_, &step_, &target_})
     vector->setZero(size);
   lower.setConstant(size, 0.0);
-  upper.setConstant(size, std::numeric_limits<double>::infinity());
+  upper.setConstant(size, kInfinity);
   for (Eigen::VectorXd* vector : {&row_value, &row_step_, &row_force_})
     vector->setZero(rows);
   free_.reserve(static_cast<std::size_t>(size));

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/active_set_certificate.hpp"
 
 namespace mpm {
@@ -167,7 +167,7 @@ void ActiveSetSolver::set_limits(const QpData& data) {
 QpStatus ActiveSetSolver::iterate(const QpData& data, int& iterations) {
   const double scale = std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>());
   LimitSprings& hard = families_[kHard];
-  double last_residual = std::numeric_limits<double>::infinity();
+  double last_residual = kInfinity;
   for (int round = 0; round < options_.round_limit; ++round) {
     const NewtonOutcome outcome =
         newton_.minimise(families_, options_.tolerance * scale, options_.iteration_limit, iterations);

@@ -1,13 +1,14 @@
 #include "solvers/active_set_springs.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
 LimitSprings::LimitSprings(double sign, Eigen::VectorXd k) : slack_sign(sign), stiffness(std::move(k)) {
-  const double infinity = std::numeric_limits<double>::infinity();
+  const double infinity = kInfinity;
   lower.setConstant(size(), -infinity);
   upper.setConstant(size(), infinity);
   multiplier.setZero(size());

@@ -1,5 +1,7 @@
 #include "solvers/certified_solver.hpp"
 
+#include <utility>
+
 #include "solvers/ipopt_solver.hpp"
 
 namespace mpm {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <coin/IpIpoptApplication.hpp>
@@ -11,13 +10,13 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/reduced_program.hpp"
 #include "solvers/working_set.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kIpoptInfinity = 2e19;           // Ipopt reads anything beyond 1e19 as no limit
 constexpr double kRowTolerance = 1e-9;            // a left-out limit counts as kept up to here
 constexpr double kInfeasibilityThreshold = 1e-7;  // smallest violation that proves infeasibility

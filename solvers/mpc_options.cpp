@@ -1,19 +1,17 @@
 #include "solvers/mpc_options.hpp"
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <tuple>
 
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "plants/same_members.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void require_weights(const char* name, const Eigen::VectorXd& weights, Eigen::Index size) {
   if (weights.size() != size)

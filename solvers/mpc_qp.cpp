@@ -1,5 +1,7 @@
 #include "solvers/mpc_qp.hpp"
 
+#include <utility>
+
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void require_size(const char* name, Eigen::Index found, Eigen::Index expected) {
   if (found != expected)

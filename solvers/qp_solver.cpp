@@ -1,13 +1,13 @@
 #include "solvers/qp_solver.hpp"
 
 #include <array>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/certified_solver.hpp"
 #include "solvers/ipopt_solver.hpp"
@@ -56,9 +56,8 @@ const QpResult& QpSolver::solve(const QpData& data) {
 
 void QpSolver::certify(const QpData& data, QpResult& result) {
   result.objective = objective(*structure_, data, result);
-  result.kkt_residual = result.status == QpStatus::solved
-                            ? kkt_residual(*structure_, data, result, *workspace_)
-                            : std::numeric_limits<double>::infinity();
+  result.kkt_residual =
+      result.status == QpStatus::solved ? kkt_residual(*structure_, data, result, *workspace_) : kInfinity;
 }
 
 const QpResult& QpSolver::solve_from(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& x) {

@@ -1,12 +1,11 @@
 #include "solvers/reduced_program.hpp"
 
 #include <algorithm>
-#include <limits>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Which slacks can be eliminated with the limit they belong to.
 std::vector<bool> rows_with_own_slack(const QpStructure& structure) {

@@ -8,8 +8,8 @@
 namespace mpm {
 namespace {
 
-FalseAlarms counted(FalseAlarms group, std::size_t method, std::span<const ExperimentRecord> records,
-                    double confidence) {
+FalseAlarms count_alarms(FalseAlarms group, std::size_t method, std::span<const ExperimentRecord> records,
+                         double confidence) {
   std::int64_t verdicts = 0, flagged = 0, mpm = 0, ud = 0;
   for (const ExperimentRecord& record : records) {
     if (!group.has(record.draw))
@@ -60,7 +60,7 @@ std::vector<FalseAlarms> false_alarms(const Study& study, std::size_t method,
     FalseAlarms group;
     group.kind = kind;
     group.parameter = parameter;
-    groups.push_back(counted(group, method, records, study.aggregate.confidence));
+    groups.push_back(count_alarms(group, method, records, study.aggregate.confidence));
   };
   if (study.experiments.healthy > 0)
     add(ExperimentKind::healthy, std::nullopt);

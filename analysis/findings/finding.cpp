@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "plants/non_finite.hpp"
+
 namespace mpm {
 
 std::string_view to_string(FindingForm form) {
@@ -32,7 +34,6 @@ Finding counted(Finding like, std::int64_t experiments) {
 }
 
 std::vector<Finding> summary_findings(const Finding& of, const SampleSummary& summary) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const auto row = [&](const char* suffix, const char* word, bool has_interval, double value,
                        const Interval& interval) {
     Finding finding = of.with(value, interval, summary.count);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +8,7 @@
 
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/sample_summary.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/fault.hpp"
 
 namespace mpm {
@@ -52,11 +52,11 @@ struct Finding {
   std::optional<ExperimentKind> kind = {};  ///< of the experiments; none: of several kinds
   std::string method = {};                  ///< whose answers they are; empty: of no method
   bool has_interval = true;                 ///< can it have one? Least and largest values never do
-  double value = std::numeric_limits<double>::quiet_NaN();
-  Interval interval{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  std::int64_t count = 0;                                      ///< experiments, pairs or loops behind it
-  std::int64_t hits = -1;                                      ///< of a share, those that count; -1: no share
-  double reported = std::numeric_limits<double>::quiet_NaN();  ///< by others, as the study says; NaN: nothing
+  double value = kNaN;
+  Interval interval{kNaN, kNaN};
+  std::int64_t count = 0;  ///< experiments, pairs or loops behind it
+  std::int64_t hits = -1;  ///< of a share, those that count; -1: no share
+  double reported = kNaN;  ///< by others, as the study says; NaN: nothing
 
   bool is_share() const { return form == FindingForm::share; }
   bool has_reported() const { return reported == reported; }

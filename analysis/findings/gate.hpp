@@ -1,19 +1,19 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <string_view>
 
 #include "analysis/findings/finding.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
 /// A claim about one number of a study: minimum <= number <= maximum.
 struct Gate {
   std::string name;  ///< of the number, a finding of the study
-  double minimum = -std::numeric_limits<double>::infinity();
-  double maximum = std::numeric_limits<double>::infinity();
+  double minimum = -kInfinity;
+  double maximum = kInfinity;
   bool with_confidence = false;    ///< judged by the interval of the number instead of the number itself
   std::int64_t minimum_count = 1;  ///< fewer experiments behind the number show nothing
   std::string reason = {};         ///< why the limits stand where they do
@@ -41,7 +41,7 @@ struct GateResult {
   /// How far the number or interval is from changing the outcome, in units of the number; NaN without one.
   /// Positive for a gate that passes: the distance to the nearest limit. Negative otherwise: by how much a
   /// value, a whole interval, or (inconclusive) one end of an interval is beyond its limit.
-  double margin = std::numeric_limits<double>::quiet_NaN();
+  double margin = kNaN;
 };
 
 /// Judges `measured`, with [a, b] its interval, or a = b = its value without `with_confidence`:

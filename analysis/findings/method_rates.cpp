@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "analysis/statistics/quantile.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = kNaN;
 
 /// Counts trials and hits.
 struct Count {

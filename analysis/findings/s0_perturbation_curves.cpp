@@ -5,6 +5,7 @@
 
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/statistics/quantile.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -34,7 +35,6 @@ std::vector<RatioSpread> spreads(const Study& study, const std::vector<const Exp
         values.push_back(ratio);
     }
     std::sort(values.begin(), values.end());
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     result.push_back(values.empty() ? RatioSpread{kNaN, kNaN, kNaN, kNaN, kNaN}
                                     : RatioSpread{values.front(), sorted_quantile(values, 0.25),
                                                   sorted_quantile(values, 0.5), sorted_quantile(values, 0.75),

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/statistics/interval.hpp"
+#include "plants/non_finite.hpp"
 
 // What the modified models of s0_perturbation.hpp do to Ivar_diag over the experiments of a study.
 
@@ -20,7 +20,7 @@ struct RatioSpread {
 /// How far Ivar_diag moves while the multiplier stays within the tolerance of the study.
 struct S0Change {
   /// Largest |ratio - 1| over experiments and multipliers.
-  double largest = std::numeric_limits<double>::quiet_NaN();
+  double largest = kNaN;
   /// Experiments whose ratio stays within the band of impact.
   Rate within_band;
 };

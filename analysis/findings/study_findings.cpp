@@ -1,7 +1,6 @@
 #include "analysis/findings/study_findings.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/toml_table.hpp"
 
 namespace mpm {
@@ -21,7 +21,6 @@ void append(std::vector<Finding>&& rows, std::vector<Finding>& to) {
 }
 
 std::vector<Finding> rows_of(const std::string& parameter, const char* words, const S0Change& change) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const std::string of = fmt::format("{} of S0 within tolerance", words);
   const Finding largest{.name = parameter + ".largest_change",
                         .label = fmt::format("largest relative change of Ivar_{{diag}}, {}", of),

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "analysis/identification/identification.hpp"
+#include "analysis/identification/least_squares.hpp"
 #include "analysis/identification/model_order.hpp"
 
 namespace mpm {
@@ -15,7 +16,7 @@ struct ArxOptions {
   /// value from before the record. Models to be compared by their loss need the same one.
   std::optional<Eigen::Index> first_sample;
   /// Smallest share of the largest diagonal element that counts as a direction (`least_squares`).
-  double rank_tolerance = 1e-10;
+  double rank_tolerance = kRankTolerance;
 
   /// @throws InputError for a tolerance outside (0, 1) or a first sample before `memory` of the order
   void validate(const ModelOrder& order) const;

@@ -1,12 +1,12 @@
 #include "analysis/identification/identification.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -51,10 +51,10 @@ double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y,
   require_signal("output", y, 2);
   require_same_length("output", y, "its estimate", y_est);
   if (!y_est.allFinite())
-    return -std::numeric_limits<double>::infinity();
+    return -kInfinity;
   const double spread = (y.array() - y.mean()).matrix().squaredNorm();
   if (spread <= static_cast<double>(y.size()) * variance_floor(y))
-    return std::numeric_limits<double>::quiet_NaN();
+    return kNaN;
   return 100.0 * (1.0 - std::sqrt((y - y_est).squaredNorm() / spread));
 }
 

@@ -4,6 +4,9 @@
 
 namespace mpm {
 
+/// Where nothing else is asked for: columns of unit norm that are this close to dependent count as dependent.
+inline constexpr double kRankTolerance = 1e-10;
+
 /// The answer to a linear least-squares problem.
 struct LeastSquares {
   Eigen::VectorXd x;          ///< p; of several minimisers the one of least norm, in scaled columns
@@ -25,6 +28,7 @@ struct LeastSquares {
 ///
 /// @throws InputError when n < p, p is 0, the lengths differ or the tolerance is outside (0, 1)
 LeastSquares least_squares(const Eigen::Ref<const Eigen::MatrixXd>& A,
-                           const Eigen::Ref<const Eigen::VectorXd>& b, double rank_tolerance);
+                           const Eigen::Ref<const Eigen::VectorXd>& b,
+                           double rank_tolerance = kRankTolerance);
 
 }  // namespace mpm

@@ -6,9 +6,9 @@ namespace mpm {
 namespace {
 
 /// Fills the columns of a gradient from the left.
-class Columns {
+class GradientColumns {
  public:
-  Columns(Eigen::Index N, Eigen::Index p, StartState start) : gradient_(N, p), start_(start) {}
+  GradientColumns(Eigen::Index N, Eigen::Index p, StartState start) : gradient_(N, p), start_(start) {}
 
   /// `count` columns: `signal` delayed by `delay`, `delay` + 1, ...
   void append_shifts(const Eigen::VectorXd& signal, Eigen::Index delay, Eigen::Index count) {
@@ -31,7 +31,7 @@ Eigen::MatrixXd prediction_error_gradient(const PolynomialModel& model,
   const Eigen::VectorXd e = prediction_errors(model, y, u, start);
   const ModelOrder order = model.order();
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
-  Columns columns(y.size(), order.parameter_count(), start);
+  GradientColumns columns(y.size(), order.parameter_count(), start);
   if (order.na > 0)
     columns.append_shifts(filter(model.D, model.C, y, 0, start), 1, order.na);
   for (std::size_t j = 0; j < model.inputs.size(); ++j) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "analysis/identification/least_squares.hpp"
 #include "analysis/statistics/discrete_filter.hpp"
 
 namespace mpm {
@@ -21,7 +22,7 @@ struct PredictionErrorOptions {
   /// shorter; a start outside is brought in by reflection (`stabilised`).
   double largest_radius = 0.9999;
   /// Smallest share of the largest diagonal element that counts as a direction (`least_squares`).
-  double rank_tolerance = 1e-10;
+  double rank_tolerance = kRankTolerance;
 
   /// @throws InputError for a first sample below 0, an iteration limit or number of starts below 1, or a
   /// radius or tolerance

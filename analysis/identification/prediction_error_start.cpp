@@ -3,19 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include "analysis/identification/arx.hpp"
 #include "analysis/identification/least_squares.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr Eigen::Index kLongestArx = 25;
 constexpr int kReductionRounds = 12;
-constexpr double kRankTolerance = 1e-10;
-
 void narrow(Eigen::VectorXd& polynomial, double radius) {
   polynomial = stabilised(polynomial, radius);
 }
@@ -55,7 +53,7 @@ Eigen::VectorXd reduced_denominator(const Eigen::VectorXd& w, const Eigen::Vecto
   const ModelOrder order{path.nf, {{path.nb, 0, path.delay}}, 0, 0};
   Eigen::VectorXd F = one;
   Eigen::VectorXd best = one;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (int round = 0; round < kReductionRounds && path.nf > 0; ++round) {
     const Eigen::VectorXd filtered_w = filter(one, F, w, 0, options.start);
     const Eigen::VectorXd filtered_u = filter(one, F, u, 0, options.start);

@@ -9,6 +9,7 @@
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -137,7 +138,7 @@ void AcfComparisonOptions::validate() const {
     throw InputError("largest lag", fmt::format("{}", max_lag), "0 or more");
   }
   require_inside("decay level", decay_level, 0.0, 1.0);
-  require_inside("tolerance of decay lags", decay_tolerance, 0.0, std::numeric_limits<double>::infinity());
+  require_inside("tolerance of decay lags", decay_tolerance, 0.0, kInfinity);
   require_confidence(confidence);
   require_inside("threshold of the decay ratio", oscillation_threshold, 0.0, 1.0);
   require_inside("own share", own_share, 0.5, 1.0);
@@ -153,7 +154,7 @@ bool AcfComparison::calmed_by_error() const {
 
 double decay_lag(const Autocorrelation& acf, double level, double band_factor) {
   if (acf.values.size() == 0 || std::isnan(acf.values[0])) {
-    return std::numeric_limits<double>::quiet_NaN();
+    return kNaN;
   }
   const Eigen::ArrayXd r = acf.values.array().abs();
   const Eigen::Index lags = r.size();
@@ -175,7 +176,7 @@ double decay_lag(const Autocorrelation& acf, double level, double band_factor) {
     }
   }
   if (last == lags - 1) {
-    return std::numeric_limits<double>::infinity();
+    return kInfinity;
   }
   return static_cast<double>(last) + (r[last] - level) / (r[last] - r[last + 1]);
 }

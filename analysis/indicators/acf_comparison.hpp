@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "analysis/indicators/acf_oscillation.hpp"
 #include "analysis/indicators/number_column.hpp"
 #include "analysis/statistics/autocorrelation.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -60,7 +60,7 @@ struct AcfComparisonOptions {
 struct AcfFeatures {
   /// Lag from which on |r| stays below the decay level, but for rises that chance may make (`decay_lag`);
   /// infinite when it does not within the lags, NaN without a function. Unit: samples.
-  double decay_lag = std::numeric_limits<double>::quiet_NaN();
+  double decay_lag = kNaN;
   AcfOscillation oscillation;
   Eigen::VectorXd values = {};  ///< the function at the lags 0 ... max_lag; NaN without one
 };
@@ -69,19 +69,19 @@ struct AcfFeatures {
 struct AcfComparison {
   AcfFeatures y, y0, y0_diag;
   /// Half width of the band that the function of white noise stays in, `Autocorrelation::white_band`.
-  double white_band = std::numeric_limits<double>::quiet_NaN();
+  double white_band = kNaN;
   /// Decay lag of y over that of y0; above 1 for a loop slower than designed. Infinite or 0 when one of them
   /// does not decay within the lags.
-  double decay_lag_ratio = std::numeric_limits<double>::quiet_NaN();
+  double decay_lag_ratio = kNaN;
   /// Ratios within 1/margin ... margin are alike, see `compare_autocorrelations`.
-  double decay_margin = std::numeric_limits<double>::quiet_NaN();
+  double decay_margin = kNaN;
   LoopSpeed speed = LoopSpeed::undetermined;
   /// Root mean square differences of two functions over the lags 1 ... max_lag.
-  double y_from_y0 = std::numeric_limits<double>::quiet_NaN();
-  double y_from_y0_diag = std::numeric_limits<double>::quiet_NaN();
-  double y0_diag_from_y0 = std::numeric_limits<double>::quiet_NaN();
+  double y_from_y0 = kNaN;
+  double y_from_y0_diag = kNaN;
+  double y0_diag_from_y0 = kNaN;
   /// y_from_y0_diag/(y_from_y0_diag + y0_diag_from_y0): 1 when y0_diag is like y0, 0 when it is like y.
-  double own_share = std::numeric_limits<double>::quiet_NaN();
+  double own_share = kNaN;
   ErrorOrigin origin = ErrorOrigin::none;
 
   /// y oscillates and y0 does not: figure A2.1 a, an oscillation that modelling errors cause.

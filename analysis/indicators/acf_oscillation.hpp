@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string_view>
 
 #include "analysis/statistics/autocorrelation.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -21,9 +21,9 @@ std::string_view to_string(Oscillation oscillation);
 struct AcfOscillation {
   Oscillation verdict = Oscillation::undetermined;
   /// Decay ratio R of the function over half a period, 0 ... about 1; NaN without two minima and a maximum.
-  double decay_ratio = std::numeric_limits<double>::quiet_NaN();
+  double decay_ratio = kNaN;
   /// Lag from the first minimum to the second; NaN without them. Unit: samples.
-  double period = std::numeric_limits<double>::quiet_NaN();
+  double period = kNaN;
 };
 
 /// Decay ratio and verdict after Miao and Seborg (1999, Automatic detection of excessively oscillatory

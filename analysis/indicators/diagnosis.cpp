@@ -5,6 +5,7 @@
 
 #include "analysis/indicators/simulation_error.hpp"
 #include "analysis/statistics/variance.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/signals.hpp"
 
 namespace mpm {
@@ -33,7 +34,7 @@ int one_window(const Study& study) {
 
 double total_simulation_error(const Diagnosis& diagnosis) {
   if (diagnosis.cvs.empty())
-    return std::numeric_limits<double>::quiet_NaN();
+    return kNaN;
   double total = 0.0;
   for (const CvDiagnosis& cv : diagnosis.cvs)
     total += cv.sse;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,6 +9,7 @@
 #include "analysis/indicators/mpm_indicator.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/study.hpp"
 
 namespace mpm {
@@ -21,7 +21,7 @@ struct CvDiagnosis {
   /// Chapters 2, 5 and 6; `mpm` of it is (6.13) to (6.15). One window length is the prediction horizon.
   DistributionIndicators distribution;
   AcfComparison acf;  ///< M2 and M3: about the setpoint where the CV has one
-  double sse = std::numeric_limits<double>::quiet_NaN();  ///< (4.17), CV unit
+  double sse = kNaN;  ///< (4.17), CV unit
 };
 
 /// Ivar_diag of the affected CV of an experiment with mismatch and disturbance when the loop is run with one
@@ -31,9 +31,9 @@ struct CvDiagnosis {
 ///
 /// NaN where there are no such loops.
 struct FaultsAlone {
-  double ivar_diag_mpm = std::numeric_limits<double>::quiet_NaN();
-  double ivar_diag_ud = std::numeric_limits<double>::quiet_NaN();
-  double dominance_mpm = std::numeric_limits<double>::quiet_NaN();
+  double ivar_diag_mpm = kNaN;
+  double ivar_diag_ud = kNaN;
+  double dominance_mpm = kNaN;
 };
 
 /// What the chain of the thesis says of one closed loop (appendix A2).

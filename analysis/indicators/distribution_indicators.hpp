@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -8,6 +7,7 @@
 #include "analysis/indicators/moment_scatter.hpp"
 #include "analysis/indicators/mpm_indicator.hpp"
 #include "analysis/indicators/number_column.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -26,11 +26,11 @@ namespace mpm {
 /// by the number of window lengths; means are meant. Folding is demanded for ce alone; no mean angle of the
 /// 32 in those tables exceeds 45 degrees, so `angle` is folded too.
 struct ScatterMeans {
-  double co = std::numeric_limits<double>::quiet_NaN();
-  double ce = std::numeric_limits<double>::quiet_NaN();
-  double angle = std::numeric_limits<double>::quiet_NaN();
-  double unfolded_angle = std::numeric_limits<double>::quiet_NaN();
-  double minor_to_major = std::numeric_limits<double>::quiet_NaN();
+  double co = kNaN;
+  double ce = kNaN;
+  double angle = kNaN;
+  double unfolded_angle = kNaN;
+  double minor_to_major = kNaN;
   /// Number of window lengths in the means: those that have a correlation, see `MpmScanner::scan`.
   int used = 0;
 };
@@ -47,10 +47,10 @@ struct ScatterMeans {
 /// Chapter 2 does not fold: it tabulates inclinations of 53.59, 60.11 and 64.00 degrees. It tabulates no
 /// negative angle although under a disturbance either sign is as likely, so these are magnitudes.
 struct ScatterShape {
-  double inclination = std::numeric_limits<double>::quiet_NaN();
-  double major_to_minor = std::numeric_limits<double>::quiet_NaN();
-  double regression_angle = std::numeric_limits<double>::quiet_NaN();
-  double log_r_squared = std::numeric_limits<double>::quiet_NaN();
+  double inclination = kNaN;
+  double major_to_minor = kNaN;
+  double regression_angle = kNaN;
+  double log_r_squared = kNaN;
 };
 
 /// The shape of one scatter, with y0 on the x axis. The four numbers rest on two, the correlation and the

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plants/non_finite.hpp"
+
 namespace mpm {
 namespace {
 
@@ -19,7 +21,7 @@ void MpmMeans::Magnitude::add(const CentredSums& sums) {
 }
 
 double MpmMeans::Magnitude::value() const {
-  return count_ > 0 ? sum_ / count_ : std::numeric_limits<double>::quiet_NaN();
+  return count_ > 0 ? sum_ / count_ : kNaN;
 }
 
 void MpmMeans::add(const PerStatistic<CentredSums>& sums) {

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <limits>
-
 #include <Eigen/Core>
 
 #include "analysis/indicators/moment_scatter.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -17,11 +16,11 @@ namespace mpm {
 /// | i_mpm   | I_MPM = max(co_dkts, co_dskn), (6.15); of a number and a NaN, the number | 0 ... 1 or NaN |
 /// | co_kts, co_skn | the same means without differentiation, (5.15) | 0 ... 1 or NaN |
 struct MpmIndicator {
-  double co_dkts = std::numeric_limits<double>::quiet_NaN();
-  double co_dskn = std::numeric_limits<double>::quiet_NaN();
-  double i_mpm = std::numeric_limits<double>::quiet_NaN();
-  double co_kts = std::numeric_limits<double>::quiet_NaN();
-  double co_skn = std::numeric_limits<double>::quiet_NaN();
+  double co_dkts = kNaN;
+  double co_dskn = kNaN;
+  double i_mpm = kNaN;
+  double co_kts = kNaN;
+  double co_skn = kNaN;
   /// Number of window lengths scanned.
   int scanned = 0;
   /// Number of window lengths behind the mean that rests on the fewest; less than `scanned` where signals

@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "analysis/statistics/signal_check.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 /// Angle of a line through the origin, above -90 up to 90 degrees: v and -v are the same line.
@@ -29,7 +28,7 @@ double line_angle(const Eigen::Vector2d& v) {
 
 PrincipalAxes principal_axes(const CentredSums& sums) {
   if (sums.pairs < 2) {
-    return {kNan, kNan, kNan};
+    return {kNaN, kNaN, kNaN};
   }
   const double degrees_of_freedom = static_cast<double>(sums.pairs - 1);
   Eigen::Matrix2d covariance;

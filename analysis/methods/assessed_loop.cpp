@@ -1,11 +1,11 @@
 #include "analysis/methods/assessed_loop.hpp"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -28,7 +28,7 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
   assessed.y_set =
       study.assessment.setpoints == AssessmentSetpoints::optimizer && study.controller.has_targets()
           ? optimizer_steady_state(study, loop, y_sim)
-          : Eigen::MatrixXd::Constant(loop.y.rows(), loop.y.cols(), std::numeric_limits<double>::quiet_NaN());
+          : Eigen::MatrixXd::Constant(loop.y.rows(), loop.y.cols(), kNaN);
   for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
     if (study.controller.has_setpoint(cv))
       assessed.y_set.row(cv) = loop.y_set.row(cv);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "plants/non_finite.hpp"
+
 namespace mpm {
 
 std::string_view to_string(AssessmentStatus status) {
@@ -33,7 +35,7 @@ double Assessment::number(std::string_view name, Eigen::Index cv, Eigen::Index c
   for (const AssessmentNumber& number : numbers)
     if (number.name == name && number.cv == cv && number.column == column)
       return number.value;
-  return std::numeric_limits<double>::quiet_NaN();
+  return kNaN;
 }
 
 Assessment Assessment::not_applicable(std::string reason) {

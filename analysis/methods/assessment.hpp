@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "plants/non_finite.hpp"
 #include "scenarios/fault.hpp"
 
 namespace mpm {
@@ -30,7 +30,7 @@ struct CvAssessment {
   std::optional<bool> flagged = {};
   /// How far the CV is from being flagged: larger is worse, comparable between CVs and loops of one method;
   /// NaN where `flagged` is none.
-  double score = std::numeric_limits<double>::quiet_NaN();
+  double score = kNaN;
   /// By methods that tell sources apart, of a flagged CV or the worst one: mpm or ud; otherwise none.
   FaultSource source = FaultSource::none;
 };
@@ -60,7 +60,7 @@ struct Assessment {
   bool flagged = false;  ///< something is wrong with the loop: the verdict that is counted as a detection
   /// How far the loop is from being flagged, larger is worse: what a ROC curve is drawn over. It need not be
   /// that of a CV.
-  double score = std::numeric_limits<double>::quiet_NaN();
+  double score = kNaN;
   std::vector<CvAssessment> cvs;          ///< ny; empty when the method does not look at CVs alone
   std::vector<Channel> flagged_channels;  ///< of methods that name channels
   std::vector<AssessmentNumber> numbers;

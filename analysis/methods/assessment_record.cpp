@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "analysis/methods/method_table.hpp"
+#include "plants/non_finite.hpp"
+#include "plants/row_major.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<std::string>& no_yes() {
   static const std::vector<std::string> words{"no", "yes"};
@@ -84,11 +84,10 @@ double AssessmentRecord::number(std::string_view name, Eigen::Index row, Eigen::
 }
 
 Eigen::MatrixXd AssessmentRecord::values(std::string_view name) const {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const NumberPlace* const place = form ? form->find(name) : nullptr;
   if (place == nullptr || numbers.size() == 0)
     return {};
-  return Eigen::Map<const RowMajor>(numbers.data() + place->first, place->rows, place->columns);
+  return Eigen::Map<const RowMajorMatrix>(numbers.data() + place->first, place->rows, place->columns);
 }
 
 void AssessmentRecord::set_number(std::string_view name, double value, Eigen::Index row,

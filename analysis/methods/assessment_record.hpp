@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,6 +9,7 @@
 
 #include "analysis/methods/assessment.hpp"
 #include "analysis/methods/assessment_method.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/study.hpp"
 
 // The answers of methods as they are kept for all loops of a study: a vector of numbers for each loop, and a
@@ -76,12 +76,11 @@ struct AssessmentRecord {
   AssessmentStatus status = AssessmentStatus::not_assessed;
   std::string reason;  ///< why there is no verdict; empty when there is one, or when nobody asked
   bool flagged = false;
-  double score = std::numeric_limits<double>::quiet_NaN();
+  double score = kNaN;
   Eigen::Index predicted_cv = -1;                    ///< Assessment::worst_cv(), -1 for none
   FaultSource predicted_source = FaultSource::none;  ///< of that CV
   Eigen::VectorXd numbers = {};                      ///< as the form has them; empty unless the status is ok
-  double milliseconds =
-      std::numeric_limits<double>::quiet_NaN();  ///< processor time; differs from run to run
+  double milliseconds = kNaN;                        ///< processor time; differs from run to run
 
   bool answered() const { return status == AssessmentStatus::ok; }
   /// The number of this name; NaN when there is none, or no verdict.

@@ -5,14 +5,13 @@
 #include <Eigen/QR>
 #include <fmt/format.h>
 
+#include "analysis/identification/least_squares.hpp"
 #include "analysis/identification/prediction_error_fit.hpp"
 #include "analysis/statistics/discrete_filter.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr double kRankTolerance = 1e-10;
 
 Eigen::MatrixXd about_means(const Eigen::Ref<const Eigen::MatrixXd>& signals) {
   return signals.colwise() - signals.rowwise().mean();

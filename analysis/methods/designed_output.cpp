@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "analysis/identification/prediction_error_fit.hpp"
 #include "analysis/identification/prediction_error_options.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -183,7 +185,7 @@ DesignedOutput designed_output(const Signals& y, const Signals& y_hat, const Sig
     result.mismatch.push_back(identified_row((y.row(i) - y_hat.row(i)).transpose(), inputs, 1, options));
     reference.row(i) += simulate(result.mismatch.back().model, deviations).transpose();
   }
-  result.y0 = Eigen::MatrixXd::Constant(y.rows(), y.cols(), std::numeric_limits<double>::quiet_NaN());
+  result.y0 = Eigen::MatrixXd::Constant(y.rows(), y.cols(), kNaN);
   for (Eigen::Index i = 0; i < y.rows(); ++i)
     if (result.has(i))
       result.y0.row(i) =

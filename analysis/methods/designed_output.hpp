@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/identification/polynomial_model.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/assessment_options.hpp"
 
 namespace mpm {
@@ -46,7 +46,7 @@ struct ClosedLoopModel {
   PolynomialModel model;   ///< one path for each eps, those that stand still with B = 0
   Eigen::Index order = 0;  ///< n; 0 without a model
   /// %Fit (3.32) of its simulated output over the record; NaN for an output of 0.
-  double fit = std::numeric_limits<double>::quiet_NaN();
+  double fit = kNaN;
 };
 
 /// The designed outputs of a loop, and what they were estimated with.

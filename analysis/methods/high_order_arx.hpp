@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "analysis/identification/least_squares.hpp"
 #include "analysis/identification/order_selection.hpp"
 
 namespace mpm {
@@ -31,7 +32,7 @@ struct HighOrderArxOptions {
   /// A constant beside the terms of (2.1), for records that do not vary about 0.
   bool constant = true;
   /// `NestedLeastSquares`.
-  double rank_tolerance = 1e-10;
+  double rank_tolerance = kRankTolerance;
 
   /// @throws InputError for an empty list, an order below 1, validation_fit, or a share or tolerance outside
   ///   (0, 1)

@@ -1,12 +1,13 @@
 #include "analysis/methods/model_quality.hpp"
 
+#include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -29,7 +30,7 @@ void require_shapes(const Matrix& y, const Matrix& y_sim, const Eigen::Ref<const
 }
 
 double ratio(double numerator, double denominator) {
-  return denominator > 0.0 ? numerator / denominator : std::numeric_limits<double>::quiet_NaN();
+  return denominator > 0.0 ? numerator / denominator : kNaN;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/identification/least_squares.hpp"
 #include "analysis/identification/nested_least_squares.hpp"
 #include "analysis/statistics/discrete_filter.hpp"
 #include "analysis/statistics/signal_check.hpp"
@@ -30,7 +31,6 @@ NoiseModel autoregressive_noise(const Eigen::Ref<const Eigen::VectorXd>& v, Eige
   Eigen::MatrixXd past(n, highest_order);
   for (Eigen::Index lag = 1; lag <= highest_order; ++lag)
     past.col(lag - 1) = v.segment(highest_order - lag, n);
-  constexpr double kRankTolerance = 1e-10;
   const NestedLeastSquares fit(past, v.tail(n), kRankTolerance);
   const auto samples = static_cast<double>(n);
   const auto bic = [&](Eigen::Index order) {

@@ -10,6 +10,7 @@
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -61,7 +62,7 @@ PartialCorrelation partial_correlation(const Signal& eps1, const Signal& eps2, E
   const Eigen::VectorXd r_11 = autocorrelation(eps1, window, confidence).values;
   PartialCorrelation result;
   if (r_11.hasNaN() || r_22.hasNaN()) {
-    result.values.setConstant(max_lag - min_lag + 1, std::numeric_limits<double>::quiet_NaN());
+    result.values.setConstant(max_lag - min_lag + 1, kNaN);
     return result;
   }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <limits>
-
 #include <Eigen/Core>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -17,10 +17,10 @@ namespace mpm {
 /// | lag, peak  |                       | where |r| is largest, and r there                                |
 struct PartialCorrelation {
   Eigen::VectorXd values;
-  double band = std::numeric_limits<double>::quiet_NaN();
-  double white_band = std::numeric_limits<double>::quiet_NaN();
+  double band = kNaN;
+  double white_band = kNaN;
   Eigen::Index lag = 0;
-  double peak = std::numeric_limits<double>::quiet_NaN();
+  double peak = kNaN;
 
   /// Whether |peak| is outside of the band, and above `weakest`; false without a correlation.
   bool is_strong(double weakest = 0.0) const;

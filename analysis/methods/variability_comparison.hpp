@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/statistics/interval.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -35,10 +35,10 @@ std::string_view to_string(VariabilityChange change);
 
 /// One generalised eigenvector (2.8).
 struct VariabilityDirection {
-  double mu = std::numeric_limits<double>::quiet_NaN();           ///< ratio of the variances along it
-  Eigen::VectorXd p;                                              ///< ny; unit length
-  double f_benchmark = std::numeric_limits<double>::quiet_NaN();  ///< f_I of (2.9)
-  double f_monitored = std::numeric_limits<double>::quiet_NaN();  ///< f_II of (2.9)
+  double mu = kNaN;           ///< ratio of the variances along it
+  Eigen::VectorXd p;          ///< ny; unit length
+  double f_benchmark = kNaN;  ///< f_I of (2.9)
+  double f_monitored = kNaN;  ///< f_II of (2.9)
   Interval limits;  ///< LL (2.11), UL (2.10); the latter is +infinity for records that are too short
   VariabilityChange change = VariabilityChange::none;
 };
@@ -56,12 +56,12 @@ std::string_view to_string(VariabilityStatus status);
 /// The result of a comparison of a monitored period with a benchmark period.
 struct VariabilityComparison {
   VariabilityStatus status = VariabilityStatus::ok;
-  double i_v = std::numeric_limits<double>::quiet_NaN();  ///< I_v (2.7), the product of all mu
-  std::vector<VariabilityDirection> directions;           ///< ny of them, mu descending
-  Eigen::VectorXd cos_worse;                              ///< cos theta^w (2.12) of each CV
-  Eigen::VectorXd cos_better;                             ///< cos theta^b (2.13) of each CV
+  double i_v = kNaN;                             ///< I_v (2.7), the product of all mu
+  std::vector<VariabilityDirection> directions;  ///< ny of them, mu descending
+  Eigen::VectorXd cos_worse;                     ///< cos theta^w (2.12) of each CV
+  Eigen::VectorXd cos_better;                    ///< cos theta^b (2.13) of each CV
   /// (2.14): a CV whose cosine is above it is to be held responsible for the change, and may be for both.
-  double beta = std::numeric_limits<double>::quiet_NaN();
+  double beta = kNaN;
 };
 
 /// Compares the variability of the control errors of two periods, after Yu and Qin (2008), section 2.2.2 and

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "analysis/statistics/autocorrelation.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -38,7 +38,7 @@ Interval variance_ratio_limits(double mu, const VarianceSample& benchmark, const
   };
   const double half_width =
       two_sided_normal_quantile(confidence) * std::sqrt(2.0 * (variance(benchmark) + variance(monitored)));
-  const double upper = half_width < 1.0 ? mu / (1.0 - half_width) : std::numeric_limits<double>::infinity();
+  const double upper = half_width < 1.0 ? mu / (1.0 - half_width) : kInfinity;
   return {mu / (1.0 + half_width), upper};
 }
 

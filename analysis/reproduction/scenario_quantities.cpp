@@ -1,7 +1,6 @@
 #include "analysis/reproduction/scenario_quantities.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,11 +10,12 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = kNaN;
 
 QuantityScope table_scope(NumberScope scope) {
   switch (scope) {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
 
 #include "analysis/statistics/quantile.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -24,8 +24,7 @@ SeededCell cell_over_seeds(const std::vector<ReproducedTable>& runs, std::size_t
     agreeing += cell.agrees() == true ? 1 : 0;
   }
   std::sort(numbers.begin(), numbers.end());
-  SeededCell result{first.cell, first.thesis_verdict, std::numeric_limits<double>::quiet_NaN(),
-                    static_cast<int>(numbers.size()), std::nullopt};
+  SeededCell result{first.cell, first.thesis_verdict, kNaN, static_cast<int>(numbers.size()), std::nullopt};
   if (!numbers.empty())
     result.median = sorted_quantile(numbers, 0.5);
   if (first.thesis_verdict)

@@ -11,6 +11,7 @@
 
 #include "analysis/reproduction/scenario_quantities.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -201,7 +202,7 @@ ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& facto
       reproduced.cells.push_back(
           {cell,
            loop ? loop->value(cell.quantity, place(study.plant.cvs, cell.cv), place(study.plant.mvs, cell.mv))
-                : std::numeric_limits<double>::quiet_NaN(),
+                : kNaN,
            {},
            {}});
     result.rows.push_back(std::move(reproduced));

@@ -1,23 +1,20 @@
 #include "analysis/sensitivity/identified_sensitivity.hpp"
 
-#include <limits>
-
 #include <fmt/format.h>
 
 #include "analysis/identification/prediction_error_fit.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// The row of a CV that does not move.
 IdentifiedRow row_at_rest(Eigen::Index n_ref, Eigen::Index N) {
   IdentifiedRow row;
-  row.validation_fit = kNan;
+  row.validation_fit = kNaN;
   row.identification.status = IdentificationStatus::noise_free;
   row.identification.samples = N;
   row.identification.model.inputs.resize(static_cast<std::size_t>(n_ref));
@@ -33,7 +30,7 @@ IdentifiedRow identified_row(const Eigen::VectorXd& y, const Eigen::Ref<const Ei
   IdentifiedRow row;
   if (!selection.best) {
     row.identification = selection.candidates.front().identification;
-    row.validation_fit = kNan;
+    row.validation_fit = kNaN;
     return row;
   }
   const OrderCandidate& best = selection.candidates[*selection.best];
@@ -67,7 +64,7 @@ IdentifiedSensitivity identified_sensitivity(const Eigen::Ref<const Eigen::Matri
   const std::vector<ModelOrder> candidates = order_candidates(options.orders, r.rows());
   IdentifiedSensitivity result;
   result.step_response.assign(static_cast<std::size_t>(r.rows()),
-                              Eigen::MatrixXd::Constant(y.rows(), options.samples, kNan));
+                              Eigen::MatrixXd::Constant(y.rows(), options.samples, kNaN));
   for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
     result.rows.push_back(identified_row(y.row(cv).transpose(), r, candidates, options.selection));
     const Identification& identification = result.rows.back().identification;

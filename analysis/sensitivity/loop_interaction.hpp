@@ -1,11 +1,11 @@
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/study.hpp"
 
 namespace mpm {
@@ -61,8 +61,8 @@ struct LoopInteraction {
   Eigen::VectorXd rpn;
   std::vector<Eigen::MatrixXd> relative_gain;
   std::vector<Peak> peaks;
-  double rpn_frequency = std::numeric_limits<double>::quiet_NaN();
-  double rpn_maximum = std::numeric_limits<double>::quiet_NaN();
+  double rpn_frequency = kNaN;
+  double rpn_maximum = kNaN;
   Eigen::MatrixXd relative_gain_at_maximum;
 };
 

@@ -6,6 +6,7 @@
 
 #include "plants/error.hpp"
 #include "plants/linear_plant.hpp"
+#include "plants/row_major.hpp"
 
 namespace mpm {
 namespace {
@@ -63,16 +64,16 @@ NominalOutputs nominal_outputs(const NominalSensitivity& sensitivity,
                      fmt::format("{} rows and equal shapes", sensitivity.cv_count));
   // y + S0 (y_sim - y) = y_sim + T0 (y - y_sim): only the columns of T0 of active CVs are not zero. Rows are
   // made contiguous once, because the convolution runs along time.
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const RowMajor error = y - y_sim;
-  RowMajor y0 = y_sim;
-  RowMajor y0_diag = y_sim;
+  const RowMajorMatrix error = y - y_sim;
+  RowMajorMatrix y0 = y_sim;
+  RowMajorMatrix y0_diag = y_sim;
   for (std::size_t a = 0; a < sensitivity.active.size(); ++a) {
     const Eigen::Index j = sensitivity.active[a].cv;
-    const RowMajor step = sensitivity.step_response[a];
+    const RowMajorMatrix step = sensitivity.step_response[a];
     for (Eigen::Index i = 0; i < y.rows(); ++i)
       add_response(step.row(i), error.row(j), y0.row(i));
-    y0_diag.row(j) = diagonal_nominal_output(step.row(j), RowMajor(y.row(j)), RowMajor(y_sim.row(j)));
+    y0_diag.row(j) =
+        diagonal_nominal_output(step.row(j), RowMajorMatrix(y.row(j)), RowMajorMatrix(y_sim.row(j)));
   }
   return {y_sim, y0, y0_diag};
 }

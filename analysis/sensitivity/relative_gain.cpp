@@ -1,13 +1,13 @@
 #include "analysis/sensitivity/relative_gain.hpp"
 
 #include <complex>
-#include <limits>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -32,7 +32,7 @@ Eigen::MatrixXcd relative_gains(const Eigen::Ref<const Eigen::MatrixXcd>& G) {
   const bool has_zeros = row.minCoeff() == 0.0 || col.minCoeff() == 0.0;
   const Eigen::FullPivLU<Eigen::MatrixXcd> lu(scaled);
   if (has_zeros || !lu.isInvertible())
-    return Eigen::MatrixXcd::Constant(G.rows(), G.cols(), std::numeric_limits<double>::quiet_NaN());
+    return Eigen::MatrixXcd::Constant(G.rows(), G.cols(), kNaN);
   return scaled.cwiseProduct(lu.inverse().transpose());
 }
 

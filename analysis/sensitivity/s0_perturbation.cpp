@@ -1,6 +1,7 @@
 #include "analysis/sensitivity/s0_perturbation.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"

@@ -10,6 +10,7 @@
 
 #include "plants/error.hpp"
 #include "plants/linear_plant.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -83,7 +84,7 @@ SecondOrderFit fit_second_order(const Eigen::Ref<const Eigen::RowVectorXd>& step
   const Eigen::RowVectorXd response = step_response;
   const Residual residual{response, sample_time};
   const double half = sample_time * half_time(response);
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (const double xi : std::array{0.4, 0.8, 1.5, 4.0}) {
     // A response of this damping passes one half after about (0.6 + 1.1 xi) tau.
     Eigen::VectorXd x = Eigen::Vector2d(std::log(half / (0.6 + 1.1 * xi)), std::log(xi));

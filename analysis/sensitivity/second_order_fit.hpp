@@ -1,9 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include <Eigen/Core>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -16,8 +17,8 @@ namespace mpm {
 /// | tau    | time_constant | that of the sample time, > 0 |
 /// | xi     | damping       | 1, > 0             |
 struct SecondOrderModel {
-  double time_constant = std::numeric_limits<double>::quiet_NaN();
-  double damping = std::numeric_limits<double>::quiet_NaN();
+  double time_constant = kNaN;
+  double damping = kNaN;
 };
 
 /// Unit step response of the model, `samples` values 1, 2, ... sample times after the step. Throws InputError
@@ -33,8 +34,8 @@ enum class FitStatus : std::int8_t {
 /// The model nearest to a step response, in the sense of least squares over its samples.
 struct SecondOrderFit {
   FitStatus status = FitStatus::failed;
-  SecondOrderModel model;                                       ///< NaN unless ok
-  double rms_error = std::numeric_limits<double>::quiet_NaN();  ///< root of the mean squared residual
+  SecondOrderModel model;   ///< NaN unless ok
+  double rms_error = kNaN;  ///< root of the mean squared residual
 };
 
 /// Fits (6.24) to a unit step response (1 x L, values 1 ... L sample times after the step) by the

@@ -1,13 +1,13 @@
 #include "analysis/statistics/autocorrelation.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -43,7 +43,7 @@ Autocorrelation autocorrelation(const Eigen::Ref<const Eigen::VectorXd>& signal,
   const double power = deviation.squaredNorm();
   const bool still = !centre && stands_still(signal);
   if (still || power <= static_cast<double>(n) * variance_floor(signal)) {
-    result.values = Eigen::VectorXd::Constant(max_lag + 1, std::numeric_limits<double>::quiet_NaN());
+    result.values = Eigen::VectorXd::Constant(max_lag + 1, kNaN);
     result.bartlett_band = result.values;
     return result;
   }

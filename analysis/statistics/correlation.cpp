@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -65,13 +65,13 @@ double pearson_correlation(const CentredSums& sums, Eigen::Index fewest_pairs, d
     throw InputError("fewest pairs of a correlation", fmt::format("{}", fewest_pairs), "2 or more");
   }
   if (sums.pairs < fewest_pairs) {
-    return std::numeric_limits<double>::quiet_NaN();
+    return kNaN;
   }
   const double spread_x = std::sqrt(sums.xx);
   const double spread_y = std::sqrt(sums.yy);
   const double smallest_spread = resolution * std::sqrt(static_cast<double>(sums.pairs));
   if (!(spread_x > smallest_spread) || !(spread_y > smallest_spread)) {
-    return std::numeric_limits<double>::quiet_NaN();
+    return kNaN;
   }
   return std::clamp(sums.xy / spread_x / spread_y, -1.0, 1.0);
 }

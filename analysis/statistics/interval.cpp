@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <boost/math/distributions/normal.hpp>
 #include <fmt/format.h>
 
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -48,8 +48,7 @@ Interval wilson_interval(std::int64_t hits, std::int64_t total, double confidenc
 
 Rate rate(std::int64_t hits, std::int64_t total, double confidence) {
   const Interval interval = wilson_interval(hits, total, confidence);
-  const double value = total > 0 ? static_cast<double>(hits) / static_cast<double>(total)
-                                 : std::numeric_limits<double>::quiet_NaN();
+  const double value = total > 0 ? static_cast<double>(hits) / static_cast<double>(total) : kNaN;
   return {hits, total, value, interval};
 }
 

@@ -8,13 +8,13 @@
 
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
 using Signal = Eigen::Ref<const Eigen::VectorXd>;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
 /// Below it m2^2 would leave the range of double precision.
 constexpr double kSmallestVariance = 1e-150;
@@ -121,8 +121,8 @@ void moving_moments(const Signal& signal, Eigen::Index window, Eigen::Ref<Eigen:
       m = sums.central_moments();
     }
     const bool flat = m.m2 <= floor;
-    skewness[first] = flat ? kNan : m.m3 / (m.m2 * std::sqrt(m.m2));
-    kurtosis[first] = flat ? kNan : m.m4 / (m.m2 * m.m2);
+    skewness[first] = flat ? kNaN : m.m3 / (m.m2 * std::sqrt(m.m2));
+    kurtosis[first] = flat ? kNaN : m.m4 / (m.m2 * m.m2);
   }
 }
 

@@ -11,13 +11,13 @@
 #include "analysis/statistics/quantile.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
 using Signal = Eigen::Ref<const Eigen::VectorXd>;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kFewestPairs = 3.0;
 
@@ -95,7 +95,7 @@ LinearFit line(const Sums& sums, const Centre& centre) {
   if (xx > 0.0) {
     fit.slope = xy / xx;
     fit.intercept = (centre.y + mean_y) - fit.slope * (centre.x + mean_x);
-    fit.r_squared = yy > 0.0 ? std::min(1.0, (xy / xx) * (xy / yy)) : kNan;
+    fit.r_squared = yy > 0.0 ? std::min(1.0, (xy / xx) * (xy / yy)) : kNaN;
   }
   return fit;
 }
@@ -157,7 +157,7 @@ LinearFitIntervals cluster_bootstrap(const Signal& x, const Signal& y, std::span
   options.validate();
 
   LinearFitIntervals result;
-  result.slope = result.intercept = result.r_squared = {kNan, kNan};
+  result.slope = result.intercept = result.r_squared = {kNaN, kNaN};
   const std::vector<Pair> pairs = finite_pairs(x, y, cluster);
   const Centre centre = pairs.empty() ? Centre{} : medians(pairs);
   const std::vector<Sums> clusters = sums_by_cluster(pairs, centre);

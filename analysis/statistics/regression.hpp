@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include <Eigen/Core>
 
 #include "analysis/statistics/interval.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/random_stream.hpp"
 
 namespace mpm {
@@ -19,11 +19,11 @@ namespace mpm {
 /// left out and counted. All three results are NaN for fewer than 3 pairs or when x has no variance to
 /// rounding; R^2 alone is NaN when y has none.
 struct LinearFit {
-  double slope = std::numeric_limits<double>::quiet_NaN();
-  double intercept = std::numeric_limits<double>::quiet_NaN();
+  double slope = kNaN;
+  double intercept = kNaN;
   /// Coefficient of determination, the share of the variance of y that the line explains; with one regressor
   /// the square of Pearson's correlation.
-  double r_squared = std::numeric_limits<double>::quiet_NaN();
+  double r_squared = kNaN;
   /// Number of pairs in the fit.
   Eigen::Index pairs = 0;
   /// Number of pairs left out because a member is NaN or infinite.

@@ -8,14 +8,12 @@
 
 #include "analysis/statistics/quantile.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
 using Scores = std::span<const double>;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Case {
   double score;
@@ -37,7 +35,7 @@ double between(double upper, double lower) {
 }
 
 double share(std::int64_t hits, std::int64_t total) {
-  return total > 0 ? static_cast<double>(hits) / static_cast<double>(total) : kNan;
+  return total > 0 ? static_cast<double>(hits) / static_cast<double>(total) : kNaN;
 }
 
 /// How many cases of each side are above some threshold.
@@ -160,7 +158,7 @@ Interval best_threshold_interval(Scores positive_scores, Scores negative_scores,
   const std::vector<double> positives = without_nan(positive_scores);
   const std::vector<double> negatives = without_nan(negative_scores);
   if (positives.empty() || negatives.empty())
-    return {kNan, kNan};
+    return {kNaN, kNaN};
   std::vector<double> thresholds;
   std::vector<Case> cases;
   for (int i = 0; i < options.replications; ++i) {
@@ -173,7 +171,7 @@ Interval best_threshold_interval(Scores positive_scores, Scores negative_scores,
       thresholds.push_back(threshold);
   }
   if (2 * thresholds.size() < static_cast<std::size_t>(options.replications))
-    return {kNan, kNan};
+    return {kNaN, kNaN};
   std::sort(thresholds.begin(), thresholds.end());
   return {sorted_quantile(thresholds, 0.5 - 0.5 * options.confidence),
           sorted_quantile(thresholds, 0.5 + 0.5 * options.confidence)};

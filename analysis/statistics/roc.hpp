@@ -2,11 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "analysis/statistics/interval.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/random_stream.hpp"
 
 namespace mpm {
@@ -39,9 +39,9 @@ struct RocCurve {
   std::int64_t left_out = 0;  ///< scores that are NaN
   /// Area under the curve: the probability that a positive scores above a negative, ties counting half
   /// (Mann-Whitney); NaN when there is no score on one side.
-  double area = std::numeric_limits<double>::quiet_NaN();
+  double area = kNaN;
   /// Sum of precision times the step of recall, without interpolation; NaN as above.
-  double average_precision = std::numeric_limits<double>::quiet_NaN();
+  double average_precision = kNaN;
   std::size_t best =
       0;  ///< the point with the largest J, with the fewest false positives when there are more
 

@@ -2,12 +2,12 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -45,8 +45,7 @@ double variance_about(const Signal& signal, const Signal& setpoint) {
 
 double variance_ratio(double numerator, double denominator) {
   if (denominator == 0.0) {
-    return numerator == 0.0 ? std::numeric_limits<double>::quiet_NaN()
-                            : std::numeric_limits<double>::infinity();
+    return numerator == 0.0 ? kNaN : kInfinity;
   }
   return numerator / denominator;
 }

@@ -16,13 +16,13 @@
 namespace mpm {
 namespace {
 
-struct Options {
+struct CheckArguments {
   std::string archive;
   std::string gates;
   std::string junit;  ///< no file when empty
 };
 
-ExitCode check(const Options& options) {
+ExitCode check(const CheckArguments& options) {
   const Campaign campaign = read_input(options.archive);
   const GateFile gates = load_gates(options.gates, gate_findings(campaign));
   std::optional<Campaign> baseline;
@@ -38,7 +38,7 @@ ExitCode check(const Options& options) {
 }  // namespace
 
 void add_check(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckArguments>();
   CLI::App& app = commands.add("check", "Hold an archive against the limits of a gate file",
                                [options] { return check(*options); });
   add_archive(app, options->archive);

@@ -24,7 +24,7 @@
 namespace mpm {
 namespace {
 
-struct Options {
+struct CompareArguments {
   std::string archive;
   std::vector<std::string> methods;  ///< empty: all
   std::string output;                ///< archive with the comparison; none when empty
@@ -73,7 +73,7 @@ std::vector<std::string> missing_methods(const Campaign& campaign, const std::ve
 /// Assesses the loops of an archive by the methods that it does not have yet, prints how often each of those
 /// that are asked for is right, and writes the archive with them when an output is asked for. Loops that the
 /// archive has not kept are run again from (study, seed, index).
-ExitCode compare(const Options& options, const std::string& command_line) {
+ExitCode compare(const CompareArguments& options, const std::string& command_line) {
   Campaign campaign = read_input(options.archive);
   if (!options.output.empty())
     require_output_folder(options.output, "archive");
@@ -102,7 +102,7 @@ ExitCode compare(const Options& options, const std::string& command_line) {
 }  // namespace
 
 void add_compare(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompareArguments>();
   CLI::App& app =
       commands.add("compare", "Assess the loops of an archive by several methods: how often is each right?",
                    [options, &commands] { return compare(*options, commands.command_line()); });

@@ -13,13 +13,13 @@
 namespace mpm {
 namespace {
 
-struct Options {
+struct ExportArguments {
   std::string archive;
   std::string table = "experiments";
   std::string output;  ///< stdout when empty
 };
 
-ExitCode export_table(const Options& options) {
+ExitCode export_table(const ExportArguments& options) {
   if (!options.output.empty())
     require_output_folder(options.output, "table");
   const std::string table = csv_table(read_input(options.archive), options.table);
@@ -33,7 +33,7 @@ ExitCode export_table(const Options& options) {
 }  // namespace
 
 void add_export(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportArguments>();
   CLI::App& app = commands.add("export", "Write a table of an archive as CSV, for Octave and spreadsheets",
                                [options] { return export_table(*options); });
   add_archive(app, options->archive);

@@ -21,7 +21,7 @@
 namespace mpm {
 namespace {
 
-struct Options {
+struct PlotArguments {
   std::string archive;
   std::int64_t index = 0;
   std::string output;  ///< its extension names the format
@@ -46,7 +46,7 @@ NominalOutputs nominal_of(const Campaign& campaign, const ExperimentRecord& reco
   return NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(loop.trajectory);
 }
 
-ExitCode plot(const Options& options) {
+ExitCode plot(const PlotArguments& options) {
   const FigureFormat format = figure_format_of(options.output);
   require_output_folder(options.output, "figure");
   const Campaign campaign = read_input(options.archive);
@@ -68,7 +68,7 @@ ExitCode plot(const Options& options) {
 }  // namespace
 
 void add_plot(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PlotArguments>();
   CLI::App& app =
       commands.add("plot", "Draw the closed loop of one experiment", [options] { return plot(*options); });
   add_archive(app, options->archive);

@@ -13,12 +13,12 @@
 namespace mpm {
 namespace {
 
-struct Options {
+struct ReplayArguments {
   std::string archive;
   std::int64_t index = 0;
 };
 
-ExitCode replay(const Options& options) {
+ExitCode replay(const ReplayArguments& options) {
   const Campaign campaign = read_input(options.archive);
   const ExperimentRecord& archived = experiment_of(campaign, options.index);
 
@@ -42,7 +42,7 @@ ExitCode replay(const Options& options) {
 }  // namespace
 
 void add_replay(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayArguments>();
   CLI::App& app =
       commands.add("replay", "Run one experiment of an archive again and say whether it is bit-identical",
                    [options] { return replay(*options); });

@@ -15,14 +15,14 @@
 namespace mpm {
 namespace {
 
-struct Options {
+struct ReportArguments {
   std::string archive;
   std::string output;   ///< no page when empty
   std::string figures;  ///< folder; no figures as files when empty
   std::string format = "svg";
 };
 
-ExitCode report(const Options& options) {
+ExitCode report(const ReportArguments& options) {
   const FigureFormat format = figure_format(options.format);
   if (!options.output.empty())
     require_output_folder(options.output, "page");
@@ -41,7 +41,7 @@ ExitCode report(const Options& options) {
 }  // namespace
 
 void add_report(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportArguments>();
   CLI::App& app =
       commands.add("report", "Write what a study found as one HTML page, and its figures as files",
                    [options] { return report(*options); });

@@ -20,7 +20,7 @@
 namespace mpm {
 namespace {
 
-struct Options {
+struct ReproduceArguments {
   std::string tables = "all";
   std::string output;  ///< no page when empty
   bool json = false;
@@ -30,7 +30,7 @@ struct Options {
 };
 
 /// The tables that the command names, with its changes made to their studies.
-std::vector<ThesisTable> tables_of(const Options& options) {
+std::vector<ThesisTable> tables_of(const ReproduceArguments& options) {
   std::vector<StudyChange> changes;
   for (const std::string& text : options.changes)
     changes.push_back(parse_study_change(text));
@@ -45,20 +45,20 @@ void write_page(const std::string& output, const std::string& page) {
     write_text(output, page);
 }
 
-void show(const Options& options, const std::vector<ReproducedTable>& tables) {
+void show(const ReproduceArguments& options, const std::vector<ReproducedTable>& tables) {
   write_page(options.output, reproduction_html(tables, mpmbench_version(), options.changes));
   fmt::print("{}", options.json ? reproduction_json(tables, options.changes)
                                 : reproduction_text(tables, options.changes));
 }
 
-void show_over_seeds(const Options& options, const std::vector<SeededTable>& tables) {
+void show_over_seeds(const ReproduceArguments& options, const std::vector<SeededTable>& tables) {
   write_page(options.output, seeded_reproduction_html(tables, mpmbench_version(), options.changes));
   fmt::print("{}", options.json ? seeded_reproduction_json(tables, options.changes)
                                 : seeded_reproduction_text(tables, options.changes));
 }
 
 /// Done even when verdicts differ: they are results.
-ExitCode reproduce_tables(const Options& options) {
+ExitCode reproduce_tables(const ReproduceArguments& options) {
   if (!options.output.empty())
     require_output_folder(options.output, "page");
   const std::vector<std::vector<ReproducedTable>> runs =
@@ -80,7 +80,7 @@ ExitCode reproduce_tables(const Options& options) {
 }  // namespace
 
 void add_reproduce(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReproduceArguments>();
   options->run.solver = "active-set";
   CLI::App& app = commands.add("reproduce", "Run the studies behind the tables of the thesis, cell by cell",
                                [options] { return reproduce_tables(*options); });

@@ -23,7 +23,7 @@
 namespace mpm {
 namespace {
 
-struct Options {
+struct RunArguments {
   std::string study;
   std::string output;
   RunOptions run;
@@ -31,7 +31,7 @@ struct Options {
 };
 
 /// The end of a message about a run that was not finished; empty when no shard is left to go on with.
-std::string how_to_go_on(const Options& options, std::string command_line) {
+std::string how_to_go_on(const RunArguments& options, std::string command_line) {
   if (!has_shards(options.output))
     return "";
   constexpr std::string_view kDiscard = " --discard";
@@ -49,7 +49,7 @@ void clean_up(const std::filesystem::path& output) {
   remove_abandoned_files(output);
 }
 
-ExitCode run(const Options& options, const std::string& command_line) {
+ExitCode run(const RunArguments& options, const std::string& command_line) {
   const Study study = find_study(options.study);
   require_output_folder(options.output, "archive");
 
@@ -116,7 +116,7 @@ void add_interruption(CLI::App& app, RunOptions& run) {
 }  // namespace
 
 void add_run(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunArguments>();
   CLI::App& app = commands.add("run", "Run a study and write its archive",
                                [options, &commands] { return run(*options, commands.command_line()); });
   app.add_option("STUDY", options->study, "Study file, or name of a shipped study")->required();

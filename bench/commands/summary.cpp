@@ -12,12 +12,12 @@
 namespace mpm {
 namespace {
 
-struct Options {
+struct SummaryArguments {
   std::string archive;
   bool json = false;
 };
 
-ExitCode summary(const Options& options) {
+ExitCode summary(const SummaryArguments& options) {
   const Campaign campaign = read_input(options.archive);
   const StudyFindings findings = findings_of(campaign);
   fmt::print("{}", options.json ? summary_json(campaign, findings)
@@ -28,7 +28,7 @@ ExitCode summary(const Options& options) {
 }  // namespace
 
 void add_summary(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SummaryArguments>();
   CLI::App& app = commands.add("summary", "Print what a study found, beside what was reported",
                                [options] { return summary(*options); });
   add_archive(app, options->archive);

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SweepArguments {
   std::string sweep;
   std::string output;
   RunOptions run;
@@ -53,7 +53,7 @@ Campaign run_variant(const SweepVariant& variant, const std::string& name, const
 
 /// Runs every study and writes its archive, one after the other, and at the end the table of all of them
 /// (`sweep.md`, and on stdout).
-ExitCode run_sweep(const Options& options, const std::string& command_line) {
+ExitCode run_sweep(const SweepArguments& options, const std::string& command_line) {
   const Sweep sweep = find_sweep(options.sweep);
   const fs::path folder = options.output;
   make_folder(folder);
@@ -77,7 +77,7 @@ ExitCode run_sweep(const Options& options, const std::string& command_line) {
 }  // namespace
 
 void add_sweep(CommandSet& commands) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SweepArguments>();
   options->run.store = StorePolicy::none;
   options->run.allow_unhealthy_basis =
       true;  // marked in the table: how much a choice matters is the question

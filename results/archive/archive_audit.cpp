@@ -7,7 +7,7 @@
 namespace mpm {
 namespace {
 
-constexpr const char* kGroup = "audit";
+constexpr const char* kAuditGroup = "audit";
 constexpr const char* kDimension = "audited";
 
 }  // namespace
@@ -15,7 +15,7 @@ constexpr const char* kDimension = "audited";
 void write_audit(Hdf5Group& root, const std::vector<AuditedStep>& audit) {
   if (audit.empty())
     return;
-  Hdf5Group group = root.create_group(kGroup);
+  Hdf5Group group = root.create_group(kAuditGroup);
   group.write_attribute("title", "Steps whose problems Ipopt solved once more, and how its answers differ");
   std::vector<std::int64_t> numbers(audit.size());
   std::iota(numbers.begin(), numbers.end(), 0);
@@ -28,9 +28,9 @@ void write_audit(Hdf5Group& root, const std::vector<AuditedStep>& audit) {
 }
 
 std::vector<AuditedStep> read_audit(const Hdf5Group& root, const std::string& file) {
-  if (!root.has_group(kGroup))
+  if (!root.has_group(kAuditGroup))
     return {};
-  const Hdf5Group group = root.group(kGroup);
+  const Hdf5Group group = root.group(kAuditGroup);
   std::vector<AuditedStep> audit(group.read_list<std::int64_t>(kDimension).size());
   std::vector<AuditedStep*> steps;
   steps.reserve(audit.size());

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/statistics/autocorrelation.hpp"
+#include "plants/non_finite.hpp"
 #include "results/archive/archive_groups.hpp"
 #include "results/archive/column_io.hpp"
 #include "results/archive/dimensions.hpp"
@@ -13,7 +13,7 @@
 namespace mpm {
 namespace {
 
-constexpr const char* kGroup = "basis";
+constexpr const char* kBasisGroup = "basis";
 
 using Nominal = std::pair<VariableText, Eigen::MatrixXd NominalOutputs::*>;
 
@@ -74,8 +74,7 @@ OperatingPoint read_operating_point(const Hdf5Group& group, const Study& study) 
 
 /// Autocorrelation of each row; NaN for a row that has none.
 Eigen::MatrixXd autocorrelations(const Eigen::MatrixXd& signal, Eigen::Index rows, Eigen::Index max_lag) {
-  Eigen::MatrixXd values =
-      Eigen::MatrixXd::Constant(rows, max_lag + 1, std::numeric_limits<double>::quiet_NaN());
+  Eigen::MatrixXd values = Eigen::MatrixXd::Constant(rows, max_lag + 1, kNaN);
   for (Eigen::Index i = 0; i < signal.rows(); ++i)
     if (signal.row(i).allFinite())
       values.row(i) = autocorrelation(signal.row(i).transpose(), max_lag).values;
@@ -106,7 +105,7 @@ AssessmentRecord chain_assessment(const Study& study, std::vector<AssessmentNumb
 }  // namespace
 
 void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis) {
-  Hdf5Group group = root.create_group(kGroup);
+  Hdf5Group group = root.create_group(kBasisGroup);
   group.write_attribute("title", "Closed loop without mismatch and unmeasured disturbance");
   group.write_attribute("healthy", std::int32_t{basis.healthy});
   group.write_attribute("explanation", basis.explanation);
@@ -129,7 +128,7 @@ void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis) {
 
 BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivity sensitivity,
                      const std::string& file) {
-  const Hdf5Group group = root.group(kGroup);
+  const Hdf5Group group = root.group(kBasisGroup);
   BasisCase basis;
   basis.healthy = group.attribute<std::int32_t>("healthy") != 0;
   basis.explanation = group.attribute<std::string>("explanation");

@@ -8,7 +8,7 @@
 namespace mpm {
 namespace {
 
-constexpr const char* kGroup = "findings";
+constexpr const char* kFindingsGroup = "findings";
 
 using Names = std::vector<std::string>;
 
@@ -115,7 +115,7 @@ void write_pairs(Hdf5Group& group, const StudyFindings& findings) {
 }  // namespace
 
 void write_findings(Hdf5Group& root, const Campaign& campaign, const StudyFindings& findings) {
-  Hdf5Group group = root.create_group(kGroup);
+  Hdf5Group group = root.create_group(kFindingsGroup);
   group.write_attribute("title", "What the experiments show, with intervals");
   group.write_attribute("confidence", campaign.study.aggregate.confidence);
   group.write_attribute("experiments", std::int64_t{findings.experiments});

@@ -12,12 +12,12 @@
 namespace mpm {
 namespace {
 
-constexpr const char* kGroup = "methods";
+constexpr const char* kMethodsGroup = "methods";
 
 }  // namespace
 
 void write_methods(Hdf5Group& root, const Campaign& campaign, const StudyFindings& findings) {
-  const Hdf5Group methods = root.group(kGroup);
+  const Hdf5Group methods = root.group(kMethodsGroup);
   for (const CampaignMethod& method : campaign.methods) {
     const MethodDescription& description = method.form->method();
     Hdf5Group group = methods.group(description.name);
@@ -35,13 +35,13 @@ void write_methods(Hdf5Group& root, const Campaign& campaign, const StudyFinding
 std::vector<CampaignMethod> read_methods(const Hdf5Group& root, const Study& study, const std::string& file) {
   std::vector<CampaignMethod> methods;
   for (const std::string& name : root.read_list<std::string>("method")) {
-    const Hdf5Group group = root.group(kGroup).group(name);
+    const Hdf5Group group = root.group(kMethodsGroup).group(name);
     MethodDescription description = method_description(group.attribute<std::string>("description"), file);
     if (description.name != name)
       throw ArchiveError(
           fmt::format("{}: attribute '/{}/{}/description': found a description of '{}'; allowed: "
                       "one of '{}'",
-                      file, kGroup, name, description.name, name));
+                      file, kMethodsGroup, name, description.name, name));
     methods.push_back({std::make_shared<const AssessmentForm>(std::move(description), study),
                        group.attribute<std::string>("mpmbench_version"),
                        group.attribute<std::string>("git_sha"), group.attribute<std::string>("command")});
@@ -51,8 +51,9 @@ std::vector<CampaignMethod> read_methods(const Hdf5Group& root, const Study& stu
 
 void read_method_times(const Hdf5Group& root, Campaign& campaign) {
   for (std::size_t m = 0; m < campaign.methods.size(); ++m) {
-    const double milliseconds =
-        root.group(kGroup).group(campaign.methods[m].form->method().name).attribute<double>("milliseconds");
+    const double milliseconds = root.group(kMethodsGroup)
+                                    .group(campaign.methods[m].form->method().name)
+                                    .attribute<double>("milliseconds");
     for (ExperimentRecord& record : campaign.records)
       if (record.assessments[m].answered())
         record.assessments[m].milliseconds = milliseconds;

@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-constexpr const char* kGroup = "nominal";
+constexpr const char* kNominalGroup = "nominal";
 constexpr const char* kFixedGroup = "nominal_fixed";
 constexpr const char* kDirectGroup = "nominal_direct";
 constexpr const char* kResponse = "t0_step_response";
@@ -91,13 +91,13 @@ NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, con
 }  // namespace
 
 void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity) {
-  Hdf5Group group = root.create_group(kGroup);
+  Hdf5Group group = root.create_group(kNominalGroup);
   write_sensitivity(group, "Nominal complementary sensitivity T0; S0 = I - T0, and T0 = 0 from other CVs",
                     study, sensitivity);
 }
 
 NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file) {
-  return read_sensitivity(root, kGroup, study, file);
+  return read_sensitivity(root, kNominalGroup, study, file);
 }
 
 void write_nominal_fixed(Hdf5Group& root, const Study& study,
@@ -133,7 +133,7 @@ std::optional<NominalSensitivity> read_nominal_direct(const Hdf5Group& root, con
   };
   if (shape(direct) != shape(identified))
     throw ArchiveError(fmt::format("{}: '/{}': found other references or lags; allowed: those of '/{}'", file,
-                                   kDirectGroup, kGroup));
+                                   kDirectGroup, kNominalGroup));
   return direct;
 }
 

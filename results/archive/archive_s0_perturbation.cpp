@@ -11,7 +11,7 @@
 namespace mpm {
 namespace {
 
-constexpr const char* kGroup = "s0_perturbation";
+constexpr const char* kPerturbationGroup = "s0_perturbation";
 
 /// One number of each item along `dimension`.
 template <class Item, class Get>
@@ -102,7 +102,7 @@ void write_s0_perturbation(Hdf5Group& root, const Campaign& campaign) {
   const Study& study = campaign.study;
   if (study.s0_perturbation.multipliers.empty())
     return;
-  Hdf5Group group = root.group(kGroup);
+  Hdf5Group group = root.group(kPerturbationGroup);
   write_curves(group, study, campaign.records);
   write_fits(group, study, campaign.basis.sensitivity);
   write_structure(group, study, campaign.basis);

@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-constexpr const char* kGroup = "scenarios";
+constexpr const char* kScenariosGroup = "scenarios";
 
 std::vector<std::int64_t> indices_of(const std::vector<ExperimentRecord>& records) {
   std::vector<std::int64_t> indices;
@@ -60,7 +60,7 @@ void write_scenarios(Hdf5Group& root, const Campaign& campaign) {
   const std::vector<ExperimentRecord>& records = campaign.records;
   if (!study.names_scenarios())
     return;
-  Hdf5Group group = root.create_group(kGroup);
+  Hdf5Group group = root.create_group(kScenariosGroup);
   group.write_attribute("title", "Named scenarios: what the study says of each CV, and what the chain says");
   group.write_dimension("experiment", indices_of(records),
                         attributes<std::int64_t>({"experiment", "index of the experiment in the study"}));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <type_traits>
 
@@ -12,6 +11,7 @@
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
+#include "plants/non_finite.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/file_seal.hpp"
 #include "results/files/utf8.hpp"
@@ -215,7 +215,7 @@ std::vector<T> read_attribute_values(const Place& place, hid_t object) {
 // --- Variables --------------------------------------------------------------------------------------------
 
 constexpr unsigned kTrackOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
-constexpr double kFillValue = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFillValue = kNaN;
 constexpr std::size_t kCompressFromBytes = 4096;
 constexpr hsize_t kChunkValues = 65536;
 constexpr unsigned kCompressionLevel = 4;

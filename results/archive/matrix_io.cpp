@@ -1,12 +1,13 @@
 #include "results/archive/matrix_io.hpp"
 
+#include <algorithm>
 #include <cassert>
-#include <limits>
+
+#include "plants/non_finite.hpp"
+#include "plants/row_major.hpp"
 
 namespace mpm {
 namespace {
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The shape in the file.
 std::vector<std::size_t> shape_of(bool stacked, std::size_t count, std::initializer_list<Eigen::Index> rest) {
@@ -23,13 +24,12 @@ std::vector<std::size_t> shape_of(bool stacked, std::size_t count, std::initiali
 void write_matrices(Hdf5Group& group, const std::vector<std::string>& dimensions, const VariableText& text,
                     const std::vector<const Eigen::MatrixXd*>& matrices, Eigen::Index rows,
                     Eigen::Index cols) {
-  std::vector<double> values(matrices.size() * static_cast<std::size_t>(rows * cols),
-                             std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> values(matrices.size() * static_cast<std::size_t>(rows * cols), kNaN);
   double* place = values.data();
   for (const Eigen::MatrixXd* matrix : matrices) {
     assert(matrix->size() == 0 || (matrix->rows() == rows && matrix->cols() == cols));
     if (matrix->size() > 0)
-      Eigen::Map<RowMajor>(place, rows, cols) = *matrix;
+      Eigen::Map<RowMajorMatrix>(place, rows, cols) = *matrix;
     place += rows * cols;
   }
   group.write(text.name, dimensions, values, attributes<double>(text));
@@ -41,15 +41,14 @@ void read_matrices(const Hdf5Group& group, const std::string& name, bool stacked
       group.read<double>(name, shape_of(stacked, matrices.size(), {rows, cols}));
   const double* place = values.data();
   for (Eigen::MatrixXd* matrix : matrices) {
-    *matrix = Eigen::Map<const RowMajor>(place, rows, cols);
+    *matrix = Eigen::Map<const RowMajorMatrix>(place, rows, cols);
     place += rows * cols;
   }
 }
 
 void write_vectors(Hdf5Group& group, const std::vector<std::string>& dimensions, const VariableText& text,
                    const std::vector<const Eigen::VectorXd*>& vectors, Eigen::Index size) {
-  std::vector<double> values(vectors.size() * static_cast<std::size_t>(size),
-                             std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> values(vectors.size() * static_cast<std::size_t>(size), kNaN);
   double* place = values.data();
   for (const Eigen::VectorXd* vector : vectors) {
     assert(vector->size() == 0 || vector->size() == size);

@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <type_traits>
 #include <utility>
 
 #include "analysis/experiment/judgement.hpp"
+#include "plants/non_finite.hpp"
+#include "plants/row_major.hpp"
 #include "results/archive/columns.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using Record = ExperimentRecord;
 
@@ -77,16 +76,15 @@ RecordVariable vector(VariableText text, const std::string& dimension, Eigen::In
 template <class Of>
 RecordVariable matrix(VariableText text, std::vector<std::string> dimensions, Eigen::Index rows,
                       Eigen::Index columns, Of of) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   RecordAccess<double> access{[of, rows, columns](const Record& record, double* values) {
                                 const Eigen::MatrixXd& from = of(record);
                                 if (from.size() == 0)
                                   std::fill_n(values, rows * columns, kNaN);
                                 else
-                                  Eigen::Map<RowMajor>(values, rows, columns) = from;
+                                  Eigen::Map<RowMajorMatrix>(values, rows, columns) = from;
                               },
                               [of, rows, columns](Record& record, const double* values) {
-                                of(record) = Eigen::Map<const RowMajor>(values, rows, columns);
+                                of(record) = Eigen::Map<const RowMajorMatrix>(values, rows, columns);
                               }};
   return {std::move(text), std::move(dimensions), {count_of(rows), count_of(columns)}, std::move(access)};
 }

@@ -8,11 +8,10 @@
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Finding plain_value(std::string name, std::string meaning, double value, std::int64_t count) {
   const Finding finding{
@@ -26,7 +25,7 @@ Gate limit(const Finding& value, double minimum, double maximum) {
   return gate;
 }
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = kInfinity;
 
 /// Without these a campaign could pass because the experiments that would have failed a gate are missing.
 void judge_campaign(const Campaign& campaign, const StudyFindings& total, const GateFile& file,

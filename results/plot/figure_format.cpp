@@ -49,7 +49,7 @@ FigureFormat figure_format_of(const std::filesystem::path& file) {
   for (const FigureFormat format : kFormats)
     if (extension == fmt::format(".{}", to_string(format)))
       return format;
-  throw InputError("file of a figure", "'" + file.string() + "'",
+  throw InputError("file of a figure", fmt::format("'{}'", file.string()),
                    fmt::format("a name that ends with .{}", fmt::join(figure_format_names(), ", .")));
 }
 

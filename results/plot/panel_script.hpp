@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "plants/non_finite.hpp"
 #include "results/plot/figure.hpp"
 #include "results/plot/plot_axis.hpp"
 
@@ -55,8 +55,8 @@ class PanelScript {
 
  private:
   struct Extent {
-    double least = std::numeric_limits<double>::infinity();
-    double largest = -std::numeric_limits<double>::infinity();
+    double least = kInfinity;
+    double largest = -kInfinity;
   };
 
   void see(const Axis& axis, Extent& extent, double value) const;

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -10,8 +11,8 @@ namespace mpm {
 struct Axis {
   std::string label;  ///< label, with the unit
   bool logarithmic = false;
-  double lower = std::numeric_limits<double>::quiet_NaN();
-  double upper = std::numeric_limits<double>::quiet_NaN();
+  double lower = kNaN;
+  double upper = kNaN;
   std::vector<double> ticks = {};       ///< where numbers stand; chosen by themselves when empty
   std::vector<std::string> words = {};  ///< words at 0, 1, 2, ... in place of numbers
 };

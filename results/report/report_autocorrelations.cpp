@@ -14,7 +14,7 @@ namespace {
 const Pen kY{colour::kBlack, Dash::solid, Mark::none, 1.5};
 const Pen kY0{colour::kBlue, Dash::dashed, Mark::none, 1.8};
 const Pen kY0Diag{colour::kVermillion, Dash::dotted, Mark::none, 2.0};
-const Pen kBand{colour::kLightGrey, Dash::solid, Mark::none, 1.0};
+const Pen kWhiteBand{colour::kLightGrey, Dash::solid, Mark::none, 1.0};
 
 constexpr std::size_t kFewCvs = 3;  // of so many CVs all are drawn
 
@@ -49,8 +49,8 @@ Panel acf_panel(const Study& study, std::size_t cv, const AcfComparison& acf) {
   PanelScript panel(fmt::format("acf_{}", cv), fmt::format("{}: {}", as_label(name), as_label(acf_text(acf))),
                     {.label = "lag (samples)", .lower = 0.0},
                     {.label = "autocorrelation", .lower = -1.0, .upper = 1.0});
-  panel.across(acf.white_band, kBand);
-  panel.across(-acf.white_band, kBand);
+  panel.across(acf.white_band, kWhiteBand);
+  panel.across(-acf.white_band, kWhiteBand);
   for (const auto& [values, pen] : {std::pair{&acf.y.values, &kY}, std::pair{&acf.y0.values, &kY0},
                                     std::pair{&acf.y0_diag.values, &kY0Diag}})
     panel.line(lags, std::vector<double>(values->begin(), values->end()), *pen);
@@ -64,7 +64,7 @@ Figure acf_figure(const Study& study, const Loop& loop) {
       "{}: autocorrelation about the setpoint, or the mean of a CV without one, with the band of white "
       "noise; section 3.2 of the thesis, figure A2.1.",
       as_label(loop.name));
-  figure.legend = {{"y", kY}, {"y_{0}", kY0}, {"y_{0 diag}", kY0Diag}, {"white noise", kBand}};
+  figure.legend = {{"y", kY}, {"y_{0}", kY0}, {"y_{0 diag}", kY0Diag}, {"white noise", kWhiteBand}};
   for (const std::size_t cv : loop.drawn)
     figure.panels.push_back(acf_panel(study, cv, loop.chain.cvs[cv].acf));
   return figure;

@@ -4,8 +4,8 @@
 
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "results/archive/variable_text.hpp"
-#include "results/plot/cv_pen.hpp"
 #include "results/plot/panel_script.hpp"
+#include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/trajectory_figure.hpp"
 #include "results/report/html_table.hpp"

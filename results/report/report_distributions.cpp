@@ -14,8 +14,8 @@
 namespace mpm {
 namespace {
 
-const Pen kKurtosis{colour::kBlue, Dash::solid, Mark::none, 1.8};
-const Pen kSkewness{colour::kVermillion, Dash::dashed, Mark::none, 1.8};
+const Pen kKurtosisEllipse{colour::kBlue, Dash::solid, Mark::none, 1.8};
+const Pen kSkewnessEllipse{colour::kVermillion, Dash::dashed, Mark::none, 1.8};
 
 constexpr double kProbability = 0.95;
 constexpr int kCorners = 72;  // of the polygon that stands for an ellipse
@@ -52,8 +52,8 @@ Panel ellipse_panel(const std::string& name, const std::string& cv, const PerSta
   const char* what = differences ? "differences" : "moments";
   PanelScript panel(name, fmt::format("{}: {}", as_label(cv), what), {.label = "of y_{0 diag}"},
                     {.label = "of e_{0 diag}"});
-  draw_ellipse(panel, differences ? scatter.dkts : scatter.kts, kKurtosis);
-  draw_ellipse(panel, differences ? scatter.dskn : scatter.skn, kSkewness);
+  draw_ellipse(panel, differences ? scatter.dkts : scatter.kts, kKurtosisEllipse);
+  draw_ellipse(panel, differences ? scatter.dskn : scatter.skn, kSkewnessEllipse);
   return panel.finish(
       fmt::format("Confidence ellipses of moving kurtosis and skewness, {}, of {}.", what, cv), 240);
 }
@@ -77,7 +77,7 @@ Figure ellipse_figure(const Campaign& campaign) {
       "nominal output, at a window of one prediction horizon; beside them those of their differences; thesis "
       "figures 5.11 and 5.19. Flat and along an axis: a disturbance; inclined: a mismatch.",
       100.0 * kProbability);
-  figure.legend = {{"kurtosis", kKurtosis}, {"skewness", kSkewness}};
+  figure.legend = {{"kurtosis", kKurtosisEllipse}, {"skewness", kSkewnessEllipse}};
   for_each_flagged(campaign, [&](const std::string& cv, const CvDiagnosis& found) {
     for (const bool differences : {false, true})
       figure.panels.push_back(ellipse_panel(fmt::format("ellipse_{}", figure.panels.size()), cv,

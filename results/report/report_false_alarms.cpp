@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "results/plot/panel_script.hpp"
+#include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
 #include "results/report/report_sections.hpp"
@@ -15,7 +16,6 @@ namespace {
 const Pen kQuiet{colour::kBlue, Dash::none, Mark::dot, 1.0, 0.5};
 const Pen kAlarm{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.6};
 const Pen kCost{colour::kGrey, Dash::none, Mark::circle, 1.0, 0.5};
-const Pen kBand{colour::kBlack, Dash::dashed, Mark::none, 1.2};
 
 /// Numbers of a logarithmic axis that a reader can take in, between these values.
 std::vector<double> round_numbers(double least, double largest) {
@@ -59,8 +59,8 @@ Panel group_panel(const Campaign& campaign, const FalseAlarms& group) {
                     {.label = "index farthest from 1 (-)",
                      .logarithmic = true,
                      .ticks = round_numbers(least / 1.05, largest * 1.05)});
-  panel.across(study.diagnosis.impact_lower, kBand);
-  panel.across(study.diagnosis.impact_upper, kBand);
+  panel.across(study.diagnosis.impact_lower, kThreshold);
+  panel.across(study.diagnosis.impact_upper, kThreshold);
   panel.points(costs, kCost);
   panel.points(quiet, kQuiet);
   panel.points(alarms, kAlarm);
@@ -112,7 +112,7 @@ ReportSection false_alarm_section(const ReportInput& input) {
   figure.legend = {{"Ivar: no alarm", kQuiet},
                    {"Ivar: false alarm", kAlarm},
                    {"Ivar_{basis}", kCost},
-                   {"band of impact", kBand}};
+                   {"band of impact", kThreshold}};
   for (const FalseAlarms& group : groups)
     if ((group.parameter || group.kind == ExperimentKind::healthy) && group.false_alarm.total > 0)
       figure.panels.push_back(group_panel(input.campaign, group));

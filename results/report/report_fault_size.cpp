@@ -16,7 +16,7 @@ constexpr int kBins = 6;
 const Pen kSeen{colour::kSky, Dash::solid, Mark::circle, 5.0, 0.7};
 const Pen kDiagnosed{colour::kBlue, Dash::solid, Mark::dot, 1.6, 0.55};
 const Pen kMissed{colour::kGrey, Dash::none, Mark::circle, 1.0, 0.35};
-const Pen kWrong{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.5};
+const Pen kWrongVerdict{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.5};
 const Pen kNoFault{colour::kGrey, Dash::dashed, Mark::none, 1.2};
 
 /// How the panel of a measure is labelled.
@@ -83,7 +83,7 @@ Panel size_panel(const Study& study, FaultSize size, const std::vector<SizedFaul
   add_curve(panel, whiskers(bins, &SizeBin::flagged, "have an impact"), kSeen);
   add_curve(panel, whiskers(bins, &SizeBin::diagnosed, "are diagnosed rightly"), kDiagnosed);
   panel.points(missed, kMissed);
-  panel.points(wrong, kWrong);
+  panel.points(wrong, kWrongVerdict);
   return panel.finish(
       fmt::format("Share of faults with impact and share diagnosed rightly against the size of "
                   "the fault: {}.",
@@ -105,7 +105,7 @@ ReportSection fault_size_section(const ReportInput& input) {
   figure.legend = {{"has an impact", kSeen},
                    {"CV and source right", kDiagnosed},
                    {"without impact", kMissed},
-                   {"wrong verdict", kWrong},
+                   {"wrong verdict", kWrongVerdict},
                    {"no fault", kNoFault}};
   for (const FaultSize size : {FaultSize::gain_factor, FaultSize::time_constant_factor,
                                FaultSize::dead_time_shift, FaultSize::disturbance_deviation}) {

@@ -5,6 +5,7 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "results/plot/panel_script.hpp"
+#include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
 #include "results/report/report_sections.hpp"
@@ -17,7 +18,6 @@ const Pen kRight{colour::kBlue, Dash::none, Mark::dot, 1.0, 0.5};
 const Pen kWrong{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.6};
 const Pen kBoth{colour::kGreen, Dash::none, Mark::dot, 1.0, 0.5};
 const Pen kMean{colour::kBlack, Dash::solid, Mark::square, 2.0, 0.6};
-const Pen kThreshold{colour::kBlack, Dash::dashed, Mark::none, 1.2};
 
 /// I_MPM of an experiment that rates of it are counted over, as in the findings; NaN for any other.
 double judged_indicator(const Study& study, const ExperimentRecord& record) {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "analysis/sensitivity/loop_interaction.hpp"
-#include "results/plot/cv_pen.hpp"
 #include "results/plot/panel_script.hpp"
+#include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
 #include "results/report/report_sections.hpp"

@@ -13,7 +13,7 @@ namespace mpm {
 namespace {
 
 /// How deep the colour of a field is that has this share of its row.
-double depth(double share) {
+double depth_of_share(double share) {
   return 0.15 + 0.65 * share;
 }
 
@@ -24,7 +24,7 @@ std::string cell(std::int64_t count, std::int64_t of_row, bool right) {
     return "<td class=\"number zero\">0</td>";
   const double share = static_cast<double>(count) / static_cast<double>(of_row);
   return fmt::format("<td class=\"number heat\" style=\"background:rgba({},{:.2f})\">{}</td>",
-                     right ? "86,180,233" : "230,159,0", depth(share), count);
+                     right ? "86,180,233" : "230,159,0", depth_of_share(share), count);
 }
 
 /// A few experiments a row carry no decimals.
@@ -87,7 +87,7 @@ Panel matrix_panel(const Study& study, const KindFindings& kind) {
       if (const std::int64_t count = confusion.counts()(row, column); count > 0)
         panel.field(static_cast<double>(column), last - static_cast<double>(row),
                     row == column ? colour::kSky : colour::kOrange,
-                    depth(static_cast<double>(count) / of_row), fmt::format("{}", count));
+                    depth_of_share(static_cast<double>(count) / of_row), fmt::format("{}", count));
   }
   return panel.finish(
       fmt::format("Confusion matrix of the {} experiments with impact.", kind_name(kind.kind)), 380);

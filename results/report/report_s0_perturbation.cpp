@@ -15,7 +15,7 @@ namespace {
 const Pen kMedian{colour::kBlue, Dash::solid, Mark::none, 2.5};
 const Pen kQuartiles{colour::kSky, Dash::solid, Mark::none, 1.5};
 const Pen kExtremes{colour::kGrey, Dash::dashed, Mark::none, 1.2};
-const Pen kBand{colour::kVermillion, Dash::dotted, Mark::none, 1.2};
+const Pen kImpactBand{colour::kVermillion, Dash::dotted, Mark::none, 1.2};
 const Pen kAvailable{colour::kBlue, Dash::solid, Mark::none, 2.5};
 const Pen kFixed{colour::kVermillion, Dash::solid, Mark::none, 2.5};
 const Pen kFit{colour::kGrey, Dash::dashed, Mark::none, 1.2};
@@ -30,8 +30,8 @@ Panel ratio_panel(const Study& study, const S0Curve& curve, const std::string& p
                     {.label = "multiplier of the " + parameter},
                     {.label = "Ivar_{diag} modified / true", .logarithmic = true});
   panel.upright_band(options.tolerance_lower, options.tolerance_upper);
-  panel.across(study.diagnosis.impact_lower, kBand);
-  panel.across(study.diagnosis.impact_upper, kBand);
+  panel.across(study.diagnosis.impact_lower, kImpactBand);
+  panel.across(study.diagnosis.impact_upper, kImpactBand);
   const auto draw = [&](double RatioSpread::*value, const Pen& pen) {
     std::vector<double> y;
     for (const RatioSpread& spread : spreads)
@@ -60,7 +60,7 @@ Figure ratio_figure(const ReportInput& input) {
   figure.legend = {{"median", kMedian},
                    {"quartiles", kQuartiles},
                    {"least and largest", kExtremes},
-                   {"band of impact", kBand}};
+                   {"band of impact", kImpactBand}};
   for (const S0Curve& curve : input.parts.s0_curves) {
     figure.panels.push_back(ratio_panel(study, curve, "time constant", curve.time_constant));
     figure.panels.push_back(ratio_panel(study, curve, "damping", curve.damping));

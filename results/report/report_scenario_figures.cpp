@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "results/plot/panel_script.hpp"
+#include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/scenario_sections.hpp"
 #include "results/text/experiment_text.hpp"
@@ -14,10 +15,9 @@ namespace {
 
 const Pen kKurtosis{colour::kBlue, Dash::none, Mark::dot, 1.0, 0.7};
 const Pen kSkewness{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.7};
-const Pen kThreshold{colour::kBlack, Dash::dashed, Mark::none, 1.2};
 const Pen kError{colour::kBlue, Dash::none, Mark::square, 1.0, 0.7};
-const Pen kRight{colour::kSky, Dash::none, Mark::square, 1.0, 1.2};
-const Pen kWrong{colour::kOrange, Dash::none, Mark::square, 1.0, 1.2};
+const Pen kOutsideAffected{colour::kSky, Dash::none, Mark::square, 1.0, 1.2};
+const Pen kOutsideOnly{colour::kOrange, Dash::none, Mark::square, 1.0, 1.2};
 const Pen kOutside{colour::kGreen, Dash::none, Mark::square, 1.0, 1.2};
 
 constexpr double kRowHeight = 24;  // pixels
@@ -55,8 +55,8 @@ std::vector<std::string> scenario_words(const Campaign& campaign) {
   return words;
 }
 
-/// How deep the colour of an index is: the whole depth a factor of 4 away from 1.
-double depth(double index) {
+/// How deep the colour of an index is: the whole depth_of_index a factor of 4 away from 1.
+double depth_of_index(double index) {
   return std::clamp(0.2 + 0.6 * std::abs(std::log(index)) / std::log(4.0), 0.2, 0.8);
 }
 
@@ -82,7 +82,8 @@ Panel index_panel(const Campaign& campaign, const char* name, const char* title,
       const std::string_view fill = !judged ? colour::kGreen : affected ? colour::kSky : colour::kOrange;
       const std::string number = short_number(values(cv));
       panel.field(static_cast<double>(cv), last - static_cast<double>(row), fill,
-                  outside ? depth(values(cv)) : 0.0, affected && !outside ? "[" + number + "]" : number);
+                  outside ? depth_of_index(values(cv)) : 0.0,
+                  affected && !outside ? "[" + number + "]" : number);
     }
   }
   return panel.finish(
@@ -99,8 +100,8 @@ Figure index_figure(const Campaign& campaign) {
       "impact, {:g} to {:g}, deeper the farther from 1. [Brackets]: an affected CV within the band.",
       options.impact_lower, options.impact_upper);
   figure.legend = {{"Ivar outside the band", kOutside},
-                   {"Ivar_{diag} outside the band, CV affected", kRight},
-                   {"Ivar_{diag} outside the band, CV not affected", kWrong}};
+                   {"Ivar_{diag} outside the band, CV affected", kOutsideAffected},
+                   {"Ivar_{diag} outside the band, CV not affected", kOutsideOnly}};
   figure.panels = {index_panel(campaign, "ivar", "Ivar", &Diagnosis::ivar, false),
                    index_panel(campaign, "ivar_diag", "Ivar_{diag}", &Diagnosis::ivar_diag, true)};
   return figure;

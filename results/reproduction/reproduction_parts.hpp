@@ -1,13 +1,21 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "scenarios/table_file.hpp"
 
 // What the tables of one run and of several seeds have in common as text and as HTML.
 
 namespace mpm {
+
+template <class Value>
+nlohmann::ordered_json or_null(const std::optional<Value>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
 
 /// Three significant digits; `none` for NaN.
 std::string three_digits(double value, const std::string& none);

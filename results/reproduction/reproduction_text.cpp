@@ -28,11 +28,6 @@ std::string table_text(const ReproducedTable& table) {
   return table_rows_text(table.table, rows) + fmt::format("{} of {} verdicts agree\n\n", agreeing, judged);
 }
 
-template <class Value>
-ordered_json or_null(const std::optional<Value>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 ordered_json cell_json(const ReproducedCell& cell, const std::string& head) {
   return {{"head", head},
           {"cv", cell.cell.cv},

@@ -33,11 +33,6 @@ std::string table_text(const SeededTable& table) {
   return table_rows_text(table.table, rows) + agreement_text(table) + " verdicts agree\n\n";
 }
 
-template <class Value>
-ordered_json or_null(const std::optional<Value>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 ordered_json cell_json(const SeededCell& cell, const std::string& head) {
   return {{"head", head},
           {"cv", cell.cell.cv},

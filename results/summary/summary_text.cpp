@@ -11,6 +11,7 @@
 #include "results/summary/summary_content.hpp"
 #include "results/summary/summary_lines.hpp"
 #include "results/summary/summary_sections.hpp"
+#include "results/text/experiment_text.hpp"
 
 namespace mpm {
 namespace {
@@ -129,10 +130,6 @@ void add_others(SummaryLines& text, const Study& study, const std::vector<Findin
                 interval_text(row.interval, row.is_share()), row.count);
 }
 
-std::string cv_name(const Study& study, Eigen::Index cv) {
-  return cv < 0 ? "no CV" : study.plant.cvs[static_cast<std::size_t>(cv)].name;
-}
-
 void add_dominance(SummaryLines& text, const Study& study, const std::vector<DominanceBin>& bins) {
   if (bins.empty())
     return;
@@ -172,7 +169,8 @@ void add_wrong(SummaryLines& text, const Study& study, const std::vector<const E
                                                       : fmt::format("{} on {}", to_string(draw.kind),
                                                                     cv_name(study, draw.true_cv()));
     text.line("  {:<{}}  # {}, found {} on {}", fmt::format("mpmbench replay {} {}", file, draw.index),
-              file.size() + 22, truth, to_string(said.predicted_source), cv_name(study, said.predicted_cv));
+              file.size() + 22, truth, to_string(said.predicted_source),
+              said.predicted_cv < 0 ? "no CV" : cv_name(study, said.predicted_cv));
   }
   add_more(text, wrong.size());
 }

@@ -1,9 +1,9 @@
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
 #include "plants/linear_plant.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/plants/plant_samples.hpp"
 
 // Properties of LinearPlant as a whole: superposition, steady states, copies, refused input.
@@ -170,7 +170,6 @@ TEST_CASE("a plant can take the place of a different one", "[linear_plant]") {
 }
 
 TEST_CASE("bad input of a linear plant is refused", "[linear_plant]") {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const TransferMatrix G = mixed_matrix();
   CHECK_THROWS_AS(LinearPlant(G, 0), InputError);
   CHECK_THROWS_AS(LinearPlant(TransferMatrix(1, 1), -1), InputError);

@@ -1,8 +1,10 @@
-#include <limits>
+
+#include <cmath>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "plants/transfer_function.hpp"
 #include "tests/plants/plant_samples.hpp"
 
@@ -12,10 +14,8 @@ namespace {
 using Complex = std::complex<double>;
 using samples::polynomial;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A handful of roundings of numbers of order one.
-constexpr double kRounding = 1e-13;
+constexpr double kResponseRounding = 1e-13;
 
 const std::vector<Complex> kPoints = {{0, 0.01}, {0, 1.3}, {0.2, -0.7}, {0.05, 0}};
 
@@ -30,7 +30,7 @@ TEST_CASE("a first-order transfer function has its defining values", "[transfer_
   CHECK_FALSE(G.is_integrating());
   for (const Complex s : kPoints) {
     const Complex expected = 4.05 * std::exp(-27.0 * s) / (50.0 * s + 1.0);
-    CHECK(std::abs(G(s) - expected) < kRounding * std::abs(expected));
+    CHECK(std::abs(G(s) - expected) < kResponseRounding * std::abs(expected));
   }
 }
 
@@ -38,7 +38,7 @@ TEST_CASE("coefficients stand in descending powers of s", "[transfer_function]")
   const TransferFunction G(polynomial({-3, 2}), polynomial({5, 4, 1}));
   for (const Complex s : kPoints) {
     const Complex expected = (-3.0 * s + 2.0) / (5.0 * s * s + 4.0 * s + 1.0);
-    CHECK(std::abs(G(s) - expected) < kRounding);
+    CHECK(std::abs(G(s) - expected) < kResponseRounding);
   }
   CHECK(G.static_gain() == 2);
 }

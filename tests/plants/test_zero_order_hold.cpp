@@ -1,10 +1,10 @@
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "plants/zero_order_hold.hpp"
 #include "tests/plants/plant_samples.hpp"
 
@@ -149,8 +149,8 @@ TEST_CASE("bad discretisations are refused", "[zero_order_hold]") {
   const TransferFunction G = TransferFunction::first_order(1, 5, 3);
   CHECK_THROWS_AS(discretise(G, 0), InputError);
   CHECK_THROWS_AS(discretise(G, -1), InputError);
-  CHECK_THROWS_AS(discretise(G, std::numeric_limits<double>::quiet_NaN()), InputError);
-  CHECK_THROWS_AS(discretise(G, std::numeric_limits<double>::infinity()), InputError);
+  CHECK_THROWS_AS(discretise(G, kNaN), InputError);
+  CHECK_THROWS_AS(discretise(G, kInfinity), InputError);
   CHECK_THROWS_AS(discretise(G, 2.9 / kMaxDelay), InputError);
   CHECK(discretise(G, 3.0 / kMaxDelay).delay == kMaxDelay);
   // e^{1000} overflows.

@@ -11,6 +11,7 @@
 
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study_file.hpp"
 
@@ -35,9 +36,9 @@ class Numbers {
       case 0:
         return std::bit_cast<double>(std::uint64_t{0x7FF8000000ABCDEF});  // a NaN with a payload
       case 1:
-        return std::numeric_limits<double>::infinity();
+        return kInfinity;
       case 2:
-        return -std::numeric_limits<double>::infinity();
+        return -kInfinity;
       case 3:
         return -0.0;
       case 4:
@@ -132,7 +133,7 @@ double number_for(Numbers& numbers, const NumberPlace& place) {
   if (words == 0)
     return numbers.next();
   const int word = numbers.index(words + 1);
-  return word == words ? std::numeric_limits<double>::quiet_NaN() : word;
+  return word == words ? kNaN : word;
 }
 
 /// Any answer that a method may give, or none, mostly one.

@@ -1,11 +1,11 @@
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/distribution.hpp"
 #include "tests/scenarios/goodness_of_fit.hpp"
 
@@ -14,9 +14,6 @@ namespace {
 using mpm::Distribution;
 using mpm::RandomStream;
 using mpm::StreamId;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> draw(const Distribution& distribution, int count) {
   RandomStream stream(21, 0, StreamId::disturbance_draw);
@@ -71,8 +68,8 @@ TEST_CASE("the support") {
   CHECK(Distribution::uniform(-1.0, 3.0).maximum() == 3.0);
   CHECK(Distribution::log_uniform(0.5, 3.0).minimum() == 0.5);
   CHECK(Distribution::log_uniform(0.5, 3.0).maximum() == 3.0);
-  CHECK(Distribution::normal(0.0, 1.0).minimum() == -kInfinity);
-  CHECK(Distribution::normal(0.0, 1.0).maximum() == kInfinity);
+  CHECK(Distribution::normal(0.0, 1.0).minimum() == -mpm::kInfinity);
+  CHECK(Distribution::normal(0.0, 1.0).maximum() == mpm::kInfinity);
 }
 
 TEST_CASE("every kind takes one value from the stream") {
@@ -92,21 +89,21 @@ TEST_CASE("distributions compare by value") {
 
 TEST_CASE("distributions refuse parameters that describe none") {
   using mpm::InputError;
-  CHECK_THROWS_AS(Distribution::constant(kNan), InputError);
-  CHECK_THROWS_AS(Distribution::constant(kInfinity), InputError);
+  CHECK_THROWS_AS(Distribution::constant(mpm::kNaN), InputError);
+  CHECK_THROWS_AS(Distribution::constant(mpm::kInfinity), InputError);
   CHECK_THROWS_AS(Distribution::uniform(1.0, 1.0), InputError);
   CHECK_THROWS_AS(Distribution::uniform(2.0, 1.0), InputError);
-  CHECK_THROWS_AS(Distribution::uniform(kNan, 1.0), InputError);
-  CHECK_THROWS_AS(Distribution::uniform(0.0, kInfinity), InputError);
+  CHECK_THROWS_AS(Distribution::uniform(mpm::kNaN, 1.0), InputError);
+  CHECK_THROWS_AS(Distribution::uniform(0.0, mpm::kInfinity), InputError);
   CHECK_THROWS_AS(Distribution::uniform(-1e308, 1e308), InputError);
   CHECK_THROWS_AS(Distribution::log_uniform(0.0, 1.0), InputError);
   CHECK_THROWS_AS(Distribution::log_uniform(-1.0, 1.0), InputError);
   CHECK_THROWS_AS(Distribution::log_uniform(2.0, 1.0), InputError);
-  CHECK_THROWS_AS(Distribution::log_uniform(1.0, kInfinity), InputError);
-  CHECK_THROWS_AS(Distribution::normal(kNan, 1.0), InputError);
+  CHECK_THROWS_AS(Distribution::log_uniform(1.0, mpm::kInfinity), InputError);
+  CHECK_THROWS_AS(Distribution::normal(mpm::kNaN, 1.0), InputError);
   CHECK_THROWS_AS(Distribution::normal(0.0, 0.0), InputError);
   CHECK_THROWS_AS(Distribution::normal(0.0, -1.0), InputError);
-  CHECK_THROWS_AS(Distribution::normal(0.0, kNan), InputError);
+  CHECK_THROWS_AS(Distribution::normal(0.0, mpm::kNaN), InputError);
 }
 
 TEST_CASE("a refusal names the quantity, what was found and what is allowed") {

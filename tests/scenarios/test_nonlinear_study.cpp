@@ -18,12 +18,12 @@ namespace {
 
 using namespace testing;
 
-constexpr const char* kCounts = "[experiments]\nmpm = 1\nud = 0\nmpm_ud = 0\n";
+constexpr const char* kTankCounts = "[experiments]\nmpm = 1\nud = 0\nmpm_ud = 0\n";
 
 /// The tank study with these keys in [plant] and these scenarios.
 std::string tank_text(const std::string& plant, const std::string& scenarios) {
   const std::string text =
-      replaced(project_file("tests/scenarios/data/quadruple-tank.toml"), kCounts, scenarios);
+      replaced(project_file("tests/scenarios/data/quadruple-tank.toml"), kTankCounts, scenarios);
   return replaced(text, "catalogue = \"quadruple-tank\"\n", "catalogue = \"quadruple-tank\"\n" + plant);
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("what a nonlinear study cannot be is refused", "[nonlinear]") {
              Catch::Contains("scenario[0].disturbance[0].input: found 'D5'"));
   CHECK(refused(kNonlinear, "mismatch = [{cv = 'h1', input = 'v1', gain_factor = 2}]\n") ==
         "scenario[0].mismatch: found channels of a plant that is simulated as nonlinear; allowed: parameter");
-  CHECK_THAT(refusal(tank_text(kNonlinear, kCounts)), Catch::Contains("random mismatches"));
+  CHECK_THAT(refusal(tank_text(kNonlinear, kTankCounts)), Catch::Contains("random mismatches"));
   const std::string linear = replaced(find_study("chapter6").source, "catalogue = \"shell-7x3\"",
                                       "catalogue = \"shell-7x3\"\nsimulated = \"nonlinear\"");
   CHECK_THAT(refusal(linear),

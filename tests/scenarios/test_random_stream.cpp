@@ -2,13 +2,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/random_stream.hpp"
 #include "tests/scenarios/goodness_of_fit.hpp"
 
@@ -220,8 +220,8 @@ TEST_CASE("draws below 1 are 0") {
 
 TEST_CASE("a stream refuses impossible draws") {
   RandomStream stream(1, 1, StreamId::kind);
-  const double infinity = std::numeric_limits<double>::infinity();
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = mpm::kInfinity;
+  const double nan = mpm::kNaN;
   CHECK_THROWS_AS(stream.below(0), mpm::InputError);
   CHECK_THROWS_AS(stream.uniform(1.0, 0.0), mpm::InputError);
   CHECK_THROWS_AS(stream.uniform(0.0, infinity), mpm::InputError);

@@ -14,7 +14,7 @@ Study changed(const std::vector<StudyChange>& changes) {
   return changed_study(find_study("chapter4-shell"), changes, "s");
 }
 
-std::string refusal(const std::vector<StudyChange>& changes) {
+std::string change_refusal(const std::vector<StudyChange>& changes) {
   try {
     changed(changes);
   } catch (const InputError& error) {
@@ -96,14 +96,15 @@ TEST_CASE("an entry of a list of tables goes by its name", "[study_change]") {
 
 TEST_CASE("a key that there is not is refused by its name", "[study_change]") {
   CHECK_THAT(
-      refusal({{"controller.mv.u2.move_supression", "10"}}),
+      change_refusal({{"controller.mv.u2.move_supression", "10"}}),
       Catch::Contains("controller.mv.u2: found unknown key 'move_supression' (nearest: 'move_suppression')"));
-  CHECK_THAT(refusal({{"simulation.none", ""}}),
+  CHECK_THAT(change_refusal({{"simulation.none", ""}}),
              Catch::Contains("s: simulation.none: found no such key to take out"));
-  CHECK_THAT(refusal({{"scenario.Scen99.mismatch", "[]"}}),
+  CHECK_THAT(change_refusal({{"scenario.Scen99.mismatch", "[]"}}),
              Catch::Contains("s: scenario.Scen99.mismatch: found 'Scen99'"));
-  CHECK_THAT(refusal({{"simulation.step.first.level", "1"}}), Catch::Contains("found a list without names"));
-  CHECK_THAT(refusal({{"simulation.samples.x", "1"}}), Catch::Contains("'samples', which is "));
+  CHECK_THAT(change_refusal({{"simulation.step.first.level", "1"}}),
+             Catch::Contains("found a list without names"));
+  CHECK_THAT(change_refusal({{"simulation.samples.x", "1"}}), Catch::Contains("'samples', which is "));
 }
 
 TEST_CASE("the studies of a table are changed after their variants", "[study_change]") {

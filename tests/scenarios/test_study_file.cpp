@@ -1,8 +1,8 @@
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "plants/catalogue.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/study_file.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
@@ -10,8 +10,6 @@ namespace mpm {
 namespace {
 
 using namespace testing;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Study small_with(const std::string& from, const std::string& to) {
   return parse_study(replaced(small_study(), from, to), "s.toml");

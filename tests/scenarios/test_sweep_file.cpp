@@ -35,7 +35,7 @@ class SweepFolder {
   fs::path folder_;
 };
 
-std::string refusal(const std::string& variants) {
+std::string sweep_refusal(const std::string& variants) {
   const SweepFolder folder(variants);
   try {
     load_sweep(folder.file());
@@ -78,16 +78,17 @@ TEST_CASE("a table that the base study does not have is added", "[sweep_file]") 
 }
 
 TEST_CASE("what is no sweep is refused by its key", "[sweep_file]") {
-  CHECK_THAT(refusal(kVariant), Catch::Contains("variant[0].set"));
-  CHECK_THAT(refusal(kVariant + "set = 3\n"), Catch::Contains("found 3; allowed: a table of study keys"));
-  CHECK_THAT(refusal(kVariant + "set.simulation.samples = 50\n"),
+  CHECK_THAT(sweep_refusal(kVariant), Catch::Contains("variant[0].set"));
+  CHECK_THAT(sweep_refusal(kVariant + "set = 3\n"),
+             Catch::Contains("found 3; allowed: a table of study keys"));
+  CHECK_THAT(sweep_refusal(kVariant + "set.simulation.samples = 50\n"),
              Catch::Contains("(noise = none)") && Catch::Contains("simulation.samples: found 50"));
-  CHECK_THAT(refusal(kVariant + "set.simulation.sample = 50\n"), Catch::Contains("nearest: 'samples'"));
-  CHECK_THAT(refusal(kVariant + "set.simulation.samples = 80\nremove = [\"simulation.steps\"]\n"),
+  CHECK_THAT(sweep_refusal(kVariant + "set.simulation.sample = 50\n"), Catch::Contains("nearest: 'samples'"));
+  CHECK_THAT(sweep_refusal(kVariant + "set.simulation.samples = 80\nremove = [\"simulation.steps\"]\n"),
              Catch::Contains("'simulation.steps'"));
-  CHECK_THAT(refusal(kVariant + "set.simulation.samples = 80\nremove = \"a\"\n"),
+  CHECK_THAT(sweep_refusal(kVariant + "set.simulation.samples = 80\nremove = \"a\"\n"),
              Catch::Contains("a list of keys"));
-  CHECK_THAT(refusal("[[variants]]\n"), Catch::Contains("nearest: 'variant'"));
+  CHECK_THAT(sweep_refusal("[[variants]]\n"), Catch::Contains("nearest: 'variant'"));
   CHECK_THROWS_AS(load_sweep("no-such-sweep.toml"), InputError);
 }
 

@@ -97,7 +97,7 @@ std::string message_of(const fs::path& folder, Read read) {
 }
 
 /// How the table is refused with the first `from` replaced by `to`.
-std::string refusal(const std::string& from, const std::string& to) {
+std::string table_refusal(const std::string& from, const std::string& to) {
   const TableFolder folder;
   const fs::path file = folder.put("t.toml", replaced(kTable, from, to));
   return message_of(folder.path(), [&] { load_table(file, kQuantities); });
@@ -159,7 +159,9 @@ TEST_CASE("a table may have verdicts in words in place of numbers", "[table_file
   CHECK_FALSE(table.rows[0].cells[0].thesis);
   CHECK_FALSE(table.rows[0].cells[1].verdict);
 
-  const auto refused = [](const std::string& verdicts) { return refusal("values = [4.54, 1]", verdicts); };
+  const auto refused = [](const std::string& verdicts) {
+    return table_refusal("values = [4.54, 1]", verdicts);
+  };
   CHECK_THAT(refused("verdicts = [\"flaged\", \"\"]"),
              Catch::Contains("row[0].verdicts: found 'flaged'; allowed: flagged or not flagged"));
   CHECK_THAT(refused("verdicts = [\"flagged\"]"), Catch::Contains("a list of 2 texts"));
@@ -167,7 +169,7 @@ TEST_CASE("a table may have verdicts in words in place of numbers", "[table_file
   CHECK_THAT(refused("verdicts = [\"\", \"\"]\nvalues = [1, 2]"),
              Catch::Contains("row[0]: found both values and verdicts"));
   CHECK_THAT(refused(""), Catch::Contains("row[0]: found neither values nor verdicts"));
-  CHECK_THAT(refusal("values = [1.5, \"\"]", "verdicts = [\"flagged\", \"\"]"),
+  CHECK_THAT(table_refusal("values = [1.5, \"\"]", "verdicts = [\"flagged\", \"\"]"),
              Catch::Contains("no verdict on a quantity without a rule"));
 }
 
@@ -197,11 +199,12 @@ TEST_CASE("a quantity of the loop has no CV, one of a channel has a CV and an MV
   CHECK(cells[1].mv == "u2");
 
   const std::string channel = "quantity = \"method.correlation\"";
-  CHECK_THAT(refusal("quantity = \"ivar\"", channel),
+  CHECK_THAT(table_refusal("quantity = \"ivar\"", channel),
              Catch::Contains("row[0]: found no mv for column 'first'"));
-  CHECK_THAT(refusal("quantity = \"ivar\"", channel + "\nmv = \"u9\""),
+  CHECK_THAT(table_refusal("quantity = \"ivar\"", channel + "\nmv = \"u9\""),
              Catch::Contains("row[0].mv: found mv 'u9'") && Catch::Contains("allowed: u1, u2, u3"));
-  CHECK_THAT(refusal("cv = \"y1\"", "cv = \"y1\"\nmv = \"u9\""), Catch::Contains("column[0].mv: found 'u9'"));
+  CHECK_THAT(table_refusal("cv = \"y1\"", "cv = \"y1\"\nmv = \"u9\""),
+             Catch::Contains("column[0].mv: found 'u9'"));
 }
 
 TEST_CASE("a figure in words is a table with a name of its own", "[table_file]") {
@@ -232,10 +235,10 @@ TEST_CASE("a figure in words is a table with a name of its own", "[table_file]")
 }
 
 TEST_CASE("a table is either a table or a figure", "[table_file]") {
-  CHECK_THAT(refusal("number = 5", "number = 5\nfigure = 8"),
+  CHECK_THAT(table_refusal("number = 5", "number = 5\nfigure = 8"),
              Catch::Contains("table: found both number and figure; allowed: exactly one of the two"));
-  CHECK_THAT(refusal("number = 5\n", ""), Catch::Contains("table: found neither number nor figure"));
-  CHECK_THAT(refusal("number = 5", "figure = 0"), Catch::Contains("table.figure: found 0"));
+  CHECK_THAT(table_refusal("number = 5\n", ""), Catch::Contains("table: found neither number nor figure"));
+  CHECK_THAT(table_refusal("number = 5", "figure = 0"), Catch::Contains("table.figure: found 0"));
 }
 
 TEST_CASE("a row can name the benchmark of methods that need one", "[table_file]") {
@@ -247,46 +250,48 @@ TEST_CASE("a row can name the benchmark of methods that need one", "[table_file]
   CHECK_FALSE(benchmark("").has_value());  // the basis case of the variant of the row
   CHECK(benchmark("benchmark = \"slow\"\n") == "slow");
   CHECK(benchmark("benchmark = \"study\"\n") == "");  // the study as it is
-  CHECK_THAT(refusal("scenario = \"Scen1\"", "scenario = \"Scen1\"\nbenchmark = \"slo\""),
+  CHECK_THAT(table_refusal("scenario = \"Scen1\"", "scenario = \"Scen1\"\nbenchmark = \"slo\""),
              Catch::Contains("row[0].benchmark: found 'slo' (nearest: 'slow')"));
-  CHECK_THAT(refusal("name = \"slow\"", "name = \"study\""),
+  CHECK_THAT(table_refusal("name = \"slow\"", "name = \"study\""),
              Catch::Contains("variant[0].name: found 'study'; allowed: another name"));
 }
 
 TEST_CASE("what a table file cannot mean is refused by file, line and key", "[table_file]") {
-  CHECK_THAT(refusal("cv = \"y1\"", "cv = \"y9\""), Catch::StartsWith("t.toml:13: column[0].cv: found 'y9'"));
-  CHECK_THAT(refusal("cv = \"y3\"", "cv = \"y9\""), Catch::Contains("row[0].cv: found cv 'y9'"));
-  CHECK_THAT(refusal("cv = \"y3\"\n", ""), Catch::Contains("row[0]: found no cv for column 'second'"));
-  CHECK_THAT(refusal("quantity = \"ivar\"\n", ""), Catch::Contains("found no quantity for column 'first'"));
-  CHECK_THAT(refusal("quantity = \"ivar\"", "quantity = \"ivarr\""),
+  CHECK_THAT(table_refusal("cv = \"y1\"", "cv = \"y9\""),
+             Catch::StartsWith("t.toml:13: column[0].cv: found 'y9'"));
+  CHECK_THAT(table_refusal("cv = \"y3\"", "cv = \"y9\""), Catch::Contains("row[0].cv: found cv 'y9'"));
+  CHECK_THAT(table_refusal("cv = \"y3\"\n", ""), Catch::Contains("row[0]: found no cv for column 'second'"));
+  CHECK_THAT(table_refusal("quantity = \"ivar\"\n", ""),
+             Catch::Contains("found no quantity for column 'first'"));
+  CHECK_THAT(table_refusal("quantity = \"ivar\"", "quantity = \"ivarr\""),
              Catch::Contains("row[0].quantity: found quantity 'ivarr' (nearest: 'ivar')") &&
                  Catch::Contains("allowed: ivar, ivar_diag, sse"));
-  CHECK_THAT(refusal("\"Scen1\"", "\"Scen99\""), Catch::Contains("row[0].scenario: found 'Scen99'"));
-  CHECK_THAT(refusal("variant = \"slow\"", "variant = \"slo\""),
+  CHECK_THAT(table_refusal("\"Scen1\"", "\"Scen99\""), Catch::Contains("row[0].scenario: found 'Scen99'"));
+  CHECK_THAT(table_refusal("variant = \"slow\"", "variant = \"slo\""),
              Catch::Contains("row[1].variant: found 'slo' (nearest: 'slow'); allowed: slow"));
-  CHECK_THAT(refusal("[4.54, 1]", "[4.54]"), Catch::Contains("row[0].values"));
-  CHECK_THAT(refusal("[4.54, 1]", "[4.54, nan]"), Catch::Contains("row[0].values: found nan"));
-  CHECK_THAT(refusal("[4.54, 1]", "[4.54, \"-\"]"), Catch::Contains("\"\" for an empty cell"));
-  CHECK_THAT(refusal("[4.54, 1]", "[4.54, true]"), Catch::Contains("row[0].values: found true"));
-  CHECK_THAT(refusal("[0.8, 1.2]", "[1.2, 0.8]"), Catch::Contains("rule[0].band"));
-  CHECK_THAT(refusal("band = [0.8, 1.2]\n", ""), Catch::Contains("rule[0].band: found nothing"));
-  CHECK_THAT(refusal("[\"ivar\"]", "[\"ivr\"]"), Catch::Contains("rule[0].quantities"));
-  CHECK_THAT(refusal("band = [0.8, 1.2]", "kind = \"any-above\"\nband = [0.8, 1.2]"),
+  CHECK_THAT(table_refusal("[4.54, 1]", "[4.54]"), Catch::Contains("row[0].values"));
+  CHECK_THAT(table_refusal("[4.54, 1]", "[4.54, nan]"), Catch::Contains("row[0].values: found nan"));
+  CHECK_THAT(table_refusal("[4.54, 1]", "[4.54, \"-\"]"), Catch::Contains("\"\" for an empty cell"));
+  CHECK_THAT(table_refusal("[4.54, 1]", "[4.54, true]"), Catch::Contains("row[0].values: found true"));
+  CHECK_THAT(table_refusal("[0.8, 1.2]", "[1.2, 0.8]"), Catch::Contains("rule[0].band"));
+  CHECK_THAT(table_refusal("band = [0.8, 1.2]\n", ""), Catch::Contains("rule[0].band: found nothing"));
+  CHECK_THAT(table_refusal("[\"ivar\"]", "[\"ivr\"]"), Catch::Contains("rule[0].quantities"));
+  CHECK_THAT(table_refusal("band = [0.8, 1.2]", "kind = \"any-above\"\nband = [0.8, 1.2]"),
              Catch::Contains("rule[0].band: found a key that this kind of rule does not use"));
-  CHECK_THAT(refusal("band = [0.8, 1.2]", "kind = \"rank\""),
+  CHECK_THAT(table_refusal("band = [0.8, 1.2]", "kind = \"rank\""),
              Catch::Contains("rule[0].yes: found a key that this kind of rule does not use"));
-  CHECK_THAT(refusal("band = [0.8, 1.2]", "kind = \"above\""),
+  CHECK_THAT(table_refusal("band = [0.8, 1.2]", "kind = \"above\""),
              Catch::Contains("rule[0].kind: found 'above'"));
-  CHECK_THAT(
-      refusal("[[row]]", "[[rule]]\nquantities = [\"ivar\"]\nkind = \"rank\"\nsource = \"s\"\n\n[[row]]"),
-      Catch::Contains("rule[1].quantities: found 'ivar', which has a rule already"));
-  CHECK_THAT(refusal("[[column]]", "[[variant]]\nname = \"slow\"\nset.study.seed = 1\n\n[[column]]"),
+  CHECK_THAT(table_refusal("[[row]]",
+                           "[[rule]]\nquantities = [\"ivar\"]\nkind = \"rank\"\nsource = \"s\"\n\n[[row]]"),
+             Catch::Contains("rule[1].quantities: found 'ivar', which has a rule already"));
+  CHECK_THAT(table_refusal("[[column]]", "[[variant]]\nname = \"slow\"\nset.study.seed = 1\n\n[[column]]"),
              Catch::Contains("variant[1].name: found 'slow'; allowed: each name once"));
-  CHECK_THAT(refusal("set.controller.mv.u1", "set.controller.mv.u9"), Catch::Contains("(slow)"));
-  CHECK_THAT(refusal("\"chapter4-shell\"", "\"chapter6\""), Catch::Contains("names no scenarios"));
-  CHECK_THAT(refusal("\"chapter4-shell\"", "\"nowhere\""), Catch::Contains("table.study"));
-  CHECK_THAT(refusal("chapter = 4", "chapter = 7"), Catch::Contains("table.chapter: found 7"));
-  CHECK_THAT(refusal("title", "titel"), Catch::Contains("nearest: 'title'"));
+  CHECK_THAT(table_refusal("set.controller.mv.u1", "set.controller.mv.u9"), Catch::Contains("(slow)"));
+  CHECK_THAT(table_refusal("\"chapter4-shell\"", "\"chapter6\""), Catch::Contains("names no scenarios"));
+  CHECK_THAT(table_refusal("\"chapter4-shell\"", "\"nowhere\""), Catch::Contains("table.study"));
+  CHECK_THAT(table_refusal("chapter = 4", "chapter = 7"), Catch::Contains("table.chapter: found 7"));
+  CHECK_THAT(table_refusal("title", "titel"), Catch::Contains("nearest: 'title'"));
 }
 
 TEST_CASE("tables are found by chapter and number, in the order of the numbers", "[table_file]") {

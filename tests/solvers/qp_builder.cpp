@@ -1,11 +1,9 @@
 #include "tests/solvers/qp_builder.hpp"
 
-#include <limits>
+#include "plants/non_finite.hpp"
 
 namespace mpm::samples {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <typename Vector, typename Number>
 void append(Vector& vector, Number number) {

@@ -1,13 +1,10 @@
 #include "tests/solvers/qp_collection.hpp"
 
-#include <limits>
-
+#include "plants/non_finite.hpp"
 #include "tests/solvers/qp_builder.hpp"
 
 namespace mpm::samples {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Eigen::MatrixXd identity(Eigen::Index n) {
   return Eigen::MatrixXd::Identity(n, n);

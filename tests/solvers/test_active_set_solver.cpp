@@ -1,8 +1,10 @@
-#include <limits>
+
+#include <cmath>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/active_set_certificate.hpp"
 #include "solvers/active_set_dual.hpp"
 #include "solvers/active_set_solver.hpp"
@@ -110,7 +112,7 @@ TEST_CASE("of several minimisers of a linear program the one nearest to the orig
   // x + y costs nothing beyond 1 on the line x + y = 1.
   const NamedQp qp = QpBuilder("edge", Eigen::MatrixXd::Zero(2, 2), vec(1, 1))
                          .box(vec(-2, -2), vec(2, 2))
-                         .hard(vec(1, 1), 1, std::numeric_limits<double>::infinity())
+                         .hard(vec(1, 1), 1, kInfinity)
                          .build();
   const QpResult result = solver_for(qp).solve(qp.data);
   REQUIRE(result.status == QpStatus::solved);
@@ -157,7 +159,7 @@ TEST_CASE("active-set options are checked", "[active-set]") {
   };
   refused({.tolerance = 0});
   refused({.tolerance = 1});
-  refused({.tolerance = std::numeric_limits<double>::quiet_NaN()});
+  refused({.tolerance = kNaN});
   refused({.iteration_limit = 0});
   refused({.round_limit = 0});
 }

@@ -1,9 +1,9 @@
 #include <cmath>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/random_stream.hpp"
 #include "solvers/qp_solver.hpp"
 #include "tests/solvers/qp_builder.hpp"
@@ -17,8 +17,6 @@ namespace {
 using samples::NamedQp;
 using samples::QpBuilder;
 using samples::vec;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The back ends promise stationarity to 1e-7 or better (Ipopt: dual_inf_tol 1e-7) and feasibility and
 // complementarity to 1e-8 or better; Ipopt also accepts a point with a residual of 1e-7.

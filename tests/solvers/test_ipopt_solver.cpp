@@ -1,10 +1,10 @@
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/ipopt_solver.hpp"
 #include "tests/solvers/qp_builder.hpp"
 
@@ -14,8 +14,6 @@ namespace {
 using samples::NamedQp;
 using samples::QpBuilder;
 using samples::vec;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 NamedQp half_plane() {
   return QpBuilder("nearest point of a half plane", Eigen::MatrixXd::Identity(2, 2), vec(0, 0))
@@ -43,7 +41,7 @@ class TemporaryFolder {
 }  // namespace
 
 TEST_CASE("Ipopt options are checked", "[ipopt]") {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = kNaN;
   CHECK_NOTHROW(IpoptOptions{}.validate());
   CHECK_NOTHROW(IpoptOptions{.working_set_margin = 0}.validate());
   for (const double tolerance : {0.0, -1e-8, 1.0, nan})

@@ -1,7 +1,7 @@
-#include <limits>
 
 #include <catch2/catch.hpp>
 
+#include "plants/non_finite.hpp"
 #include "solvers/qp.hpp"
 #include "tests/solvers/qp_builder.hpp"
 
@@ -13,8 +13,6 @@ namespace {
 using samples::NamedQp;
 using samples::QpBuilder;
 using samples::vec;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Variables: 0 at its upper limit, 1 at its lower one, 2 free. Row 0 is x2 at its hard upper limit, row 1
 // x0 + x1 above its soft upper limit by slack 0, row 2 x1 kept exactly at its soft lower limit, row 3 is
@@ -152,7 +150,7 @@ TEST_CASE("nothing may push at an absent limit", "[kkt]") {
 }
 
 TEST_CASE("an answer that is not finite is no answer", "[kkt]") {
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), kInfinity}) {
+  for (const double bad : {kNaN, kInfinity}) {
     CHECK(residual_after([bad](QpResult& r) { r.x(2) = bad; }) == kInfinity);
     CHECK(residual_after([bad](QpResult& r) { r.slack(0) = bad; }) == kInfinity);
     CHECK(residual_after([bad](QpResult& r) { r.bound_dual(0) = bad; }) == kInfinity);

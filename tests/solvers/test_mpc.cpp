@@ -1,9 +1,10 @@
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/solvers/small_loop.hpp"
 
 // How the controller behaves in a closed loop, and what it refuses.
@@ -183,7 +184,7 @@ TEST_CASE("a controller refuses a wrong size and a number that is not finite", "
   Mpc controller = small_controller("ipopt");
   const Eigen::Vector2d two(0, 0);
   const Eigen::Vector3d three(0, 0, 0);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = kNaN;
   CHECK_THROWS_AS(controller.reset(three, md(0)), InputError);
   CHECK_THROWS_AS(controller.reset(two, two), InputError);
   CHECK_THROWS_AS(controller.reset(two, md(nan)), InputError);

@@ -1,9 +1,10 @@
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/prediction.hpp"
 #include "tests/solvers/small_loop.hpp"
 
@@ -29,8 +30,8 @@ MpcOptions mixed_options() {
   MpcOptions options = small_options();
   options.setpoint_weight = Eigen::Vector2d(4, 0);
   options.slack_weight(0) = 0;
-  options.cv_soft.lower(0) = -std::numeric_limits<double>::infinity();
-  options.cv_soft.upper(0) = std::numeric_limits<double>::infinity();
+  options.cv_soft.lower(0) = -kInfinity;
+  options.cv_soft.upper(0) = kInfinity;
   return options;
 }
 

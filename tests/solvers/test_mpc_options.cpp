@@ -1,18 +1,15 @@
-#include <limits>
 #include <string>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/solvers/p1_controller.hpp"
 
 // Every refusal of the controller's options, by the quantity it has to name.
 
 namespace mpm {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 template <typename Spoil>
 std::string refusal(Spoil spoil) {

@@ -12,7 +12,7 @@ namespace mpm {
 namespace {
 
 // Sums of some hundred products of order ten, with roundings of 1e-15 each.
-constexpr double kRounding = 1e-11;
+constexpr double kPredictionRounding = 1e-11;
 
 /// A plant somewhere on its way: 40 samples of a rough input.
 LinearPlant plant_in_motion(const TransferMatrix& model, double sample_time) {
@@ -59,7 +59,7 @@ void check_prediction(const TransferMatrix& model, Eigen::Index mv_count, double
   const Eigen::MatrixXd expected = simulated(plant, held, plan, hp);
   for (Eigen::Index cv = 0; cv < model.rows(); ++cv)
     CHECK((free.row(cv).transpose() + moved.segment(cv * hp, hp) - expected.row(cv).transpose())
-              .lpNorm<Eigen::Infinity>() < kRounding);
+              .lpNorm<Eigen::Infinity>() < kPredictionRounding);
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ TEST_CASE("without a change of inputs the free response of a plant at rest is it
   const Eigen::VectorXd held = samples::rough_input(5, 1);
   plant.reset(held);
   const Eigen::MatrixXd expected = (model.static_gain() * held).replicate(1, 30);
-  CHECK((free_of(plant, held, 30) - expected).cwiseAbs().maxCoeff() < kRounding);
+  CHECK((free_of(plant, held, 30) - expected).cwiseAbs().maxCoeff() < kPredictionRounding);
 }
 
 TEST_CASE("a move acts from the sample after its own and its dead time on", "[prediction]") {

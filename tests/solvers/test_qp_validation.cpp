@@ -1,9 +1,9 @@
-#include <limits>
 #include <string>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/qp.hpp"
 #include "tests/solvers/qp_builder.hpp"
 
@@ -16,10 +16,7 @@ using samples::NamedQp;
 using samples::QpBuilder;
 using samples::vec;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-NamedQp problem() {
+NamedQp valid_problem() {
   return QpBuilder("valid", Eigen::MatrixXd::Identity(2, 2), vec(0, 0))
       .slack(1, 0)
       .slack(0, 1)
@@ -31,7 +28,7 @@ NamedQp problem() {
 /// What validate() says after `spoil`; empty when it accepts.
 template <typename Spoil>
 std::string refusal_of_structure(Spoil spoil) {
-  QpStructure structure = *problem().structure;
+  QpStructure structure = *valid_problem().structure;
   spoil(structure);
   try {
     structure.validate();
@@ -43,7 +40,7 @@ std::string refusal_of_structure(Spoil spoil) {
 
 template <typename Spoil>
 std::string refusal_of_data(Spoil spoil) {
-  const NamedQp qp = problem();
+  const NamedQp qp = valid_problem();
   QpData data = qp.data;
   spoil(data);
   try {

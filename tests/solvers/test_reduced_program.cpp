@@ -17,7 +17,7 @@ using samples::QpBuilder;
 using samples::vec;
 
 // Sums of some hundred products of numbers of about 10, in another order.
-constexpr double kRounding = 1e-10;
+constexpr double kReductionRounding = 1e-10;
 
 struct Reduced {
   explicit Reduced(const NamedQp& problem) : qp(problem), set(*qp.structure), program(*qp.structure) {
@@ -94,8 +94,8 @@ TEST_CASE("eliminating slacks shifts the objective by a constant only", "[reduce
     const double change = objective(*qp.structure, qp.data, two) - objective(*qp.structure, qp.data, one);
     const double reduced_change =
         reduced.value(with_surplus(reduced, two.x)) - reduced.value(with_surplus(reduced, one.x));
-    CHECK(reduced_change == Approx(change).epsilon(kRounding).margin(kRounding));
-    CHECK(reduced.program.start().isApprox(with_surplus(reduced, one.x), kRounding));
+    CHECK(reduced_change == Approx(change).epsilon(kReductionRounding).margin(kReductionRounding));
+    CHECK(reduced.program.start().isApprox(with_surplus(reduced, one.x), kReductionRounding));
   }
   CHECK(problems >= 3);
 }
@@ -115,7 +115,7 @@ TEST_CASE("a point of the reduced program is reported with its slacks and their 
     reduced.program.report(reduced.set, qp.data, z, Eigen::VectorXd::Zero(z.size()),
                            Eigen::VectorXd::Zero(reduced.program.constraint_count()), reported);
     CHECK(reported.x == point.x);
-    CHECK((reported.slack - point.slack).lpNorm<Eigen::Infinity>() < kRounding);
+    CHECK((reported.slack - point.slack).lpNorm<Eigen::Infinity>() < kReductionRounding);
     for (Eigen::Index i = 0; i < qp.structure->row_count(); ++i)
       if (const int q = qp.structure->slack_of_row(i); q >= 0)  // stationarity in s: 2ws = |multiplier|
         CHECK(std::abs(reported.soft_dual(i)) ==

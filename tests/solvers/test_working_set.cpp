@@ -1,7 +1,7 @@
-#include <limits>
 
 #include <catch2/catch.hpp>
 
+#include "plants/non_finite.hpp"
 #include "solvers/working_set.hpp"
 #include "tests/solvers/qp_builder.hpp"
 
@@ -12,10 +12,8 @@ using samples::NamedQp;
 using samples::QpBuilder;
 using samples::vec;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // In one variable: row 0 hard, rows 1 and 2 share slack 0, row 3 has no limits but a slack of its own.
-NamedQp problem() {
+NamedQp working_set_problem() {
   return QpBuilder("rows", Eigen::MatrixXd::Identity(1, 1), vec(0))
       .slack(1, 0)
       .slack(1, 0)
@@ -32,7 +30,7 @@ int added(WorkingSet& set, const NamedQp& qp, double x, double slack, double mar
 }  // namespace
 
 TEST_CASE("the full set has every limit that exists", "[working_set]") {
-  const NamedQp qp = problem();
+  const NamedQp qp = working_set_problem();
   WorkingSet set(*qp.structure);
   set.fill(*qp.structure, qp.data);
   REQUIRE(set.rows().size() == 4);  // hard 0, both sides of 1, the upper one of 2
@@ -46,14 +44,14 @@ TEST_CASE("the full set has every limit that exists", "[working_set]") {
 }
 
 TEST_CASE("a kept limit does not enter", "[working_set]") {
-  const NamedQp qp = problem();
+  const NamedQp qp = working_set_problem();
   WorkingSet set(*qp.structure);
   CHECK(added(set, qp, 0.5, 0) == 0);
   CHECK(set.rows().empty());
 }
 
 TEST_CASE("violated limits enter once, with the side that is violated", "[working_set]") {
-  const NamedQp qp = problem();
+  const NamedQp qp = working_set_problem();
   WorkingSet set(*qp.structure);
   CHECK(added(set, qp, 2.5, 0) == 3);  // hard 0, upper 1, upper 2 (value 5)
   REQUIRE(set.rows().size() == 3);
@@ -67,7 +65,7 @@ TEST_CASE("violated limits enter once, with the side that is violated", "[workin
 }
 
 TEST_CASE("a shared slack relaxes the rows that are left out too", "[working_set]") {
-  const NamedQp qp = problem();
+  const NamedQp qp = working_set_problem();
   WorkingSet set(*qp.structure);
   CHECK(added(set, qp, 2.5, 2.5) == 1);  // only the hard row: row 1 and row 2 are within their slack
   CHECK(set.rows().size() == 1);
@@ -77,7 +75,7 @@ TEST_CASE("a shared slack relaxes the rows that are left out too", "[working_set
 }
 
 TEST_CASE("the margin lets near limits in without counting them", "[working_set]") {
-  const NamedQp qp = problem();
+  const NamedQp qp = working_set_problem();
   WorkingSet set(*qp.structure);
   CHECK(added(set, qp, 0.95, 0, 0.1) == 0);
   REQUIRE(set.rows().size() == 1);
@@ -85,7 +83,7 @@ TEST_CASE("the margin lets near limits in without counting them", "[working_set]
 }
 
 TEST_CASE("the limits that push in an answer enter, on the side they push from", "[working_set]") {
-  const NamedQp qp = problem();
+  const NamedQp qp = working_set_problem();
   WorkingSet set(*qp.structure);
   QpResult answer = QpResult::zero(*qp.structure);
   answer.soft_dual(1) = -2.0;  // lower limit of row 1

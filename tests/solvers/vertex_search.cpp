@@ -1,9 +1,10 @@
 #include "tests/solvers/vertex_search.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include <Eigen/LU>
+
+#include "plants/non_finite.hpp"
 
 namespace mpm::samples {
 namespace {
@@ -70,14 +71,14 @@ std::optional<Eigen::Vector3d> VertexSearch::keeping_all_limits() const {
 }
 
 double VertexSearch::smallest_violation() const {
-  double smallest = std::numeric_limits<double>::infinity();
+  double smallest = kInfinity;
   for (const Eigen::Vector3d& u : vertices_)
     smallest = std::min(smallest, violation(u));
   return smallest;
 }
 
 double VertexSearch::smallest_cost(double price) const {
-  double smallest = std::numeric_limits<double>::infinity();
+  double smallest = kInfinity;
   for (const Eigen::Vector3d& u : vertices_)
     smallest = std::min(smallest, cost_.dot(u) + price * violation(u));
   return smallest;

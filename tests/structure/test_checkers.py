@@ -1,6 +1,5 @@
 """Shows that each checker of this folder finds what it is for, and is silent about a clean tree."""
 
-import json
 import os
 import subprocess
 import sys
@@ -11,7 +10,7 @@ from pathlib import Path
 import check_format
 import check_hygiene
 import check_includes
-import run_tidy
+import check_used_names
 
 HEADER = "#pragma once\n"
 
@@ -124,6 +123,35 @@ class Includes(CheckerTest):
         self.assert_clean(check_includes, {"build/release/x.cpp": '#include "a.hpp"\n'})
 
 
+class UsedNames(CheckerTest):
+    HEADER = HEADER + "struct Row {\n  int size;\n};\nint row_count(const Row& row);\n"
+
+    def assert_missing(self, source, text, **more):
+        self.assert_one(check_used_names, {"plants/row.hpp": self.HEADER, "plants/b.cpp": source, **more},
+                        "plants/b.cpp:1:", text)
+
+    def test_what_is_included_itself_or_by_a_header_of_the_project_is_there(self):
+        self.assert_clean(check_used_names, {
+            "plants/row.hpp": self.HEADER,
+            "plants/a.hpp": HEADER + '#include <vector>\n#include "plants/row.hpp"\n',
+            "plants/b.cpp": '#include "plants/a.hpp"\nint f(std::vector<Row> rows) { return row_count(rows[0]); }\n'})
+
+    def test_a_name_of_the_standard_library_without_its_header(self):
+        self.assert_missing("#include <vector>\nauto f(int* p) { return std::move(p); }\n", "std::move is used without <utility>")
+
+    def test_a_type_of_the_project_without_its_header(self):
+        self.assert_missing("int f(Row& row);\n", "Row is used without plants/row.hpp")
+
+    def test_a_function_of_the_project_without_its_header(self):
+        self.assert_missing("int f() { return row_count({}); }\n", "row_count is used without plants/row.hpp")
+
+    def test_comments_texts_and_names_of_its_own_use_nothing(self):
+        self.assert_clean(check_used_names, {
+            "plants/row.hpp": self.HEADER,
+            "plants/b.cpp": 'struct Row;  // std::vector\nconst char* f(Row& one) { return "std::move row_count("; }\n',
+            "plants/c.cpp": "int f() {\n  const auto row_count = [] { return 1; };\n  return row_count();\n}\n"})
+
+
 class Format(CheckerTest):
     STYLE = {".clang-format": "BasedOnStyle: Google\n"}
 
@@ -188,52 +216,6 @@ class Tidy(CheckerTest):
                                 "plants/a.cpp": '#include "plants/a.hpp"\n'}, "plants/a.cpp")
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("plants/a.hpp", result.stdout)
-
-
-class TidyTogether(unittest.TestCase):
-    """run_tidy.py, which reads several sources at once."""
-
-    CLEAN = "namespace {\nconstexpr int kOne = 1;\n}  // namespace\nint %s() { return kOne; }\n"
-
-    def run_tidy(self, files):
-        """The finished run_tidy.py on the sources of the room plants, which are one part."""
-        with Tree({".clang-tidy": Tidy.CONFIGURATION, **files}) as root:
-            commands = [{"directory": str(root), "file": str(root / name), "command":
-                         f"c++ -std=c++20 -I{root} -Winvalid-pch -include gone.hxx -o gone.o -c {root / name}"}
-                        for name in files if name.endswith(".cpp")]
-            database = root / "compile_commands.json"
-            database.write_text(json.dumps(commands), encoding="utf-8")
-            return subprocess.run([sys.executable, "-B", run_tidy.__file__, os.environ.get("CLANG_TIDY", "clang-tidy"),
-                                   str(root), str(database), "plants", "0", "1"],
-                                  capture_output=True, text=True, check=False)
-
-    def test_sources_with_the_same_local_name_are_read_apart(self):
-        result = self.run_tidy({"plants/a.cpp": self.CLEAN % "f", "plants/b.cpp": self.CLEAN % "g"})
-        self.assertEqual(result.returncode, 0, result.stderr)
-        sources = {"a": ((), {"x"}), "b": ((), {"x"}), "c": ((), {"y"}), "d": (("-O1",), {"z"})}
-        self.assertEqual(run_tidy.groups(sources, 1), [["a", "c"], ["b"], ["d"]])
-
-    def test_a_complaint_about_a_source_and_its_header_is_an_error(self):
-        result = self.run_tidy({"plants/a.cpp": self.CLEAN % "g", "plants/b.cpp": Tidy.COPIED_FOR_NOTHING,
-                                "plants/c.hpp": HEADER + Tidy.COPIED_FOR_NOTHING.replace("f(", "h("),
-                                "plants/c.cpp": '#include "plants/c.hpp"\n'})
-        self.assertNotEqual(result.returncode, 0)
-        for place in ("plants/b.cpp:2:", "plants/c.hpp:3:"):
-            self.assertRegex(result.stderr, place + ".*performance-unnecessary-value-param")
-
-    def test_sources_that_do_not_compile_together_are_read_alone(self):
-        files = {"plants/a.cpp": "static int local() { return 1; }\nint f() { return local(); }\n",
-                 "plants/b.cpp": "static int local() { return 2; }\nint g() { return local(); }\n"}
-        self.assertEqual(self.run_tidy(files).returncode, 0)
-        self.assertIn("plants/c.cpp", self.run_tidy({**files, "plants/c.cpp": Tidy.COPIED_FOR_NOTHING}).stderr)
-
-    def test_a_source_that_does_not_compile_is_an_error(self):
-        self.assertIn("clang-diagnostic-error", self.run_tidy({"plants/a.cpp": "int f() { return gone; }\n"}).stderr)
-
-    def test_local_names(self):
-        text = ("namespace {\n\nusing Signal = Ref<A<int>>;\nconstexpr double kNan = 1.0;\nstruct Row {\n  int x;\n"
-                "};\nstd::map<int, Row> rows(int n)\n{\n}\n\n}  // namespace\nint outside() {}\n")
-        self.assertEqual(run_tidy.local_names(text), {"Signal", "kNan", "Row", "rows"})
 
 
 class Main(CheckerTest):

@@ -6,13 +6,12 @@
 #include "analysis/methods/method_table.hpp"
 #include "plants/same_members.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 // One pass: the loop is run once, and each method of the study says what it sees in it.
 
 namespace mpm {
 namespace {
-
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
 
 /// The chapter 6 study with short records.
 Study short_study() {
@@ -55,16 +54,15 @@ void check_same(const std::vector<AssessmentRecord>& a, const std::vector<Assess
 TEST_CASE("runner: a loop is run once however many methods look at it, and none depends on the others",
           "[experiment_runner]") {
   const Study study = short_study();
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   const std::vector<std::string> all = assessment_method_names();
   // With both faults there are three loops.
   const std::int64_t index = first_of(study, ExperimentKind::mpm_ud);
   std::int64_t steps = 0;
   const auto counted = [&](const std::vector<std::string>& methods) {
     steps = 0;
-    return ExperimentRunner(study, basis, methods, kFactory).run(index, StorePolicy::none, [&](const Mpc&) {
-      ++steps;
-    });
+    return ExperimentRunner(study, basis, methods, testing::kFactory)
+        .run(index, StorePolicy::none, [&](const Mpc&) { ++steps; });
   };
   const ExperimentRecord by_all = counted(all);
   REQUIRE(by_all.status == ExperimentStatus::ok);
@@ -88,8 +86,8 @@ TEST_CASE("runner: what methods say afterwards, of a loop kept or run again, is 
           "[experiment_runner]") {
   Study study = short_study();
   study.experiments = {.mpm = 1, .ud = 0, .mpm_ud = 1, .healthy = 0, .tuning = 1};
-  const BasisCase basis = run_basis_case(study, kFactory);
-  ExperimentRunner runner(study, basis, {"sse", "botelho", "sun"}, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  ExperimentRunner runner(study, basis, {"sse", "botelho", "sun"}, testing::kFactory);
   for (const ExperimentKind kind : {ExperimentKind::mpm, ExperimentKind::mpm_ud, ExperimentKind::tuning}) {
     INFO(to_string(kind));
     std::int64_t index = first_of(study, kind);
@@ -100,7 +98,7 @@ TEST_CASE("runner: what methods say afterwards, of a loop kept or run again, is 
     check_same(runner.assess(record), record.assessments);
     // What runs loops: another S0, and faults alone of which the chain has to say something.
     CHECK(runner.runs_loops(record) == (kind != ExperimentKind::mpm));
-    CHECK(ExperimentRunner(study, basis, {"sse"}, kFactory).runs_loops(record) ==
+    CHECK(ExperimentRunner(study, basis, {"sse"}, testing::kFactory).runs_loops(record) ==
           (kind == ExperimentKind::tuning));
     record.loop.reset();
     CHECK(runner.runs_loops(record));
@@ -113,12 +111,12 @@ TEST_CASE("runner: what methods say afterwards, of a loop kept or run again, is 
 TEST_CASE("runner: the truth is there without the chain, and the chain says nothing that was not asked",
           "[experiment_runner]") {
   const Study study = short_study();
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   const std::int64_t index = first_of(study, ExperimentKind::mpm_ud);
   const ExperimentRecord record =
-      ExperimentRunner(study, basis, {"sse"}, kFactory).run(index, StorePolicy::none);
+      ExperimentRunner(study, basis, {"sse"}, testing::kFactory).run(index, StorePolicy::none);
   REQUIRE(record.status == ExperimentStatus::ok);
-  const Trajectory loop = simulate_experiment(study, record.draw, kFactory);
+  const Trajectory loop = simulate_experiment(study, record.draw, testing::kFactory);
   CHECK(record.ivar_basis == basis_variance_indices(study, loop.y, basis.trajectory.y));
   CHECK(record.by("botelho") == nullptr);
   CHECK(record.chain().ivar.size() == 0);
@@ -129,9 +127,9 @@ TEST_CASE("runner: of an infeasible experiment nobody is asked", "[experiment_ru
   Study study = short_study();
   study.controller.cv_hard.lower *= 0.5;
   study.controller.cv_hard.upper *= 0.5;
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   REQUIRE(basis.trajectory.status == ControlStatus::ok);
-  ExperimentRunner runner(study, basis, {"botelho", "sse"}, kFactory);
+  ExperimentRunner runner(study, basis, {"botelho", "sse"}, testing::kFactory);
   std::int64_t index = 0;
   ExperimentRecord record = runner.run(index, StorePolicy::none);
   while (record.status != ExperimentStatus::infeasible)
@@ -148,11 +146,11 @@ TEST_CASE("runner: of an infeasible experiment nobody is asked", "[experiment_ru
 TEST_CASE("runner: the loops that are kept by their verdict are those that the first method judges wrongly",
           "[experiment_runner]") {
   const Study study = short_study();
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   int kept = 0, dropped = 0;
   for (const std::vector<std::string>& methods :
        {std::vector<std::string>{"botelho", "sse"}, std::vector<std::string>{"sse", "botelho"}}) {
-    ExperimentRunner runner(study, basis, methods, kFactory);
+    ExperimentRunner runner(study, basis, methods, testing::kFactory);
     for (std::int64_t index = 0; index < 12; ++index) {
       const ExperimentRecord record = runner.run(index, StorePolicy::flagged);
       CHECK(record.loop.has_value() == judge(study, record, record.assessments[0]).wrong());
@@ -165,17 +163,17 @@ TEST_CASE("runner: the loops that are kept by their verdict are those that the f
 TEST_CASE("a scenario has the diagnosis of the same experiment drawn at random, and one of every CV",
           "[experiment_runner]") {
   const Study study = short_study();
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   const std::int64_t index = first_of(study, ExperimentKind::mpm_ud);
   const ExperimentRecord drawn =
-      ExperimentRunner(study, basis, {"botelho"}, kFactory).run(index, StorePolicy::all);
+      ExperimentRunner(study, basis, {"botelho"}, testing::kFactory).run(index, StorePolicy::all);
   REQUIRE(drawn.status == ExperimentStatus::ok);
 
   Study named = study;
   named.scenarios.resize(static_cast<std::size_t>(index) + 1);
   named.scenarios.back().mismatches = drawn.draw.mismatches;
   named.scenarios.back().disturbances = drawn.draw.disturbances;
-  ExperimentRunner named_runner(named, basis, {"botelho"}, kFactory);
+  ExperimentRunner named_runner(named, basis, {"botelho"}, testing::kFactory);
   const Diagnosis of_random = drawn.chain(), of_named = named_runner.run(index, StorePolicy::all).chain();
   CHECK(of_named.ivar == of_random.ivar);
   CHECK(of_named.ivar_diag == of_random.ivar_diag);
@@ -195,7 +193,7 @@ TEST_CASE("a scenario has the diagnosis of the same experiment drawn at random, 
 
   named.scenarios.front() = {};  // healthy: nothing to find, and nothing is wrong with noise alone
   const ExperimentRecord healthy =
-      ExperimentRunner(named, basis, {"botelho"}, kFactory).run(0, StorePolicy::none);
+      ExperimentRunner(named, basis, {"botelho"}, testing::kFactory).run(0, StorePolicy::none);
   CHECK(healthy.draw.kind == ExperimentKind::healthy);
   CHECK_FALSE(judge(named, healthy, healthy.assessments[0]).wrong());
   CHECK(std::isnan(healthy.chain().alone.dominance_mpm));

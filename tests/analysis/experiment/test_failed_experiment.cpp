@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include <catch2/catch.hpp>
@@ -7,8 +6,10 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "plants/quadruple_tank.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 // What a plant cannot do is the outcome of an experiment, unless it is the study's plant.
 
@@ -16,8 +17,6 @@ namespace {
 
 using namespace mpm;
 using Catch::Contains;
-
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
 
 /// The tank, unless it is broken: then it rests nowhere, or its equations are not finite.
 class BrittleTank final : public OdeSystem {
@@ -44,9 +43,8 @@ class BrittleTank final : public OdeSystem {
   }
   Eigen::VectorXd steady_state(const Eigen::Ref<const Eigen::VectorXd>& u) const override {
     const bool operating_point = u == quadruple_tank_operating_point();
-    return rests_ || operating_point
-               ? tank_.steady_state(u)
-               : Eigen::VectorXd::Constant(state_count(), std::numeric_limits<double>::infinity());
+    return rests_ || operating_point ? tank_.steady_state(u)
+                                     : Eigen::VectorXd::Constant(state_count(), mpm::kInfinity);
   }
 
  private:
@@ -64,8 +62,8 @@ TEST_CASE("a plant without a steady state to begin at fails the experiment, and 
   const TransferFunction integrator(Eigen::VectorXd::Constant(1, -1.0), Eigen::Vector2d(1.0, 0.0));
   study.scenarios = {{"integrates", "", {{0, 1, MismatchParameter::channel, NAN, integrator}}, {}, {}},
                      {"none", "", {}, {}, {}}};
-  const BasisCase basis = run_basis_case(study, kFactory);
-  ExperimentRunner runner(study, basis, {"botelho"}, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  ExperimentRunner runner(study, basis, {"botelho"}, testing::kFactory);
   const ExperimentRecord failed = runner.run(0, StorePolicy::all);
   CHECK(failed.status == ExperimentStatus::failed);
   CHECK_THAT(failed.message,
@@ -86,10 +84,10 @@ TEST_CASE("a plant that cannot be integrated fails the experiment, not the basis
   study.nonlinear->model.make_system = [](const std::vector<ParameterChange>& changes) {
     return std::make_shared<const BrittleTank>(true, changes.empty());
   };
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   REQUIRE(basis.trajectory.status == ControlStatus::ok);
   const ExperimentRecord failed =
-      ExperimentRunner(study, basis, {"botelho"}, kFactory).run(0, StorePolicy::none);
+      ExperimentRunner(study, basis, {"botelho"}, testing::kFactory).run(0, StorePolicy::none);
   CHECK(failed.status == ExperimentStatus::failed);
   CHECK(failed.message == "the plant could not be integrated");
 }
@@ -99,8 +97,8 @@ TEST_CASE("a study whose own plant cannot rest where its loops begin is refused"
   study.nonlinear->model.make_system = [](const std::vector<ParameterChange>&) {
     return std::make_shared<const BrittleTank>(false, true);
   };
-  CHECK_THROWS_AS(run_basis_case(study, kFactory), InputError);
-  CHECK_THROWS_WITH(run_basis_case(study, kFactory),
+  CHECK_THROWS_AS(run_basis_case(study, testing::kFactory), InputError);
+  CHECK_THROWS_WITH(run_basis_case(study, testing::kFactory),
                     Contains("found the plant has no steady state to begin at") && Contains("not finite"));
 }
 
@@ -109,7 +107,7 @@ TEST_CASE("a basis case whose plant cannot be integrated is not healthy, and say
   study.nonlinear->model.make_system = [](const std::vector<ParameterChange>&) {
     return std::make_shared<const BrittleTank>(true, false);
   };
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   CHECK_FALSE(basis.healthy);
   CHECK(basis.explanation == "the nominal loop fails at sample 0: the plant could not be integrated");
 }

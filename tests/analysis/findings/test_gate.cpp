@@ -1,18 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/findings/gate.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/random_stream.hpp"
 
 namespace {
 
 using namespace mpm;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Finding measured(double value, double lower, double upper, std::int64_t count = 50) {
   Finding finding;
@@ -30,25 +27,25 @@ GateResult of_value(double minimum, double maximum, const Finding& value) {
 
 TEST_CASE("gate on a value: it passes or fails, and says by how much") {
   const Finding value = measured(0.7, 0.1, 0.9);  // the interval does not count
-  CHECK(of_value(0.6, kInfinity, value).outcome == GateOutcome::pass);
-  CHECK(of_value(0.6, kInfinity, value).margin == Approx(0.1));
-  CHECK(of_value(0.75, kInfinity, value).outcome == GateOutcome::fail);
-  CHECK(of_value(0.75, kInfinity, value).margin == Approx(-0.05));
-  CHECK(of_value(-kInfinity, 0.6, value).margin == Approx(-0.1));
+  CHECK(of_value(0.6, mpm::kInfinity, value).outcome == GateOutcome::pass);
+  CHECK(of_value(0.6, mpm::kInfinity, value).margin == Approx(0.1));
+  CHECK(of_value(0.75, mpm::kInfinity, value).outcome == GateOutcome::fail);
+  CHECK(of_value(0.75, mpm::kInfinity, value).margin == Approx(-0.05));
+  CHECK(of_value(-mpm::kInfinity, 0.6, value).margin == Approx(-0.1));
   CHECK(of_value(0.2, 0.8, value).margin == Approx(0.1));
   CHECK(of_value(0.7, 0.7, value).outcome == GateOutcome::pass);  // limits belong to what is allowed
 }
 
 TEST_CASE("gate with confidence: the whole interval within, the whole out, or neither") {
   const Finding value = measured(0.7, 0.6, 0.8);
-  CHECK(with_confidence(0.5, kInfinity, value).outcome == GateOutcome::pass);
-  CHECK(with_confidence(0.5, kInfinity, value).margin == Approx(0.1));
-  CHECK(with_confidence(0.65, kInfinity, value).outcome == GateOutcome::inconclusive);
-  CHECK(with_confidence(0.65, kInfinity, value).doubt == GateDoubt::straddles);
-  CHECK(with_confidence(0.65, kInfinity, value).margin == Approx(-0.05));
-  CHECK(with_confidence(0.9, kInfinity, value).outcome == GateOutcome::fail);
-  CHECK(with_confidence(0.9, kInfinity, value).margin == Approx(-0.1));
-  CHECK(with_confidence(-kInfinity, 0.5, value).outcome == GateOutcome::fail);
+  CHECK(with_confidence(0.5, mpm::kInfinity, value).outcome == GateOutcome::pass);
+  CHECK(with_confidence(0.5, mpm::kInfinity, value).margin == Approx(0.1));
+  CHECK(with_confidence(0.65, mpm::kInfinity, value).outcome == GateOutcome::inconclusive);
+  CHECK(with_confidence(0.65, mpm::kInfinity, value).doubt == GateDoubt::straddles);
+  CHECK(with_confidence(0.65, mpm::kInfinity, value).margin == Approx(-0.05));
+  CHECK(with_confidence(0.9, mpm::kInfinity, value).outcome == GateOutcome::fail);
+  CHECK(with_confidence(0.9, mpm::kInfinity, value).margin == Approx(-0.1));
+  CHECK(with_confidence(-mpm::kInfinity, 0.5, value).outcome == GateOutcome::fail);
   CHECK(with_confidence(0.5, 0.9, value).outcome == GateOutcome::pass);
   CHECK(with_confidence(0.65, 0.75, value).outcome == GateOutcome::inconclusive);  // wider than the limits
 }
@@ -56,7 +53,7 @@ TEST_CASE("gate with confidence: the whole interval within, the whole out, or ne
 TEST_CASE("gate: what is not there, is too little or has no interval shows nothing") {
   Gate gate{"x", 0.0, 1.0};
   CHECK(judge(gate, measured(kNaN, 0.0, 1.0, 0)).doubt == GateDoubt::no_value);
-  CHECK(judge(gate, measured(kInfinity, kNaN, kNaN)).doubt == GateDoubt::no_value);
+  CHECK(judge(gate, measured(mpm::kInfinity, kNaN, kNaN)).doubt == GateDoubt::no_value);
   gate.minimum_count = 51;
   CHECK(judge(gate, measured(0.5, 0.4, 0.6)).doubt == GateDoubt::too_few);
   gate.minimum_count = 50;

@@ -5,13 +5,12 @@
 #include "plants/error.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
+using mpm::kRankTolerance;
 using mpm::least_squares;
 using mpm::NestedLeastSquares;
 using mpm::testing::white_noise;
 
 namespace {
-
-constexpr double kRankTolerance = 1e-10;
 
 Eigen::MatrixXd columns(Eigen::Index rows, Eigen::Index count, std::uint64_t number) {
   return mpm::testing::white_inputs(count, rows, number).transpose();

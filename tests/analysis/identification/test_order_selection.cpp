@@ -1,10 +1,10 @@
 #include <cmath>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/order_selection.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::OrderCriterion;
@@ -22,7 +22,7 @@ TEST_CASE("%Fit is 100 for the measurement itself, 0 for its mean, and halves wi
   const Eigen::VectorXd half = 0.5 * (y.array() + y.mean());
   CHECK(percent_fit(y, half) == Approx(50.0));
   CHECK(std::isnan(percent_fit(Eigen::VectorXd::Ones(5), y.head(5))));
-  const double infinity = std::numeric_limits<double>::infinity();
+  const double infinity = mpm::kInfinity;
   CHECK(percent_fit(y, Eigen::VectorXd::Constant(200, infinity)) == -infinity);
   CHECK_THROWS_AS(percent_fit(y, y.head(5)), mpm::InputError);
 }

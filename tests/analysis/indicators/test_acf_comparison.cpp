@@ -1,12 +1,12 @@
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/indicators/acf_comparison.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/column_checks.hpp"
 #include "tests/analysis/signals.hpp"
 
@@ -228,7 +228,7 @@ TEST_CASE("a comparison refuses impossible input") {
   CHECK_THROWS_AS(compare_autocorrelations(a, a, a.head(39)), InputError);
   CHECK_THROWS_AS(compare_autocorrelations(a, a, a, VectorXd::Zero(39)), InputError);
   VectorXd bad = a;
-  bad[2] = std::numeric_limits<double>::quiet_NaN();
+  bad[2] = mpm::kNaN;
   CHECK_THROWS_AS(compare_autocorrelations(a, bad, a), InputError);
   const auto refused = [&a](auto change) {
     AcfComparisonOptions options;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -9,6 +8,7 @@
 
 #include "analysis/indicators/acf_oscillation.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 using Eigen::Index;
@@ -140,7 +140,7 @@ TEST_CASE("oscillation: a signal that stands still, and refused input") {
   CHECK(still.verdict == Oscillation::undetermined);
   CHECK(std::isnan(still.decay_ratio));
   CHECK(acf_oscillation(Autocorrelation{}).verdict == Oscillation::undetermined);
-  for (const double bad : {0.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double bad : {0.0, 1.0, mpm::kNaN}) {
     CHECK_THROWS_AS(acf_oscillation(autocorrelation(white_noise(50, 2), 10), bad), mpm::InputError);
   }
   CHECK(mpm::to_string(Oscillation::present) == "present");

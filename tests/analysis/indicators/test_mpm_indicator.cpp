@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
@@ -10,6 +9,7 @@
 #include "analysis/statistics/correlation.hpp"
 #include "analysis/statistics/moving_moments.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/plants/allocation_counter.hpp"
 
@@ -191,7 +191,7 @@ TEST_CASE("the indicator refuses impossible input") {
   mpm::MpmScanner scanner(50);
   CHECK_THROWS_AS(scanner.scan(a, b, {10, 20, 1}), InputError);
   VectorXd bad = b;
-  bad[3] = std::numeric_limits<double>::quiet_NaN();
+  bad[3] = mpm::kNaN;
   CHECK_THROWS_AS(mpm_indicator(a, bad, {10, 20, 1}), InputError);
   CHECK_THROWS_AS(mpm_indicator(bad, a, {10, 20, 1}), InputError);
 }
@@ -202,7 +202,7 @@ TEST_CASE("correlation: known values, gaps and limits") {
   const VectorXd y = (VectorXd(5) << 2.0, 1.0, 4.0, 3.0, 5.0).finished();
   CHECK(pearson_correlation(x, y, 2, 0.0) == Approx(0.8).epsilon(1e-15));  // Spearman's 1 - 6*4/(5*24)
   CHECK(pearson_correlation(x, -3.0 * x, 2, 0.0) == -1.0);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = mpm::kNaN;
   const VectorXd with_gaps = (VectorXd(7) << 2.0, nan, 1.0, 4.0, 3.0, 100.0, 5.0).finished();
   const VectorXd other = (VectorXd(7) << 1.0, 9.0, 2.0, 3.0, 4.0, nan, 5.0).finished();
   CHECK(pearson_correlation(other, with_gaps, 5, 0.0) == Approx(0.8).epsilon(1e-15));

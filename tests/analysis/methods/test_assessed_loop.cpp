@@ -9,6 +9,7 @@
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 // What a method of assessment gets to see of a loop, and when it is asked at all.
 
@@ -16,8 +17,6 @@ namespace mpm {
 namespace {
 
 using Catch::Contains;
-
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
 
 /// The range MPC of chapter 6 without noise.
 Study quiet_study() {
@@ -28,7 +27,7 @@ Study quiet_study() {
 }
 
 AssessedLoop healthy_loop(const Study& study, const OperatingPoint& point) {
-  return assessed_loop(study, point, simulate_experiment(study, {}, kFactory));
+  return assessed_loop(study, point, simulate_experiment(study, {}, testing::kFactory));
 }
 
 /// A loop of two CVs and one MV, as awkward as a test wants it.
@@ -67,7 +66,7 @@ TEST_CASE("a CV in a range has the steady state of the optimizer as setpoint: th
   Study study = quiet_study();
   study.assessment.setpoints = AssessmentSetpoints::optimizer;
   study.simulation.steps.clear();
-  const OperatingPoint point = operating_point(study, kFactory);
+  const OperatingPoint point = operating_point(study, testing::kFactory);
   const AssessedLoop loop = healthy_loop(study, point);
   const Limits& soft = study.controller.cv_soft;
   REQUIRE(point.active.size() == 3);  // y1, y2 and y7
@@ -84,7 +83,7 @@ TEST_CASE("without noise the optimizer keeps all setpoints within the soft limit
           "[assessed_loop]") {
   Study study = quiet_study();
   study.assessment.setpoints = AssessmentSetpoints::optimizer;
-  const AssessedLoop loop = healthy_loop(study, operating_point(study, kFactory));
+  const AssessedLoop loop = healthy_loop(study, operating_point(study, testing::kFactory));
   const Limits& soft = study.controller.cv_soft;
   for (Eigen::Index k = 0; k < loop.samples(); ++k) {
     CHECK((loop.y_set.col(k) - soft.upper).maxCoeff() < 1e-6);
@@ -98,7 +97,7 @@ TEST_CASE("without noise the optimizer keeps all setpoints within the soft limit
 TEST_CASE("a CV in a range has no setpoint unless the study wants one", "[assessed_loop]") {
   const Study study = quiet_study();
   REQUIRE(study.assessment.setpoints == AssessmentSetpoints::controller);
-  const AssessedLoop loop = healthy_loop(study, operating_point(study, kFactory));
+  const AssessedLoop loop = healthy_loop(study, operating_point(study, testing::kFactory));
   CHECK(loop.y_set.array().isNaN().all());
   CHECK(loop.setpoint_cvs().empty());
   // The model is the plant, and there is no noise: the simulated output is the measured one.
@@ -108,8 +107,8 @@ TEST_CASE("a CV in a range has no setpoint unless the study wants one", "[assess
 TEST_CASE("a CV with a setpoint has that one, a CV in a range beside it has none", "[assessed_loop]") {
   Study study = find_study("wood-berry-mixed");
   study.simulation.samples = 60;
-  const OperatingPoint point = operating_point(study, kFactory);
-  const Trajectory record = simulate_experiment(study, {}, kFactory);
+  const OperatingPoint point = operating_point(study, testing::kFactory);
+  const Trajectory record = simulate_experiment(study, {}, testing::kFactory);
   const AssessedLoop loop = assessed_loop(study, point, record);
   int with = 0, without = 0;
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
@@ -125,7 +124,7 @@ TEST_CASE("a CV with a setpoint has that one, a CV in a range beside it has none
 TEST_CASE("what a method needs and the loop does not have is said in one sentence", "[assessed_loop]") {
   const Study study = quiet_study();
   const BasisCase basis;
-  const AssessmentContext context{study, basis, kFactory, {}};
+  const AssessmentContext context{study, basis, testing::kFactory, {}};
   AssessedLoop loop = made_up_loop();
   const auto unmet = [&](const AssessmentRequirements& needs) {
     return unmet_requirement(needs, context, loop).value_or("met");
@@ -144,14 +143,14 @@ TEST_CASE("what a method needs and the loop does not have is said in one sentenc
   CHECK(unmet({.moving_setpoints = true}) == "met");
   loop.u(0, 2) = 1e-9;
   CHECK(unmet({.moving_mvs = true}) == "met");
-  const AssessmentContext with_benchmark{study, basis, kFactory, loop};
+  const AssessmentContext with_benchmark{study, basis, testing::kFactory, loop};
   CHECK_FALSE(unmet_requirement({.benchmark = true}, with_benchmark, loop));
 }
 
 TEST_CASE("a method is made for the first loop to which it applies, and once", "[assessed_loop]") {
   const Study study = quiet_study();
   const BasisCase basis;
-  const AssessmentContext context{study, basis, kFactory, {}};
+  const AssessmentContext context{study, basis, testing::kFactory, {}};
   Tally tally;
   AssessmentMethodInfo info;
   info.requirements.moving_mvs = true;
@@ -175,8 +174,8 @@ TEST_CASE("a method is made for the first loop to which it applies, and once", "
 TEST_CASE("a loop that a method refuses has failed, with what it refused, and the next one is assessed",
           "[assessed_loop]") {
   const Study study = find_study("chapter6");
-  const BasisCase basis = run_basis_case(study, kFactory);
-  const AssessmentContext context = assessment_context(study, basis, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   const AssessedLoop& healthy = *context.benchmark;
   AssessedLoop odd = healthy;
   odd.y(2, 7) = std::nan("");
@@ -196,8 +195,8 @@ TEST_CASE("a loop that a method refuses has failed, with what it refused, and th
 TEST_CASE("a stored loop that did not reach its end gives no verdict, whatever the method",
           "[assessed_loop]") {
   const Study study = find_study("chapter6");
-  const BasisCase basis = run_basis_case(study, kFactory);
-  ExperimentRunner runner(study, basis, {"botelho", "sse"}, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  ExperimentRunner runner(study, basis, {"botelho", "sse"}, testing::kFactory);
   ExperimentRecord record = runner.run(0, StorePolicy::all);
   record.loop->trajectory.status = ControlStatus::infeasible;
   const std::vector<AssessmentRecord> assessments = runner.assess(record);
@@ -211,8 +210,8 @@ TEST_CASE("a stored loop that did not reach its end gives no verdict, whatever t
 
 TEST_CASE("a panel has its methods in the order in which they are named, and no others", "[assessed_loop]") {
   const Study study = find_study("chapter6");
-  const BasisCase basis = run_basis_case(study, kFactory);
-  MethodPanel panel(study, basis, {"sse", "botelho"}, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  MethodPanel panel(study, basis, {"sse", "botelho"}, testing::kFactory);
   REQUIRE(panel.forms().size() == 2);
   const AssessedLoop loop = assessed_loop(study, basis.point, basis.trajectory);
   const std::vector<AssessmentRecord> said = panel.assess(loop);
@@ -224,7 +223,7 @@ TEST_CASE("a panel has its methods in the order in which they are named, and no 
   }
   CHECK(said[0].form->method().name == "sse");
   CHECK_FALSE(panel.assess_by("sun", loop));
-  CHECK_THROWS_WITH(MethodPanel(study, basis, {"nobody"}, kFactory),
+  CHECK_THROWS_WITH(MethodPanel(study, basis, {"nobody"}, testing::kFactory),
                     Contains("found 'nobody'; allowed: botelho"));
 }
 

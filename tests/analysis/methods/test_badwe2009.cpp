@@ -6,6 +6,7 @@
 #include "analysis/methods/badwe2009.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
@@ -20,8 +21,6 @@ using mpm::MvUse;
 using mpm::NoiseFilter;
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The prediction error that a wrong gain and lag make of an input.
 Eigen::RowVectorXd effect(const Eigen::RowVectorXd& u) {
@@ -43,7 +42,8 @@ Badwe2009Record two_by_two(double mismatch, std::uint64_t number, Eigen::Index s
         0.1 * mpm::testing::settled_autoregression(samples, 0.7, 10 * number + static_cast<std::uint64_t>(cv))
                   .transpose();
   record.y.row(0) -= mismatch * effect(record.u.row(0));
-  record.limits = {Eigen::VectorXd::Constant(2, -kInfinity), Eigen::VectorXd::Constant(2, kInfinity)};
+  record.limits = {Eigen::VectorXd::Constant(2, -mpm::kInfinity),
+                   Eigen::VectorXd::Constant(2, mpm::kInfinity)};
   return record;
 }
 
@@ -221,7 +221,7 @@ TEST_CASE("Badwe 2009 refuses what cannot be meant") {
   record.limits.lower.resize(1);
   CHECK_THROWS_WITH(assess_badwe2009(record), Catch::Contains("1 lower and 2 upper"));
   record = good;
-  record.limits.lower(1) = kInfinity;
+  record.limits.lower(1) = mpm::kInfinity;
   record.limits.upper(1) = 0.0;
   CHECK_THROWS_WITH(assess_badwe2009(record), Catch::Contains("limits of MV 1"));
   CHECK_THROWS_AS(assess_badwe2009({}), mpm::InputError);

@@ -1,4 +1,5 @@
 #include <string>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -6,24 +7,24 @@
 #include "scenarios/study_file.hpp"
 #include "scenarios/study_library.hpp"
 #include "solvers/qp_solver.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {
 namespace {
-
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
 
 /// The loops of a study, assessed by the method.
 class Bench {
  public:
   explicit Bench(Study study)
       : study_(std::move(study)),
-        basis_(run_basis_case(study_, kFactory)),
-        context_(assessment_context(study_, basis_, kFactory)),
+        basis_(run_basis_case(study_, testing::kFactory)),
+        context_(assessment_context(study_, basis_, testing::kFactory)),
         assessor_(assessment_method("badwe2009"), context_) {}
 
   Assessment basis() { return assessor_.assess(loop_of(basis_.trajectory)); }
   Assessment scenario(std::int64_t index) {
-    return assessor_.assess(loop_of(simulate_experiment(study_, draw_experiment(study_, index), kFactory)));
+    return assessor_.assess(
+        loop_of(simulate_experiment(study_, draw_experiment(study_, index), testing::kFactory)));
   }
   AssessedLoop loop_of(const Trajectory& loop) const { return assessed_loop(study_, basis_.point, loop); }
   Assessment assess(const AssessedLoop& loop) { return assessor_.assess(loop); }

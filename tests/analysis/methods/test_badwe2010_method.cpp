@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -9,13 +8,13 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {
 namespace {
-
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
 
 /// The linear tank of 3.3.2 for 260 samples, in which the setpoints of h1 to h4 move.
 Study short_tank() {
@@ -28,9 +27,9 @@ Study short_tank() {
 AssessedLoop loop_of(const Study& study, const BasisCase& basis, const std::string& scenario) {
   for (std::size_t i = 0; i < study.scenarios.size(); ++i)
     if (study.scenarios[i].name == scenario)
-      return assessed_loop(
-          study, basis.point,
-          simulate_experiment(study, draw_experiment(study, static_cast<std::int64_t>(i)), kFactory));
+      return assessed_loop(study, basis.point,
+                           simulate_experiment(study, draw_experiment(study, static_cast<std::int64_t>(i)),
+                                               testing::kFactory));
   throw InputError("scenario", scenario, "one of the study");
 }
 
@@ -42,8 +41,8 @@ Assessment assess(const AssessmentContext& context, const AssessedLoop& loop) {
 
 TEST_CASE("badwe2010: a CV is judged by Ivar against its designed output, the loop by its worst CV") {
   const Study study = short_tank();
-  const BasisCase basis = run_basis_case(study, kFactory);
-  const AssessmentContext context = assessment_context(study, basis, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   const AssessedLoop loop = loop_of(study, basis, "MPM1");
   const Assessment assessment = assess(context, loop);
   REQUIRE(assessment.status == AssessmentStatus::ok);
@@ -77,17 +76,17 @@ TEST_CASE("badwe2010: a CV is judged by Ivar against its designed output, the lo
 
 TEST_CASE("badwe2010: a CV without a setpoint gets no verdict, and a loop without any is not for it") {
   const Study study = short_tank();
-  const BasisCase basis = run_basis_case(study, kFactory);
-  const AssessmentContext context = assessment_context(study, basis, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   AssessedLoop loop = loop_of(study, basis, "MPM1");
-  loop.y_set.row(2).setConstant(std::numeric_limits<double>::quiet_NaN());
+  loop.y_set.row(2).setConstant(kNaN);
   const Assessment mixed = assess(context, loop);
   REQUIRE(mixed.status == AssessmentStatus::ok);
   CHECK_FALSE(mixed.cvs[2].flagged);
   CHECK(std::isnan(mixed.number("ivar", 2)));
   CHECK(mixed.cvs[3].flagged);
 
-  loop.y_set.setConstant(std::numeric_limits<double>::quiet_NaN());
+  loop.y_set.setConstant(kNaN);
   const Assessment ranges = assess(context, loop);
   CHECK(ranges.status == AssessmentStatus::not_applicable);
   CHECK_THAT(ranges.reason, Catch::Contains("every CV in a range"));
@@ -101,8 +100,8 @@ TEST_CASE("badwe2010: the options of the study are those of the models") {
   study.assessment.badwe2010.smallest_order = study.assessment.badwe2010.largest_order = 2;
   study.assessment.badwe2010.max_iterations = 1;
   study.assessment.badwe2010.criterion = DesignedOrderCriterion::bic;
-  const BasisCase basis = run_basis_case(study, kFactory);
-  const AssessmentContext context = assessment_context(study, basis, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   const AssessedLoop loop = loop_of(study, basis, "MPM2");
   const Assessment assessment = assess(context, loop);
   CHECK(assessment.number("order_sd", 0) == 2.0);

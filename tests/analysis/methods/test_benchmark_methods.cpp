@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -7,6 +6,7 @@
 
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/analysis/signals.hpp"
 
@@ -20,7 +20,7 @@ using mpm::Study;
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = mpm::kNaN;
 
 /// White control errors of 3 CVs about setpoints that step, and simulation errors of a tenth of that size.
 AssessedLoop made_up_loop(Eigen::Index samples, std::uint64_t number) {

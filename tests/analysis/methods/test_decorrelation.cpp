@@ -18,7 +18,7 @@ using mpm::NoiseFilter;
 
 namespace {
 
-DecorrelationOptions with_model(DecorrelationModel model) {
+DecorrelationOptions decorrelation_with(DecorrelationModel model) {
   DecorrelationOptions options;
   options.model = model;
   return options;
@@ -44,7 +44,7 @@ TEST_CASE("decorrelation by regression: the residuals are those of the normal eq
   const Eigen::MatrixXd u = mpm::testing::random_steps(2, 300, 5);
   Eigen::MatrixXd x = mpm::testing::white_inputs(3, 300, 6);
   x.row(0) += 3.0 * u.row(0);
-  DecorrelationOptions options = with_model(DecorrelationModel::fir);
+  DecorrelationOptions options = decorrelation_with(DecorrelationModel::fir);
   options.fir_length = 6;
   const Decorrelation result = decorrelate(x, u, 1, options);
   CHECK(result.parameters == 12);
@@ -65,7 +65,7 @@ TEST_CASE("decorrelation: what inputs make a signal do is taken away, and the re
   Eigen::MatrixXd x(2, 900);
   x << (caused + noise).transpose(), noise.transpose();
   for (const DecorrelationModel kind : {DecorrelationModel::output_error, DecorrelationModel::fir}) {
-    DecorrelationOptions options = with_model(kind);
+    DecorrelationOptions options = decorrelation_with(kind);
     options.fir_pole = 0.6;
     const Decorrelation result = decorrelate(x, u, 1, options);
     CAPTURE(static_cast<int>(kind));
@@ -82,7 +82,7 @@ TEST_CASE("decorrelation: what inputs make a signal do is taken away, and the re
 TEST_CASE("decorrelation: without inputs the deviations from the means are left") {
   const Eigen::MatrixXd x = mpm::testing::white_inputs(2, 50, 9).array() + 4.0;
   for (const DecorrelationModel kind : {DecorrelationModel::output_error, DecorrelationModel::fir}) {
-    const Decorrelation result = decorrelate(x, Eigen::MatrixXd(0, 50), 1, with_model(kind));
+    const Decorrelation result = decorrelate(x, Eigen::MatrixXd(0, 50), 1, decorrelation_with(kind));
     CHECK(result.parameters == 0);
     CHECK((result.residuals - (x.colwise() - x.rowwise().mean())).cwiseAbs().maxCoeff() < 1e-15);
   }
@@ -131,7 +131,7 @@ TEST_CASE("externally driven: what setpoints do to an MV stays, what disturbance
   const Eigen::RowVectorXd driven =
       simulate(mpm::testing::output_error_sample(), r.colwise() - r.col(0)).transpose();
   const Eigen::RowVectorXd disturbed = driven + mpm::testing::autoregression(800, 0.9, 14).transpose();
-  DecorrelationOptions options = with_model(DecorrelationModel::fir);
+  DecorrelationOptions options = decorrelation_with(DecorrelationModel::fir);
   options.fir_pole = 0.6;
   const Eigen::MatrixXd u = externally_driven(disturbed, external, options);
   CHECK((u - driven).squaredNorm() < 0.2 * (disturbed - driven).squaredNorm());

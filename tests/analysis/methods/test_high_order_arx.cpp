@@ -1,10 +1,12 @@
 #include <cmath>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/arx.hpp"
 #include "analysis/methods/high_order_arx.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::ArxOutputs;
@@ -100,7 +102,7 @@ TEST_CASE("high-order ARX: AIC, BIC and validation choose what separate regressi
     const HighOrderArx fit = identify_high_order_arx(y, r, options);
     CHECK(fit.first_sample == 8);
     for (Eigen::Index cv = 0; cv < 2; ++cv) {
-      double lowest = std::numeric_limits<double>::infinity();
+      double lowest = mpm::kInfinity;
       Eigen::Index best = 0;
       for (const Eigen::Index order : candidates) {
         const double p = 4.0 * static_cast<double>(order) + 1.0;

@@ -1,11 +1,11 @@
 #include <cmath>
-#include <limits>
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/subspace_angle.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 using mpm::subspace_cosine_limit;
@@ -46,7 +46,7 @@ TEST_CASE("limit of a subspace cosine: 45 degrees for endless records, more for 
 TEST_CASE("subspace angles refuse what cannot be meant") {
   CHECK_THROWS_WITH(subspace_cosines(Eigen::MatrixXd::Ones(2, 3)),
                     Catch::Contains("found 3") && Catch::Contains("2 or fewer"));
-  Eigen::Vector2d bad(1.0, std::numeric_limits<double>::quiet_NaN());
+  Eigen::Vector2d bad(1.0, mpm::kNaN);
   CHECK_THROWS_WITH(subspace_cosines(bad), Catch::Contains("finite values only"));
   CHECK_THROWS_WITH(subspace_cosine_limit(0, 5, 0.95), Catch::Contains("found 0 and 5"));
   CHECK_THROWS_AS(subspace_cosine_limit(5, 5, 0.0), mpm::InputError);

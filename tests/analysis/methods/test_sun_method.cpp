@@ -8,11 +8,10 @@
 #include "scenarios/study_file.hpp"
 #include "scenarios/study_library.hpp"
 #include "solvers/qp_solver.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {
 namespace {
-
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
 
 /// The Shell fractionator with setpoints, and more options.
 Study shell(const std::string& options = "") {
@@ -21,7 +20,7 @@ Study shell(const std::string& options = "") {
 
 AssessedLoop loop_of(const Study& study, const BasisCase& basis, int scenario) {
   return assessed_loop(study, basis.point,
-                       simulate_experiment(study, draw_experiment(study, scenario), kFactory));
+                       simulate_experiment(study, draw_experiment(study, scenario), testing::kFactory));
 }
 
 Assessment assess(const AssessmentContext& context, const AssessedLoop& loop) {
@@ -29,7 +28,7 @@ Assessment assess(const AssessmentContext& context, const AssessedLoop& loop) {
 }
 
 Assessment assess(const Study& study, const BasisCase& basis, const AssessedLoop& loop) {
-  const AssessmentContext context = assessment_context(study, basis, kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   return assess(context, loop);
 }
 
@@ -39,7 +38,7 @@ constexpr int kScen1 = 1;  // time constant of y1-u1
 
 TEST_CASE("Sun: a mismatch in y1 flags the loop and y1 alone, the nominal loop is not flagged") {
   const Study study = shell();
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   const Assessment nominal = assess(study, basis, loop_of(study, basis, 0));
   CHECK_FALSE(nominal.flagged);
   const AssessedLoop loop = loop_of(study, basis, kScen1);
@@ -66,7 +65,7 @@ TEST_CASE("Sun: the options of the study file reach the method") {
   const Study study = shell(
       "[assessment.sun]\ntolerance = 0.05\nindex = \"mqi\"\norders = [5, 12]\nsetpoint_order = 8\n"
       "criterion = \"bic\"\nown_outputs = true\ncorrect_for_parameters = true\nnoise = \"white\"\n");
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   const AssessedLoop loop = loop_of(study, basis, kScen1);
   const Assessment found = assess(study, basis, loop);
   ModelQualityOptions options;
@@ -89,9 +88,9 @@ TEST_CASE("Sun: the options of the study file reach the method") {
 
 TEST_CASE("Sun: a benchmark model needs a benchmark, and measured disturbances widen the regression") {
   const Study study = shell("[assessment.sun]\nnoise = \"benchmark\"\nmeasured_disturbances = true\n");
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   const AssessedLoop loop = loop_of(study, basis, kScen1);
-  AssessmentContext context = assessment_context(study, basis, kFactory);
+  AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   const Assessment found = assess(context, loop);
   CHECK(found.status == AssessmentStatus::ok);
   // The output errors of the basis case are its measurement noise, which is white.
@@ -109,7 +108,7 @@ TEST_CASE("Sun: a benchmark model needs a benchmark, and measured disturbances w
 
 TEST_CASE("Sun: nothing is said of a CV without a setpoint, and nothing at all without any") {
   const Study study = shell();
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   AssessedLoop loop = loop_of(study, basis, kScen1);
   loop.y_set.row(0).setConstant(std::nan(""));
   const Assessment found = assess(study, basis, loop);
@@ -122,7 +121,7 @@ TEST_CASE("Sun: nothing is said of a CV without a setpoint, and nothing at all w
 
 TEST_CASE("Sun: a record too short for the orders is not assessed, and it says how long it must be") {
   const Study study = shell("[assessment.sun]\norders = [100]\n");
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   AssessedLoop loop = loop_of(study, basis, kScen1);
   CHECK(assess(study, basis, loop).status == AssessmentStatus::ok);
   const auto shortened = [](Eigen::MatrixXd& signal) { signal = Eigen::MatrixXd(signal.leftCols(600)); };

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -9,6 +8,7 @@
 
 #include "analysis/methods/variability_comparison.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 using mpm::compare_variability;
@@ -230,7 +230,7 @@ TEST_CASE("variability refuses what cannot be meant") {
   CHECK_THROWS_WITH(compare_variability(errors, errors.topRows(1)), Catch::Contains("found 1"));
   CHECK_THROWS_WITH(compare_variability(errors.leftCols(1), errors), Catch::Contains("benchmark"));
   Eigen::MatrixXd bad = errors;
-  bad(1, 7) = std::numeric_limits<double>::quiet_NaN();
+  bad(1, 7) = mpm::kNaN;
   CHECK_THROWS_WITH(compare_variability(errors, bad),
                     Catch::Contains("monitored period, CV 1") && Catch::Contains("sample 7"));
   CHECK_THROWS_AS(compare_variability(errors, errors, {.confidence = 1.0}), mpm::InputError);

@@ -1,11 +1,11 @@
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/reproduction/seeded_reproduction.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/study_library.hpp"
 
 namespace mpm {
@@ -26,7 +26,7 @@ ReproducedTable run_of(double ours) {
 
 TEST_CASE("over seeds: the share of all seeds that agree, the median of those with a number",
           "[reproduction]") {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = kNaN;
   const SeededTable table = over_seeds({run_of(9.0), run_of(0.5), run_of(nan), run_of(2.0), run_of(3.0)});
   CHECK(table.judged == 1);
   CHECK(table.agreeing == std::vector<int>{1, 0, 0, 1, 1});
@@ -41,7 +41,7 @@ TEST_CASE("over seeds: the share of all seeds that agree, the median of those wi
 }
 
 TEST_CASE("over seeds: without a number in any seed there is no median, and no agreement", "[reproduction]") {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = kNaN;
   const SeededTable table = over_seeds({run_of(nan), run_of(nan)});
   CHECK(std::isnan(table.rows[0].cells[0].median));
   CHECK(table.rows[0].cells[0].share == 0.0);

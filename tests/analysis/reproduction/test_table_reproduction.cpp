@@ -12,6 +12,7 @@
 #include "analysis/reproduction/table_reproduction.hpp"
 #include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {
 namespace {
@@ -21,8 +22,6 @@ using Verdicts = std::vector<std::optional<std::string>>;
 
 const std::optional<double> kNone;
 const std::optional<std::string> kNoVerdict;
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
-
 VerdictRule rule_of(RuleKind kind, double lower = 0.0, double upper = 0.0) {
   return {{"ivar"}, kind, lower, upper, "yes", "no", "here"};
 }
@@ -73,13 +72,13 @@ TEST_CASE("the numbers of a table are those of the experiments of a run", "[repr
   table.rules = {rule_of(RuleKind::outside, 0.8, 1.2)};
   table.rows = {{"1", "", "Scen1", {{"y1", "ivar", 4.54}, {"y1", "ivar_diag", {}}, {"y1", "ivar_basis", {}}}},
                 {"basis", "", "", {{"y2", "ivar", 9.0}, {"y2", "ivar_diag", {}}, {"y2", "ivar_basis", {}}}}};
-  BasisCases basis_cases(kFactory);
-  const ReproducedTable reproduced = reproduce(table, kFactory, basis_cases);
+  BasisCases basis_cases(testing::kFactory);
+  const ReproducedTable reproduced = reproduce(table, testing::kFactory, basis_cases);
   REQUIRE(reproduced.rows.size() == 2);
 
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   const ExperimentRecord record =
-      ExperimentRunner(study, basis, {"botelho"}, kFactory).run(1, StorePolicy::none);
+      ExperimentRunner(study, basis, {"botelho"}, testing::kFactory).run(1, StorePolicy::none);
   const Diagnosis diagnosis = record.chain();
   const std::vector<ReproducedCell>& cells = reproduced.rows[0].cells;
   CHECK(cells[0].ours == diagnosis.ivar(0));  // the same bits
@@ -104,8 +103,8 @@ TEST_CASE("a loop that stops has a remark and no numbers", "[reproduction]") {
   table.heads = {"ivar"};
   table.rules = {rule_of(RuleKind::outside, 0.8, 1.2)};
   table.rows = {{"1", "", "Scen1", {{"y1", "ivar", 4.54}}}};
-  BasisCases basis_cases(kFactory);
-  const ReproducedRow row = reproduce(table, kFactory, basis_cases).rows.at(0);
+  BasisCases basis_cases(testing::kFactory);
+  const ReproducedRow row = reproduce(table, testing::kFactory, basis_cases).rows.at(0);
   CHECK_FALSE(row.remark.empty());
   CHECK(std::isnan(row.cells[0].ours));
   CHECK(row.cells[0].agrees() == false);
@@ -113,8 +112,8 @@ TEST_CASE("a loop that stops has a remark and no numbers", "[reproduction]") {
 
 TEST_CASE("a quantity that there is not is refused by name", "[reproduction]") {
   const Study study = find_study("chapter4-shell");
-  const BasisCase basis = run_basis_case(study, kFactory);
-  ScenarioQuantities quantities(study, basis, basis_draw(), kFactory, std::nullopt);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  ScenarioQuantities quantities(study, basis, basis_draw(), testing::kFactory, std::nullopt);
   CHECK_THROWS_WITH(quantities.value("ivarr", 0), Catch::Contains("quantity: found 'ivarr'"));
   for (const TableQuantity& quantity : ScenarioQuantities::known())
     CHECK_NOTHROW(quantities.value(quantity.name, 0, 0));

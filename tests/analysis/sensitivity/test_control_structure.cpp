@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <Eigen/LU>
@@ -7,14 +6,14 @@
 
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 // Which constraints a controller works at, and y0 by the S0 of each (assumptions A, B and C of 3.3.3).
 
 namespace mpm {
 namespace {
-
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
 
 Study setpoint_study() {
   return find_study("chapter4-shell");
@@ -29,7 +28,7 @@ struct MadeUpLoop {
   MadeUpLoop() {
     study.sensitivity.samples = 30;
     study.sensitivity.structure = SensitivityStructure::by_instant;
-    point = operating_point(study, kFactory);
+    point = operating_point(study, testing::kFactory);
     loop.y = Eigen::MatrixXd::NullaryExpr(3, 60, [](Eigen::Index i, Eigen::Index k) {
       return std::sin(0.3 * static_cast<double>(k) + static_cast<double>(i));
     });
@@ -44,7 +43,7 @@ struct MadeUpLoop {
     OperatingPoint at = point;
     if (saturated)
       at.fixed_mvs = {0};
-    return nominal_sensitivity(study, at, kFactory);
+    return nominal_sensitivity(study, at, testing::kFactory);
   }
 
   static bool saturated(Eigen::Index k) { return k >= 20 && k < 35; }
@@ -92,7 +91,7 @@ TEST_CASE("without targets a CV in a range is active at and beyond its limits, o
   CHECK(structures[3].active == std::vector{kSetpoint0, kSetpoint1, upper});
   CHECK(structures[4].active == std::vector{kSetpoint0, kSetpoint1, upper});
 
-  study.controller.cv_soft.lower(2) = -std::numeric_limits<double>::infinity();  // a range open to one side
+  study.controller.cv_soft.lower(2) = -kInfinity;  // a range open to one side
   const auto open = control_structures(study, made_up.loop, made_up.loop.y);
   CHECK(open[0].active == std::vector{kSetpoint0, kSetpoint1});
   CHECK(open[4].active == std::vector{kSetpoint0, kSetpoint1, upper});
@@ -135,13 +134,13 @@ TEST_CASE("with targets the steady state that the optimizer aims at decides, not
 TEST_CASE("assumption C is assumption A, bit for bit, when nothing saturates") {
   Study study = setpoint_study();
   study.controller.mv_hard = Limits::none(3);
-  const OperatingPoint point = operating_point(study, kFactory);
-  const NominalSensitivity t0 = nominal_sensitivity(study, point, kFactory);
-  const Trajectory loop = simulate_experiment(study, draw_experiment(study, 1), kFactory);
-  const NominalOutputs a = NominalEstimator(study, point, t0, kFactory).estimate(loop);
+  const OperatingPoint point = operating_point(study, testing::kFactory);
+  const NominalSensitivity t0 = nominal_sensitivity(study, point, testing::kFactory);
+  const Trajectory loop = simulate_experiment(study, draw_experiment(study, 1), testing::kFactory);
+  const NominalOutputs a = NominalEstimator(study, point, t0, testing::kFactory).estimate(loop);
   study.sensitivity.structure = SensitivityStructure::by_instant;
   study.sensitivity.switching = GENERATE(SensitivitySwitching::output, SensitivitySwitching::input);
-  const NominalOutputs c = NominalEstimator(study, point, t0, kFactory).estimate(loop);
+  const NominalOutputs c = NominalEstimator(study, point, t0, testing::kFactory).estimate(loop);
   CHECK(c.y_sim == a.y_sim);
   if (study.sensitivity.switching == SensitivitySwitching::output) {
     CHECK(c.y0 == a.y0);
@@ -159,7 +158,7 @@ TEST_CASE("switched output and switched input are the sums of their definitions"
   made_up.study.sensitivity.switching = GENERATE(SensitivitySwitching::output, SensitivitySwitching::input);
   const bool by_output = made_up.study.sensitivity.switching == SensitivitySwitching::output;
   const NominalOutputs nominal =
-      NominalEstimator(made_up.study, made_up.point, with, kFactory).estimate(made_up.loop);
+      NominalEstimator(made_up.study, made_up.point, with, testing::kFactory).estimate(made_up.loop);
   const Eigen::MatrixXd e = made_up.loop.y - nominal.y_sim;
   for (Eigen::Index k = 0; k < 60; ++k)
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -184,16 +183,16 @@ TEST_CASE("assumption B: T0 with fixed_mvs is the setpoint response of the loop 
   study.sensitivity.fixed_mvs = {0};
   const int N = study.simulation.samples = study.sensitivity.samples = 60;
   study.simulation.setpoint_steps.clear();
-  const OperatingPoint point = operating_point(study, kFactory);
+  const OperatingPoint point = operating_point(study, testing::kFactory);
   CHECK(point.fixed_mvs == std::vector<Eigen::Index>{0});
-  const NominalSensitivity t0 = nominal_sensitivity(study, point, kFactory);
+  const NominalSensitivity t0 = nominal_sensitivity(study, point, testing::kFactory);
 
   study.controller.mv_hard = Limits::none(3);
   study.controller.mv_hard.lower(0) = study.controller.mv_hard.upper(0) = 0.0;
   LoopSignals signals{Eigen::MatrixXd::Zero(0, N), Eigen::MatrixXd::Zero(3, N), Eigen::MatrixXd::Zero(3, N),
                       Eigen::MatrixXd::Zero(3, N)};
   signals.y_set.row(1).tail(N - 1).setConstant(0.1);
-  const Trajectory loop = run_closed_loop(study, study.plant.G, signals, kFactory);
+  const Trajectory loop = run_closed_loop(study, study.plant.G, signals, testing::kFactory);
   REQUIRE(loop.status == ControlStatus::ok);
   CHECK(loop.u.row(0).isZero(1e-9));
   // Sample 1 sees the step first; the same QPs up to 1e-10, over a step of 0.1.

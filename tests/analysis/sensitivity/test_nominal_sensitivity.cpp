@@ -9,17 +9,16 @@
 #include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/analysis/sensitivity/unsettled.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 namespace {
 
 using namespace mpm;
 
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
-
 TEST_CASE("operating point of P1: y1, y2 at the lower limit, y7 at the upper one, all MVs free") {
   Study study = find_study("chapter6");
   study.sensitivity.active_cvs.clear();  // found, not told
-  const OperatingPoint point = operating_point(study, kFactory);
+  const OperatingPoint point = operating_point(study, testing::kFactory);
   REQUIRE(point.active.size() == 3);
   CHECK(point.active[0] == ActiveConstraint{0, ConstraintKind::lower_limit});
   CHECK(point.active[1] == ActiveConstraint{1, ConstraintKind::lower_limit});
@@ -32,8 +31,8 @@ TEST_CASE("T0 of P1 has the static gains that section 6.3 demands, in both direc
   for (const StepDirection direction :
        {StepDirection::into_range, StepDirection::out_of_range, StepDirection::mean}) {
     study.sensitivity.step_direction = direction;
-    const OperatingPoint point = operating_point(study, kFactory);
-    const NominalSensitivity t0 = nominal_sensitivity(study, point, kFactory);
+    const OperatingPoint point = operating_point(study, testing::kFactory);
+    const NominalSensitivity t0 = nominal_sensitivity(study, point, testing::kFactory);
     CHECK(testing::unsettled(t0) < 0.01);
     const Eigen::MatrixXd gain = t0.static_gain();
     // The limits act through a finite soft weight, and the responses have settled to about 1e-3.
@@ -50,7 +49,8 @@ TEST_CASE("T0 of P1 has the static gains that section 6.3 demands, in both direc
 
 TEST_CASE("the static gain of T0 is that of the nominal model under square control of the active CVs") {
   const Study study = find_study("chapter6");
-  const NominalSensitivity t0 = nominal_sensitivity(study, operating_point(study, kFactory), kFactory);
+  const NominalSensitivity t0 =
+      nominal_sensitivity(study, operating_point(study, testing::kFactory), testing::kFactory);
   const Eigen::MatrixXd K = study.plant.G.static_gain().leftCols(3);
   Eigen::Matrix3d active;
   active << K.row(0), K.row(1), K.row(6);
@@ -71,8 +71,8 @@ TEST_CASE("S0 + T0 = I by separate routes: S0 from a step disturbance on the out
   study.simulation.samples = 60;
   study.simulation.steps.clear();
   study.simulation.noise_standard_deviation.setZero();
-  const OperatingPoint point = operating_point(study, kFactory);
-  const NominalSensitivity t0 = nominal_sensitivity(study, point, kFactory);
+  const OperatingPoint point = operating_point(study, testing::kFactory);
+  const NominalSensitivity t0 = nominal_sensitivity(study, point, testing::kFactory);
   // The same relaxations as for T0, in a closed loop with a step on y2 from sample 0 on.
   for (const Eigen::Index cv : {2, 3, 4, 5}) {
     study.controller.cv_soft.lower(cv) = -INFINITY;
@@ -85,7 +85,7 @@ TEST_CASE("S0 + T0 = I by separate routes: S0 from a step disturbance on the out
   LoopSignals signals{Eigen::MatrixXd::Zero(2, 60), Eigen::MatrixXd::Zero(7, 60),
                       Eigen::MatrixXd::Zero(7, 60)};
   signals.y_d.row(1).setConstant(disturbance);
-  const Trajectory loop = run_closed_loop(study, study.plant.G, signals, kFactory);
+  const Trajectory loop = run_closed_loop(study, study.plant.G, signals, testing::kFactory);
   REQUIRE(loop.status == ControlStatus::ok);
   const Eigen::MatrixXd s0 = loop.y / disturbance;  // response of the outputs per unit disturbance on y2
   for (Eigen::Index l = 1; l < 60; ++l)
@@ -96,7 +96,8 @@ TEST_CASE("S0 + T0 = I by separate routes: S0 from a step disturbance on the out
 
 TEST_CASE("nominal outputs: no error gives y0 = y, and one error passes through T0 as convolution says") {
   const Study study = find_study("chapter6");
-  const NominalSensitivity t0 = nominal_sensitivity(study, operating_point(study, kFactory), kFactory);
+  const NominalSensitivity t0 =
+      nominal_sensitivity(study, operating_point(study, testing::kFactory), testing::kFactory);
   const Eigen::MatrixXd y = Eigen::MatrixXd::Random(7, 200);
   const NominalOutputs same = nominal_outputs(t0, y, y);
   CHECK(same.y0 == y);
@@ -128,7 +129,7 @@ TEST_CASE("nominal outputs: no error gives y0 = y, and one error passes through 
 TEST_CASE("without noise and mismatch the basis case has y0 = y and every index 1") {
   Study study = find_study("chapter6");
   study.simulation.noise_standard_deviation.setZero();
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   CHECK(basis.healthy);
   CHECK((basis.nominal.y0 - basis.trajectory.y).cwiseAbs().maxCoeff() < 1e-12);
   CHECK((basis.diagnosis.ivar.array() - 1.0).abs().maxCoeff() < 1e-9);
@@ -138,7 +139,7 @@ TEST_CASE("a basis case without excitation fails its self-check and says which C
   Study study = find_study("chapter6");
   for (SignalStep& step : study.simulation.steps)
     step.level *= 0.02;
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   CHECK_FALSE(basis.healthy);
   CHECK(basis.explanation.find("noise outweighs the excitation") != std::string::npos);
 }

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
@@ -11,15 +10,15 @@
 #include "analysis/sensitivity/s0_perturbation.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/analysis/made_up_record.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 namespace {
 
 using namespace mpm;
-
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
 
 /// A record that wanders, as closed-loop data do.
 Eigen::RowVectorXd wandering(std::int64_t index) {
@@ -46,7 +45,8 @@ Study study_with(const std::vector<double>& multipliers) {
 
 TEST_CASE("S0 modified: a multiplier of 1 gives Ivar_diag of the true S0, bit for bit") {
   const Study study = study_with({0.5, 1.0, 2.0});
-  const NominalSensitivity t0 = nominal_sensitivity(study, operating_point(study, kFactory), kFactory);
+  const NominalSensitivity t0 =
+      nominal_sensitivity(study, operating_point(study, testing::kFactory), testing::kFactory);
   const S0Perturbation perturbation(study, t0);
   for (const Eigen::Index cv : {0, 1, 6}) {
     Eigen::MatrixXd y = Eigen::MatrixXd::Zero(7, 400), y_sim = y;
@@ -109,8 +109,8 @@ TEST_CASE("S0 modified: nothing for other CVs, CVs that are not asked for, and w
 
 TEST_CASE("S0 modified: the runner looks at the affected CV of experiments on active CVs") {
   const Study study = find_study("chapter6");
-  const BasisCase basis = run_basis_case(study, kFactory);
-  ExperimentRunner runner(study, basis, {"botelho"}, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  ExperimentRunner runner(study, basis, {"botelho"}, testing::kFactory);
   int active = 0, inside = 0;
   for (std::int64_t index = 0; index < 20 && (active == 0 || inside == 0); ++index) {
     const Eigen::Index cv = draw_experiment(study, index).true_cv();
@@ -147,7 +147,7 @@ TEST_CASE("S0 curves: quartiles of the ratios, and changes within the tolerance 
   records.push_back(testing::made_up_record(5, ExperimentKind::ud, 3, 0.0));  // not looked at
   records.push_back(testing::without_verdict(records.front(), ExperimentStatus::infeasible));
   records.push_back(records.front());
-  records.back().perturbed.time_constant.setConstant(std::numeric_limits<double>::infinity());
+  records.back().perturbed.time_constant.setConstant(mpm::kInfinity);
 
   const std::vector<S0Curve> curves = s0_curves(study, records);
   REQUIRE(curves.size() == 1);
@@ -174,9 +174,9 @@ TEST_CASE("S0 curves: quartiles of the ratios, and changes within the tolerance 
 TEST_CASE("fixed MVs: the static gain of T0 is that of the nominal model with the other MVs alone") {
   const Study study = find_study("chapter6");
   REQUIRE(study.s0_perturbation.fixed_mvs == std::vector<Eigen::Index>{0});
-  const OperatingPoint point = with_fixed_mvs(study, operating_point(study, kFactory));
+  const OperatingPoint point = with_fixed_mvs(study, operating_point(study, testing::kFactory));
   CHECK(point.fixed_mvs == std::vector<Eigen::Index>{0});
-  const NominalSensitivity t0 = nominal_sensitivity(study, point, kFactory);
+  const NominalSensitivity t0 = nominal_sensitivity(study, point, testing::kFactory);
   const Eigen::MatrixXd K = study.plant.G.static_gain().middleCols(1, 2);
   const Eigen::MatrixXd expected = K * K.topRows(2).inverse();
   const Eigen::MatrixXd gain = t0.static_gain();
@@ -188,15 +188,15 @@ TEST_CASE("fixed MVs: the static gain of T0 is that of the nominal model with th
 TEST_CASE("fixed MVs: multipliers of tau and xi between the two structures, 1 when nothing differs") {
   Study study = find_study("chapter6");
   BasisCase basis;
-  basis.point = operating_point(study, kFactory);
-  basis.sensitivity = nominal_sensitivity(study, basis.point, kFactory);
+  basis.point = operating_point(study, testing::kFactory);
+  basis.sensitivity = nominal_sensitivity(study, basis.point, testing::kFactory);
   CHECK(structure_fits(study, basis).empty());
   basis.sensitivity_fixed = basis.sensitivity;
   for (const StructureFit& fit : structure_fits(study, basis)) {
     CHECK(fit.time_constant_multiplier == 1.0);
     CHECK(fit.damping_multiplier == 1.0);
   }
-  basis.sensitivity_fixed = nominal_sensitivity(study, with_fixed_mvs(study, basis.point), kFactory);
+  basis.sensitivity_fixed = nominal_sensitivity(study, with_fixed_mvs(study, basis.point), testing::kFactory);
   const std::vector<StructureFit> fits = structure_fits(study, basis);
   REQUIRE(fits.size() == 2);
   CHECK(fits[0].cv == 0);
@@ -210,7 +210,7 @@ TEST_CASE("fixed MVs: multipliers of tau and xi between the two structures, 1 wh
 TEST_CASE("a CV that is at no limit cannot be the one whose S0 is modified") {
   Study study = find_study("chapter6");
   study.s0_perturbation.cvs = {2};
-  CHECK_THROWS_WITH(run_basis_case(study, kFactory),
+  CHECK_THROWS_WITH(run_basis_case(study, testing::kFactory),
                     "s0_perturbation.cvs: found 'y3', which is at no setpoint and no soft limit; allowed: "
                     "CVs at a setpoint or an active "
                     "soft limit");

@@ -1,10 +1,10 @@
 #include <cmath>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/sensitivity/second_order_fit.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace {
 
@@ -66,7 +66,7 @@ TEST_CASE("fit: no model near the minimum is nearer, and the error is that of th
 
 TEST_CASE("fit: numbers that are not finite have no fit; bad arguments are refused") {
   Eigen::RowVectorXd response = second_order_response({40.0, 0.9}, 4.0, 50);
-  response(7) = std::numeric_limits<double>::quiet_NaN();
+  response(7) = mpm::kNaN;
   const SecondOrderFit fit = fit_second_order(response, 4.0);
   CHECK(fit.status == FitStatus::failed);
   CHECK(std::isnan(fit.model.time_constant));

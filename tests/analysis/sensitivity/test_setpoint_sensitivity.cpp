@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -7,17 +6,16 @@
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/signals.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/analysis/sensitivity/unsettled.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 // T0 and y0 of controllers with setpoints, and of controllers without targets.
 
 namespace mpm {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const QpSolverFactory kFactory = qp_solver_factory("active-set");
 
 /// P2 under setpoint MPC without noise and without a limit that could become active: the loop is linear.
 Study linear_study() {
@@ -46,7 +44,7 @@ ExperimentDraw scenario(const Study& study, const std::string& name) {
 }
 
 NominalSensitivity sensitivity_of(const Study& study) {
-  return nominal_sensitivity(study, operating_point(study, kFactory), kFactory);
+  return nominal_sensitivity(study, operating_point(study, testing::kFactory), testing::kFactory);
 }
 
 /// S0 of one column by a route without references: the closed loop under a step of `size` added to the CV.
@@ -56,7 +54,7 @@ Eigen::MatrixXd disturbance_response(Study study, Eigen::Index cv, double size) 
   const int N = study.simulation.samples = study.sensitivity.samples;
   LoopSignals signals{Eigen::MatrixXd::Zero(0, N), Eigen::MatrixXd::Zero(3, N), Eigen::MatrixXd::Zero(3, N)};
   signals.y_d.row(cv).setConstant(size);
-  const Trajectory loop = run_closed_loop(study, study.plant.G, signals, kFactory);
+  const Trajectory loop = run_closed_loop(study, study.plant.G, signals, testing::kFactory);
   REQUIRE(loop.status == ControlStatus::ok);
   return loop.y / size;
 }
@@ -83,10 +81,10 @@ void check_sum_is_identity(const Study& study) {
 
 TEST_CASE("theorem (3.9): y0 from a loop with mismatch or disturbance is the output of the basis loop") {
   Study study = linear_study();
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   const std::string name = GENERATE("Scen1", "Scen2", "Scen3", "Scen5", "Scen6");
   INFO(name);
-  const Trajectory loop = simulate_experiment(study, scenario(study, name), kFactory);
+  const Trajectory loop = simulate_experiment(study, scenario(study, name), testing::kFactory);
   REQUIRE(loop.status == ControlStatus::ok);
   const Eigen::MatrixXd y_sim =
       simulated_output(study.plant.G, study.controller.sample_time, basis.point.u, loop.u, loop.d);
@@ -102,8 +100,8 @@ TEST_CASE("theorem (3.9): y0 from a loop with mismatch or disturbance is the out
 
 TEST_CASE("y0 converges to the basis loop as T0 gets longer") {
   Study study = linear_study();
-  const Trajectory loop = simulate_experiment(study, scenario(study, "Scen1"), kFactory);
-  const BasisCase basis = run_basis_case(study, kFactory);
+  const Trajectory loop = simulate_experiment(study, scenario(study, "Scen1"), testing::kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
   const Eigen::MatrixXd y_sim =
       simulated_output(study.plant.G, study.controller.sample_time, basis.point.u, loop.u, loop.d);
   double before = kInfinity;
@@ -166,8 +164,8 @@ TEST_CASE("without targets T0 of a limit does not depend on the direction that i
 
 TEST_CASE("variance_centre: about the setpoint or about the mean") {
   Study study = linear_study();
-  const BasisCase basis = run_basis_case(study, kFactory);
-  const Trajectory loop = simulate_experiment(study, scenario(study, "Scen1"), kFactory);
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const Trajectory loop = simulate_experiment(study, scenario(study, "Scen1"), testing::kFactory);
   const NominalOutputs nominal = nominal_outputs(
       basis.sensitivity, loop.y,
       simulated_output(study.plant.G, study.controller.sample_time, basis.point.u, loop.u, loop.d));

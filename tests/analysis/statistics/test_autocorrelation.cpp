@@ -1,11 +1,11 @@
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/autocorrelation.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 using Eigen::Index;
@@ -88,7 +88,7 @@ TEST_CASE("a signal that stands still has no autocorrelation") {
 
 TEST_CASE("an autocorrelation refuses impossible input") {
   using mpm::InputError;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = mpm::kNaN;
   const VectorXd signal = white_noise(20, 5);
   CHECK_NOTHROW(autocorrelation(signal, 19));
   CHECK_THROWS_AS(autocorrelation(signal, 20), InputError);

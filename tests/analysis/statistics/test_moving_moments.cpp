@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/moving_moments.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/window_scan.hpp"
 #include "tests/analysis/signals.hpp"
 
@@ -187,9 +187,9 @@ TEST_CASE("moving moments refuse impossible input") {
   CHECK_THROWS_AS(mpm::moving_moments(signal, 5, skewness.head(15), kurtosis), InputError);
   CHECK_THROWS_AS(mpm::moving_moments(signal.head(1), 1, skewness.head(1), kurtosis.head(1)), InputError);
   VectorXd bad = signal;
-  bad[7] = std::numeric_limits<double>::quiet_NaN();
+  bad[7] = mpm::kNaN;
   CHECK_THROWS_WITH(mpm::moving_moments(bad, 5, skewness, kurtosis),
                     "signal: found nan at sample 7; allowed: finite values only");
-  bad[7] = std::numeric_limits<double>::infinity();
+  bad[7] = mpm::kInfinity;
   CHECK_THROWS_AS(mpm::moving_moments(bad, 5, skewness, kurtosis), InputError);
 }

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "analysis/statistics/correlation.hpp"
 #include "analysis/statistics/regression.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 namespace {
@@ -21,9 +21,6 @@ using mpm::cluster_bootstrap;
 using mpm::RandomStream;
 using mpm::StreamId;
 using mpm::testing::white_noise;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Pairs whose x and y both have a part that the whole cluster shares, about the line y = 1 + 2 x.
 struct Sample {
@@ -108,8 +105,8 @@ TEST_CASE("a fit survives offsets and one wild pair") {
 }
 
 TEST_CASE("pairs that are not finite are left out and counted") {
-  const VectorXd x = (VectorXd(7) << 1.0, kNan, 2.0, 3.0, 5.0, 4.0, kInfinity).finished();
-  const VectorXd y = (VectorXd(7) << 2.0, 9.0, 3.0, 5.0, -kInfinity, 6.0, 1.0).finished();
+  const VectorXd x = (VectorXd(7) << 1.0, mpm::kNaN, 2.0, 3.0, 5.0, 4.0, mpm::kInfinity).finished();
+  const VectorXd y = (VectorXd(7) << 2.0, 9.0, 3.0, 5.0, -mpm::kInfinity, 6.0, 1.0).finished();
   const auto fit = line(x, y);
   CHECK(fit.slope == Approx(1.4).epsilon(1e-15));
   CHECK(fit.pairs == 4);
@@ -130,7 +127,7 @@ TEST_CASE("degenerate fits") {
   rounded[2] = 0.1 + 0.2;
   REQUIRE(rounded[2] != 0.3);
   check_nothing(line(rounded, white_noise(9, 4)));
-  CHECK(line(VectorXd::Constant(3, kNan), x).left_out == 3);
+  CHECK(line(VectorXd::Constant(3, mpm::kNaN), x).left_out == 3);
   const auto flat = line(x, VectorXd::Constant(3, 5.0));
   CHECK(flat.slope == 0.0);
   CHECK(flat.intercept == 5.0);
@@ -251,7 +248,8 @@ TEST_CASE("bootstraps without enough clusters or without variation have no inter
   const auto flat = cluster_bootstrap(x, VectorXd::Constant(10, 1.0), one_cluster_a_pair(10), stream);
   check_nothing(flat);
   CHECK(flat.replications_used == 0);
-  const auto nothing = cluster_bootstrap(VectorXd::Constant(10, kNan), y, one_cluster_a_pair(10), stream);
+  const auto nothing =
+      cluster_bootstrap(VectorXd::Constant(10, mpm::kNaN), y, one_cluster_a_pair(10), stream);
   check_nothing(nothing);
   CHECK(nothing.clusters == 0);
   CHECK(nothing.fit.left_out == 10);
@@ -278,5 +276,5 @@ TEST_CASE("regression refuses impossible input") {
   CHECK_THROWS_AS(cluster_bootstrap(x, x, one_cluster_a_pair(9), stream), InputError);
   CHECK_THROWS_AS(cluster_bootstrap(x, x, pairs, stream, {99, 0.95}), InputError);
   CHECK_THROWS_AS(cluster_bootstrap(x, x, pairs, stream, {2000, 1.0}), InputError);
-  CHECK_THROWS_AS(cluster_bootstrap(x, x, pairs, stream, {2000, kNan}), InputError);
+  CHECK_THROWS_AS(cluster_bootstrap(x, x, pairs, stream, {2000, mpm::kNaN}), InputError);
 }

@@ -1,19 +1,17 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/roc.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 
 namespace {
 
 using namespace mpm;
 using Catch::Contains;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Scores on a grid, so that there are ties within and between the two sides.
 std::vector<double> scores_on_a_grid(RandomStream& stream, int count, double shift) {
@@ -102,12 +100,12 @@ TEST_CASE("roc: separated scores, equal scores and a curve known by hand") {
 }
 
 TEST_CASE("roc: NaNs are left out; without a side there is no curve") {
-  const RocCurve curve = roc_curve(std::vector{kNan, 2.0}, std::vector{1.0, kNan, kNan});
+  const RocCurve curve = roc_curve(std::vector{mpm::kNaN, 2.0}, std::vector{1.0, mpm::kNaN, mpm::kNaN});
   CHECK(curve.positives == 1);
   CHECK(curve.negatives == 1);
   CHECK(curve.left_out == 3);
   CHECK(curve.area == 1.0);
-  const RocCurve none = roc_curve(std::vector{1.0}, std::vector{kNan});
+  const RocCurve none = roc_curve(std::vector{1.0}, std::vector{mpm::kNaN});
   CHECK_FALSE(none.defined());
   CHECK(std::isnan(none.area));
   CHECK(none.points.empty());

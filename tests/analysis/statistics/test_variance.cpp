@@ -1,10 +1,10 @@
 #include <cmath>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/variance.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 using Eigen::VectorXd;
@@ -72,7 +72,7 @@ TEST_CASE("a long signal that stands still has no variance, although its mean is
 
 TEST_CASE("variances refuse impossible input") {
   using mpm::InputError;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = mpm::kNaN;
   const VectorXd bad = VectorXd::Constant(4, nan);
   CHECK_THROWS_AS(variance(kSmall.head(1)), InputError);
   CHECK_THROWS_AS(variance(bad), InputError);

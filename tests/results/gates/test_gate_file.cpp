@@ -1,9 +1,9 @@
 #include <cmath>
-#include <limits>
 
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_file.hpp"
 #include "scenarios/study_library.hpp"
@@ -60,7 +60,7 @@ maximum_lost = 0
   CHECK(file.minimum_experiments == 40);
   REQUIRE(file.gates.size() == 2);
   CHECK(file.gates[0].name == "infeasible");
-  CHECK(file.gates[0].minimum == -std::numeric_limits<double>::infinity());
+  CHECK(file.gates[0].minimum == -mpm::kInfinity);
   CHECK(file.gates[0].maximum == 0.1);
   CHECK_FALSE(file.gates[0].with_confidence);
   CHECK(file.gates[1].minimum == -1.0);

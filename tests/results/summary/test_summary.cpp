@@ -19,7 +19,7 @@ using namespace mpm;
 using namespace mpm::testing;
 using Catch::Contains;
 
-const Campaign& sample() {
+const Campaign& small_sample() {
   static const Campaign campaign = campaign_sample();
   return campaign;
 }
@@ -58,7 +58,7 @@ bool same(const nlohmann::json& json, double value) {
 }
 
 TEST_CASE("summary: the text says what was run and whether the basis case is healthy") {
-  const std::string text = text_of(sample());
+  const std::string text = text_of(small_sample());
   CHECK_THAT(line_of_text(text, "study"), Contains("chapter6: Shell fractionator 7x3"));
   CHECK_THAT(line_of_text(text, "plant"), Contains("shell-7x3: 7 CVs, 3 MVs, 2 MDs"));
   CHECK_THAT(line_of_text(text, "controller"), Contains("prediction horizon 75, control horizon 15"));
@@ -67,17 +67,17 @@ TEST_CASE("summary: the text says what was run and whether the basis case is hea
   CHECK_THAT(line_of_text(text, "program"), Contains("mpmbench 0.1.0 (abcdef), solver active-set"));
   CHECK_THAT(line_of_text(text, "run"), Contains("2026-01-01T00:00:00Z, 1.5 s with 2 jobs"));
   CHECK_THAT(line_of_text(text, "self-check"), Contains("passed: Ivar of the nominal loop"));
-  Campaign unhealthy = sample();
+  Campaign unhealthy = small_sample();
   unhealthy.basis.healthy = false;
   CHECK_THAT(line_of_text(text_of(unhealthy), "self-check"), Contains("FAILED"));
 }
 
 TEST_CASE("summary: a measured share stands beside the reported one with its interval") {
   // 1 of the 7 experiments that did not fail is infeasible; Wilson's interval of 1/7 is 2.6 to 51.3 %.
-  const std::string line = line_of_text(text_of(sample()), "infeasible");
+  const std::string line = line_of_text(text_of(small_sample()), "infeasible");
   CHECK_THAT(line, Contains(" 14.3 % ") && Contains(" 2.6 to 51.3 % ") && Contains(" 7 ") &&
                        Contains(" 4.0 % ") && Contains("yes"));
-  Campaign other = sample();
+  Campaign other = small_sample();
   other.study.reported = {{"infeasible", 0.9}};
   CHECK_THAT(line_of_text(text_of(other), "infeasible"), Contains(" 90.0 %  no"));
 }
@@ -117,13 +117,13 @@ TEST_CASE(
 }
 
 TEST_CASE("summary: fits and changes of a modified S0, and S0 with MVs fixed, in both forms") {
-  const std::string text = text_of(sample());
+  const std::string text = text_of(small_sample());
   CHECK_THAT(text, Contains("S0 modified, 0.75 to 1.25 times") && Contains("S0 with u1 fixed"));
-  const nlohmann::json json = json_of(sample())["s0_perturbation"];
+  const nlohmann::json json = json_of(small_sample())["s0_perturbation"];
   REQUIRE(json["fits"].size() == 3);  // y1, y2, y7
   CHECK(json["fits"][2]["cv"] == "y7");
   CHECK(json["fixed_mvs"].size() == 2);
-  const std::vector<S0Curve> curves = s0_curves(sample().study, sample().records);
+  const std::vector<S0Curve> curves = s0_curves(small_sample().study, small_sample().records);
   REQUIRE_FALSE(curves.empty());
   REQUIRE(json["changes"].size() == curves.size());
   CHECK(json["changes"][0]["experiments"] == curves[0].experiments);
@@ -134,7 +134,7 @@ TEST_CASE("summary: fits and changes of a modified S0, and S0 with MVs fixed, in
 }
 
 TEST_CASE("summary: no line of the sample is longer than 100 columns or ends with a blank") {
-  Campaign campaign = sample();  // without the comparison, which may be wider
+  Campaign campaign = small_sample();  // without the comparison, which may be wider
   remove_methods(campaign, [](const std::string& name) { return name != kChainMethod; });
   std::istringstream lines(text_of(campaign));
   for (std::string line; std::getline(lines, line);) {
@@ -145,8 +145,8 @@ TEST_CASE("summary: no line of the sample is longer than 100 columns or ends wit
 }
 
 TEST_CASE("summary: the JSON form has the findings and the reported numbers") {
-  const nlohmann::json json = json_of(sample());
-  const StudyFindings findings = findings_of(sample());
+  const nlohmann::json json = json_of(small_sample());
+  const StudyFindings findings = findings_of(small_sample());
   REQUIRE(json["findings"].size() == findings.rows.size());
   for (std::size_t i = 0; i < findings.rows.size(); ++i) {
     const nlohmann::json& found = json["findings"][i];
@@ -159,7 +159,7 @@ TEST_CASE("summary: the JSON form has the findings and the reported numbers") {
     CHECK(same(found["lower"], expected.interval.lower));
     CHECK(same(found["upper"], expected.interval.upper));
   }
-  CHECK(json["methods"] == method_names(sample()));
+  CHECK(json["methods"] == method_names(small_sample()));
   const auto infeasible = std::find_if(json["findings"].begin(), json["findings"].end(),
                                        [](const auto& finding) { return finding["name"] == "infeasible"; });
   REQUIRE(infeasible != json["findings"].end());
@@ -171,7 +171,7 @@ TEST_CASE("summary: the JSON form has the findings and the reported numbers") {
   CHECK(json["infeasible"] == 1);
   CHECK(json["failed"] == 1);
   CHECK(json["basis"]["healthy"] == true);
-  CHECK(same(json["basis"]["ivar"]["y7"], sample().basis.diagnosis.ivar(6)));
+  CHECK(same(json["basis"]["ivar"]["y7"], small_sample().basis.diagnosis.ivar(6)));
   CHECK(json["failures"][0]["index"] == 4);
   CHECK(json["failures"][0]["message"] == "ended by signal 9: \xC3\xBC");
 }
@@ -220,7 +220,7 @@ TEST_CASE("summary: a study of named scenarios shows each with its truth and its
   CHECK(found["cvs"][0]["ivar_diag"] == 2.5);
   CHECK(found["cvs"][1]["source"] == "none");
   CHECK(json["scenarios"][3]["tsse"].is_null());
-  CHECK(json_of(sample())["scenarios"].empty());
+  CHECK(json_of(small_sample())["scenarios"].empty());
 }
 
 TEST_CASE("summary: healthy experiments and bad tunings are counted, and their alarms are wrong verdicts") {

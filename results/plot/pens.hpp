@@ -10,4 +10,7 @@ namespace mpm {
 /// up. The one that a panel is about is thick.
 Pen cv_pen(Eigen::Index cv, bool thick = false);
 
+/// A threshold of the study, or an edge of its band.
+inline const Pen kThreshold{colour::kBlack, Dash::dashed, Mark::none, 1.2};
+
 }  // namespace mpm

@@ -1,4 +1,4 @@
-#include "results/plot/cv_pen.hpp"
+#include "results/plot/pens.hpp"
 
 #include <array>
 #include <string_view>

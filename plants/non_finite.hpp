@@ -1,0 +1,13 @@
+#pragma once
+
+#include <limits>
+
+namespace mpm {
+
+/// A limit that does not exist, and what no finite number is beyond.
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A number that is not known or has no meaning where it stands.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace mpm
