@@ -159,16 +159,19 @@ AssessmentRecord answer(Numbers& numbers, const Study& study, std::shared_ptr<co
   return made;
 }
 
-/// The chain always gives an answer, and the others any, where the loop ran to its end.
+/// The chain always gives an answer, and the others any, where the loop ran to its end. Each method has
+/// numbers of its own, so that those of the others stay when one is added behind them.
 void assess(Numbers& numbers, const Campaign& campaign, ExperimentRecord& record) {
+  std::uint64_t own = 100 * static_cast<std::uint64_t>(record.draw.index + 1);
   for (const CampaignMethod& method : campaign.methods) {
+    Numbers of_method(++own);
     record.assessments.push_back(unasked(method.form));
     if (record.status != ExperimentStatus::ok)
       continue;
     if (method.form->method().name == kChainMethod)
       set_chain(campaign.study, record, diagnosis(numbers, campaign.study));
     else
-      record.assessments.back() = answer(numbers, campaign.study, method.form);
+      record.assessments.back() = answer(of_method, campaign.study, method.form);
   }
 }
 

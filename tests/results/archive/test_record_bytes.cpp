@@ -128,11 +128,14 @@ std::vector<MemberChange> member_changes() {
   const auto loop_solver = [](auto member) {
     return [member](ExperimentRecord& r) { r.loop->trajectory.solver.*member += 1; };
   };
+  using A = AssessmentRecord;
   const auto sse = [](auto change) {
-    return [change](ExperimentRecord& r) { change(r.assessments.back()); };
+    return [change](ExperimentRecord& r) {
+      change(*std::find_if(r.assessments.begin(), r.assessments.end(),
+                           [](const A& said) { return said.form->method().name == "sse"; }));
+    };
   };
   using R = ExperimentRecord;
-  using A = AssessmentRecord;
   using S = SolverStatistics;
   using T = Trajectory;
   return {
