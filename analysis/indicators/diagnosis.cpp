@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
 
 #include "analysis/indicators/simulation_error.hpp"
 #include "analysis/statistics/variance.hpp"
@@ -59,6 +62,17 @@ Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_dia
   return farthest;
 }
 
+double location_margin(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, LocationDistance distance) {
+  std::vector<double> away;
+  for (const double ivar : ivar_diag)
+    if (!std::isnan(ivar))
+      away.push_back(distance_from_one(ivar, distance));
+  if (away.size() < 2)
+    return std::numeric_limits<double>::quiet_NaN();
+  std::partial_sort(away.begin(), away.begin() + 2, away.end(), std::greater<>());
+  return away[0] - away[1];
+}
+
 Eigen::VectorXd basis_variance_indices(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
                                        const Eigen::Ref<const Eigen::MatrixXd>& y_basis) {
   return variance_indices(y, y_basis, centres(study));
@@ -83,6 +97,7 @@ Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y,
   if (every_cv_)
     diagnosis.cvs = diagnose_each(y, nominal, diagnosis.ivar_diag);
   diagnosis.predicted_cv = farthest_from_one(diagnosis.ivar_diag, options_.location_distance);
+  diagnosis.location_margin = mpm::location_margin(diagnosis.ivar_diag, options_.location_distance);
   if (diagnosis.predicted_cv < 0)
     return diagnosis;
   diagnosis.indicator = indicator_of(diagnosis.predicted_cv, y, nominal);

@@ -46,8 +46,9 @@ struct FaultsAlone {
 /// The variances of a CV with a setpoint are taken about it, unless the study wants them about the mean.
 struct Diagnosis {
   Eigen::VectorXd ivar, ivar_diag;
-  bool impactful = false;                            ///< some Ivar lies outside the band of impact
-  Eigen::Index predicted_cv = -1;                    ///< the CV whose Ivar_diag is farthest from 1
+  bool impactful = false;          ///< some Ivar lies outside the band of impact
+  Eigen::Index predicted_cv = -1;  ///< the CV whose Ivar_diag is farthest from 1
+  double location_margin = std::numeric_limits<double>::quiet_NaN();  ///< location_margin() of ivar_diag
   MpmIndicator indicator;                            ///< of the predicted CV, (6.13) to (6.15)
   FaultSource predicted_source = FaultSource::none;  ///< mpm when I_MPM exceeds its threshold, else ud
   FaultsAlone alone;                                 ///< of an experiment with both faults
@@ -64,6 +65,10 @@ double distance_from_one(double ivar, LocationDistance distance);
 /// Index of the CV that `ivar_diag` points at. Ties go to the first CV; a CV whose index is NaN is passed
 /// over.
 Eigen::Index farthest_from_one(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, LocationDistance distance);
+
+/// How clearly `ivar_diag` points at a CV: how much farther from 1 its index is than the next one. 0 at a
+/// tie; NaN with fewer than two indices.
+double location_margin(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, LocationDistance distance);
 
 /// Ivar_basis = var y / var y_basis (6.22) of every CV: what really became of the variance, a truth in which
 /// no method has a part. y and y_basis are ny x N; variances as those of Ivar.

@@ -32,6 +32,12 @@ ChainNumber of_loop(AssessmentNumberInfo info, Part Diagnosis::*part, T Part::*m
           std::is_integral_v<T>};
 }
 
+ChainNumber of_loop(AssessmentNumberInfo info, double Diagnosis::*member) {
+  info.scope = NumberScope::loop;
+  return {std::move(info), [member](const Diagnosis& d, Eigen::Index, Eigen::Index) { return d.*member; },
+          [member](Diagnosis& d, double value, Eigen::Index, Eigen::Index) { d.*member = value; }};
+}
+
 ChainNumber of_each_cv(AssessmentNumberInfo info, Eigen::VectorXd Diagnosis::*member) {
   info.scope = NumberScope::cv;
   return {std::move(info),
@@ -54,6 +60,11 @@ ChainNumbers made_chain_numbers() {
           &Diagnosis::ivar),
       of_each_cv({.name = "ivar_diag", .meaning = "Ivar_diag = var y / var y0_diag (4.14, 6.8)"},
                  &Diagnosis::ivar_diag),
+      of_loop({.name = "location_margin",
+               .meaning = "how much farther from 1 Ivar_diag of the located CV is than that of any other",
+               .summarised = true,
+               .label = "location margin"},
+              &Diagnosis::location_margin),
       indicator({.name = "co_dkts", .meaning = "mean correlation of the differenced moving kurtosis (6.13)"},
                 &M::co_dkts),
       indicator({.name = "co_dskn", .meaning = "mean correlation of the differenced moving skewness (6.14)"},

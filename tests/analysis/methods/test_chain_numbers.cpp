@@ -74,12 +74,14 @@ void each_number(AcfComparison& acf, Visit visit) {
 
 template <class Visit>
 void each_number(Diagnosis& diagnosis, Visit visit) {
-  auto& [ivar, ivar_diag, impactful, predicted_cv, indicator, predicted_source, alone, cvs] = diagnosis;
+  auto& [ivar, ivar_diag, impactful, predicted_cv, margin, indicator, predicted_source, alone, cvs] =
+      diagnosis;
   for (Eigen::VectorXd* const indices : {&ivar, &ivar_diag})
     for (double& value : *indices)
       visit(value);
   visit(impactful);
   visit(predicted_cv);
+  visit(margin);
   each_number(indicator, visit);
   visit(predicted_source);
   auto& [mpm_alone, ud_alone, dominance] = alone;

@@ -1,0 +1,20 @@
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/indicators/diagnosis.hpp"
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+TEST_CASE("location margin: how much farther the first index is from 1 than the second") {
+  const Eigen::Vector4d ivar_diag(1.5, 0.25, 4.0, 1.0);
+  CHECK(location_margin(ivar_diag, LocationDistance::linear) == Approx(3.0 - 0.75));
+  CHECK(location_margin(ivar_diag, LocationDistance::logarithmic) == Approx(0.0).margin(1e-15));
+  CHECK(location_margin(Eigen::Vector3d(kNaN, 3.0, 1.5), LocationDistance::linear) == Approx(1.5));
+}
+
+TEST_CASE("location margin: one index has nothing beside it") {
+  CHECK(std::isnan(location_margin(Eigen::Vector2d(kNaN, 3.0), LocationDistance::linear)));
+}
+
+}  // namespace mpm
