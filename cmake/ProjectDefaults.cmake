@@ -14,8 +14,8 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
-# Most of the time of a build goes into reading headers and instantiating Eigen. A dozen sources that are compiled as one
-# share that, and the whole takes a third of the time. The price is that a change compiles its eleven neighbours too,
+# Most of the time of a build goes into reading headers and instantiating Eigen. Sources that are compiled as one
+# share that, and the whole takes less than half the time. The price is that a change compiles its neighbours too,
 # so the preset debug compiles each source by itself.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 12 CACHE STRING "Sources that are compiled as one, with CMAKE_UNITY_BUILD")
 

@@ -7,7 +7,7 @@ namespace mpm {
 namespace {
 
 /// gain e^{-dead_time s} / (time_constant s + 1), times in minutes.
-struct Entry {
+struct FirstOrderEntry {
   double gain;
   double dead_time;
   double time_constant;
@@ -15,7 +15,7 @@ struct Entry {
 
 // clang-format off
 /// The Shell fractionator, eq. 6.18.
-constexpr std::array<std::array<Entry, 5>, 7> kModel{{
+constexpr std::array<std::array<FirstOrderEntry, 5>, 7> kModel{{
   //      u1              u2              u3              d1              d2
   {{{4.05, 27, 50}, {1.77, 28, 60}, {5.88, 27, 50}, {1.20, 27, 45}, {1.44, 27, 40}}},  // y1
   {{{5.39, 18, 50}, {5.72, 14, 60}, {6.90, 15, 40}, {1.52, 15, 25}, {1.83, 15, 20}}},  // y2
@@ -29,7 +29,7 @@ constexpr std::array<std::array<Entry, 5>, 7> kModel{{
 
 // clang-format off
 /// Eq. 2.25 and 4.18: outputs y1, y2 and y7 of eq. 6.18, but for the dead time of y3-u3, 19 min here.
-constexpr std::array<std::array<Entry, 3>, 3> kReducedModel{{
+constexpr std::array<std::array<FirstOrderEntry, 3>, 3> kReducedModel{{
   //      u1              u2              u3
   {{{4.05, 27, 50}, {1.77, 28, 60}, {5.88, 27, 50}}},  // y1
   {{{5.39, 18, 50}, {5.72, 14, 60}, {6.90, 15, 40}}},  // y2
@@ -38,11 +38,11 @@ constexpr std::array<std::array<Entry, 3>, 3> kReducedModel{{
 // clang-format on
 
 template <std::size_t Rows, std::size_t Cols>
-TransferMatrix make_transfer_matrix(const std::array<std::array<Entry, Cols>, Rows>& model) {
+TransferMatrix make_transfer_matrix(const std::array<std::array<FirstOrderEntry, Cols>, Rows>& model) {
   TransferMatrix G(Rows, Cols);
   for (std::size_t row = 0; row < Rows; ++row) {
     for (std::size_t col = 0; col < Cols; ++col) {
-      const Entry& entry = model[row][col];
+      const FirstOrderEntry& entry = model[row][col];
       G(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col)) =
           TransferFunction::first_order(entry.gain, entry.time_constant, entry.dead_time);
     }

@@ -12,13 +12,13 @@ AuditedProblem copy_of(const SolvedQp& problem) {
   return {problem.data, problem.result.status, problem.result.x, problem.result.objective};
 }
 
-AuditDifference compare(const AuditedProblem& problem, const QpResult& reference) {
+AuditDifference compare(const AuditedProblem& problem, const QpResult& ipopt) {
   constexpr double kNone = kNaN;
-  AuditDifference difference{problem.status == reference.status, kNone, kNone};
-  if (problem.status == QpStatus::solved && reference.status == QpStatus::solved) {
-    difference.x = (problem.x - reference.x).lpNorm<Eigen::Infinity>();
+  AuditDifference difference{problem.status == ipopt.status, kNone, kNone};
+  if (problem.status == QpStatus::solved && ipopt.status == QpStatus::solved) {
+    difference.x = (problem.x - ipopt.x).lpNorm<Eigen::Infinity>();
     difference.objective =
-        std::abs(problem.objective - reference.objective) / std::max(1.0, std::abs(reference.objective));
+        std::abs(problem.objective - ipopt.objective) / std::max(1.0, std::abs(ipopt.objective));
   }
   return difference;
 }
@@ -57,19 +57,18 @@ void AuditSampler::observe(const Mpc& controller) {
   samples_.push_back(std::move(sample));
 }
 
-Auditor::Auditor(const Study& study, const QpSolverFactory& reference) {
+Auditor::Auditor(const Study& study, const QpSolverFactory& ipopt) {
   // The controller makes the structures; its own solvers are never asked.
-  const Mpc controller(study.plant.G, study.mv_count(), study.controller, reference);
+  const Mpc controller(study.plant.G, study.mv_count(), study.controller, ipopt);
   if (const std::optional<SolvedQp> targets = controller.target_problem())
-    targets_ = reference(std::make_shared<QpStructure>(targets->structure));
-  moves_ = reference(std::make_shared<QpStructure>(controller.move_problem().structure));
+    targets_ = ipopt(std::make_shared<QpStructure>(targets->structure));
+  moves_ = ipopt(std::make_shared<QpStructure>(controller.move_problem().structure));
 }
 
-AuditDifference Auditor::check(const AuditedProblem& problem, QpSolver* reference,
-                               double& kkt_residual) const {
+AuditDifference Auditor::check(const AuditedProblem& problem, QpSolver* ipopt, double& kkt_residual) const {
   if (!problem.posed())
     return {true, 0.0, 0.0};
-  const QpResult& result = reference->solve_from(problem.data, problem.x);
+  const QpResult& result = ipopt->solve_from(problem.data, problem.x);
   if (result.status == QpStatus::solved)
     kkt_residual = std::max(kkt_residual, result.kkt_residual);
   return compare(problem, result);

@@ -79,16 +79,16 @@ class AuditSampler {
   std::vector<AuditSample> samples_;
 };
 
-/// Solves audited problems once more by a reference solver. It starts from the answer that it is to check, to
-/// save time, and knows nothing else of it; its own answer is certified by its own KKT residual.
+/// Solves audited problems once more by Ipopt. It starts from the answer that it is to check, to save time,
+/// and knows nothing else of it; its own answer is certified by its own KKT residual.
 class Auditor {
  public:
-  Auditor(const Study& study, const QpSolverFactory& reference);
+  Auditor(const Study& study, const QpSolverFactory& ipopt);
 
   AuditedStep check(const AuditSample& sample);
 
  private:
-  AuditDifference check(const AuditedProblem& problem, QpSolver* reference, double& kkt_residual) const;
+  AuditDifference check(const AuditedProblem& problem, QpSolver* ipopt, double& kkt_residual) const;
 
   std::unique_ptr<QpSolver> targets_, moves_;  ///< no target solver for a controller without targets
 };

@@ -19,7 +19,7 @@ namespace mpm {
 struct SolverStatistics {
   std::int64_t steps = 0;
   std::int64_t iterations = 0;
-  std::int64_t fallbacks = 0;  ///< problems whose answer is the reference's (CertifiedSolver)
+  std::int64_t fallbacks = 0;  ///< problems whose answer is Ipopt's (CertifiedSolver)
   double largest_kkt_residual = 0.0;
 
   void add(const SolverStatistics& other);

@@ -24,11 +24,11 @@ void CertifiedSolver::do_solve(const QpData& data, QpResult& result) {
   result = active_set_.solve(data);
   if (is_certified(result))
     return;
-  if (!reference_)
-    reference_ = std::make_unique<IpoptSolver>(shared_structure_, IpoptOptions{});
-  reference_->reset();  // the answer must not depend on which problem needed the reference before
+  if (!ipopt_)
+    ipopt_ = std::make_unique<IpoptSolver>(shared_structure_, IpoptOptions{});
+  ipopt_->reset();  // the answer must not depend on which problem needed it before
   const int iterations = result.iterations;
-  result = reference_->solve(data);
+  result = ipopt_->solve(data);
   result.iterations += iterations;
   result.from_ipopt = true;
 }

@@ -33,7 +33,7 @@ class CertifiedSolver final : public QpSolver {
 
   std::shared_ptr<const QpStructure> shared_structure_;
   ActiveSetSolver active_set_;
-  std::unique_ptr<IpoptSolver> reference_;  ///< made when first needed
+  std::unique_ptr<IpoptSolver> ipopt_;  ///< made when first needed
 };
 
 }  // namespace mpm

@@ -24,8 +24,8 @@ struct IpoptOptions {
   void validate() const;
 };
 
-/// The reference back end: Ipopt, a primal-dual interior-point method (Waechter & Biegler, Math. Program. 106
-/// (2006) 25-57), with MUMPS.
+/// Ipopt, a primal-dual interior-point method (Waechter & Biegler, Math. Program. 106 (2006) 25-57), with
+/// MUMPS.
 ///
 /// Ipopt sees the problem as ReducedProgram writes it.
 ///

@@ -1,7 +1,7 @@
 #include <numeric>
 
 #include "results/archive/archive_groups.hpp"
-#include "results/archive/column_io.hpp"
+#include "results/archive/columns.hpp"
 #include "results/archive/variable_text.hpp"
 
 namespace mpm {

@@ -6,7 +6,7 @@
 #include "analysis/statistics/autocorrelation.hpp"
 #include "plants/non_finite.hpp"
 #include "results/archive/archive_groups.hpp"
-#include "results/archive/column_io.hpp"
+#include "results/archive/columns.hpp"
 #include "results/archive/dimensions.hpp"
 #include "results/archive/matrix_io.hpp"
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "results/archive/archive_groups.hpp"
-#include "results/archive/column_io.hpp"
+#include "results/archive/columns.hpp"
 #include "results/archive/dimensions.hpp"
 #include "results/archive/record_subset.hpp"
 #include "results/archive/record_tables.hpp"

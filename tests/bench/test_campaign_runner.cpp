@@ -8,6 +8,7 @@
 #include "bench/campaign/serial_campaign.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
+#include "scenarios/study_change.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -156,7 +157,7 @@ TEST_CASE("campaign: Ipopt in worker processes is reproducible too") {
   RunOptions options;
   options.solver = "ipopt";
   options.experiments = 2;
-  const Study study = find_study("wood-berry");
+  const Study study = changed_study(find_study("wood-berry"), {{"simulation.samples", "150"}}, "short");
   options.jobs = 2;
   check_same(run_campaign(study, options), run_serially(study, options), 2);
 }

@@ -1,6 +1,6 @@
 """Checks that a file includes, itself or by what it includes of the project, where the names that it uses are declared.
 
-A build reads a dozen sources as one (CMAKE_UNITY_BUILD), so that the compiler does not notice what a source owes to
+A build reads several sources as one (CMAKE_UNITY_BUILD), so that the compiler does not notice what a source owes to
 the one before it. This reads text and knows no C++: of the standard library the names below, of the project the types,
 functions and constants that a header declares at the beginning of a line. A build of the preset debug, which compiles
 each source by itself, is the whole proof.

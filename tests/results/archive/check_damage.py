@@ -100,13 +100,23 @@ class Damage:
     def missing_objects(self):
         variables, groups, attributes = objects(self.whole)
         for path in variables + groups:
-            message = self.after(lambda file: file.pop(path))
-            assert (message is None) if is_for_people(path) else f"'{path}': missing" in (message or ""), (path, message)
+            if not is_for_people(path):
+                message = self.after(lambda file: file.pop(path))
+                assert f"'{path}': missing" in (message or ""), (path, message)
+            elif path in groups:
+                assert self.after(lambda file: file.pop(path)) is None, path
         for group, name in attributes:
-            message = self.after(lambda file: file[group].attrs.pop(name))
-            path = f"{group.rstrip('/')}/{name}"
-            assert (message is None) if is_attribute_for_people(group, name) else (
-                f"'{path}': missing" in (message or "")), (path, message)
+            if not is_attribute_for_people(group, name):
+                message = self.after(lambda file: file[group].attrs.pop(name))
+                assert f"'{group.rstrip('/')}/{name}': missing" in (message or ""), (group, name, message)
+
+        def without_all_that_is_for_people(file):
+            for path in filter(is_for_people, variables):
+                file.pop(path)
+            for group, name in attributes:
+                if is_attribute_for_people(group, name):
+                    file[group].attrs.pop(name)
+        assert self.after(without_all_that_is_for_people) is None
 
     def wrong_objects(self):
         def replace(path, data):
