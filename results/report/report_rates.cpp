@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "analysis/methods/chain_numbers.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
@@ -31,6 +32,12 @@ void add_row(HtmlTable& table, const Finding& finding) {
              fmt::format("{}", finding.count)});
 }
 
+/// "MPM"; of another method than the chain of the thesis "MPM, counterfactual".
+std::string kind_heading(ExperimentKind kind, const std::string& method) {
+  return method.empty() || method == kChainMethod ? kind_name(kind)
+                                                  : fmt::format("{}, {}", kind_name(kind), method);
+}
+
 std::string rates_table(const ReportInput& input) {
   const std::vector<Finding>& rows = input.findings().rows;
   const bool any =
@@ -44,37 +51,48 @@ std::string rates_table(const ReportInput& input) {
                    {"Reported"},
                    {"In interval", HtmlTable::Align::left},
                    {"Count"}});
-  const auto group = [&](const std::string& heading, FindingGroup of, std::optional<ExperimentKind> kind) {
-    bool first = true;
-    for (const Finding& finding : rows) {
-      if (finding.group != of || (kind && finding.kind != kind) || finding.prominence == Prominence::detail)
-        continue;
-      if (first)
-        table.group(heading);
-      first = false;
-      add_row(table, finding);
-    }
-  };
-  group("All experiments", FindingGroup::study, {});
-  for (const KindFindings& kind : input.kinds())
-    group(kind_name(kind.kind), FindingGroup::kind, kind.kind);
-  group("An error in S0", FindingGroup::s0, {});
-  group("Model and plant agree", FindingGroup::faultless, {});
+  const auto group =
+      [&](
+          const std::string& heading, FindingGroup of,
+          const std::function<bool(const Finding&)>& belongs = [](const Finding&) { return true; }) {
+        bool first = true;
+        for (const Finding& finding : rows) {
+          if (finding.group != of || finding.prominence == Prominence::detail || !belongs(finding))
+            continue;
+          if (first)
+            table.group(heading);
+          first = false;
+          add_row(table, finding);
+        }
+      };
+  group("All experiments", FindingGroup::study);
+  for (const MethodFindings& method : input.findings().methods)
+    for (const KindFindings& kind : method.kinds)
+      group(kind_heading(kind.kind, method.name()), FindingGroup::kind, [&](const Finding& finding) {
+        // A method that answers no loop, for want of setpoints perhaps, has nothing to show.
+        return finding.kind == kind.kind && finding.method == method.name() &&
+               (method.name() == kChainMethod || method.rates.answered.hits > 0);
+      });
+  group("An error in S0", FindingGroup::s0);
+  group("Model and plant agree", FindingGroup::faultless);
   return table.html();
 }
 
-/// The shares that a reader asks for first.
+/// The shares that a reader asks for first: where the chain of the thesis was asked those of no other method,
+/// which are compared in a section of their own.
 std::vector<const Finding*> headline(const ReportInput& input) {
+  const bool of_chain = input.findings().chain() != nullptr;
   std::vector<const Finding*> chosen;
   for (const Finding& finding : input.findings().rows)
-    if (finding.prominence == Prominence::headline && finding.is_share())
+    if (finding.prominence == Prominence::headline && finding.is_share() &&
+        (!of_chain || finding.method.empty() || finding.method == kChainMethod))
       chosen.push_back(&finding);
   return chosen;
 }
 
 std::string row_name(const Finding& finding) {
   return finding.kind && finding.group == FindingGroup::kind
-             ? fmt::format("{}: {}", kind_name(*finding.kind), finding.label)
+             ? fmt::format("{}: {}", kind_heading(*finding.kind, finding.method), finding.label)
              : finding.label;
 }
 

@@ -92,6 +92,16 @@ TEST_CASE("report: headline numbers are those of the summary, beside the reporte
                       "<td class=\"number\">4.0&nbsp;%</td><td><span class=\"yes\">yes</span></td>"));
 }
 
+TEST_CASE("report: what another method than the chain shows stands under its name, and beside no headline") {
+  const Campaign campaign = made_up_campaign();
+  const ReportSection section = rates_section(Input(campaign));
+  const std::string html = html_of(section);
+  CHECK_THAT(html, Contains(">MPM<") && Contains(">MPM, sse<") && Contains(">UD, badwe2009<"));
+  REQUIRE(std::holds_alternative<Figure>(section.content.front()));
+  const std::string script = std::get<Figure>(section.content.front()).panels.front().commands;
+  CHECK_THAT(script, Contains("MPM: CV located") && !Contains("sse: CV located"));
+}
+
 TEST_CASE("report: a failed self-check cannot be overlooked") {
   Campaign unhealthy = sample();
   unhealthy.basis.healthy = false;
