@@ -63,8 +63,8 @@ struct ExperimentRecord {
   Diagnosis chain() const;
 };
 
-/// Runs experiments of one study; keeps workspaces between them. One a thread; results depend on the index
-/// only.
+/// Runs experiments of one study; keeps workspaces between them, so each thread needs its own. Results depend
+/// on the index only.
 class ExperimentRunner {
  public:
   /// `study` and `basis` must outlive the runner; the basis case must have status ok. Throws InputError for

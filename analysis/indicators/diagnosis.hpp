@@ -75,7 +75,8 @@ double location_margin(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, Locat
 Eigen::VectorXd basis_variance_indices(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
                                        const Eigen::Ref<const Eigen::MatrixXd>& y_basis);
 
-/// Runs the chain on records y (ny x N); keeps the workspace of the indicators between calls. One a thread.
+/// Runs the chain on records y (ny x N); keeps the workspace of the indicators between calls, so each thread
+/// needs its own.
 class DiagnosisChain {
  public:
   explicit DiagnosisChain(const Study& study);

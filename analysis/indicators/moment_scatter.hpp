@@ -30,7 +30,7 @@ struct PerStatistic {
 
 /// The scatter of (Z of y0, Z of e0) over the windows of one length: statistics of the nominal output on
 /// the x axis, of the nominal error on the y axis. Holds the memory for it, so that a computation allocates
-/// nothing. One a thread.
+/// nothing; each thread needs its own.
 ///
 /// The axes are those of the thesis as its numbers show them: under a disturbance alone its ellipses lie
 /// along the horizontal axis (section 5.3.1, figure 5.11), and it is the kurtosis of the nominal output, with

@@ -20,7 +20,7 @@ namespace mpm {
 ///   with h the impulse response of T0. The first takes the whole past as if the structure had always been
 ///   that of today; in the second an error goes on to act as it did when it occurred.
 ///
-/// Keeps the sensitivities that it has determined. One a thread.
+/// Keeps the sensitivities that it has determined; each thread needs its own.
 class NominalEstimator {
  public:
   /// `study`, `point` and `sensitivity` (those of the basis case) must outlive the estimator.
