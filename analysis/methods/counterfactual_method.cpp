@@ -71,8 +71,8 @@ class Counterfactual final : public AssessmentMethod {
     return run_closed_loop(study_, study_.plant.G, signals, factory_);
   }
 
-  /// var y / (var y0 + v) of each CV. With v = share var y_b it is 1 / (var y0 / var y + share var y_b / var
-  /// y).
+  /// var y / (var y0 + v) of each CV, ny. With v = share var y_b its inverse is
+  /// var y0 / var y + share var y_b / var y.
   Eigen::VectorXd indices(const AssessedLoop& loop, const Trajectory& nominal) const {
     const Eigen::ArrayXd of_nominal = basis_variance_indices(study_, loop.y, nominal.y);
     const Eigen::ArrayXd of_basis = basis_variance_indices(study_, loop.y, y_basis_);
