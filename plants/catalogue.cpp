@@ -35,6 +35,8 @@ constexpr std::array kCatalogue{
                    [] { return quadruple_tank_nonlinear("table-3.1", kTwoFlows); }},
     CatalogueEntry{"distillation-column", distillation_column},
     CatalogueEntry{"siso", siso_plant},
+    CatalogueEntry{"ogunnaike-ray", ogunnaike_ray_column},
+    CatalogueEntry{"banded-20x8", banded_unit_20x8},
 };
 
 const CatalogueEntry& entry_of(const std::string& name) {

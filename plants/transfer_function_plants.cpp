@@ -1,7 +1,10 @@
 #include "plants/transfer_function_plants.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+
+#include <fmt/format.h>
 
 namespace mpm {
 namespace {
@@ -100,6 +103,61 @@ PlantModel siso_plant() {
           .mvs = {{"u", "1", "Manipulated variable"}},
           .mds = {},
           .G = {{TransferFunction(Eigen::Vector2d(-100, 3.04), Eigen::Vector3d(305, 40, 1))}}};
+}
+
+PlantModel ogunnaike_ray_column() {
+  const auto lag = TransferFunction::first_order;
+  // gain (zero s + 1) e^{-dead_time s} / ((a s + 1) (b s + 1))
+  const auto lead = [](double gain, double zero, double a, double b, double dead_time) {
+    return TransferFunction(gain * Eigen::Vector2d(zero, 1), Eigen::Vector3d(a * b, a + b, 1), dead_time);
+  };
+  return {.name = "ogunnaike-ray",
+          .title = "Ogunnaike and Ray's distillation column, 3 CVs, 3 MVs, 2 measured disturbances",
+          .time_unit = "min",
+          .cvs = {{"y1", "1", "Ethanol in the overhead product, mole fraction"},
+                  {"y2", "1", "Ethanol in the side stream, mole fraction"},
+                  {"y3", "degC", "Temperature of tray 19"}},
+          .mvs = {{"u1", "gal/min", "Reflux flow"},
+                  {"u2", "gal/min", "Side stream flow"},
+                  {"u3", "psi", "Steam pressure of the reboiler"}},
+          .mds = {{"d1", "gal/min", "Feed flow"}, {"d2", "degC", "Feed temperature"}},
+          .G = {{lag(0.66, 6.7, 2.6), lag(-0.61, 8.64, 3.5), lag(-0.0049, 9.06, 1.0), lag(0.14, 6.2, 12.0),
+                 lead(-0.0011, 26.32, 7.85, 14.63, 2.66)},
+                {lag(1.11, 3.25, 6.5), lag(-2.36, 5.0, 3.0), lag(-0.01, 7.09, 1.2), lag(0.53, 6.9, 10.5),
+                 lead(-0.0032, 19.62, 7.29, 8.94, 3.44)},
+                {lag(-34.68, 8.15, 9.2), lag(46.2, 10.9, 9.4), lead(0.87, 11.61, 3.89, 18.8, 1.0),
+                 lag(-11.54, 7.01, 0.6), lag(0.32, 7.76, 2.6)}}};
+}
+
+PlantModel banded_unit_20x8() {
+  constexpr int kCvs = 20, kMvs = 8, kMds = 2;
+  PlantModel plant{.name = "banded-20x8",
+                   .title = "Made-up train of eight places, 20 CVs, 8 MVs, 2 measured disturbances",
+                   .time_unit = "min",
+                   .cvs = {},
+                   .mvs = {},
+                   .mds = {},
+                   .G = TransferMatrix(kCvs, kMvs + kMds)};
+  const auto place_of = [](int i) { return 1.0 + 7.0 * (i - 1) / (kCvs - 1); };
+  const auto channel = [](int i, int j, double delta, double scale, double decay) {
+    const double sign = (i + j) % 3 == 0 ? -1.0 : 1.0;
+    return TransferFunction::first_order(
+        sign * scale * (2.0 + (3 * i + 2 * j) % 5 / 4.0) * std::exp(-decay * delta),
+        8.0 + 3.0 * ((2 * i + 5 * j) % 8), 1.0 + (i + 3 * j) % 4 + std::round(2.0 * delta));
+  };
+  for (int i = 1; i <= kCvs; ++i) {
+    plant.cvs.push_back({fmt::format("y{}", i), "1", fmt::format("Quality at place {:.2f}", place_of(i))});
+    for (int j = 1; j <= kMvs; ++j)
+      if (const double delta = std::abs(place_of(i) - j); delta < 2.2)
+        plant.G(i - 1, j - 1) = channel(i, j, delta, 1.0, 0.8);
+    for (int k = 1; k <= kMds; ++k)
+      if (const double delta = std::abs(place_of(i) - (2.5 + 4.0 * (k - 1))); delta < 4.0)
+        plant.G(i - 1, kMvs + k - 1) = channel(i, kMvs + k, delta, 0.5, 0.4);
+  }
+  for (int j = 1; j <= kMvs; ++j)
+    plant.mvs.push_back({fmt::format("u{}", j), "1", fmt::format("Duty at place {}", j)});
+  plant.mds = {{"d1", "1", "Feed at place 2.5"}, {"d2", "1", "Feed at place 6.5"}};
+  return plant;
 }
 
 }  // namespace mpm

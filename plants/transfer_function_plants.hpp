@@ -36,4 +36,27 @@ PlantModel distillation_column();
 /// The plant with mismatch of table 5.2 has 18.25 in the place of 3.04.
 PlantModel siso_plant();
 
+/// The pilot column of Ogunnaike and Ray for ethanol and water, with a side stream, 3 CVs x 3 MVs x 2 MDs
+/// ("ogunnaike-ray"): B. A. Ogunnaike, J. P. Lemaire, M. Morari and W. H. Ray, "Advanced multivariable
+/// control of a pilot-plant distillation column", AIChE Journal 29 (1983), 632-640; times in minutes.
+///
+/// Mole fractions and a temperature in deg C, flows in gal/min and a pressure in psi, so that gains go from
+/// 0.0011 to 46. The channel from the steam pressure to the tray temperature and two of those of the feed
+/// temperature are of second order with a zero.
+PlantModel ogunnaike_ray_column();
+
+/// A made-up unit as large as industrial ones, 20 CVs x 8 MVs x 2 MDs ("banded-20x8"); times in minutes. CV i
+/// = 1 ... 20 stands at p = 1 + 7 (i - 1)/19 along a train of eight places, and MV j at the place j. With
+/// delta = |p - j|, CV i answers the MVs with delta < 2.2 only:
+///
+///   G_ij(s) = g_ij e^{-theta_ij s} / (tau_ij s + 1),
+///   g_ij     = +-(2 + ((3 i + 2 j) mod 5)/4) e^{-0.8 delta},   minus where i + j is a multiple of 3,
+///   tau_ij   = 8 + 3 ((2 i + 5 j) mod 8) min,
+///   theta_ij = 1 + ((i + 3 j) mod 4) + round(2 delta) min.
+///
+/// MD k = 1, 2 enters at the place 2.5 + 4 (k - 1) and is felt within 4 of it, by the same formulas with
+/// j = 8 + k, half the gain, and e^{-0.4 delta}. Nothing was chosen for any method: remainders stand for
+/// chance, and every number can be computed by hand.
+PlantModel banded_unit_20x8();
+
 }  // namespace mpm

@@ -18,6 +18,7 @@ enum class StreamId : std::uint32_t {
   audit = 7,               ///< which experiments are run again as a check
   identification = 8,      ///< moves of the references in the records that T0 is identified from
   tuning = 9,              ///< which weight of the controller is changed, and by how much
+  suite_cell = 40,         ///< the seed of a cell of a suite
   /// Of the second disturbance of a named scenario; the following numbers are those of the third and so on.
   further_disturbance_signals = 0x1000,
 };

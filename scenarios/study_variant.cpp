@@ -56,18 +56,29 @@ Study read_base_study(const TomlTable& heading, const std::filesystem::path& fol
   });
 }
 
+void make_changes(toml::table& study, const TomlTable& changes) {
+  for (const std::string& key : removed_keys(changes))
+    if (!take_out(study, key))
+      changes.refuse("remove", in_quotes(key), "keys that the base study has");
+  const toml::node* const set = changes.find("set");
+  if (set == nullptr)
+    return;
+  if (!set->is_table())
+    changes.refuse("set", describe(*set), "a table of study keys");
+  lay_over(study, *set->as_table());
+}
+
+Study study_of(const toml::table& text, const std::string& name) {
+  std::ostringstream stream;
+  stream << text << '\n';
+  return parse_study(stream.str(), name);
+}
+
 Study read_study_variant(const TomlTable& variant, const toml::table& base, const std::string& name) {
   toml::table study = base;
-  for (const std::string& key : removed_keys(variant))
-    if (!take_out(study, key))
-      variant.refuse("remove", in_quotes(key), "keys that the base study has");
-  const toml::node& changes = variant.require("set", "a table of study keys");
-  if (!changes.is_table())
-    variant.refuse("set", describe(changes), "a table of study keys");
-  lay_over(study, *changes.as_table());
-  std::ostringstream text;
-  text << study << '\n';
-  return parse_study(text.str(), name);
+  variant.require("set", "a table of study keys");
+  make_changes(study, variant);
+  return study_of(study, name);
 }
 
 }  // namespace mpm

@@ -10,6 +10,7 @@ using AddCommand = void(CommandSet& commands);
 AddCommand add_run;        // runs a study and writes its archive
 AddCommand add_replay;     // runs one experiment of an archive again
 AddCommand add_summary;    // what a study found, as text or JSON
+AddCommand add_suite;      // plants and families of experiments, and the leaderboard of the methods
 AddCommand add_sweep;      // runs a study once for each value of its open choices
 AddCommand add_check;      // holds an archive against limits
 AddCommand add_report;     // what a study found, as a page and figures
@@ -20,8 +21,8 @@ AddCommand add_export;     // a table of an archive as CSV
 AddCommand add_list;       // the shipped studies
 
 /// In the order of the help.
-inline constexpr AddCommand* kCommands[] = {add_run,       add_replay, add_summary, add_sweep,
-                                            add_check,     add_report, add_plot,    add_compare,
-                                            add_reproduce, add_export, add_list};
+inline constexpr AddCommand* kCommands[] = {add_run,     add_replay,    add_summary, add_suite,
+                                            add_sweep,   add_check,     add_report,  add_plot,
+                                            add_compare, add_reproduce, add_export,  add_list};
 
 }  // namespace mpm

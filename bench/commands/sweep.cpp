@@ -13,7 +13,6 @@
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
 #include "results/archive/archive.hpp"
-#include "results/files/archive_error.hpp"
 #include "results/summary/sweep_table.hpp"
 #include "scenarios/sweep_file.hpp"
 
@@ -28,13 +27,6 @@ struct SweepArguments {
   RunOptions run;
   bool quiet = false;
 };
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw ArchiveError(fmt::format("{}: no archives can be written: {}", folder.string(), error.message()));
-}
 
 std::string label(const SweepVariant& variant) {
   return variant.choice.empty() ? "as shipped" : fmt::format("{} = {}", variant.choice, variant.value);
@@ -56,7 +48,7 @@ Campaign run_variant(const SweepVariant& variant, const std::string& name, const
 ExitCode run_sweep(const SweepArguments& options, const std::string& command_line) {
   const Sweep sweep = find_sweep(options.sweep);
   const fs::path folder = options.output;
-  make_folder(folder);
+  make_output_folder(folder, "archives");
   Progress progress(options.quiet);
   std::vector<SweepRow> rows;
   for (std::size_t i = 0; i < sweep.variants.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "bench/files/output_file.hpp"
 
 #include <span>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -17,6 +18,13 @@ void require_output_folder(const std::filesystem::path& output, std::string_view
                                    output.string(), what));
   if (std::filesystem::is_directory(output))
     throw ArchiveError(fmt::format("{}: no {} can be written: it is a folder", output.string(), what));
+}
+
+void make_output_folder(const std::filesystem::path& folder, std::string_view what) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw ArchiveError(fmt::format("{}: no {} can be written: {}", folder.string(), what, error.message()));
 }
 
 void write_text(const std::filesystem::path& output, std::string_view text) {

@@ -9,6 +9,9 @@ namespace mpm {
 /// ArchiveError.
 void require_output_folder(const std::filesystem::path& output, std::string_view what);
 
+/// Makes the folder unless it is there; `what` are to be written into it. Throws ArchiveError.
+void make_output_folder(const std::filesystem::path& folder, std::string_view what);
+
 /// Writes a page, a table or another text, all or nothing. Throws ArchiveError when it cannot be written.
 void write_text(const std::filesystem::path& output, std::string_view text);
 

@@ -154,4 +154,35 @@ TEST_CASE("the SISO plant has the gain and the inverse response of table 5.1", "
   CHECK(std::abs(step(0, 39) - 3.04) < 1e-3);
 }
 
+TEST_CASE("Ogunnaike and Ray's column has the printed gains, and its second-order channel the printed poles",
+          "[catalogue]") {
+  const TransferMatrix G = benchmark_plant("ogunnaike-ray").G;
+  const Eigen::MatrixXd gains = (Eigen::MatrixXd(3, 5) << 0.66, -0.61, -0.0049, 0.14, -0.0011,  //
+                                 1.11, -2.36, -0.01, 0.53, -0.0032,                             //
+                                 -34.68, 46.2, 0.87, -11.54, 0.32)
+                                    .finished();
+  CHECK(G.static_gain() == gains);
+  const std::complex<double> s(0.01, 0.2);
+  const std::complex<double> printed =
+      0.87 * (11.61 * s + 1.0) * std::exp(-s) / (3.89 * s + 1.0) / (18.8 * s + 1.0);
+  CHECK(std::abs(G(2, 2)(s) - printed) < 1e-14);
+  CHECK(G(2, 1).dead_time() == 9.4);
+}
+
+TEST_CASE("the made-up unit has channels along its diagonal only, each by its formula", "[catalogue]") {
+  const PlantModel plant = benchmark_plant("banded-20x8");
+  REQUIRE(plant.cvs.size() == 20);
+  REQUIRE(plant.mvs.size() == 8);
+  int channels = 0;
+  for (Eigen::Index i = 0; i < 20; ++i)
+    for (Eigen::Index j = 0; j < 8; ++j)
+      channels += plant.G(i, j).is_zero() ? 0 : 1;
+  CHECK(channels == 78);  // counted by hand from |1 + 7 (i - 1)/19 - j| < 2.2
+  CHECK(plant.G(0, 7).is_zero());
+  // i = j = 1: delta = 0, 3 i + 2 j = 5, 2 i + 5 j = 7, i + 3 j = 4.
+  CHECK(plant.G(0, 0) == TransferFunction::first_order(2.0, 29.0, 1.0));
+  // i = 20, j = 7: delta = 1, i + j = 27 is a multiple of 3, 3 i + 2 j = 74, 2 i + 5 j = 75, i + 3 j = 41.
+  CHECK(plant.G(19, 6) == TransferFunction::first_order(-3.0 * std::exp(-0.8), 17.0, 4.0));
+}
+
 }  // namespace mpm

@@ -1,0 +1,172 @@
+#include "analysis/findings/leaderboard.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <utility>
+
+#include "analysis/findings/method_rates.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::array kScores{
+    LeaderboardScore{"answered", "verdict given"},
+    LeaderboardScore{"detected_impact", "faults with an impact, flagged"},
+    LeaderboardScore{"power_05_impact", "faults with an impact, flagged at 5 % false alarms"},
+    LeaderboardScore{"false_alarm_healthy", "healthy loops, flagged", true},
+    LeaderboardScore{"false_alarm_calibrated", "healthy loops, flagged at the calibrated threshold", true},
+    LeaderboardScore{"located", "flagged, the affected CV named"},
+    LeaderboardScore{"source", "flagged, the right source named"},
+    LeaderboardScore{"source_all", "all faults, the right source named"},
+};
+
+const MethodRateInfo* info_of(std::string_view name) {
+  const auto infos = method_rate_infos();
+  const auto found = std::find_if(infos.begin(), infos.end(),
+                                  [name](const MethodRateInfo& info) { return info.name == name; });
+  return found == infos.end() ? nullptr : &*found;
+}
+
+/// The value of a rate that was counted on some loop; none otherwise.
+bool at_least(const Rate* rate, double least) {
+  return rate != nullptr && rate->total > 0 && rate->value >= least;
+}
+
+using Belongs = std::function<bool(const CellScores&)>;
+
+PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, double confidence,
+                  const Belongs& belongs) {
+  PooledScores pooled;
+  const auto infos = method_rate_infos();
+  std::vector<std::int64_t> hits(infos.size()), totals(infos.size());
+  for (const CellScores& cell : cells) {
+    if (!belongs(cell) || !cell.trouble.empty())
+      continue;
+    const MethodScores& scores = cell.methods[method];
+    ++pooled.cells;
+    const Rate* const answered = scores.of("answered");
+    pooled.answering_cells += answered != nullptr && answered->hits > 0 ? 1 : 0;
+    if (pooled.reason.empty())
+      pooled.reason = scores.reason;
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      hits[i] += scores.rates[i].hits;
+      totals[i] += scores.rates[i].total;
+    }
+  }
+  for (std::size_t i = 0; i < infos.size(); ++i)
+    pooled.rates.push_back(rate(hits[i], totals[i], confidence));
+  return pooled;
+}
+
+/// The entries of an axis that some cell has, with the places of the cells counted anew.
+std::vector<SuiteAxis> used(const std::vector<SuiteAxis>& axis, std::vector<CellScores>& cells,
+                            std::size_t CellScores::*place) {
+  std::vector<SuiteAxis> kept;
+  for (std::size_t old = 0; old < axis.size(); ++old) {
+    const auto here = [&](const CellScores& cell) { return cell.*place == old; };
+    if (std::none_of(cells.begin(), cells.end(), here))
+      continue;
+    for (CellScores& cell : cells)
+      if (here(cell))
+        cell.*place = kept.size();  // never above `old`, so that no cell is moved twice
+    kept.push_back(axis[old]);
+  }
+  return kept;
+}
+
+}  // namespace
+
+const Rate* MethodScores::of(std::string_view name) const {
+  const MethodRateInfo* const info = info_of(name);
+  return info == nullptr ? nullptr : &rates[static_cast<std::size_t>(info - method_rate_infos().data())];
+}
+
+CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
+  CellScores scores{.plant = cell.plant,
+                    .family = cell.family,
+                    .seed = cell.study.seed,
+                    .experiments = findings.experiments,
+                    .failed = findings.failed,
+                    .infeasible = findings.infeasible.hits};
+  for (const MethodFindings& method : findings.methods) {
+    MethodScores& of_method = scores.methods.emplace_back(MethodScores{method.rates.reason, {}});
+    for (const MethodRateInfo& info : method_rate_infos())
+      of_method.rates.push_back(method.rates.*info.rate);
+  }
+  return scores;
+}
+
+bool PooledScores::answers_in_part() const {
+  const Rate* const answered = of("answered");
+  return answered != nullptr && answered->hits > 0 && answered->value < kFewestAnswers;
+}
+
+bool PooledScores::too_many_false_alarms() const {
+  const Rate* const alarms = of("false_alarm_healthy");
+  return alarms != nullptr && alarms->total > 0 && alarms->interval.lower > kMostFalseAlarms;
+}
+
+std::string_view to_string(LeaderboardTask task) {
+  switch (task) {
+    case LeaderboardTask::detection:
+      return "detection";
+    case LeaderboardTask::location:
+      return "location";
+    case LeaderboardTask::source:
+      return "source";
+  }
+  return "";
+}
+
+bool passes(const PooledScores& scores, LeaderboardTask task) {
+  const Rate* const alarms = scores.of("false_alarm_healthy");
+  const bool quiet = alarms != nullptr && alarms->total > 0 && alarms->value <= kPassingFalseAlarms;
+  if (!quiet || !at_least(scores.of("answered"), kFewestAnswers))
+    return false;
+  switch (task) {
+    case LeaderboardTask::detection:
+      return at_least(scores.of("detected_impact"), kPassingShare);
+    case LeaderboardTask::location:
+      return at_least(scores.of("located"), kPassingShare);
+    case LeaderboardTask::source:
+      return at_least(scores.of("source_all"), kPassingShare);
+  }
+  return false;
+}
+
+std::vector<LeaderboardScore> leaderboard_scores() {
+  std::vector<LeaderboardScore> known;
+  for (const LeaderboardScore& score : kScores)
+    if (info_of(score.rate) != nullptr)
+      known.push_back(score);
+  return known;
+}
+
+Leaderboard make_leaderboard(const Suite& suite, const std::vector<std::string>& methods,
+                             const std::string& program, std::vector<CellScores> cells) {
+  Leaderboard board{.suite = suite.name,
+                    .version = suite.version,
+                    .title = suite.title,
+                    .seed = suite.seed,
+                    .program = program,
+                    .methods = methods};
+  board.plants = used(suite.plants, cells, &CellScores::plant);
+  board.families = used(suite.families, cells, &CellScores::family);
+  board.cells = std::move(cells);
+  for (std::size_t method = 0; method < methods.size(); ++method) {
+    const auto pooled = [&](const Belongs& belongs) {
+      return pool(method, board.cells, board.confidence, belongs);
+    };
+    std::vector<PooledScores>& families = board.by_family.emplace_back();
+    for (std::size_t family = 0; family < board.families.size(); ++family)
+      families.push_back(pooled([family](const CellScores& cell) { return cell.family == family; }));
+    std::vector<PooledScores>& plants = board.by_plant.emplace_back();
+    for (std::size_t plant = 0; plant < board.plants.size(); ++plant)
+      plants.push_back(pooled([plant](const CellScores& cell) { return cell.plant == plant; }));
+    board.overall.push_back(pooled([](const CellScores&) { return true; }));
+  }
+  return board;
+}
+
+}  // namespace mpm

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/findings/study_findings.hpp"
+#include "analysis/statistics/interval.hpp"
+#include "scenarios/suite_file.hpp"
+
+namespace mpm {
+
+/// How often a method was right on some loops.
+struct MethodScores {
+  std::string reason;       ///< why there was no verdict on the first loop without one; empty: on every loop
+  std::vector<Rate> rates;  ///< in the order of method_rate_infos()
+
+  /// The rate of this name; null when there is none.
+  const Rate* of(std::string_view name) const;
+};
+
+/// What a cell of a suite gave.
+struct CellScores {
+  std::size_t plant = 0;   ///< place in Suite::plants
+  std::size_t family = 0;  ///< place in Suite::families
+  std::uint64_t seed = 0;
+  std::string trouble = {};  ///< why it could not be run; empty: it was
+  std::int64_t experiments = 0;
+  std::int64_t failed = 0;
+  std::int64_t infeasible = 0;
+  std::vector<MethodScores> methods = {};  ///< in the order of the leaderboard; empty in trouble
+};
+
+/// The scores of a cell that was run.
+CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings);
+
+/// A method on all cells of a family, or of a plant: hits and loops of the cells are added up, so that each
+/// loop counts once, and Wilson's interval is taken of the sums.
+struct PooledScores : MethodScores {
+  std::size_t cells = 0;            ///< that were run
+  std::size_t answering_cells = 0;  ///< on some loop of which it gave a verdict
+
+  /// It gave a verdict on fewer than kFewestAnswers of the loops: its rates rest on a part of what those of
+  /// others rest on.
+  bool answers_in_part() const;
+  /// The interval of its false alarms on healthy loops lies above kMostFalseAlarms as a whole.
+  bool too_many_false_alarms() const;
+};
+
+inline constexpr double kFewestAnswers = 0.9;
+inline constexpr double kMostFalseAlarms = 0.05;
+
+/// What a method is asked to do.
+enum class LeaderboardTask { detection, location, source };
+inline constexpr LeaderboardTask kLeaderboardTasks[] = {LeaderboardTask::detection, LeaderboardTask::location,
+                                                        LeaderboardTask::source};
+
+/// "detection", "location", "source"
+std::string_view to_string(LeaderboardTask task);
+
+/// A task is passed by a method that gives a verdict on 90 % of the loops (kFewestAnswers) and is right on 80
+/// % of those that the task looks at (kPassingShare):
+///
+/// | task      | 80 % of                                                       | and          |
+/// |-----------|---------------------------------------------------------------|--------------|
+/// | detection | the loops with a fault that has an impact are flagged         | at most 10 % |
+/// | location  | the flagged loops with one affected CV have it named          | of the healthy loops |
+/// | source    | the loops with a fault have the right source, all counted     | are flagged  |
+///
+/// The numbers themselves are held against the limits, not their intervals. A finding that does not exist,
+/// because no loop of the family asks for it or the method does not name it, passes nothing.
+bool passes(const PooledScores& scores, LeaderboardTask task);
+
+inline constexpr double kPassingShare = 0.8;
+inline constexpr double kPassingFalseAlarms = 0.1;
+
+/// A number of the leaderboard.
+struct LeaderboardScore {
+  std::string_view rate;   ///< name in method_rate_infos()
+  std::string_view title;  ///< for people
+  bool low_is_good = false;
+};
+
+/// Those that method_rate_infos() knows, in the order in which people read them.
+std::vector<LeaderboardScore> leaderboard_scores();
+
+/// All that a run of a suite found.
+struct Leaderboard {
+  std::string suite;
+  std::string version;
+  std::string title;
+  std::uint64_t seed = 0;
+  std::string program;  ///< version of the program
+  double confidence = 0.95;
+  std::vector<SuiteAxis> plants = {};    ///< with a cell, in the order of the suite
+  std::vector<SuiteAxis> families = {};  ///< with a cell, in the order of the suite
+  std::vector<std::string> methods = {};
+  std::vector<CellScores> cells = {};                     ///< with places in `plants` and `families` above
+  std::vector<std::vector<PooledScores>> by_family = {};  ///< [method][family]
+  std::vector<std::vector<PooledScores>> by_plant = {};   ///< [method][plant]
+  std::vector<PooledScores> overall = {};                 ///< [method]
+};
+
+/// Pools the cells of a suite. `cells` are those of `suite`, in any number and order; `methods` those of each
+/// cell that was run, in its order.
+Leaderboard make_leaderboard(const Suite& suite, const std::vector<std::string>& methods,
+                             const std::string& program, std::vector<CellScores> cells);
+
+}  // namespace mpm

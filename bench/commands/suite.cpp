@@ -1,0 +1,96 @@
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "analysis/findings/leaderboard.hpp"
+#include "analysis/methods/method_table.hpp"
+#include "bench/campaign/suite_runner.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/console/progress.hpp"
+#include "bench/files/output_file.hpp"
+#include "bench/version.hpp"
+#include "results/suite/leaderboard_output.hpp"
+#include "scenarios/suite_file.hpp"
+
+namespace mpm {
+namespace {
+
+struct SuiteArguments {
+  std::string suite;
+  std::string output;
+  SuiteChoice choice;
+  RunOptions run;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// Runs the suite, or what is missing of it, and shows its leaderboard, which is also left in the folder as a
+/// page and as JSON.
+ExitCode run_suite_command(const SuiteArguments& options, const std::string& command_line) {
+  const Suite suite = find_suite(options.suite, options.choice);
+  SuiteRun run{.run = options.run, .folder = options.output, .command = command_line};
+  run.run.methods = known_methods(run.run.methods.empty() ? suite.methods : run.run.methods,
+                                  run.run.methods.empty() ? "suite.methods" : "--methods");
+  make_output_folder(run.folder, "archives");
+
+  Progress progress(options.quiet);
+  std::string cell_name;
+  run.hooks = hooks_of(progress);
+  run.on_cell = [&](std::size_t cell, bool is_there) {
+    cell_name = suite.name_of(suite.cells[cell]);
+    progress.note(fmt::format("cell {} of {}: {}{}", cell + 1, suite.cells.size(), cell_name,
+                              is_there ? ", done already" : ""));
+  };
+  std::vector<CellScores> cells;
+  try {
+    cells = run_suite(suite, run);
+  } catch (const Interrupted& error) {
+    throw std::runtime_error(fmt::format("{}, in {}\nWhat is done is kept in {}. To go on with it:\n  {}",
+                                         progress.explain(error), cell_name, options.output, command_line));
+  }
+  for (const CellScores& cell : cells)
+    if (!cell.trouble.empty())
+      progress.warn(fmt::format("{}.{}: {}", suite.plants[cell.plant].name, suite.families[cell.family].name,
+                                cell.trouble));
+
+  const Leaderboard board = make_leaderboard(suite, run.run.methods, mpmbench_version(), std::move(cells));
+  const std::string json = leaderboard_json(board);
+  write_text(run.folder / "leaderboard.json", json);
+  write_text(run.folder / "leaderboard.html", leaderboard_html(board));
+  fmt::print("{}", options.json ? json : leaderboard_text(board));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_suite(CommandSet& commands) {
+  const auto options = std::make_shared<SuiteArguments>();
+  options->run.store = StorePolicy::none;  // loops are run again from (study, seed, index) when asked for
+  options->run.audit_share = 0.0;          // Ipopt answers where the active set does not, and checks nothing
+  CLI::App& app =
+      commands.add("suite", "Run a suite of plants and families of experiments, and make its leaderboard",
+                   [options, &commands] { return run_suite_command(*options, commands.command_line()); });
+  app.add_option("SUITE", options->suite, "Suite file, or name of a shipped suite: standard, quick")
+      ->required();
+  app.add_option("-o,--output", options->output,
+                 "Folder for the archives and the leaderboard; what it has of this suite is kept")
+      ->required();
+  app.add_option("--seed", options->choice.seed, "Seed of the suite instead of its own: a private suite");
+  app.add_option("--plants", options->choice.plants, "These plants only, separated by commas")
+      ->delimiter(',');
+  app.add_option("--families", options->choice.families, "These families only, separated by commas")
+      ->delimiter(',');
+  add_experiments(app, options->run.experiments, "Run the first N experiments of each cell");
+  add_methods_option(app, options->run.methods,
+                     "Methods that assess the loops, separated by commas, or all; in place of the suite's");
+  add_jobs(app, options->run.jobs, "How many experiments run at once");
+  add_json(app, options->json);
+  add_quiet(app, options->quiet);
+}
+
+}  // namespace mpm

@@ -1,0 +1,90 @@
+#include <nlohmann/json.hpp>
+
+#include "analysis/findings/method_rates.hpp"
+#include "results/files/utf8.hpp"
+#include "results/suite/leaderboard_output.hpp"
+#include "results/suite/leaderboard_words.hpp"
+
+namespace mpm {
+namespace {
+
+using SuiteJson = nlohmann::ordered_json;
+
+SuiteJson axis_json(const std::vector<SuiteAxis>& axis) {
+  SuiteJson list = SuiteJson::array();
+  for (const SuiteAxis& entry : axis)
+    list.push_back({{"name", entry.name}, {"title", proper_utf8(entry.title)}});
+  return list;
+}
+
+SuiteJson scores_json(const PooledScores& scores) {
+  SuiteJson rates = SuiteJson::object(), passed = SuiteJson::object();
+  std::size_t place = 0;
+  for (const MethodRateInfo& info : method_rate_infos()) {
+    const Rate& rate = scores.rates[place++];
+    rates[info.name] = {{"value", rate.value},
+                        {"lower", rate.interval.lower},
+                        {"upper", rate.interval.upper},
+                        {"hits", rate.hits},
+                        {"total", rate.total}};
+  }
+  for (const LeaderboardTask task : kLeaderboardTasks)
+    passed[std::string(to_string(task))] = passes(scores, task);
+  return {{"cells", scores.cells},
+          {"answering_cells", scores.answering_cells},
+          {"reason", proper_utf8(scores.reason)},
+          {"too_many_false_alarms", scores.too_many_false_alarms()},
+          {"answers_in_part", scores.answers_in_part()},
+          {"passes", passed},
+          {"rates", rates}};
+}
+
+SuiteJson along(const std::vector<SuiteAxis>& axis, const std::vector<PooledScores>& scores) {
+  SuiteJson json = SuiteJson::object();
+  for (std::size_t i = 0; i < axis.size(); ++i)
+    json[axis[i].name] = scores_json(scores[i]);
+  return json;
+}
+
+SuiteJson cells_json(const Leaderboard& board) {
+  SuiteJson cells = SuiteJson::array();
+  for (const CellScores& cell : board.cells)
+    cells.push_back({{"plant", board.plants[cell.plant].name},
+                     {"family", board.families[cell.family].name},
+                     {"seed", cell.seed},
+                     {"experiments", cell.experiments},
+                     {"failed", cell.failed},
+                     {"infeasible", cell.infeasible},
+                     {"trouble", proper_utf8(cell.trouble)}});
+  return cells;
+}
+
+}  // namespace
+
+std::string leaderboard_json(const Leaderboard& board) {
+  SuiteJson methods = SuiteJson::array(), meanings = SuiteJson::object(), nobody = SuiteJson::object();
+  for (std::size_t method = 0; method < board.methods.size(); ++method)
+    methods.push_back({{"name", board.methods[method]},
+                       {"all", scores_json(board.overall[method])},
+                       {"families", along(board.families, board.by_family[method])},
+                       {"plants", along(board.plants, board.by_plant[method])}});
+  for (const MethodRateInfo& info : method_rate_infos())
+    meanings[info.name] = info.meaning;
+  for (const LeaderboardTask task : kLeaderboardTasks)
+    nobody[std::string(to_string(task))] = passed_by_nobody(board, task);
+  const SuiteJson json{{"suite", board.suite},
+                       {"version", board.version},
+                       {"title", proper_utf8(board.title)},
+                       {"seed", board.seed},
+                       {"mpmbench_version", board.program},
+                       {"confidence", board.confidence},
+                       {"plants", axis_json(board.plants)},
+                       {"families", axis_json(board.families)},
+                       {"rates", meanings},
+                       {"passed_by_nobody", nobody},
+                       {"cells", cells_json(board)},
+                       {"methods", methods}};
+  return json.dump(1) + "\n";
+}
+
+}  // namespace mpm

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "results/suite/leaderboard_output.hpp"
+#include "results/suite/leaderboard_words.hpp"
+#include "results/text/text_table.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::size_t kTextWidth = 120;
+
+/// Columns of numbers that fit into kTextWidth beside the names of the methods.
+constexpr std::size_t kColumnsAbreast = 6;
+
+std::string score_text(const PooledScores& scores, const LeaderboardScore& score) {
+  const Rate* const rate = scores.of(score.rate);
+  if (rate == nullptr || rate->total == 0)
+    return "-";
+  return fmt::format("{:.0f} [{:.0f}, {:.0f}]{}", 100 * rate->value, 100 * rate->interval.lower,
+                     100 * rate->interval.upper, marks_of(scores));
+}
+
+/// A sentence under a name, in lines of at most kTextWidth characters where a word allows it.
+std::string item_text(const std::string& name, const std::string& sentence) {
+  std::string text, line = fmt::format("  {}:", name);
+  std::istringstream words(sentence);
+  for (std::string word; words >> word;) {
+    if (line.size() + 1 + word.size() > kTextWidth) {
+      text += fmt::format("{}\n", line);
+      line = "   ";
+    }
+    line += fmt::format(" {}", word);
+  }
+  return fmt::format("{}{}\n", text, line);
+}
+
+/// The families, and all of them together.
+std::vector<std::string> heads_of(const Leaderboard& board) {
+  std::vector<std::string> heads;
+  for (const SuiteAxis& family : board.families)
+    heads.push_back(family.name);
+  heads.emplace_back("all");
+  return heads;
+}
+
+const PooledScores& scores_at(const Leaderboard& board, std::size_t method, std::size_t column) {
+  return column < board.families.size() ? board.by_family[method][column] : board.overall[method];
+}
+
+/// One row a method, the columns in blocks; `cell` makes the entries.
+std::string blocks_text(const Leaderboard& board, const std::string& title, const auto& cell) {
+  const std::vector<std::string> heads = heads_of(board);
+  std::string text;
+  for (std::size_t first = 0; first < heads.size(); first += kColumnsAbreast) {
+    const std::size_t last = std::min(first + kColumnsAbreast, heads.size());
+    TextTable table;
+    TextTable::Row head{""};
+    head.insert(head.end(), heads.begin() + static_cast<std::ptrdiff_t>(first),
+                heads.begin() + static_cast<std::ptrdiff_t>(last));
+    table.add(head);
+    for (std::size_t method = 0; method < board.methods.size(); ++method) {
+      TextTable::Row row{board.methods[method]};
+      for (std::size_t column = first; column < last; ++column)
+        row.push_back(cell(scores_at(board, method, column)));
+      table.add(row);
+    }
+    text += fmt::format("\n{}{}\n{}", title, first == 0 ? "" : " (further families)", table.text());
+  }
+  return text;
+}
+
+std::string passed_text(const PooledScores& scores) {
+  std::string text;
+  for (const LeaderboardTask task : kLeaderboardTasks)
+    text += passes(scores, task) ? letter_of(task) : '.';
+  return text;
+}
+
+std::string nobody_text(const Leaderboard& board) {
+  std::string text;
+  for (const LeaderboardTask task : kLeaderboardTasks) {
+    const std::vector<std::string> families = passed_by_nobody(board, task);
+    text += fmt::format("{}: {}\n", to_string(task),
+                        families.empty() ? "every family is passed by some method"
+                                         : fmt::format("nobody passes {}", fmt::join(families, ", ")));
+  }
+  return text;
+}
+
+std::string troubles_text(const Leaderboard& board) {
+  std::string text;
+  for (const CellScores& cell : board.cells)
+    if (!cell.trouble.empty())
+      text += item_text(fmt::format("{}.{}", board.plants[cell.plant].name, board.families[cell.family].name),
+                        cell.trouble);
+  return text.empty() ? text : fmt::format("\nnot run\n{}", text);
+}
+
+std::string silences_text(const Leaderboard& board) {
+  std::string text;
+  for (std::size_t method = 0; method < board.methods.size(); ++method) {
+    const PooledScores& scores = board.overall[method];
+    if (scores.reason.empty())
+      continue;
+    const Rate* const answered = scores.of("answered");
+    text += item_text(board.methods[method],
+                      fmt::format("{} of {} loops, the first because: {}", answered->total - answered->hits,
+                                  answered->total, scores.reason));
+  }
+  return text.empty() ? text : fmt::format("\nno verdict on\n{}", text);
+}
+
+}  // namespace
+
+std::string leaderboard_text(const Leaderboard& board) {
+  std::string text =
+      fmt::format("{} {}: {}\n{}; % of loops [{:g} % interval], pooled over the plants\n", board.suite,
+                  board.version, board.title, size_text(board), 100 * board.confidence);
+  text += blocks_text(board, "passed: D detection, L location, S source", passed_text);
+  for (const LeaderboardScore& score : leaderboard_scores())
+    text += blocks_text(board, std::string(score.title),
+                        [&](const PooledScores& scores) { return score_text(scores, score); });
+  return fmt::format("{}\n{}\n{}{}{}", text, marks_text(), nobody_text(board), silences_text(board),
+                     troubles_text(board));
+}
+
+}  // namespace mpm

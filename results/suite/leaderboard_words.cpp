@@ -1,0 +1,48 @@
+#include "results/suite/leaderboard_words.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace mpm {
+
+std::string marks_of(const PooledScores& scores) {
+  return fmt::format("{}{}", scores.too_many_false_alarms() ? "*" : "", scores.answers_in_part() ? "~" : "");
+}
+
+std::string marks_text() {
+  return fmt::format(
+      "* the interval of its own false alarms on healthy loops lies above {:g} %\n"
+      "~ verdicts on fewer than {:g} % of the loops: not the same loops as those of the others\n"
+      "passed: verdicts on {:g} % of the loops, false alarms on at most {:g} %, and {:g} % of the faults "
+      "with "
+      "an impact\nflagged (D), of the flagged CVs right (L), of all sources right (S)\n",
+      100 * kMostFalseAlarms, 100 * kFewestAnswers, 100 * kFewestAnswers, 100 * kPassingFalseAlarms,
+      100 * kPassingShare);
+}
+
+char letter_of(LeaderboardTask task) {
+  return task == LeaderboardTask::detection ? 'D' : task == LeaderboardTask::location ? 'L' : 'S';
+}
+
+std::string size_text(const Leaderboard& board) {
+  std::int64_t experiments = 0, cells = 0;
+  for (const CellScores& cell : board.cells) {
+    experiments += cell.experiments;
+    cells += cell.trouble.empty() ? 1 : 0;
+  }
+  return fmt::format("{} cells ({} plants, {} families), {} experiments, seed {}", cells, board.plants.size(),
+                     board.families.size(), experiments, board.seed);
+}
+
+std::vector<std::string> passed_by_nobody(const Leaderboard& board, LeaderboardTask task) {
+  std::vector<std::string> names;
+  for (std::size_t family = 0; family < board.families.size(); ++family)
+    if (std::none_of(
+            board.by_family.begin(), board.by_family.end(),
+            [&](const std::vector<PooledScores>& of_method) { return passes(of_method[family], task); }))
+      names.push_back(board.families[family].name);
+  return names;
+}
+
+}  // namespace mpm

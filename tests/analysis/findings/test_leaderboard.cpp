@@ -1,0 +1,121 @@
+#include <map>
+#include <string>
+#include <utility>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/findings/leaderboard.hpp"
+#include "analysis/findings/method_rates.hpp"
+
+namespace mpm {
+namespace {
+
+using HitsOf = std::map<std::string, std::pair<std::int64_t, std::int64_t>>;  // hits and total by name
+
+MethodScores scores_with(const HitsOf& hits_of) {
+  MethodScores scores;
+  for (const MethodRateInfo& info : method_rate_infos()) {
+    const auto found = hits_of.find(info.name);
+    scores.rates.push_back(found == hits_of.end() ? rate(0, 0)
+                                                  : rate(found->second.first, found->second.second));
+  }
+  return scores;
+}
+
+PooledScores pooled_with(const HitsOf& hits_of) {
+  PooledScores pooled;
+  pooled.rates = scores_with(hits_of).rates;
+  return pooled;
+}
+
+/// A suite of plants a, b, c and families f, g without studies, which pooling does not look at.
+Suite two_families() {
+  Suite suite;
+  suite.name = "s";
+  suite.plants = {{"a", ""}, {"b", ""}, {"c", ""}};
+  suite.families = {{"f", ""}, {"g", ""}};
+  return suite;
+}
+
+const HitsOf kSound{{"answered", {100, 100}},
+                    {"detected_impact", {80, 100}},
+                    {"false_alarm_healthy", {2, 20}},
+                    {"located", {8, 10}},
+                    {"source", {8, 10}},
+                    {"source_all", {8, 10}}};
+
+HitsOf with(HitsOf hits_of, const std::string& name, std::int64_t hits, std::int64_t total) {
+  hits_of[name] = {hits, total};
+  return hits_of;
+}
+
+}  // namespace
+
+TEST_CASE("loops of the cells are added up, by family, by plant and over all", "[leaderboard]") {
+  const Leaderboard board =
+      make_leaderboard(two_families(), {"m"}, "1.0",
+                       {{.plant = 0,
+                         .family = 0,
+                         .methods = {scores_with({{"detected_impact", {1, 4}}, {"answered", {5, 5}}})}},
+                        {.plant = 2,
+                         .family = 0,
+                         .methods = {scores_with({{"detected_impact", {9, 12}}, {"answered", {0, 6}}})}},
+                        {.plant = 2, .family = 1, .methods = {scores_with({{"detected_impact", {0, 4}}})}}});
+  REQUIRE(board.plants.size() == 2);  // b has no cell
+  CHECK(board.plants[1].name == "c");
+  CHECK(board.cells[1].plant == 1);
+  const Rate* const f = board.by_family[0][0].of("detected_impact");
+  CHECK(f->hits == 10);
+  CHECK(f->total == 16);
+  CHECK(f->value == 0.625);
+  // Wilson's interval of 10 of 16, from its formula with z = 1.95996.
+  CHECK(f->interval.lower == Approx(0.38641).margin(1e-5));
+  CHECK(f->interval.upper == Approx(0.81519).margin(1e-5));
+  CHECK(board.by_family[0][0].cells == 2);
+  CHECK(board.by_family[0][0].answering_cells == 1);
+  CHECK(board.by_plant[0][1].of("detected_impact")->hits == 9);
+  CHECK(board.by_plant[0][1].of("detected_impact")->total == 16);
+  CHECK(board.overall[0].of("detected_impact")->total == 20);
+  CHECK(board.overall[0].of("no_such_rate") == nullptr);
+}
+
+TEST_CASE("a cell that was not run counts nowhere, and keeps its place", "[leaderboard]") {
+  const Leaderboard board =
+      make_leaderboard(two_families(), {"m"}, "1.0",
+                       {{.plant = 0, .family = 1, .methods = {scores_with({{"answered", {3, 4}}})}},
+                        {.plant = 1, .family = 1, .trouble = "the basis case fails"}});
+  CHECK(board.families.size() == 1);
+  CHECK(board.by_family[0][0].cells == 1);
+  CHECK(board.by_family[0][0].of("answered")->total == 4);
+  CHECK(board.cells[1].trouble == "the basis case fails");
+  CHECK(board.by_plant[0][1].cells == 0);
+  CHECK(board.by_plant[0][1].of("answered")->total == 0);
+}
+
+TEST_CASE("a task is passed at its limits, and not below one of them", "[leaderboard]") {
+  for (const LeaderboardTask task : {LeaderboardTask::detection, LeaderboardTask::location}) {
+    INFO(to_string(task));
+    CHECK(passes(pooled_with(kSound), task));
+    CHECK_FALSE(passes(pooled_with(with(kSound, "answered", 89, 100)), task));
+    CHECK_FALSE(passes(pooled_with(with(kSound, "false_alarm_healthy", 3, 20)), task));
+    CHECK_FALSE(passes(pooled_with(with(kSound, "false_alarm_healthy", 0, 0)), task));
+  }
+  CHECK_FALSE(passes(pooled_with(with(kSound, "detected_impact", 79, 100)), LeaderboardTask::detection));
+  CHECK_FALSE(passes(pooled_with(with(kSound, "located", 7, 10)), LeaderboardTask::location));
+  CHECK_FALSE(passes(pooled_with(with(kSound, "located", 0, 0)), LeaderboardTask::location));
+}
+
+TEST_CASE("false alarms are marked when their whole interval lies above 5 %", "[leaderboard]") {
+  // Wilson's lower limits of 3 and 4 of 20 are 0.0524 and 0.0807, that of 2 of 20 is 0.0279.
+  CHECK_FALSE(pooled_with({{"false_alarm_healthy", {2, 20}}}).too_many_false_alarms());
+  CHECK(pooled_with({{"false_alarm_healthy", {3, 20}}}).too_many_false_alarms());
+  CHECK_FALSE(pooled_with({}).too_many_false_alarms());
+}
+
+TEST_CASE("verdicts on a part of the loops are marked, none at all are not", "[leaderboard]") {
+  CHECK(pooled_with({{"answered", {89, 100}}}).answers_in_part());
+  CHECK_FALSE(pooled_with({{"answered", {90, 100}}}).answers_in_part());
+  CHECK_FALSE(pooled_with({{"answered", {0, 100}}}).answers_in_part());
+}
+
+}  // namespace mpm

@@ -1,0 +1,162 @@
+"""A suite as a user runs it: its leaderboard, made in one go, in two threads, and after an interruption.
+
+usage: check_suite.py MPMBENCH
+"""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from archives import check_same
+
+PATIENCE = 300  # s, for a machine that is busy with other things
+
+# Of two plants under two families: sun needs setpoints, which wood-berry has not; the noise of the last family makes
+# the self-check of its basis case fail.
+SUITE = """
+[suite]
+name = "tiny"
+version = "0.1"
+title = "for a test"
+seed = 5
+methods = ["botelho", "sun", "sse"]
+[common]
+set.experiments = {mpm = 4, ud = 4, mpm_ud = 0, healthy = 4, tuning = 0}
+[[plant]]
+name = "column"
+study = "wood-berry"
+remove = ["simulation.random_steps"]
+set.simulation.samples = 200
+set.simulation.step = [{md = "F", sample = 20, level = 0.4}, {md = "F", sample = 60, level = -0.4},
+  {md = "F", sample = 100, level = 0.4}, {md = "F", sample = 140, level = -0.4}]
+[[plant]]
+name = "shell"
+study = "setpoint-methods"
+[[family]]
+name = "classic"
+title = "as in the studies"
+[[family]]
+name = "both"
+title = "both faults"
+plants = ["column"]
+set.experiments = {mpm = 0, ud = 0, mpm_ud = 8}
+[[family]]
+name = "noisy"
+title = "noise alone"
+plants = ["shell"]
+set.simulation.noise_standard_deviation = 5.0
+"""
+CELLS = ["column.classic", "column.both", "shell.classic"]
+
+
+class Tiny:
+    def __init__(self, program, folder):
+        self.program, self.folder = program, folder
+        self.file = folder / "tiny.toml"
+        self.file.write_text(SUITE)
+
+    def command(self, output, *words):
+        return [self.program, "suite", str(self.file), "-o", str(self.folder / output), *map(str, words)]
+
+    def run(self, output, *words, code=0):
+        result = subprocess.run(self.command(output, *words), capture_output=True, text=True, timeout=PATIENCE)
+        assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
+        return result.stderr if code else result.stdout
+
+    def compare(self, archive):
+        command = [self.program, "compare", str(archive), "--methods", "botelho,sun,sse", "--json", "--quiet"]
+        return json.loads(subprocess.run(command, capture_output=True, timeout=PATIENCE, check=True).stdout)
+
+    def board(self, output):
+        return (self.folder / output / "leaderboard.json").read_text()
+
+    def archives(self, output):
+        return {path.name: path.read_bytes() for path in (self.folder / output).glob("*.h5")}
+
+
+def check_leaderboard(tiny):
+    shown = tiny.run("one", "--jobs", 1, "--quiet", "--json")
+    assert shown == tiny.board("one")
+    board = json.loads(shown)
+    assert (board["suite"], board["version"], board["seed"]) == ("tiny", "0.1", 5)
+    assert [f"{cell['plant']}.{cell['family']}" for cell in board["cells"]] == [*CELLS, "shell.noisy"]
+    troubles = [cell["trouble"] for cell in board["cells"]]
+    assert troubles[:3] == [""] * 3 and "self-check" in troubles[3], troubles
+    assert sorted(tiny.archives("one")) == sorted(f"{cell}.h5" for cell in CELLS)
+    # The numbers are the sums of those of the archives.
+    of_cells = {cell: tiny.compare(tiny.folder / "one" / f"{cell}.h5") for cell in CELLS}
+    for place, method in enumerate(board["methods"]):
+        for name, rate in method["all"]["rates"].items():
+            rates = [of_cells[cell]["methods"][place]["rates"][name] for cell in CELLS]
+            for count in "hits", "total":
+                assert rate[count] == sum(each[count] for each in rates), (method["name"], name, rate, rates)
+    sun = next(method for method in board["methods"] if method["name"] == "sun")
+    assert sun["plants"]["column"]["rates"]["answered"]["hits"] == 0
+    assert "setpoints" in sun["plants"]["column"]["reason"] and sun["plants"]["shell"]["reason"] == ""
+    return shown
+
+
+def check_texts(tiny):
+    text = tiny.run("one", "--quiet")
+    assert max(map(len, text.splitlines())) <= 120, text
+    for part in "tiny 0.1", "classic", "botelho", "shell.noisy: ", "nobody passes", "sun: ":
+        assert part in text, (part, text)
+    page = (tiny.folder / "one" / "leaderboard.html").read_text()
+    assert "<script" not in page and "Suite tiny 0.1" in page
+
+
+def check_kept(tiny, shown):
+    """A second run keeps every archive, byte for byte; other experiments and another suite seed do not."""
+    before = tiny.archives("one")
+    assert tiny.run("one", "--jobs", 2, "--quiet", "--json") == shown
+    assert tiny.archives("one") == before
+    part = json.loads(tiny.run("private", "--seed", 6, "--plants", "column", "--families", "classic", "--quiet", "--json"))
+    assert part["seed"] == 6 and len(part["cells"]) == 1
+    assert part["cells"][0]["seed"] != json.loads(shown)["cells"][0]["seed"]
+    tiny.run("private", "--plants", "column", "--families", "classic", "--quiet")
+    check_same(tiny.folder / "private" / "column.classic.h5", tiny.folder / "one" / "column.classic.h5")
+
+
+def check_interrupted(tiny, shown):
+    """Stopped when the first archive is there, and again by a kill: the leaderboard is that of one go."""
+    for number, code in (signal.SIGINT, 3), (signal.SIGKILL, -signal.SIGKILL):
+        process = subprocess.Popen(tiny.command("stopped", "--jobs", 2, "--quiet"), stderr=subprocess.PIPE, text=True,
+                                   stdout=subprocess.DEVNULL)
+        end = time.monotonic() + PATIENCE
+        while not tiny.archives("stopped") and process.poll() is None:
+            assert time.monotonic() < end
+            time.sleep(0.002)
+        process.send_signal(number)
+        error = process.communicate(timeout=PATIENCE)[1]
+        assert process.returncode in (code, 0), (process.returncode, error)  # 0: it was faster
+        assert process.returncode != 3 or "go on" in error, error
+    assert tiny.run("stopped", "--jobs", 2, "--quiet", "--json") == shown
+    for cell in CELLS:
+        check_same(tiny.folder / "stopped" / f"{cell}.h5", tiny.folder / "one" / f"{cell}.h5")
+    assert not list((tiny.folder / "stopped").glob("*.shards")), os.listdir(tiny.folder / "stopped")
+
+
+def check_refusals(tiny):
+    for words, message in ((["--methods", "botelo"], "botelo"), (["--families", "clasic"], "nearest: 'classic'")):
+        error = tiny.run("refused", *words, code=2)
+        assert message in error, error
+    assert not (tiny.folder / "refused").exists()
+
+
+def main():
+    (program,) = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as name:
+        tiny = Tiny(program, pathlib.Path(name))
+        shown = check_leaderboard(tiny)
+        check_texts(tiny)
+        check_kept(tiny, shown)
+        check_interrupted(tiny, shown)
+        check_refusals(tiny)
+
+
+main()
