@@ -173,6 +173,17 @@ struct AggregateOptions {
   bool operator==(const AggregateOptions&) const = default;
 };
 
+/// On which loops the thresholds of the methods are calibrated: loops without a fault, and with a disturbance
+/// alone, drawn under another seed (scenarios/calibration.hpp).
+struct CalibrationOptions {
+  double false_alarms = 0.05;              ///< share of healthy loops that a calibrated threshold may flag
+  int healthy = 200;                       ///< loops without a fault
+  int ud = 100;                            ///< loops with an unmeasured disturbance alone
+  std::optional<std::uint64_t> seed = {};  ///< none: derived from that of the study
+
+  bool operator==(const CalibrationOptions&) const = default;
+};
+
 /// A number that somebody has reported for this study, by the name of the finding that it stands beside.
 struct ReportedValue {
   std::string name;
@@ -208,8 +219,9 @@ struct Study {
   SensitivityOptions sensitivity;
   S0PerturbationOptions s0_perturbation;
   DiagnosisOptions diagnosis;
-  std::vector<std::string> methods{"botelho"};  ///< of assessment, by name; "all" alone: every one
-  AssessmentOptions assessment;                 ///< options of the methods
+  std::vector<std::string> methods{"botelho"};    ///< of assessment, by name; "all" alone: every one
+  AssessmentOptions assessment;                   ///< options of the methods
+  std::optional<CalibrationOptions> calibration;  ///< none: every method has its own threshold only
   AggregateOptions aggregate;
   std::vector<ReportedValue> reported;  ///< shown beside the results, never used to make them
   std::string source;                   ///< the full text of the file

@@ -13,8 +13,8 @@ const std::vector<StudyFileTable>& study_file_tables() {
   static const std::vector<StudyFileTable> tables{
       {"",
        {"study", "plant", "controller", "simulation", "experiments", "scenario", "mismatch", "disturbance",
-        "tuning", "sensitivity", "s0_perturbation", "diagnosis", "methods", "assessment", "aggregate",
-        "reference"}},
+        "tuning", "sensitivity", "s0_perturbation", "diagnosis", "methods", "assessment", "calibration",
+        "aggregate", "reference"}},
       {"study", {"name", "title", "seed"}},
       {"plant",
        {"catalogue", "simulated", "relative_tolerance", "absolute_tolerance", "step_limit", "name", "title",
@@ -67,6 +67,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
       {"assessment.badwe2010", {"smallest_order", "largest_order", "criterion", "max_iterations"}},
       {"assessment.yu-qin", {"confidence", "largest_lag", "first_sample"}},
       {"assessment.sse", {"threshold"}},
+      {"calibration", {"false_alarms", "healthy", "ud", "seed"}},
       {"aggregate", {"confidence", "bootstrap_replications"}},
       {"reference", {"FINDING"}},
       {"DISTRIBUTION", {"constant", "uniform", "log_uniform", "normal"}},

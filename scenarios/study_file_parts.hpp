@@ -87,6 +87,10 @@ DiagnosisOptions read_diagnosis(const TomlTable& document);
 std::vector<std::string> read_methods(const TomlTable& document);
 AssessmentOptions read_assessment(const TomlTable& document);
 
+/// [calibration] (study_file_calibration.cpp); none without the table. `study` has its seed and its
+/// scenarios.
+std::optional<CalibrationOptions> read_calibration(const TomlTable& document, const Study& study);
+
 /// [aggregate]
 AggregateOptions read_aggregate(const TomlTable& document);
 /// [reference]

@@ -112,6 +112,15 @@ bool in_source_population(const Study& study, const AssessmentRecord& assessment
          (assessment.flagged || study.diagnosis.source_population == SourcePopulation::feasible);
 }
 
+FaultSource named_source(const AssessmentRecord& assessment) {
+  return assessment.answered() && assessment.flagged ? assessment.predicted_source : FaultSource::none;
+}
+
+bool tells_fault(const ExperimentRecord& record, const AssessmentRecord& assessment) {
+  return assessment.answered() && assessment.flagged &&
+         named_source(assessment) == source_of(record.draw.kind);
+}
+
 bool to_be_flagged(const Study& study, const ExperimentRecord& record, FlagTruth truth) {
   return !is_faultless(record.draw.kind) &&
          (truth == FlagTruth::fault || has_impact(study.diagnosis, record));

@@ -72,6 +72,15 @@ bool has_impact(const DiagnosisOptions& options, const ExperimentRecord& record)
 /// flags, or all with a verdict (diagnosis.source_population).
 bool in_source_population(const Study& study, const AssessmentRecord& assessment);
 
+/// What the answer says is wrong with the loop as a whole: the source of the located CV of a flagged loop.
+/// None when the loop is not flagged, nothing is said, or the method tells no sources.
+FaultSource named_source(const AssessmentRecord& assessment);
+
+/// Is the fault told from the others, three ways (mismatch, disturbance, both)? The loop must have a fault.
+/// Nothing said is not right. Of a fault that is neither of them the right answer is a flagged loop without a
+/// source.
+bool tells_fault(const ExperimentRecord& record, const AssessmentRecord& assessment);
+
 /// Which loops a method is right to flag, and no others.
 enum class FlagTruth : std::int8_t {
   fault = 0,   ///< those with a fault: what a monitor of the model should see

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <iterator>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "analysis/statistics/holm.hpp"
 #include "analysis/statistics/quantile.hpp"
 #include "plants/non_finite.hpp"
 
@@ -33,42 +35,74 @@ struct Count {
 
 struct Counts {
   Count answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
-      false_alarm_healthy, false_alarm_tuning, located, source, channel;
-  std::vector<double> fault_scores, healthy_scores, milliseconds;
+      false_alarm_healthy, false_alarm_tuning, located, source, channel, source_all, abstained;
+  Count false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
+  std::vector<double> fault_scores, healthy_scores, impact_scores, no_impact_scores, milliseconds;
+  CalibratedThresholds thresholds;
 
   void add(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
     answered.add(said.answered());
+    if (!is_faultless(record.draw.kind) && said.form->method().tells_sources)
+      add_source(record, said);
     if (!said.answered())
       return;
     if (!std::isnan(said.milliseconds))  // it would break the order for the median
       milliseconds.push_back(said.milliseconds);
-    const ExperimentKind kind = record.draw.kind;
-    if (kind == ExperimentKind::tuning) {
+    if (record.draw.kind == ExperimentKind::tuning)
       false_alarm_tuning.add(said.flagged);
-      return;
-    }
-    if (is_faultless(kind)) {
-      healthy_scores.push_back(said.score);
-      false_alarm_healthy.add(said.flagged);
-      return;
-    }
+    else if (is_faultless(record.draw.kind))
+      add_healthy(said);
+    else
+      add_fault(study, record, said);
+  }
+
+ private:
+  /// Above a calibrated threshold? Not counted when there is none.
+  static void add_above(const CalibratedThreshold& threshold, double score, Count& count) {
+    if (threshold.value)
+      count.add(threshold.exceeded_by(score));
+  }
+
+  void add_source(const ExperimentRecord& record, const AssessmentRecord& said) {
+    source_all.add(tells_fault(record, said));
+    abstained.add(named_source(said) == FaultSource::none);
+  }
+
+  void add_healthy(const AssessmentRecord& said) {
+    healthy_scores.push_back(said.score);
+    no_impact_scores.push_back(said.score);
+    false_alarm_healthy.add(said.flagged);
+    add_above(thresholds.chosen, said.score, false_alarm_calibrated);
+  }
+
+  void add_fault(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
+    const bool impact = has_impact(study.diagnosis, record);
     fault_scores.push_back(said.score);
+    (impact ? impact_scores : no_impact_scores).push_back(said.score);
     detected.add(said.flagged);
-    if (kind == ExperimentKind::mpm)
+    (impact ? detected_impact : flagged_without_impact).add(said.flagged);
+    add_above(thresholds.at_01, said.score, power_01);
+    add_above(thresholds.at_05, said.score, power_05);
+    if (impact)
+      add_above(thresholds.at_05, said.score, power_05_impact);
+    if (record.draw.kind == ExperimentKind::mpm) {
       detected_mpm.add(said.flagged);
-    if (kind == ExperimentKind::ud)
+      add_above(thresholds.not_mpm, said.score, power_05_mpm);
+    }
+    if (record.draw.kind == ExperimentKind::ud)
       detected_ud.add(said.flagged);
-    (has_impact(study.diagnosis, record) ? detected_impact : flagged_without_impact).add(said.flagged);
-    if (!said.flagged)
-      return;
-    const Judgement judgement = judge(study, record, said);
+    if (said.flagged)
+      add_diagnosis(judge(study, record, said));
+  }
+
+  void add_diagnosis(const Judgement& judgement) {
     located.add(judgement.predicted_cv);
     source.add(judgement.predicted_source);
     channel.add(judgement.channel);
   }
 };
 
-constexpr std::array<MethodRateInfo, 11> kRates{{
+constexpr std::array<MethodRateInfo, 18> kRates{{
     {"answered", "answered", "of all loops those on which the method gave a verdict", &MethodRates::answered},
     {"detected", "detected", "of the loops with a fault those that are flagged", &MethodRates::detected},
     {"detected_mpm", "detected, mismatch", "of the loops with a mismatch alone those that are flagged",
@@ -96,7 +130,55 @@ constexpr std::array<MethodRateInfo, 11> kRates{{
     {"channel", "channel named",
      "of the flagged loops with one mismatch of an MV those in which its channel is named",
      &MethodRates::channel},
+    {"source_all", "fault told, three ways",
+     "of the loops with a fault, with or without verdict, those that are flagged with the right source: "
+     "mismatch, disturbance or both",
+     &MethodRates::source_all},
+    {"abstained", "no source named",
+     "of the loops with a fault, with or without verdict, those of which no source is named",
+     &MethodRates::abstained},
+    {"false_alarm_calibrated", "calibrated: false alarms",
+     "of the loops without a fault and with the tuning of the design those above the threshold that is "
+     "calibrated for the false alarms of the study, calibration.false_alarms",
+     &MethodRates::false_alarm_calibrated, true},
+    {"power_01", "at 1 %: detected",
+     "of the loops with a fault those above the threshold that is calibrated for 1 % of false alarms",
+     &MethodRates::power_01, true},
+    {"power_05", "at 5 %: detected",
+     "of the loops with a fault those above the threshold that is calibrated for 5 % of false alarms",
+     &MethodRates::power_05, true},
+    {"power_05_impact", "at 5 %: with impact",
+     "of the loops with a fault that has an impact those above the threshold that is calibrated for 5 % of "
+     "false alarms",
+     &MethodRates::power_05_impact, true},
+    {"power_05_mpm", "at 5 %: mpm, not ud",
+     "of the loops with a mismatch alone those above the threshold that is calibrated for 5 % of false "
+     "alarms among loops without a fault and with a disturbance alone",
+     &MethodRates::power_05_mpm, true},
 }};
+
+constexpr std::array<ThresholdInfo, 4> kThresholds{{
+    {"threshold_01", "score that 1 % of the loops without a fault exceed at most",
+     &CalibratedThresholds::at_01},
+    {"threshold_05", "score that 5 % of the loops without a fault exceed at most",
+     &CalibratedThresholds::at_05},
+    {"threshold_calibrated",
+     "score that the share calibration.false_alarms of the loops without a fault exceeds at most",
+     &CalibratedThresholds::chosen},
+    {"threshold_05_mpm",
+     "score that 5 % of the loops without a fault and with a disturbance alone exceed at most",
+     &CalibratedThresholds::not_mpm},
+}};
+
+/// A curve, and the interval of the area under it.
+std::pair<RocCurve, Interval> curve_with_area(const std::vector<double>& positives,
+                                              const std::vector<double>& negatives, double confidence) {
+  RocCurve curve = roc_curve(positives, negatives);
+  Interval area{kNone, kNone};
+  if (curve.defined())
+    area = area_interval(curve.area, curve.positives, curve.negatives, confidence);
+  return {std::move(curve), area};
+}
 
 }  // namespace
 
@@ -104,8 +186,22 @@ std::span<const MethodRateInfo> method_rate_infos() {
   return kRates;
 }
 
-MethodRates method_rates(const Study& study, std::size_t method, std::span<const ExperimentRecord> records) {
+std::vector<MethodRateInfo> method_rate_infos(const Study& study) {
+  std::vector<MethodRateInfo> infos;
+  std::copy_if(kRates.begin(), kRates.end(), std::back_inserter(infos),
+               [&](const MethodRateInfo& info) { return !info.calibrated || study.calibration; });
+  return infos;
+}
+
+std::span<const ThresholdInfo> threshold_infos() {
+  return kThresholds;
+}
+
+MethodRates method_rates(const Study& study, std::size_t method, std::span<const ExperimentRecord> records,
+                         const Calibration& calibration) {
   Counts counts;
+  if (study.calibration)
+    counts.thresholds = calibrated_thresholds(study, calibration, method);
   std::string reason;
   for (const ExperimentRecord& record : records) {
     const AssessmentRecord& said = record.assessments[method];
@@ -128,11 +224,23 @@ MethodRates method_rates(const Study& study, std::size_t method, std::span<const
                     .located = counts.located.rate(confidence),
                     .source = counts.source.rate(confidence),
                     .channel = counts.channel.rate(confidence),
-                    .roc = roc_curve(counts.fault_scores, counts.healthy_scores),
-                    .roc_area = {kNone, kNone},
+                    .source_all = counts.source_all.rate(confidence),
+                    .abstained = counts.abstained.rate(confidence),
+                    .false_alarm_calibrated = counts.false_alarm_calibrated.rate(confidence),
+                    .power_01 = counts.power_01.rate(confidence),
+                    .power_05 = counts.power_05.rate(confidence),
+                    .power_05_impact = counts.power_05_impact.rate(confidence),
+                    .power_05_mpm = counts.power_05_mpm.rate(confidence),
+                    .thresholds = counts.thresholds,
+                    .roc = {},
+                    .roc_area = {},
+                    .roc_impact = {},
+                    .roc_impact_area = {},
                     .milliseconds = kNone};
-  if (rates.roc.defined())
-    rates.roc_area = area_interval(rates.roc.area, rates.roc.positives, rates.roc.negatives, confidence);
+  std::tie(rates.roc, rates.roc_area) =
+      curve_with_area(counts.fault_scores, counts.healthy_scores, confidence);
+  std::tie(rates.roc_impact, rates.roc_impact_area) =
+      curve_with_area(counts.impact_scores, counts.no_impact_scores, confidence);
   if (!counts.milliseconds.empty()) {
     std::sort(counts.milliseconds.begin(), counts.milliseconds.end());
     rates.milliseconds = sorted_quantile(counts.milliseconds, 0.5);
@@ -140,7 +248,7 @@ MethodRates method_rates(const Study& study, std::size_t method, std::span<const
   return rates;
 }
 
-std::vector<Finding> rows_of(const MethodRates& rates, const MethodDescription& method) {
+std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method) {
   std::vector<Finding> rows;
   const auto like = [&](const char* name, const std::string& label, const char* meaning) {
     return Finding{.name = fmt::format("compare.{}.{}", method.name, name),
@@ -149,18 +257,50 @@ std::vector<Finding> rows_of(const MethodRates& rates, const MethodDescription& 
                    .group = FindingGroup::method,
                    .method = method.name};
   };
-  for (const MethodRateInfo& info : method_rate_infos())
+  for (const MethodRateInfo& info : method_rate_infos(study))
     rows.push_back(like(info.name, info.title, info.meaning).with(rates.*info.rate));
   rows.push_back(like("roc_area", "area under the ROC curve", "area under the ROC curve of its score")
                      .with(rates.roc.area, rates.roc_area, rates.roc.positives + rates.roc.negatives));
+  rows.push_back(like("roc_area_impact", "area under the ROC curve, impact",
+                      "area under the ROC curve of its score, faults with an impact against all other loops")
+                     .with(rates.roc_impact.area, rates.roc_impact_area,
+                           rates.roc_impact.positives + rates.roc_impact.negatives));
+  if (!study.calibration)
+    return rows;
+  for (const ThresholdInfo& info : threshold_infos()) {
+    const CalibratedThreshold& threshold = rates.thresholds.*info.threshold;
+    Finding row = like(info.name, info.name, info.meaning);
+    row.has_interval = false;
+    rows.push_back(row.with(threshold.value.value_or(kNone), {kNone, kNone}, threshold.loops));
+  }
   return rows;
+}
+
+std::string_view to_string(FalseAlarmMark mark) {
+  switch (mark) {
+    case FalseAlarmMark::none:
+      return "";
+    case FalseAlarmMark::fewer:
+      return "fewer";
+    case FalseAlarmMark::more:
+      return "more";
+  }
+  return "unknown";
+}
+
+FalseAlarmMark false_alarm_mark(const MethodDescription& method, const MethodRates& rates) {
+  const double stated = method.stated_false_alarms.value_or(kUsualFalseAlarms);
+  const Rate& found = rates.false_alarm_healthy;
+  if (found.total == 0 || found.interval.contains(stated))
+    return FalseAlarmMark::none;
+  return found.interval.lower > stated ? FalseAlarmMark::more : FalseAlarmMark::fewer;
 }
 
 namespace {
 
 MethodPair paired(const Study& study, FlagTruth truth, std::size_t first, std::size_t second,
                   std::span<const ExperimentRecord> records) {
-  MethodPair pair{truth, first, second, 0, {}};
+  MethodPair pair{truth, first, second, 0, {}, 1.0};
   std::int64_t lost = 0, gained = 0;
   for (const ExperimentRecord& record : records) {
     const AssessmentRecord& a = record.assessments[first];
@@ -176,15 +316,31 @@ MethodPair paired(const Study& study, FlagTruth truth, std::size_t first, std::s
   return pair;
 }
 
+/// Corrects the p-values of the pairs of one truth. Pairs without a loop in common test nothing.
+void correct(std::span<MethodPair> pairs) {
+  std::vector<double> p;
+  for (const MethodPair& pair : pairs)
+    if (pair.loops > 0)
+      p.push_back(pair.test.p_two_sided);
+  const std::vector<double> adjusted = holm_adjusted(p);
+  auto next = adjusted.begin();
+  for (MethodPair& pair : pairs)
+    if (pair.loops > 0)
+      pair.p_holm = *next++;
+}
+
 }  // namespace
 
 std::vector<MethodPair> method_pairs(const Study& study, std::size_t methods,
                                      std::span<const ExperimentRecord> records) {
   std::vector<MethodPair> pairs;
-  for (const FlagTruth truth : {FlagTruth::fault, FlagTruth::impact})
+  for (const FlagTruth truth : {FlagTruth::fault, FlagTruth::impact}) {
+    const std::size_t begin = pairs.size();
     for (std::size_t first = 0; first < methods; ++first)
       for (std::size_t second = first + 1; second < methods; ++second)
         pairs.push_back(paired(study, truth, first, second, records));
+    correct(std::span(pairs).subspan(begin));
+  }
   return pairs;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/calibration.hpp"
 #include "analysis/findings/finding.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/mcnemar.hpp"
@@ -20,9 +21,15 @@ struct MethodRates {
   std::string
       reason;  ///< why there was no verdict on the first loop without one; empty when it always gave one
   Rate answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
-      false_alarm_healthy, false_alarm_tuning, located, source, channel;
-  RocCurve roc;         ///< of the score, loops with a fault against healthy ones
-  Interval roc_area;    ///< of roc.area; NaN when there is no curve
+      false_alarm_healthy, false_alarm_tuning, located, source, channel, source_all, abstained;
+  // At calibrated thresholds; nothing is counted without one.
+  Rate false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
+  CalibratedThresholds thresholds;
+  RocCurve roc;       ///< of the score, loops with a fault against healthy ones
+  Interval roc_area;  ///< of roc.area; NaN when there is no curve
+  RocCurve
+      roc_impact;  ///< loops with a fault that has an impact against those with another one and healthy ones
+  Interval roc_impact_area;
   double milliseconds;  ///< median processor time a loop, of those answered; NaN without
 };
 
@@ -33,16 +40,47 @@ struct MethodRateInfo {
   const char* title;    ///< for people: "false alarms, healthy"
   const char* meaning;  ///< which loops are looked at, and which of them count
   Rate MethodRates::*rate;
+  bool calibrated = false;  ///< of studies with a calibration only
 };
 
 /// Every rate of MethodRates once, in the order in which people read them.
 std::span<const MethodRateInfo> method_rate_infos();
+/// Those that this study can have.
+std::vector<MethodRateInfo> method_rate_infos(const Study& study);
 
-/// The rates of one method; `method` is its place in the assessments of each record.
-MethodRates method_rates(const Study& study, std::size_t method, std::span<const ExperimentRecord> records);
+/// A calibrated threshold under the name that its finding and JSON have.
+struct ThresholdInfo {
+  const char* name;     ///< "threshold_05"
+  const char* meaning;  ///< the share of which loops is above it at most
+  CalibratedThreshold CalibratedThresholds::*threshold;
+};
 
-/// Its rows, "compare.METHOD.RATE" for each rate, and "compare.METHOD.roc_area".
-std::vector<Finding> rows_of(const MethodRates& rates, const MethodDescription& method);
+/// Every threshold of CalibratedThresholds once.
+std::span<const ThresholdInfo> threshold_infos();
+
+/// The rates of one method; `method` is its place in the assessments of each record and of each loop of
+/// `calibration`, which may have none.
+MethodRates method_rates(const Study& study, std::size_t method, std::span<const ExperimentRecord> records,
+                         const Calibration& calibration = {});
+
+/// Its rows: "compare.METHOD.RATE" for each rate that the study can have, "compare.METHOD.roc_area",
+/// "compare.METHOD.roc_area_impact", and in a study with a calibration the thresholds.
+std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method);
+
+/// How the false alarms of a method agree with what it states of them.
+enum class FalseAlarmMark : std::int8_t {
+  none,   ///< they do, or no healthy loop has a verdict
+  fewer,  ///< the interval of the rate of the healthy loops that it flags lies below
+  more,   ///< it lies above
+};
+
+/// "", "fewer", "more"
+std::string_view to_string(FalseAlarmMark mark);
+
+/// What a rate of false alarms is held against when the method states none.
+inline constexpr double kUsualFalseAlarms = 0.05;
+
+FalseAlarmMark false_alarm_mark(const MethodDescription& method, const MethodRates& rates);
 
 /// Two methods on the same loops: is one right where the other is wrong? Counted are the loops that both gave
 /// a verdict on.
@@ -50,7 +88,8 @@ struct MethodPair {
   FlagTruth truth;
   std::size_t first, second;  ///< places in the assessments of each record
   std::int64_t loops = 0;
-  McNemarTest test;  ///< lost: right by the first alone
+  McNemarTest test;     ///< lost: right by the first alone
+  double p_holm = 1.0;  ///< test.p_two_sided corrected for all pairs of this truth that have loops
 };
 
 /// Every pair once for each truth, all of the first truth first.

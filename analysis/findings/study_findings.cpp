@@ -67,7 +67,7 @@ std::vector<Finding> all_rows(const Study& study, const StudyFindings& findings)
       for (const KindFindings& kind : method.kinds)
         append(rows_of(kind, study, *method.form, method.name() + "."), rows);
   for (const MethodFindings& method : findings.methods)
-    append(rows_of(method.rates, method.form->method()), rows);
+    append(rows_of(study, method.rates, method.form->method()), rows);
   return rows;
 }
 
@@ -84,7 +84,7 @@ const MethodFindings* StudyFindings::chain() const {
 }
 
 StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
-                             std::span<const ExperimentRecord> records) {
+                             std::span<const ExperimentRecord> records, const Calibration& calibration) {
   StudyFindings findings;
   for (const ExperimentRecord& record : records)
     findings.add(record.status);
@@ -92,7 +92,8 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
   for (std::size_t method = 0; method < forms.size(); ++method) {
     const AssessmentForm& form = *forms[method];
     findings.methods.push_back({forms[method], kind_findings(study, form, method, records),
-                                false_alarms(study, method, records), method_rates(study, method, records)});
+                                false_alarms(study, method, records),
+                                method_rates(study, method, records, calibration)});
     if (form.method().name == kChainMethod) {
       findings.dominance = dominance_bins(study, method, records);
       if (!study.s0_perturbation.multipliers.empty())
@@ -111,6 +112,7 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
 std::vector<std::string> finding_names(Study study) {
   study.experiments = {.mpm = 1, .ud = 1, .mpm_ud = 1, .healthy = 1, .tuning = 1};
   study.s0_perturbation.multipliers = {1.0};
+  study.calibration.emplace();
   std::vector<std::string> names;
   for (const Finding& row :
        study_findings(study, assessment_forms(study, assessment_method_names()), {}).rows)

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/findings/calibration.hpp"
 #include "analysis/findings/endings.hpp"
 #include "analysis/findings/false_alarms.hpp"
 #include "analysis/findings/finding.hpp"
@@ -44,9 +45,10 @@ struct StudyFindings : Endings {
 };
 
 /// The findings of a study from its experiments, which need not be all; the order of `records` does not
-/// matter beyond the last bits. Each record has an assessment of each of `forms`, in their order.
+/// matter beyond the last bits. Each record has an assessment of each of `forms`, in their order, and so has
+/// each loop of the calibration, which has loops only in a study that asks for them.
 StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
-                             std::span<const ExperimentRecord> records);
+                             std::span<const ExperimentRecord> records, const Calibration& calibration = {});
 
 /// The names of all findings that a study of this plant can have, with any experiments and all methods.
 std::vector<std::string> finding_names(Study study);

@@ -104,7 +104,7 @@ constexpr std::array<Quantity<CentredSums>, 5> kSums{{
 
 constexpr double kMostPairs = 1e15;  // exact as a double
 
-using Columns = std::vector<NumberColumn<DistributionIndicators>>;
+using DistributionColumns = std::vector<NumberColumn<DistributionIndicators>>;
 
 /// The means of the correlations stand twice: `MpmMeans` and `ScatterSum` add up the same numbers.
 void copy_correlations(DistributionIndicators& indicators) {
@@ -116,7 +116,7 @@ void copy_correlations(DistributionIndicators& indicators) {
 
 /// A column for each quantity of each statistic of one part of the indicators.
 template <class Part, std::size_t n>
-void append(Columns& columns, PerStatistic<Part> DistributionIndicators::*part,
+void append(DistributionColumns& columns, PerStatistic<Part> DistributionIndicators::*part,
             const std::array<Quantity<Part>, n>& quantities) {
   for (const Statistic<Part>& statistic : kStatistics<Part>) {
     for (const Quantity<Part>& quantity : quantities) {
@@ -176,7 +176,7 @@ DistributionIndicators DistributionScanner::compute(const Signal& y, const Signa
 }
 
 std::vector<NumberColumn<DistributionIndicators>> distribution_columns() {
-  Columns columns;
+  DistributionColumns columns;
   append(columns, &DistributionIndicators::means, kMeans);
   append(columns, &DistributionIndicators::shape, kShapes);
   columns.push_back({"i_mpm", "1", "I_MPM = max(co_dkts, co_dskn) (6.15)",
@@ -186,7 +186,7 @@ std::vector<NumberColumn<DistributionIndicators>> distribution_columns() {
 }
 
 std::vector<NumberColumn<DistributionIndicators>> scatter_columns() {
-  Columns columns;
+  DistributionColumns columns;
   for (const Statistic<CentredSums>& statistic : kStatistics<CentredSums>) {
     columns.push_back({std::string("scatter_pairs_") + statistic.name, "1",
                        std::string("number of windows behind the ellipse, of ") + statistic.meaning,

@@ -67,6 +67,8 @@ struct MethodDescription {
   bool locates_cvs = false;     ///< Assessment::cvs has verdicts
   bool names_channels = false;  ///< Assessment::flagged_channels
   bool tells_sources = false;   ///< CvAssessment::source
+  /// The share of loops without a fault that the method says it flags; none: it says nothing of it.
+  std::optional<double> stated_false_alarms = {};
   std::vector<AssessmentNumberInfo> numbers;
 };
 
@@ -77,6 +79,8 @@ struct AssessmentMethodInfo : MethodDescription {
   std::function<std::vector<AssessmentNumberInfo>()> scenario_numbers;
   /// `context` must outlive the method. Throws InputError for options that do not fit the study.
   std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext& context)> make;
+  /// MethodDescription::stated_false_alarms with these options; may be empty.
+  std::function<std::optional<double>(const AssessmentOptions& options)> states_false_alarms = {};
 };
 
 /// Which requirement the loop or what is known of it does not meet, in one sentence; none: all are met.

@@ -70,6 +70,8 @@ AssessmentForms assessment_forms(const Study& study, const std::vector<std::stri
     if (study.names_scenarios() && info.scenario_numbers)
       for (AssessmentNumberInfo& number : info.scenario_numbers())
         description.numbers.push_back(std::move(number));
+    if (info.states_false_alarms)
+      description.stated_false_alarms = info.states_false_alarms(study.assessment);
     forms.push_back(std::make_shared<const AssessmentForm>(std::move(description), study));
   }
   return forms;

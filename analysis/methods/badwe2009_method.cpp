@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -88,6 +89,13 @@ class Badwe2009 final : public AssessmentMethod {
   const Badwe2009Options& options_;
 };
 
+/// Shared out among all channels, the confidence is that of a loop; otherwise that of a channel or a lag.
+std::optional<double> stated_false_alarms(const AssessmentOptions& options) {
+  if (options.badwe2009.multiplicity != Multiplicity::channels)
+    return std::nullopt;
+  return 1.0 - options.badwe2009.confidence;
+}
+
 }  // namespace
 
 AssessmentMethodInfo badwe2009_method() {
@@ -102,7 +110,8 @@ AssessmentMethodInfo badwe2009_method() {
                         "correlation of eps1 and eps2 (2.5, 2.6) at the lag where it is largest"},
                        {"strength", NumberScope::channel, "its size over its confidence band"}}},
           {},
-          [](const AssessmentContext& context) { return std::make_unique<Badwe2009>(context); }};
+          [](const AssessmentContext& context) { return std::make_unique<Badwe2009>(context); },
+          stated_false_alarms};
 }
 
 }  // namespace mpm

@@ -107,7 +107,9 @@ AssessmentMethodInfo yu_qin_method() {
                    {"worse", NumberScope::cv, "1 when cos_worse is above beta, 0 when not"},
                    {"better", NumberScope::cv, "1 when cos_better is above beta, 0 when not"}}},
       {},
-      [](const AssessmentContext& context) { return std::make_unique<YuQin>(context); }};
+      [](const AssessmentContext& context) { return std::make_unique<YuQin>(context); },
+      // A loop is flagged by the lower one of the two ends of an interval.
+      [](const AssessmentOptions& options) { return 0.5 * (1.0 - options.yu_qin.confidence); }};
 }
 
 }  // namespace mpm

@@ -2,18 +2,16 @@
 
 #include <chrono>
 #include <ctime>
-#include <numeric>
 #include <utility>
-#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "bench/campaign/calibration_runs.hpp"
 #include "bench/campaign/comparison_runner.hpp"
-#include "bench/campaign/outcome_collection.hpp"
-#include "bench/execution/experiment_execution.hpp"
-#include "bench/shards/shard_store.hpp"
+#include "bench/campaign/experiment_series.hpp"
 #include "bench/version.hpp"
+#include "scenarios/calibration.hpp"
 
 namespace mpm {
 namespace {
@@ -36,8 +34,6 @@ void require_health(const BasisCase& basis, const RunOptions& options) {
   throw UnhealthyBasis("the basis case of the study fails its self-check: " + basis.explanation);
 }
 
-using Execution = decltype(&execute_in_threads);
-
 /// Throws InputError for threads that the solver does not bear.
 Execution execution_of(const RunOptions& options) {
   const bool safe = options.solver == "auto" || options.solver == "active-set";
@@ -47,48 +43,13 @@ Execution execution_of(const RunOptions& options) {
   return safe && options.parallel != Parallel::processes ? execute_in_threads : execute_in_processes;
 }
 
-std::vector<std::int64_t> all_of(std::int64_t count) {
-  std::vector<std::int64_t> indices(static_cast<std::size_t>(count));
-  std::iota(indices.begin(), indices.end(), 0);
-  return indices;
-}
-
 /// The basis case; with Ipopt it takes as long as an experiment, so that a stop must not wait for it.
 BasisCase stoppable_basis_case(const Study& study, const QpSolverFactory& factory, const StopRequest& stop,
-                               std::int64_t done, std::int64_t count) {
+                               const ExperimentTally& tally) {
   return run_basis_case(study, factory, [&](const Mpc&) {
     if (requested(stop))
-      throw Interrupted(done, count);
+      throw Interrupted(tally.done, tally.count);
   });
-}
-
-/// Runs the experiments of the plan, which are what is missing of `count`, and brings all into order. Without
-/// shards, outcomes wait in memory; with shards, on the disk, so that a campaign without kept loops needs no
-/// more memory the longer it is.
-OutcomeCollection run_experiments(const ExecutionPlan& plan, Execution execute, std::int64_t count,
-                                  ShardStore* shards, const CampaignHooks& hooks) {
-  std::int64_t done = count - static_cast<std::int64_t>(plan.indices.size());
-  if (hooks.on_start)
-    hooks.on_start(done, count);
-  OutcomeCollection outcomes(count);
-  const auto take = [&](ExperimentOutcome outcome) {
-    ++done;
-    if (hooks.on_done)
-      hooks.on_done(outcome.record);
-    if (shards != nullptr)
-      shards->add(outcome);
-    else
-      outcomes.add(std::move(outcome));
-  };
-  if (!plan.indices.empty())
-    execute(plan, hooks.stop, take);
-  if (shards != nullptr)
-    shards->flush();
-  if (done < count)
-    throw Interrupted(done, count);
-  if (shards != nullptr)
-    shards->read([&](ExperimentOutcome outcome) { outcomes.add(std::move(outcome)); });
-  return outcomes;
 }
 
 /// How, when and by which program; without the times.
@@ -103,6 +64,25 @@ CampaignInfo info_of(const RunOptions& options) {
   return info;
 }
 
+/// The calibration loops of a campaign.
+struct CalibrationSeries {
+  Study study;
+  ExperimentSeries series;
+
+  CalibrationSeries(const Study& of, const RunOptions& options,
+                    const std::optional<std::filesystem::path>& shards, const ShardStore::Warn& warn)
+      : study(calibration_study(of)),
+        series(study, calibration_options(options), study.experiment_count(),
+               shards ? std::optional(calibration_shard_folder(*shards)) : std::nullopt, warn) {}
+
+  Calibration run(const BasisCase& basis, Execution execute, const CampaignHooks& hooks,
+                  ExperimentTally& tally) {
+    Campaign loops;
+    series.run(basis, execute, hooks, tally).move_into(loops);
+    return calibration_of(study, loops.records);
+  }
+};
+
 }  // namespace
 
 Campaign run_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks,
@@ -115,19 +95,25 @@ Campaign run_campaign(Study study, const RunOptions& options, const CampaignHook
   const QpSolverFactory factory = qp_solver_factory(options.solver);
   const Execution execute = execution_of(options);
 
-  std::optional<ShardStore> shards;
-  if (shard_folder)
-    shards.emplace(*shard_folder, options, campaign.study, count, hooks.on_warning);
-  const ExecutionPlan plan{campaign.study, campaign.basis, options,
-                           shards ? shards->missing() : all_of(count)};
-  const std::int64_t done = count - static_cast<std::int64_t>(plan.indices.size());
-  campaign.basis = stoppable_basis_case(campaign.study, factory, hooks.stop, done, count);
+  ExperimentSeries experiments(campaign.study, options, count, shard_folder, hooks.on_warning);
+  std::optional<CalibrationSeries> calibration;
+  if (campaign.study.calibration)
+    calibration.emplace(campaign.study, options, shard_folder, hooks.on_warning);
+  ExperimentTally tally = experiments.tally();
+  if (calibration)
+    tally += calibration->series.tally();
+  campaign.basis = stoppable_basis_case(campaign.study, factory, hooks.stop, tally);
   require_health(campaign.basis, options);
-  OutcomeCollection outcomes = run_experiments(plan, execute, count, shards ? &*shards : nullptr, hooks);
+  if (hooks.on_start)
+    hooks.on_start(tally.done, tally.count);
+  OutcomeCollection outcomes = experiments.run(campaign.basis, execute, hooks, tally);
+  if (calibration)
+    campaign.calibration = calibration->run(campaign.basis, execute, hooks, tally);
 
   campaign.info = info_of(options);
   campaign.info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() +
-                          (shards ? shards->earlier_seconds() : 0.0);
+                          experiments.earlier_seconds() +
+                          (calibration ? calibration->series.earlier_seconds() : 0.0);
   campaign.methods = methods_of(campaign.study, "");
   outcomes.move_into(campaign);
   return campaign;

@@ -1,15 +1,14 @@
 #include "bench/campaign/comparison_runner.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <memory>
 #include <mutex>
 
-#include <omp.h>
-
 #include "analysis/methods/method_table.hpp"
+#include "bench/execution/experiment_execution.hpp"
+#include "bench/execution/thread_loop.hpp"
 #include "bench/version.hpp"
+#include "scenarios/calibration.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {
@@ -30,11 +29,6 @@ Records compared_records(Campaign& campaign, const std::optional<std::int64_t>& 
   return records;
 }
 
-/// Ipopt answered some problem of this experiment, when it did not run as a whole.
-bool needs_ipopt(const Campaign& campaign, const ExperimentRecord& record) {
-  return campaign.info.solver == "ipopt" || record.solver.fallbacks > 0;
-}
-
 void remove(Campaign& campaign, const std::string& method) {
   const std::vector<std::string> names = method_names(campaign);
   const auto place = std::find(names.begin(), names.end(), method) - names.begin();
@@ -43,6 +37,8 @@ void remove(Campaign& campaign, const std::string& method) {
   campaign.methods.erase(campaign.methods.begin() + place);
   for (ExperimentRecord& record : campaign.records)
     record.assessments.erase(record.assessments.begin() + place);
+  for (CalibrationLoop& loop : campaign.calibration.loops)
+    loop.scores.erase(loop.scores.begin() + place);
 }
 
 /// Puts the answers of further methods behind those of the campaign.
@@ -84,45 +80,101 @@ std::vector<CampaignMethod> methods_of(const Study& study, const std::string& co
   return methods;
 }
 
+namespace {
+
+/// Methods that assess the loops of a study in threads: by the active-set method, and one loop at a time by
+/// the solver of the campaign where that is Ipopt, whose linear solver does not bear two threads.
+class ThreadedRunners {
+ public:
+  ThreadedRunners(const Campaign& campaign, const Study& study, const std::vector<std::string>& methods,
+                  int threads)
+      : solver_(campaign.info.solver), by_campaign_solver_(runner_of(campaign, study, methods, solver_)) {
+    for (int thread = 0; thread < threads; ++thread)
+      by_active_set_.push_back(runner_of(campaign, study, methods, "active-set"));
+  }
+
+  const AssessmentForms& forms() const { return by_campaign_solver_->forms(); }
+
+  /// What they say of an experiment that was run.
+  std::vector<AssessmentRecord> assess(const ExperimentRecord& record, std::size_t thread) {
+    const bool needs_ipopt = solver_ == "ipopt" || record.solver.fallbacks > 0;
+    if (!needs_ipopt || !by_campaign_solver_->runs_loops(record))
+      return by_active_set_[thread]->assess(record);
+    const std::lock_guard alone(ipopt_);
+    return by_campaign_solver_->assess(record);
+  }
+
+  /// An experiment, run as a campaign runs it.
+  ExperimentRecord run(std::int64_t index, std::size_t thread) {
+    if (solver_ != "ipopt") {
+      ExperimentRecord record = by_active_set_[thread]->run(index, StorePolicy::none);
+      if (solver_ == "active-set" || !needs_ipopt(record))
+        return record;
+    }
+    const std::lock_guard alone(ipopt_);
+    return by_campaign_solver_->run(index, StorePolicy::none);
+  }
+
+ private:
+  using Runner = std::unique_ptr<ExperimentRunner>;
+
+  static Runner runner_of(const Campaign& campaign, const Study& study,
+                          const std::vector<std::string>& methods, const std::string& solver) {
+    return std::make_unique<ExperimentRunner>(study, campaign.basis, methods, qp_solver_factory(solver));
+  }
+
+  std::string solver_;
+  Runner by_campaign_solver_;
+  std::vector<Runner> by_active_set_;
+  std::mutex ipopt_;  // no critical region: an exception must not leave one
+};
+
+/// Calls on_done, one call at a time.
+class DoneReports {
+ public:
+  explicit DoneReports(const std::function<void()>& on_done) : on_done_(on_done) {}
+  void one_more() {
+    const std::lock_guard one_at_a_time(mutex_);
+    if (on_done_)
+      on_done_();
+  }
+
+ private:
+  const std::function<void()>& on_done_;
+  std::mutex mutex_;
+};
+
+/// Runs the calibration loops again, for the scores of the methods behind those that the campaign has.
+void add_calibration(Campaign& campaign, const ComparisonOptions& options, int threads, DoneReports& done) {
+  const Study loops = calibration_study(campaign.study);
+  ThreadedRunners runners(campaign, loops, options.methods, threads);
+  std::vector<ExperimentRecord> records(campaign.calibration.loops.size());
+  for_each_in_threads(records.size(), threads, [&](std::size_t i, std::size_t thread) {
+    records[i] = runners.run(static_cast<std::int64_t>(i), thread);
+    done.one_more();
+  });
+  const Calibration added = calibration_of(loops, records);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    std::vector<double>& scores = campaign.calibration.loops[i].scores;
+    scores.insert(scores.end(), added.loops[i].scores.begin(), added.loops[i].scores.end());
+  }
+}
+
+}  // namespace
+
 void add_methods(Campaign& campaign, const ComparisonOptions& options, const std::string& command) {
   const Records records = compared_records(campaign, options.experiments);
-  const auto runner_of = [&](const std::string& solver) {
-    return std::make_unique<ExperimentRunner>(campaign.study, campaign.basis, options.methods,
-                                              qp_solver_factory(solver));
-  };
   const int threads = std::max(1, options.jobs);
-  std::vector<std::unique_ptr<ExperimentRunner>> runners;
-  for (int thread = 0; thread < threads; ++thread)
-    runners.push_back(runner_of("active-set"));
-  const std::unique_ptr<ExperimentRunner> by_campaign_solver = runner_of(campaign.info.solver);
+  ThreadedRunners runners(campaign, campaign.study, options.methods, threads);
   std::vector<std::vector<AssessmentRecord>> assessments(records.size());
-  std::vector<std::exception_ptr> failures(records.size());  // none may leave a thread
-  std::atomic<std::size_t> first_failure{records.size()};    // only loops before it can still matter
-  std::mutex ipopt, done;  // not critical regions: an exception must not leave one
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (i > first_failure)
-      continue;
-    try {
-      if (by_campaign_solver->runs_loops(*records[i]) && needs_ipopt(campaign, *records[i])) {
-        const std::lock_guard alone(ipopt);
-        assessments[i] = by_campaign_solver->assess(*records[i]);
-      } else {
-        assessments[i] = runners[static_cast<std::size_t>(omp_get_thread_num())]->assess(*records[i]);
-      }
-      const std::lock_guard one_at_a_time(done);
-      if (options.on_done)
-        options.on_done();
-    } catch (...) {
-      failures[i] = std::current_exception();
-      std::size_t first = first_failure;
-      while (i < first && !first_failure.compare_exchange_weak(first, i)) {
-      }
-    }
-  }
-  if (first_failure < records.size())
-    std::rethrow_exception(failures[first_failure]);
-  append(campaign, by_campaign_solver->forms(), records, std::move(assessments), command);
+  DoneReports done(options.on_done);
+  for_each_in_threads(records.size(), threads, [&](std::size_t i, std::size_t thread) {
+    assessments[i] = runners.assess(*records[i], thread);
+    done.one_more();
+  });
+  append(campaign, runners.forms(), records, std::move(assessments), command);
+  if (campaign.study.calibration)
+    add_calibration(campaign, options, threads, done);
 }
 
 Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods,
@@ -144,6 +196,8 @@ Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods
     else
       record.assessments = chosen(record.assessments);
   }
+  for (CalibrationLoop& loop : campaign.calibration.loops)
+    loop.scores = chosen(loop.scores);
   return campaign;
 }
 

@@ -1,11 +1,29 @@
 #include "bench/campaign/serial_campaign.hpp"
 
+#include <cstdint>
 #include <utility>
+#include <vector>
 
+#include "bench/campaign/calibration_runs.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/execution/experiment_work.hpp"
+#include "scenarios/calibration.hpp"
 
 namespace mpm {
+
+namespace {
+
+Calibration calibrate_serially(const Campaign& campaign, const RunOptions& options,
+                               const QpSolverFactory& factory) {
+  const Study loops = calibration_study(campaign.study);
+  ExperimentWork work(loops, campaign.basis, options, factory);
+  std::vector<ExperimentRecord> records;
+  for (std::int64_t index = 0; index < loops.experiment_count(); ++index)
+    records.push_back(work.run(index).record);
+  return calibration_of(loops, records);
+}
+
+}  // namespace
 
 Campaign run_serially(Study study, const RunOptions& options) {
   Campaign campaign;
@@ -22,6 +40,8 @@ Campaign run_serially(Study study, const RunOptions& options) {
     campaign.records.push_back(std::move(outcome.record));
     campaign.audit.insert(campaign.audit.end(), outcome.audited.begin(), outcome.audited.end());
   }
+  if (campaign.study.calibration)
+    campaign.calibration = calibrate_serially(campaign, calibration_options(options), factory);
   return campaign;
 }
 

@@ -45,13 +45,6 @@ std::optional<Campaign> kept_archive(const fs::path& path, const SuiteCell& cell
   }
 }
 
-void remove_shards(const fs::path& archive) {
-  if (!has_shards(archive))
-    return;
-  ShardFolder shards(shard_folder_of(archive));
-  shards.clear();
-}
-
 /// Goes on with the shards that an interrupted run has left, unless they are of another study or program.
 Campaign run_cell(const SuiteCell& cell, const SuiteRun& options, const fs::path& archive) {
   RunOptions run = options.run;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "analysis/methods/method_table.hpp"
+#include "bench/campaign/calibration_runs.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
@@ -84,7 +85,7 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
   const std::vector<std::string> missing = missing_methods(campaign, asked, options.experiments);
   if (!missing.empty()) {
     Progress progress(options.quiet);
-    progress.begin(loops);
+    progress.begin(loops + calibration_loops(campaign.study));
     const auto on_done = [&] {
       progress.advance();
       progress.end_when_requested();

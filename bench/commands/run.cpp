@@ -44,8 +44,7 @@ std::string how_to_go_on(const RunArguments& options, std::string command_line) 
 
 /// After the archive is written: removes the shards, and what killed runs have left.
 void clean_up(const std::filesystem::path& output) {
-  ShardFolder shards(shard_folder_of(output));
-  shards.clear();
+  remove_shards(output);
   remove_abandoned_files(output);
 }
 

@@ -22,6 +22,10 @@ struct ExecutionPlan {
 /// time, but from any thread. An exception from it ends the execution and is passed on.
 using OutcomeSink = std::function<void(ExperimentOutcome)>;
 
+/// Whether the solver `auto` runs an experiment, which was run by the active-set method, as a whole once more
+/// with Ipopt to fall back on: some answer was not certified.
+bool needs_ipopt(const ExperimentRecord& record);
+
 // When a stop is requested, both give out no more experiments and return: without those in worker processes,
 // which may take minutes, and with those in threads, which take milliseconds, unless they wait for an audit.
 

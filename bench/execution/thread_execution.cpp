@@ -22,11 +22,6 @@ using Clock = std::chrono::steady_clock;
 /// than an experiment, so that waiting for the last one is little, and no more than a killed run may lose.
 constexpr std::chrono::seconds kRound(2);
 
-bool needs_ipopt(const ExperimentRecord& record) {
-  return record.status == ExperimentStatus::failed ||
-         record.solver.largest_kkt_residual > kCertifiedKktResidual;
-}
-
 /// Gives out the experiments of a plan, one by one, to threads that ask for them.
 class IndexQueue {
  public:
@@ -79,6 +74,11 @@ void run_threads(const ThreadWork& work, IndexQueue& queue, const OutcomeSink& d
 }
 
 }  // namespace
+
+bool needs_ipopt(const ExperimentRecord& record) {
+  return record.status == ExperimentStatus::failed ||
+         record.solver.largest_kkt_residual > kCertifiedKktResidual;
+}
 
 void execute_in_threads(const ExecutionPlan& plan, const StopRequest& stop, const OutcomeSink& deliver) {
   const bool fall_back = plan.options.solver == "auto";

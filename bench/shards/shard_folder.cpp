@@ -98,6 +98,17 @@ fs::path shard_folder_of(const fs::path& output) {
   return output.string() + ".shards";
 }
 
+fs::path calibration_shard_folder(const fs::path& shards) {
+  return shards / "calibration";
+}
+
+void remove_shards(const fs::path& output) {
+  ShardFolder shards(shard_folder_of(output));
+  if (const fs::path inner = calibration_shard_folder(shards.path()); fs::exists(inner))
+    ShardFolder(inner).clear();
+  shards.clear();
+}
+
 bool has_shards(const fs::path& output) {
   return !files_in(shard_folder_of(output), kExtension).empty();
 }

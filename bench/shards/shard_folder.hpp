@@ -38,6 +38,12 @@ class ShardFolder {
 /// Where the shards of an output lie: beside it.
 std::filesystem::path shard_folder_of(const std::filesystem::path& output);
 
+/// Where, in the folder of the shards of an output, those of its calibration loops lie.
+std::filesystem::path calibration_shard_folder(const std::filesystem::path& shards);
+
+/// Removes all shards of an output, whose archive is written, and their folders.
+void remove_shards(const std::filesystem::path& output);
+
 /// Whether an interrupted run of this output has left shards.
 bool has_shards(const std::filesystem::path& output);
 

@@ -22,6 +22,7 @@ Campaign read_groups(const std::filesystem::path& path) {
   campaign.study.methods = method_names(campaign);
   campaign.records = read_records(root, study, forms_of(campaign), file);
   read_method_times(root, campaign);
+  campaign.calibration = read_calibration(root, campaign, file);
   campaign.audit = read_audit(root, file);
   campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
   campaign.basis.sensitivity_direct = read_nominal_direct(root, study, campaign.basis.sensitivity, file);
@@ -48,6 +49,7 @@ void write_archive(const std::filesystem::path& path, const Campaign& campaign,
   write_nominal_direct(root, campaign.study, campaign.basis);
   write_nominal_fixed(root, campaign.study, campaign.basis.sensitivity_fixed);
   write_s0_perturbation(root, campaign);
+  write_calibration(root, campaign);
   write_audit(root, campaign.audit);
   write_findings(root, campaign, findings);
   write_file_atomically(path, file.image());

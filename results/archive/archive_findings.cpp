@@ -110,6 +110,8 @@ void write_pairs(Hdf5Group& group, const StudyFindings& findings) {
   write_each<double>(group, along,
                      {"p_worse", "exact p-value of McNemar's test of the second one being worse"}, pairs,
                      [](const MethodPair& pair) { return pair.test.p_worse; });
+  write_each<double>(group, along, {"p_holm", "p_two_sided corrected for all pairs of its truth (Holm 1979)"},
+                     pairs, [](const MethodPair& pair) { return pair.p_holm; });
 }
 
 }  // namespace

@@ -67,6 +67,11 @@ void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis);
 BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivity sensitivity,
                      const std::string& file);
 
+/// /calibration: the scores of the calibration loops; no such group when the study asks for none.
+void write_calibration(Hdf5Group& root, const Campaign& campaign);
+/// `campaign` has its study and its methods.
+Calibration read_calibration(const Hdf5Group& root, const Campaign& campaign, const std::string& file);
+
 /// /audit: what the audit found; no such group without audited steps.
 void write_audit(Hdf5Group& root, const std::vector<AuditedStep>& audit);
 std::vector<AuditedStep> read_audit(const Hdf5Group& root, const std::string& file);

@@ -41,7 +41,7 @@ std::int64_t assessed_loops(const Campaign& campaign) {
 }
 
 StudyFindings findings_of(const Campaign& campaign) {
-  return study_findings(campaign.study, forms_of(campaign), campaign.records);
+  return study_findings(campaign.study, forms_of(campaign), campaign.records, campaign.calibration);
 }
 
 }  // namespace mpm

@@ -7,6 +7,7 @@
 
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/findings/calibration.hpp"
 #include "analysis/findings/study_findings.hpp"
 #include "scenarios/audit.hpp"
 #include "scenarios/study.hpp"
@@ -44,6 +45,9 @@ struct Campaign {
   BasisCase basis;
   std::vector<CampaignMethod> methods;
   std::vector<ExperimentRecord> records;
+  /// What the methods say of the calibration loops, none of them kept; no loops unless the study asks for
+  /// them.
+  Calibration calibration;
   std::vector<AuditedStep> audit;  ///< in the order of experiment and step
 };
 

@@ -1,6 +1,7 @@
 #include "results/archive/method_json.hpp"
 
 #include <array>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,6 +44,14 @@ AssessmentNumberInfo number_of(const Json& json) {
           .estimates_ivar_basis = json.at("estimates_ivar_basis")};
 }
 
+/// Archives of earlier programs say nothing of it.
+std::optional<double> stated_in(const Json& json) {
+  const auto stated = json.find("stated_false_alarms");
+  if (stated == json.end() || stated->is_null())
+    return std::nullopt;
+  return stated->get<double>();
+}
+
 }  // namespace
 
 Json method_json(const MethodDescription& method) {
@@ -57,7 +66,9 @@ Json method_json(const MethodDescription& method) {
         {"benchmark", needs.benchmark},
         {"moving_mvs", needs.moving_mvs}}},
       {"answers",
-       {{"cv", method.locates_cvs}, {"channel", method.names_channels}, {"source", method.tells_sources}}}};
+       {{"cv", method.locates_cvs}, {"channel", method.names_channels}, {"source", method.tells_sources}}},
+      {"stated_false_alarms",
+       method.stated_false_alarms ? Json(*method.stated_false_alarms) : Json(nullptr)}};
 }
 
 std::string method_description_json(const MethodDescription& method) {
@@ -90,6 +101,7 @@ MethodDescription method_description(const std::string& text, const std::string&
                              .locates_cvs = answers.at("cv"),
                              .names_channels = answers.at("channel"),
                              .tells_sources = answers.at("source"),
+                             .stated_false_alarms = stated_in(json),
                              .numbers = {}};
     for (const Json& number : json.at("numbers"))
       method.numbers.push_back(number_of(number));

@@ -123,7 +123,8 @@ GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Camp
   check.inconclusive = file.inconclusive;
   Study study = campaign.study;
   study.aggregate.confidence = check.confidence = file.confidence.value_or(study.aggregate.confidence);
-  const StudyFindings total = study_findings(study, forms_of(campaign), campaign.records);
+  const StudyFindings total =
+      study_findings(study, forms_of(campaign), campaign.records, campaign.calibration);
   judge_campaign(campaign, total, file, check.results);
   for (const Gate& gate : file.gates) {
     const Finding* const finding = find_finding(total.rows, gate.name);

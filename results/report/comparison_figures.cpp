@@ -92,6 +92,35 @@ void draw_curve(PanelScript& panel, const RocCurve& roc, const Pen& pen) {
   panel.line(x, y, pen);
 }
 
+const RocCurve& curve_of(const MethodFindings& method, FlagTruth truth) {
+  return truth == FlagTruth::fault ? method.rates.roc : method.rates.roc_impact;
+}
+
+/// What a figure of curves is called, and says.
+struct RocWords {
+  const char *figure, *panel, *x, *y, *caption, *description;
+};
+
+RocWords roc_words(FlagTruth truth) {
+  if (truth == FlagTruth::fault)
+    return {
+        "comparison-roc",
+        "comparison_roc",
+        "healthy loops flagged (%)",
+        "loops with a fault flagged (%)",
+        "Each method with any threshold on its score; the mark is its own verdict, which need not lie on the "
+        "curve of a method that flags by more than one number.",
+        "Receiver operating characteristics of the scores of the methods, loops with a fault against healthy "
+        "ones."};
+  return {"comparison-roc-impact",
+          "comparison_roc_impact",
+          "loops flagged that are healthy or whose fault has no impact (%)",
+          "loops flagged whose fault has an impact (%)",
+          "The same for the truth of impact: only loops whose fault has an impact are to be flagged.",
+          "Receiver operating characteristics of the scores of the methods, loops whose fault has an impact "
+          "against healthy ones and those whose fault has none."};
+}
+
 /// Where the method itself draws the line: what it flags of both kinds of loops.
 NamedPoint verdict_point(const MethodFindings& method) {
   const double x = 100.0 * method.rates.false_alarm_healthy.value, y = 100.0 * method.rates.detected.value;
@@ -114,8 +143,9 @@ Figure comparison_rates_figure(const Study& study, const Methods& methods) {
   Figure figure;
   figure.name = "comparison-rates";
   figure.caption = fmt::format(
-      "How often each method that gave a verdict is right, with {:g} % intervals: false alarms and flags "
-      "without impact are good on the left, all others on the right.",
+      "How often each method that gave a verdict is right, with {:g} % intervals: false alarms, flags "
+      "without "
+      "impact and faults without a source are good on the left, all others on the right.",
       100.0 * study.aggregate.confidence);
   for (const MethodRateInfo& info : counted_rates(methods))
     if (info.rate != &MethodRates::answered)
@@ -123,37 +153,36 @@ Figure comparison_rates_figure(const Study& study, const Methods& methods) {
   return figure;
 }
 
-Figure comparison_roc_figure(const Methods& methods) {
-  PanelScript panel(
-      "comparison_roc", "",
-      {.label = "healthy loops flagged (%)", .lower = 0, .upper = 100, .ticks = {0, 20, 40, 60, 80, 100}},
-      {.label = "loops with a fault flagged (%)",
-       .lower = 0,
-       .upper = 101,
-       .ticks = {0, 20, 40, 60, 80, 100}});
+bool has_curves(const Methods& methods, FlagTruth truth) {
+  return std::any_of(methods.begin(), methods.end(),
+                     [&](const MethodFindings& m) { return curve_of(m, truth).defined(); });
+}
+
+Figure comparison_roc_figure(const Methods& methods, FlagTruth truth) {
+  const RocWords words = roc_words(truth);
+  const std::vector<double> ticks{0, 20, 40, 60, 80, 100};
+  PanelScript panel(words.panel, "", {.label = words.x, .lower = 0, .upper = 100, .ticks = ticks},
+                    {.label = words.y, .lower = 0, .upper = 101, .ticks = ticks});
   panel.line({0, 100}, {0, 100}, kChance);
   Figure figure;
-  figure.name = "comparison-roc";
-  figure.caption =
-      "Each method with any threshold on its score; the mark is its own verdict, which need not lie on the "
-      "curve of a method that flags by more than one number.";
+  figure.name = words.figure;
+  figure.caption = words.caption;
   for (std::size_t m = 0; m < methods.size(); ++m) {
-    if (!methods[m].rates.roc.defined())
+    const RocCurve& curve = curve_of(methods[m], truth);
+    if (!curve.defined())
       continue;
-    draw_curve(panel, methods[m].rates.roc, curve_pen(m));
-    figure.legend.push_back(
-        {fmt::format("{}, area {:.3f} ({:.3f} to {:.3f})", methods[m].name(), methods[m].rates.roc.area,
-                     methods[m].rates.roc_area.lower, methods[m].rates.roc_area.upper),
-         kPens[m % kPens.size()]});
+    draw_curve(panel, curve, curve_pen(m));
+    const Interval& area =
+        truth == FlagTruth::fault ? methods[m].rates.roc_area : methods[m].rates.roc_impact_area;
+    figure.legend.push_back({fmt::format("{}, area {:.3f} ({:.3f} to {:.3f})", methods[m].name(), curve.area,
+                                         area.lower, area.upper),
+                             kPens[m % kPens.size()]});
   }
-  for (std::size_t m = 0; m < methods.size(); ++m)
+  for (std::size_t m = 0; m < methods.size() && truth == FlagTruth::fault; ++m)
     if (methods[m].rates.roc.defined())
       panel.points({verdict_point(methods[m])}, kPens[m % kPens.size()]);
   figure.legend.push_back({"chance", kChance});
-  figure.panels = {
-      panel.finish("Receiver operating characteristics of the scores of the methods, loops with a "
-                   "fault against healthy ones.",
-                   360)};
+  figure.panels = {panel.finish(words.description, 360)};
   return figure;
 }
 

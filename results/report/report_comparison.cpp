@@ -32,6 +32,18 @@ std::string rate_cell(const Rate& rate) {
                                        html_interval(rate.interval, true), rate.total);
 }
 
+/// What the method states of its false alarms, and a mark when that is not what it does.
+std::string stated_cell(const MethodFindings& method) {
+  const MethodDescription& description = method.form->method();
+  const FalseAlarmMark mark = false_alarm_mark(description, method.rates);
+  const std::string stated = description.stated_false_alarms
+                                 ? html_number(*description.stated_false_alarms, true)
+                                 : std::string("none");
+  return mark == FalseAlarmMark::none
+             ? stated
+             : fmt::format("{}<br><small><strong>! {} found</strong></small>", stated, to_string(mark));
+}
+
 /// One row a rate, one column a method: there are more rates than a page is wide.
 std::string rates_table(const Study& study, const Methods& methods) {
   std::vector<HtmlTable::Column> columns{{"Share of loops", HtmlTable::Align::left}};
@@ -47,45 +59,76 @@ std::string rates_table(const Study& study, const Methods& methods) {
       cells.push_back(rate_cell(method.rates.*info.rate));
     table.row(cells);
   }
+  std::vector<std::string> stated{"false alarms, stated"};
+  for (const MethodFindings& method : methods)
+    stated.push_back(stated_cell(method));
+  table.row(stated);
   return table.html();
 }
 
 /// What each rate counts.
-std::string rates_legend() {
+std::string rates_legend(const Study& study) {
   std::string html = "<p><small>";
-  for (const MethodRateInfo& info : method_rate_infos())
+  for (const MethodRateInfo& info : method_rate_infos(study))
     html += fmt::format("<strong>{}</strong>: {}. ", html_text(info.title), html_text(info.meaning));
-  return html + "</small></p>\n";
+  return fmt::format(
+      "{}<strong>false alarms, stated</strong>: share of healthy loops that the method says it flags; marked "
+      "when the interval of the share that it does flag does not hold it, or {:g} % where it states none."
+      "</small></p>\n",
+      html, 100.0 * kUsualFalseAlarms);
+}
+
+/// On what the thresholds were calibrated, and what they are.
+std::string thresholds_table(const Campaign& campaign, const Methods& methods) {
+  const CalibrationOptions& options = *campaign.study.calibration;
+  std::vector<HtmlTable::Column> columns{{"Threshold", HtmlTable::Align::left}};
+  for (const MethodFindings& method : methods)
+    columns.push_back({html_text(method.name())});
+  HtmlTable table(
+      fmt::format("Thresholds on the score of each method, calibrated on {} healthy loops and {} with a "
+                  "disturbance alone, of seed {}; missing where too few of them have a verdict.",
+                  options.healthy, options.ud, campaign.calibration.seed),
+      columns);
+  for (const ThresholdInfo& info : threshold_infos()) {
+    std::vector<std::string> cells{html_text(info.meaning)};
+    for (const MethodFindings& method : methods)
+      cells.push_back(html_number((method.rates.thresholds.*info.threshold).value.value_or(NAN)));
+    table.row(cells);
+  }
+  return table.html();
 }
 
 void add_roc(ReportSection& section, const Methods& methods) {
-  if (std::any_of(methods.begin(), methods.end(),
-                  [](const MethodFindings& m) { return m.rates.roc.defined(); }))
-    section.add(comparison_roc_figure(methods));
+  if (has_curves(methods, FlagTruth::fault))
+    section.add(comparison_roc_figure(methods, FlagTruth::fault));
   else
     section.add(
         "<p class=\"absent\">ROC curves are left out: they need loops with a fault and healthy ones "
         "that a method has scored.</p>\n");
+  if (has_curves(methods, FlagTruth::impact))
+    section.add(comparison_roc_figure(methods, FlagTruth::impact));
 }
 
 std::string pairs_table(const StudyFindings& summary) {
   HtmlTable table(
       "Two methods on the loops that both gave a verdict on. Right is to flag the loops with a fault, "
       "or those with a fault that has an impact, and no others; p is that of McNemar&rsquo;s exact test, "
-      "two-sided.",
+      "two-sided, and corrected by Holm for all pairs of a truth.",
       {{"First", HtmlTable::Align::left},
        {"Second", HtmlTable::Align::left},
        {"To be flagged", HtmlTable::Align::left},
        {"Loops"},
        {"First alone right"},
        {"Second alone right"},
-       {"p"}});
+       {"p"},
+       {"p, corrected"}});
   for (const MethodPair& pair : summary.pairs)
     if (pair.loops > 0)
       table.row({html_text(summary.methods[pair.first].name()),
                  html_text(summary.methods[pair.second].name()), std::string(to_string(pair.truth)),
                  fmt::format("{}", pair.loops), fmt::format("{}", pair.test.lost),
-                 fmt::format("{}", pair.test.gained), fmt::format("{:.2g}", pair.test.p_two_sided)});
+                 fmt::format("{}", pair.test.gained), fmt::format("{:.2g}", pair.test.p_two_sided),
+                 fmt::format("{:.2g}", pair.p_holm)});
   return table.html();
 }
 
@@ -133,7 +176,9 @@ ReportSection comparison_section(const ReportInput& input) {
   if (!rates.panels.empty())
     section.add(std::move(rates));
   section.add(rates_table(campaign.study, summary.methods));
-  section.add(rates_legend());
+  section.add(rates_legend(campaign.study));
+  if (campaign.study.calibration)
+    section.add(thresholds_table(campaign, summary.methods));
   add_roc(section, summary.methods);
   const bool paired = std::any_of(summary.pairs.begin(), summary.pairs.end(),
                                   [](const MethodPair& pair) { return pair.loops > 0; });

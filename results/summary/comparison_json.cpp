@@ -9,9 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json rates_json(const MethodRates& method) {
+Json rates_json(const Study& study, const MethodRates& method) {
   Json rates = Json::object();
-  for (const MethodRateInfo& info : method_rate_infos()) {
+  for (const MethodRateInfo& info : method_rate_infos(study)) {
     const Rate& rate = method.*info.rate;
     rates[info.name] = {{"hits", rate.hits},
                         {"total", rate.total},
@@ -23,28 +23,44 @@ Json rates_json(const MethodRates& method) {
 }
 
 /// The points as columns. The first and the last threshold are infinite, which JSON cannot say: null.
-Json roc_json(const MethodRates& method) {
+Json roc_json(const RocCurve& roc, const Interval& area) {
   Json threshold = Json::array(), true_positive = Json::array(), false_positive = Json::array();
-  for (const RocPoint& point : method.roc.points) {
+  for (const RocPoint& point : roc.points) {
     threshold.push_back(point.threshold);
     true_positive.push_back(point.true_positive_rate);
     false_positive.push_back(point.false_positive_rate);
   }
-  return {{"area", method.roc.area},
-          {"lower", method.roc_area.lower},
-          {"upper", method.roc_area.upper},
-          {"faulty", method.roc.positives},
-          {"healthy", method.roc.negatives},
+  return {{"area", roc.area},
+          {"lower", area.lower},
+          {"upper", area.upper},
+          {"faulty", roc.positives},
+          {"healthy", roc.negatives},
           {"threshold", threshold},
           {"true_positive_rate", true_positive},
           {"false_positive_rate", false_positive}};
 }
 
-Json method_findings_json(const MethodFindings& method) {
+/// Null for a threshold of too few loops. An infinite one, too, is null in JSON: no finite score is above it.
+Json thresholds_json(const CalibratedThresholds& thresholds) {
+  Json json = Json::object();
+  for (const ThresholdInfo& info : threshold_infos()) {
+    const CalibratedThreshold& threshold = thresholds.*info.threshold;
+    json[info.name] = {{"value", threshold.value ? Json(*threshold.value) : Json(nullptr)},
+                       {"loops", threshold.loops}};
+  }
+  return json;
+}
+
+Json method_findings_json(const Study& study, const MethodFindings& method) {
+  const MethodRates& rates = method.rates;
   Json json = method_json(method.form->method());
-  json["reason"] = proper_utf8(method.rates.reason);
-  json["rates"] = rates_json(method.rates);
-  json["roc"] = roc_json(method.rates);
+  json["reason"] = proper_utf8(rates.reason);
+  json["rates"] = rates_json(study, rates);
+  json["false_alarm_mark"] = to_string(false_alarm_mark(method.form->method(), rates));
+  json["roc"] = roc_json(rates.roc, rates.roc_area);
+  json["roc_impact"] = roc_json(rates.roc_impact, rates.roc_impact_area);
+  if (study.calibration)
+    json["thresholds"] = thresholds_json(rates.thresholds);
   json["milliseconds"] = method.rates.milliseconds;
   return json;
 }
@@ -57,12 +73,13 @@ Json pair_json(const StudyFindings& findings, const MethodPair& pair) {
           {"first_alone", pair.test.lost},
           {"second_alone", pair.test.gained},
           {"p_two_sided", pair.test.p_two_sided},
-          {"p_worse", pair.test.p_worse}};
+          {"p_worse", pair.test.p_worse},
+          {"p_holm", pair.p_holm}};
 }
 
-Json rate_names_json() {
+Json rate_names_json(const Study& study) {
   Json names = Json::object();
-  for (const MethodRateInfo& info : method_rate_infos())
+  for (const MethodRateInfo& info : method_rate_infos(study))
     names[info.name] = info.meaning;
   return names;
 }
@@ -72,17 +89,21 @@ Json rate_names_json() {
 std::string comparison_json(const Campaign& campaign, const StudyFindings& findings) {
   Json methods = Json::array(), pairs = Json::array();
   for (const MethodFindings& method : findings.methods)
-    methods.push_back(method_findings_json(method));
+    methods.push_back(method_findings_json(campaign.study, method));
   for (const MethodPair& pair : findings.pairs)
     pairs.push_back(pair_json(findings, pair));
-  const Json comparison{{"study", campaign.study.name},
-                        {"seed", campaign.study.seed},
-                        {"experiments", campaign.records.size()},
-                        {"loops", assessed_loops(campaign)},
-                        {"confidence", campaign.study.aggregate.confidence},
-                        {"rates", rate_names_json()},
-                        {"methods", methods},
-                        {"pairs", pairs}};
+  Json comparison{{"study", campaign.study.name},
+                  {"seed", campaign.study.seed},
+                  {"experiments", campaign.records.size()},
+                  {"loops", assessed_loops(campaign)},
+                  {"confidence", campaign.study.aggregate.confidence},
+                  {"rates", rate_names_json(campaign.study)},
+                  {"methods", methods},
+                  {"pairs", pairs}};
+  if (campaign.study.calibration)
+    comparison["calibration"] = {{"false_alarms", campaign.study.calibration->false_alarms},
+                                 {"seed", campaign.calibration.seed},
+                                 {"loops", campaign.calibration.loops.size()}};
   return comparison.dump(2) + "\n";
 }
 

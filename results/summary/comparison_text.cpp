@@ -22,12 +22,21 @@ std::string rate_text(const Rate& rate) {
                      100 * rate.interval.upper, rate.total);
 }
 
-std::string area_text(const MethodFindings& method) {
-  const RocCurve& roc = method.rates.roc;
+std::string area_text(const RocCurve& roc, const Interval& area) {
   if (!roc.defined())
     return "-";
-  return fmt::format("{:.3f} [{:.3f}, {:.3f}] {:>4}", roc.area, method.rates.roc_area.lower,
-                     method.rates.roc_area.upper, roc.positives + roc.negatives);
+  return fmt::format("{:.3f} [{:.3f}, {:.3f}] {:>4}", roc.area, area.lower, area.upper,
+                     roc.positives + roc.negatives);
+}
+
+/// The share of healthy loops that the method says it flags, and a mark when it does not.
+std::string stated_text(const MethodFindings& method) {
+  const MethodDescription& description = method.form->method();
+  const FalseAlarmMark mark = false_alarm_mark(description, method.rates);
+  const std::string stated = description.stated_false_alarms
+                                 ? fmt::format("{:.1f}", 100 * *description.stated_false_alarms)
+                                 : "none";
+  return mark == FalseAlarmMark::none ? stated : fmt::format("{} ({} found) !", stated, to_string(mark));
 }
 
 std::string cost_text(const MethodFindings& method) {
@@ -35,7 +44,8 @@ std::string cost_text(const MethodFindings& method) {
 }
 
 /// One column a method of [first, last), one row a rate.
-std::string rates_text(const std::vector<MethodFindings>& methods, std::size_t first, std::size_t last) {
+std::string rates_text(const Study& study, const std::vector<MethodFindings>& methods, std::size_t first,
+                       std::size_t last) {
   TextTable table;
   const auto row = [&](const std::string& title, const auto& cell) {
     TextTable::Row cells{title};
@@ -44,11 +54,45 @@ std::string rates_text(const std::vector<MethodFindings>& methods, std::size_t f
     table.add(std::move(cells));
   };
   row("% of loops", [](const MethodFindings& m) { return m.name(); });
-  for (const MethodRateInfo& info : method_rate_infos())
+  for (const MethodRateInfo& info : method_rate_infos(study))
     row(info.title, [&](const MethodFindings& m) { return rate_text(m.rates.*info.rate); });
-  row("area under ROC", area_text);
+  row("false alarms stated", stated_text);
+  row("area under ROC, fault",
+      [](const MethodFindings& m) { return area_text(m.rates.roc, m.rates.roc_area); });
+  row("area under ROC, impact",
+      [](const MethodFindings& m) { return area_text(m.rates.roc_impact, m.rates.roc_impact_area); });
   row("ms a loop, median", cost_text);
   return table.text();
+}
+
+/// What the marks of stated_text() mean, when there are any.
+std::string marks_text(const StudyFindings& findings) {
+  const bool none = std::all_of(findings.methods.begin(), findings.methods.end(), [](const auto& method) {
+    return false_alarm_mark(method.form->method(), method.rates) == FalseAlarmMark::none;
+  });
+  return none ? ""
+              : fmt::format(
+                    "\n!: the interval of the false alarms on healthy loops does not hold the rate that the "
+                    "method\nstates, or {:g} % where it states none\n",
+                    100.0 * kUsualFalseAlarms);
+}
+
+/// On what the thresholds were calibrated, and where the loops were too few.
+std::string calibration_text(const Campaign& campaign, const StudyFindings& findings) {
+  if (!campaign.study.calibration)
+    return "";
+  const CalibrationOptions& options = *campaign.study.calibration;
+  std::string text = fmt::format(
+      "\ncalibrated: thresholds on {} healthy loops and {} with a disturbance of seed {};\n\"calibrated: "
+      "false "
+      "alarms\" at a threshold for {:g} %\n",
+      options.healthy, options.ud, campaign.calibration.seed, 100.0 * options.false_alarms);
+  for (const MethodFindings& method : findings.methods)
+    for (const ThresholdInfo& info : threshold_infos())
+      if (const CalibratedThreshold& threshold = method.rates.thresholds.*info.threshold; !threshold.value)
+        text += fmt::format("no {} of {}: {} calibration loops with a verdict are too few\n", info.name,
+                            method.name(), threshold.loops);
+  return text;
 }
 
 /// The methods that gave no verdict on some loop, with the reason.
@@ -64,21 +108,22 @@ std::string reasons_text(const std::vector<MethodFindings>& methods) {
 
 std::string pairs_text(const StudyFindings& summary) {
   TextTable table;
-  table.add({"pair", "truth", "loops", "right: first alone", "second alone", "p"});
+  table.add({"pair", "truth", "loops", "right: first alone", "second alone", "p", "corrected"});
   for (const MethodPair& pair : summary.pairs)
     if (pair.loops > 0)
       table.add(
           {fmt::format("{} / {}", summary.methods[pair.first].name(), summary.methods[pair.second].name()),
            std::string(to_string(pair.truth)), fmt::format("{}", pair.loops),
            fmt::format("{}", pair.test.lost), fmt::format("{}", pair.test.gained),
-           fmt::format("{:.2g}", pair.test.p_two_sided)});
+           fmt::format("{:.2g}", pair.test.p_two_sided), fmt::format("{:.2g}", pair.p_holm)});
   const bool none = std::none_of(summary.pairs.begin(), summary.pairs.end(),
                                  [](const MethodPair& pair) { return pair.loops > 0; });
   if (none)
     return "";
   return fmt::format(
       "\n{}(right: a loop with a fault, or with one that has an impact, is flagged and no other;\n"
-      "p: McNemar's exact test, two-sided, over the loops that both gave a verdict on)\n",
+      "p: McNemar's exact test, two-sided, over the loops that both gave a verdict on; corrected: by Holm, "
+      "for\nall pairs of a truth)\n",
       table.text());
 }
 
@@ -89,9 +134,10 @@ std::string comparison_text(const Campaign& campaign, const StudyFindings& findi
                                  campaign.study.name, assessed_loops(campaign), campaign.records.size(),
                                  100.0 * campaign.study.aggregate.confidence);
   for (std::size_t first = 0; first < findings.methods.size(); first += kMethodsAbreast)
-    text += fmt::format("\n{}", rates_text(findings.methods, first,
+    text += fmt::format("\n{}", rates_text(campaign.study, findings.methods, first,
                                            std::min(first + kMethodsAbreast, findings.methods.size())));
-  return text + reasons_text(findings.methods) + pairs_text(findings);
+  return fmt::format("{}{}{}{}{}", text, marks_text(findings), calibration_text(campaign, findings),
+                     reasons_text(findings.methods), pairs_text(findings));
 }
 
 }  // namespace mpm

@@ -22,7 +22,7 @@ FIGURES = ["headline-rates", "ivar", "i-mpm", "dominance", "roc", "fault-size", 
 SCENARIO_SECTIONS = ["run", "scenarios", "comparison", "sensitivity", "interaction", "s0-perturbation", "basis",
                      "solver"]
 SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "scenario-ellipses", "scenario-acf-basis", "scenario-acf-0",
-                    "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "t0", "basis-case"]
+                    "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "comparison-roc-impact", "t0", "basis-case"]
 PHONE, DESKTOP = 390, 1280  # pixels
 
 # The page in a frame of either width, which a script can look into because it has the same origin.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -108,6 +109,69 @@ TEST_CASE("rates of a method: every loop is counted where it belongs", "[method_
   const Interval wilson = wilson_interval(6, 9, study().aggregate.confidence);
   CHECK(rates.detected.interval.lower == wilson.lower);
   CHECK(rates.detected.interval.upper == wilson.upper);
+}
+
+TEST_CASE("rates of a method: faults are told three ways, over all of them", "[method_rates]") {
+  Case made;
+  made.add(kMpm, verdict(true, 1, 1, kIsMpm));  // right
+  made.add(kMpm, verdict(true, 1, 1, kIsUd));
+  made.add(kMpm, verdict(false, 1, 1, kIsMpm));  // said of no fault: no source
+  made.add(kUd, verdict(true, 1, 1, kIsUd));     // right
+  made.add(kUd, verdict(true, 1, 1));            // no source
+  made.add(kBoth, verdict(true, 1, 1, kIsMpm));
+  made.add(kBoth, verdict(true, 1, 1, FaultSource::mpm_ud));  // right
+  made.add(kUd, no_verdict(AssessmentStatus::failed));        // no source
+  made.add(kUd, no_verdict(AssessmentStatus::not_assessed));  // nobody asked
+  made.add(kNone, verdict(true, 1, 1, kIsMpm));               // no fault
+  check_rate(made.rates().source_all, 3, 8);
+  check_rate(made.rates().abstained, 3, 8);
+
+  Case tells_none;
+  const auto form = testing::form_of(study(), "sse");
+  REQUIRE_FALSE(form->method().tells_sources);
+  tells_none.add(kMpm, testing::verdict(form, true, 1.0, 1));
+  check_rate(tells_none.rates().source_all, 0, 0);
+  check_rate(tells_none.rates().abstained, 0, 0);
+}
+
+TEST_CASE("rates of a method: by the truth of impact a fault without one is a negative", "[method_rates]") {
+  Case made;
+  ExperimentRecord quiet = made_up_record(50, kMpm, 1, 0.2);
+  quiet.ivar_basis.setOnes();
+  made.add(quiet, verdict(true, 4.0), verdict(false));
+  made.add(kMpm, verdict(true, 3.0));
+  made.add(kUd, verdict(true, 5.0));
+  made.add(kNone, verdict(false, 1.0));
+  made.add(kNone, verdict(false, 2.0));
+  const MethodRates rates = made.rates();
+  CHECK(rates.roc.area == 1.0);
+  CHECK(rates.roc_impact.positives == 2);
+  CHECK(rates.roc_impact.negatives == 3);
+  CHECK(rates.roc_impact.area ==
+        Approx(5.0 / 6.0).epsilon(1e-12));  // of 2 x 3 pairs one is in the wrong order
+  CHECK(rates.roc_impact_area.contains(rates.roc_impact.area));
+}
+
+TEST_CASE("false alarms are marked when their interval does not hold what the method states",
+          "[method_rates]") {
+  MethodDescription method;
+  MethodRates rates{};
+  CHECK(false_alarm_mark(method, rates) == FalseAlarmMark::none);  // nothing was looked at
+  rates.false_alarm_healthy = rate(10, 100);                       // 5.5 to 17.4 %
+  CHECK(false_alarm_mark(method, rates) == FalseAlarmMark::more);  // than the usual 5 %
+  method.stated_false_alarms = 0.1;
+  CHECK(false_alarm_mark(method, rates) == FalseAlarmMark::none);
+  method.stated_false_alarms = 0.2;
+  CHECK(false_alarm_mark(method, rates) == FalseAlarmMark::fewer);
+
+  Study other = study();
+  CHECK(testing::form_of(other, "yu-qin")->method().stated_false_alarms == Approx(0.025));
+  CHECK(testing::form_of(other, "badwe2009")->method().stated_false_alarms == Approx(0.05));
+  other.assessment.badwe2009.confidence = 0.99;
+  CHECK(testing::form_of(other, "badwe2009")->method().stated_false_alarms == Approx(0.01));
+  other.assessment.badwe2009.multiplicity = Multiplicity::lags;
+  CHECK_FALSE(testing::form_of(other, "badwe2009")->method().stated_false_alarms.has_value());
+  CHECK_FALSE(testing::form_of(other, "sse")->method().stated_false_alarms.has_value());
 }
 
 TEST_CASE("rates of a method: a loop with bad tuning is no healthy one, and not on the ROC curve",
@@ -251,6 +315,28 @@ TEST_CASE("paired methods: a fault without impact is to be flagged by the one tr
   CHECK(pairs[1].test.gained == 1);
 }
 
+TEST_CASE("paired methods: p-values are corrected within each truth, for the pairs that have loops",
+          "[method_rates]") {
+  // Of three methods the third gives no verdict: one pair a truth has loops, and is not corrected.
+  std::vector<ExperimentRecord> records;
+  for (int i = 0; i < 6; ++i) {
+    records.push_back(made_up_record(i, kMpm, 1, 0.2));
+    records.back().assessments = {verdict(true), verdict(false), no_verdict(AssessmentStatus::failed)};
+  }
+  std::vector<MethodPair> pairs = method_pairs(study(), 3, records);
+  REQUIRE(pairs.size() == 6);
+  CHECK(pairs[0].test.p_two_sided == 2.0 / 64.0);
+  CHECK(pairs[0].p_holm == pairs[0].test.p_two_sided);
+  CHECK(pairs[1].p_holm == 1.0);
+  for (ExperimentRecord& record : records)
+    record.assessments[2] = verdict(false);  // as the second one: p = 1/32, 1/32, 1
+  pairs = method_pairs(study(), 3, records);
+  CHECK(pairs[0].p_holm == 6.0 / 64.0);
+  CHECK(pairs[1].p_holm == 6.0 / 64.0);
+  CHECK(pairs[2].p_holm == 1.0);
+  CHECK(pairs[3].p_holm == 6.0 / 64.0);
+}
+
 TEST_CASE("paired methods: every pair once for each truth", "[method_rates]") {
   CHECK(method_pairs(study(), 1, {}).empty());
   const std::vector<MethodPair> pairs = method_pairs(study(), 3, {});
@@ -294,8 +380,8 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   made.add(kMpm, verdict(false, 1.0));
   made.add(kNone, verdict(false, 0.0));
   const MethodRates rates = made.rates();
-  const std::vector<Finding> rows = rows_of(rates, testing::chain_form()->method());
-  REQUIRE(rows.size() == method_rate_infos().size() + 1);
+  const std::vector<Finding> rows = rows_of(study(), rates, testing::chain_form()->method());
+  REQUIRE(rows.size() == method_rate_infos(study()).size() + 2);
   CHECK(rows[0].name == "compare.botelho.answered");
   CHECK(rows[1].name == "compare.botelho.detected");
   CHECK(rows[1].value == 0.5);
@@ -304,10 +390,20 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   CHECK(rows[1].is_share());
   CHECK(rows[1].method == "botelho");
   CHECK(rows[1].interval.lower == rates.detected.interval.lower);
-  CHECK(rows.back().name == "compare.botelho.roc_area");
-  CHECK_FALSE(rows.back().is_share());
-  CHECK(rows.back().value == 1.0);
-  CHECK(rows.back().count == 3);
+  const Finding& area = rows[rows.size() - 2];
+  CHECK(area.name == "compare.botelho.roc_area");
+  CHECK_FALSE(area.is_share());
+  CHECK(area.value == 1.0);
+  CHECK(area.count == 3);
+  CHECK(rows.back().name == "compare.botelho.roc_area_impact");
+
+  // Rates at calibrated thresholds, and the thresholds, are of studies with a calibration.
+  CHECK(std::none_of(rows.begin(), rows.end(),
+                     [](const Finding& row) { return row.name == "compare.botelho.power_05"; }));
+  Study calibrated = study();
+  calibrated.calibration.emplace();
+  CHECK(rows_of(calibrated, rates, testing::chain_form()->method()).size() ==
+        method_rate_infos().size() + 2 + threshold_infos().size());
 }
 
 }  // namespace mpm

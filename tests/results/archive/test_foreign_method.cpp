@@ -28,6 +28,7 @@ MethodDescription foreign_description() {
   method.title = "Somebody (2031)";
   method.verdict = "something <new> is wrong";
   method.requirements.benchmark = true;
+  method.stated_false_alarms = 0.07;
   method.locates_cvs = method.names_channels = method.tells_sources = true;
   method.numbers = {
       {.name = "novelty",

@@ -173,13 +173,20 @@ TEST_CASE("report: several methods stand side by side, with curves where it can"
   for (const auto& piece : section.content)
     if (const Figure* const figure = std::get_if<Figure>(&piece))
       figures.push_back(figure->name);
-  CHECK(figures == std::vector<std::string>{"comparison-rates", "comparison-roc"});
+  CHECK(figures == std::vector<std::string>{"comparison-rates", "comparison-roc", "comparison-roc-impact"});
   const std::string html = html_of(section);
   CHECK_THAT(html, Contains("the same 3 of 5 experiments") && Contains("it needs &lt;more&gt;"));
-  for (const MethodRateInfo& info : method_rate_infos())
+  for (const MethodRateInfo& info : method_rate_infos(campaign.study))
     CHECK_THAT(html, Contains(std::string("<strong>") + info.title + "</strong>: "));
   for (const std::string& method : method_names(campaign))
     CHECK_THAT(html, Contains(method));
+
+  CHECK_THAT(html, !Contains("calibrated on"));
+  Campaign calibrated = campaign;
+  calibrated.study.calibration.emplace();
+  calibrated.calibration.seed = 4711;
+  CHECK_THAT(html_of(comparison_section(Input(calibrated))),
+             Contains("calibrated on 200 healthy loops and 100 with a disturbance alone, of seed 4711"));
 
   // Every loop of the sample has a fault, so that there is nothing to draw a curve with.
   CHECK_THAT(html_of(comparison_section(Input(sample()))), Contains("ROC curves are left out"));
@@ -236,7 +243,7 @@ TEST_CASE("report: awkward numbers and foreign texts make no broken page") {
 TEST_CASE("report: the same figures as files, and a folder that cannot be made") {
   const TemporaryFolder folder;
   const auto files = write_figures(sample(), findings_of(sample()), folder / "figures", FigureFormat::svg);
-  CHECK(files.size() == 13);
+  CHECK(files.size() == 14);
   for (const auto& file : files)
     CHECK_THAT(file_content(file), Contains("<svg ") && Contains("</svg>"));
   make_file(folder / "file", "");

@@ -7,6 +7,7 @@
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_words.hpp"
+#include "plants/non_finite.hpp"
 #include "results/summary/comparison.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -52,8 +53,9 @@ TEST_CASE(
   const Rate& detected = findings.methods[0].rates.detected;
   CHECK(detected.hits < detected.total);
   CHECK_THAT(text, Contains(std::to_string(experiments_that_ran(campaign)) + " of 40 experiments compared"));
-  for (const MethodRateInfo& info : method_rate_infos())
+  for (const MethodRateInfo& info : method_rate_infos(campaign.study))
     CHECK_THAT(text, Contains(std::string("\n") + info.title));
+  CHECK_THAT(text, !Contains("calibrated"));
   char share[16];
   std::snprintf(share, sizeof share, "%.1f [%.1f, ", 100.0 * detected.value, 100.0 * detected.interval.lower);
   CHECK_THAT(text, Contains(share));
@@ -87,8 +89,8 @@ TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the 
     const Json& of_json = json["methods"][m];
     CHECK(of_json["name"] == findings.methods[m].name());
     CHECK(of_json["reason"] == rates.reason);
-    CHECK(of_json["rates"].size() == method_rate_infos().size());
-    for (const MethodRateInfo& info : method_rate_infos()) {
+    CHECK(of_json["rates"].size() == method_rate_infos(campaign.study).size());
+    for (const MethodRateInfo& info : method_rate_infos(campaign.study)) {
       const Rate& rate = rates.*info.rate;
       const Json& share = of_json["rates"][info.name];
       CHECK(share["hits"] == rate.hits);
@@ -115,6 +117,35 @@ TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the 
   CHECK(json["pairs"][0]["loops"] == findings.pairs[0].loops);
   CHECK(json["pairs"][0]["first_alone"] == findings.pairs[0].test.lost);
   CHECK(json["pairs"][0]["p_two_sided"] == findings.pairs[0].test.p_two_sided);
+  CHECK(json["pairs"][0]["p_holm"] == findings.pairs[0].p_holm);
+  CHECK_FALSE(json.contains("calibration"));
+}
+
+TEST_CASE("comparison of a study with a calibration: its rates, thresholds, and where loops are too few") {
+  Campaign campaign = four_methods();
+  campaign.records[0].draw = {};  // a healthy one
+  campaign.study.calibration.emplace();
+  campaign.study.calibration->healthy = 30;
+  campaign.calibration = {77,
+                          std::vector(30, CalibrationLoop{ExperimentKind::healthy, {0.25, 0.5, kNaN, 0.5}})};
+  const StudyFindings findings = findings_of(campaign);
+  const std::string text = comparison_text(campaign, findings);
+  for (const MethodRateInfo& info : method_rate_infos())
+    CHECK_THAT(text, Contains(std::string("\n") + info.title));
+  CHECK_THAT(text, Contains("thresholds on 30 healthy loops and 100 with a disturbance of seed 77"));
+  CHECK_THAT(text, Contains("no threshold_01 of botelho: 30 calibration loops with a verdict are too few"));
+  CHECK_THAT(text, Contains("no threshold_05 of badwe2009: 0 calibration loops"));
+  CHECK_THAT(text, !Contains("no threshold_05 of sun"));
+  const Json json = Json::parse(comparison_json(campaign, findings));
+  CHECK(json["calibration"]["seed"] == 77);
+  CHECK(json["calibration"]["loops"] == 30);
+  const Json& first = json["methods"][0];  // every score is 0.5: above 0.25, and above no 0.5
+  CHECK(first["thresholds"]["threshold_05"]["value"] == 0.25);
+  CHECK(first["thresholds"]["threshold_01"]["value"].is_null());
+  CHECK(first["rates"]["power_05"]["hits"] == first["rates"]["detected"]["total"]);
+  CHECK(first["rates"]["power_01"]["total"] == 0);
+  CHECK(json["methods"][1]["rates"]["power_05"]["hits"] == 0);
+  CHECK(first["false_alarm_mark"] == "");  // one loop says nothing
 }
 
 TEST_CASE("comparison words: what a method needs and tells") {

@@ -1,0 +1,51 @@
+#include "analysis/statistics/conformal_threshold.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+/// What is meant to be whole, such as 20 times 0.05, is not lost by rounding.
+constexpr double kRounding = 1e-12;
+
+void require_false_alarms(double false_alarms) {
+  if (!(false_alarms > 0.0 && false_alarms < 1.0))
+    throw InputError("rate of false alarms", fmt::format("{}", false_alarms), "a number between 0 and 1");
+}
+
+/// n + 1 - k = floor((n + 1) a): how many places from the top, 0 for none.
+std::int64_t places_from_top(std::int64_t count, double false_alarms) {
+  return static_cast<std::int64_t>(
+      std::floor(static_cast<double>(count + 1) * false_alarms * (1.0 + kRounding)));
+}
+
+}  // namespace
+
+std::optional<double> conformal_threshold(std::span<const double> scores, double false_alarms) {
+  require_false_alarms(false_alarms);
+  const std::int64_t place = places_from_top(std::ssize(scores), false_alarms);
+  if (place < 1)
+    return std::nullopt;
+  std::vector<double> descending(scores.begin(), scores.end());
+  for (double& score : descending)
+    score = std::isnan(score) ? -kInfinity : score;
+  std::sort(descending.begin(), descending.end(), std::greater<>());
+  return descending[static_cast<std::size_t>(place - 1)];
+}
+
+std::int64_t fewest_scores(double false_alarms) {
+  require_false_alarms(false_alarms);
+  constexpr double kMost = 1e15;
+  const double count = std::ceil((1.0 - kRounding) / false_alarms) - 1.0;
+  return static_cast<std::int64_t>(std::clamp(count, 1.0, kMost));
+}
+
+}  // namespace mpm

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace mpm {
+
+/// Calls body(index, thread) for each index below `count` in `threads` OpenMP threads, in any order; `thread`
+/// is below `threads`. Throws the exception of the first index whose call throws, as a loop in one thread
+/// would, and then makes no more calls behind it.
+void for_each_in_threads(std::size_t count, int threads,
+                         const std::function<void(std::size_t index, std::size_t thread)>& body);
+
+}  // namespace mpm

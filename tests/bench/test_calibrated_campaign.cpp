@@ -1,0 +1,112 @@
+#include <atomic>
+#include <bit>
+#include <filesystem>
+
+#include <catch2/catch.hpp>
+
+#include "bench/campaign/calibration_runs.hpp"
+#include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/comparison_runner.hpp"
+#include "bench/campaign/serial_campaign.hpp"
+#include "bench/shards/shard_folder.hpp"
+#include "plants/error.hpp"
+#include "scenarios/study_file.hpp"
+#include "scenarios/study_library.hpp"
+#include "tests/results/made_up_campaign.hpp"
+
+namespace {
+
+using namespace mpm;
+using Catch::Contains;
+using mpm::testing::TemporaryFolder;
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kExperiments = 4, kLoops = 9;
+
+Study calibrated_wood_berry() {
+  return parse_study(find_study("wood-berry").source + "\n[calibration]\nhealthy = 6\nud = 3\n",
+                     "wood-berry");
+}
+
+RunOptions few() {
+  RunOptions options;
+  options.experiments = kExperiments;
+  options.audit_share = 0.0;
+  options.methods = {"botelho", "sse", "counterfactual"};
+  return options;
+}
+
+void check_same(const Calibration& one, const Calibration& other) {
+  CHECK(one.seed == other.seed);
+  REQUIRE(one.loops.size() == other.loops.size());
+  for (std::size_t i = 0; i < one.loops.size(); ++i) {
+    INFO("loop " << i);
+    CHECK(one.loops[i].kind == other.loops[i].kind);
+    REQUIRE(one.loops[i].scores.size() == other.loops[i].scores.size());
+    for (std::size_t method = 0; method < one.loops[i].scores.size(); ++method)
+      CHECK(std::bit_cast<std::uint64_t>(one.loops[i].scores[method]) ==
+            std::bit_cast<std::uint64_t>(other.loops[i].scores[method]));
+  }
+}
+
+TEST_CASE(
+    "calibration: threads, processes and methods that are added later give what the serial loop gives") {
+  const Study study = calibrated_wood_berry();
+  RunOptions options = few();
+  const Campaign serial = run_serially(study, options);
+  REQUIRE(serial.calibration.loops.size() == kLoops);
+  REQUIRE(serial.calibration.loops.front().scores.size() == 3);
+  CHECK(calibration_loops(study) == kLoops);
+  options.jobs = 2;
+  options.parallel = GENERATE(Parallel::threads, Parallel::processes);
+  check_same(run_campaign(study, options).calibration, serial.calibration);
+
+  options.methods = {"botelho"};
+  Campaign later = run_campaign(study, options);
+  int done = 0;
+  add_methods(later, {{"sse", "counterfactual"}, {}, 2, [&] { ++done; }}, "compare");
+  check_same(later.calibration, serial.calibration);
+  CHECK(done == compared_loops(later, {}) + kLoops);
+  // Answers that it has are replaced, and stand behind the others.
+  add_methods(later, {{"botelho"}, {}, 1, {}}, "compare");
+  const Campaign chosen = with_methods(later, {"botelho", "sse", "counterfactual"}, {});
+  check_same(chosen.calibration, serial.calibration);
+}
+
+TEST_CASE("calibration: stopped in its loops and resumed, it is what one go gives; its shards go as well") {
+  const TemporaryFolder folder;
+  const fs::path output = folder / "a.h5", shards = shard_folder_of(output);
+  const Study study = calibrated_wood_berry();
+  RunOptions options = few();
+  const Campaign serial = run_serially(study, options);
+  options.shard_interval = 0.0;
+  std::atomic<int> left = static_cast<int>(kExperiments) + 3;
+  const CampaignHooks stopping{.stop = [&] { return left <= 0; },
+                               .on_done = [&](const ExperimentRecord&) { --left; }};
+  CHECK_THROWS_WITH(run_campaign(study, options, stopping, shards), Contains("of 13 experiments"));
+  CHECK(has_shards(output));
+  CHECK_THROWS_WITH(run_campaign(study, options, {}, shards), Contains("--resume"));
+  options.leftovers = Leftovers::resume;
+  std::int64_t done = 0;
+  const CampaignHooks counting{.on_start = [&](std::int64_t earlier, std::int64_t count) {
+    done = earlier;
+    CHECK(count == kExperiments + kLoops);
+  }};
+  const Campaign resumed = run_campaign(study, options, counting, shards);
+  CHECK(done >= kExperiments + 3);
+  check_same(resumed.calibration, serial.calibration);
+  CHECK(fs::exists(calibration_shard_folder(shards)));
+  remove_shards(output);
+  CHECK_FALSE(fs::exists(shards));
+}
+
+TEST_CASE("calibration: the seed that it names is not that of the run") {
+  const Study study =
+      parse_study(find_study("wood-berry").source + "\n[calibration]\nhealthy = 2\nseed = 5\n", "wood-berry");
+  RunOptions options = few();
+  options.seed = 5;
+  CHECK_THROWS_WITH(run_campaign(study, options),
+                    Contains("calibration.seed: found 5, the seed of the study"));
+}
+
+}  // namespace
