@@ -17,12 +17,13 @@ import tempfile
 SKIPPED = 77
 SECTIONS = ["run", "rates", "variance", "location", "indicator", "dominance", "roc", "fault-size", "comparison",
             "sensitivity", "interaction", "s0-perturbation", "basis", "solver", "wrong-verdicts"]
-FIGURES = ["headline-rates", "ivar", "i-mpm", "dominance", "roc", "fault-size", "comparison-rates", "t0",
-           "interaction", "s0-perturbation", "s0-structure", "basis-case"]
+FIGURES = ["headline-rates", "ivar", "i-mpm", "dominance", "roc", "fault-size", "comparison-rates",
+           "comparison-roc-impact", "t0", "interaction", "s0-perturbation", "s0-structure", "basis-case"]
 SCENARIO_SECTIONS = ["run", "scenarios", "comparison", "sensitivity", "interaction", "s0-perturbation", "basis",
                      "solver"]
 SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "scenario-ellipses", "scenario-acf-basis", "scenario-acf-0",
-                    "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "comparison-roc-impact", "t0", "basis-case"]
+                    "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "comparison-roc-impact", "t0",
+                    "basis-case"]
 PHONE, DESKTOP = 390, 1280  # pixels
 
 # The page in a frame of either width, which a script can look into because it has the same origin.

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "analysis/methods/chain_numbers.hpp"
+#include "scenarios/calibration.hpp"
+#include "scenarios/draw.hpp"
 #include "scenarios/study_file.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -23,7 +25,21 @@ Study study_with_setpoint() {
   std::string text = after(find_study("chapter6").source, "[controller.cv.y1]\n", "setpoint_weight = 10.0\n");
   for (const char* step : {"sample = 30\nlevel = 0.2", "sample = 200\nlevel = 0.05"})
     text = after(text, "level = 0.4\n", std::string("\n[[simulation.step]]\ncv = \"y1\"\n") + step + "\n");
-  return parse_study(text, "chapter6");
+  return parse_study(text + "\n[calibration]\nhealthy = 3\nud = 2\n", "chapter6");
+}
+
+/// Scores that count up; the first loop has none of the first method.
+Calibration made_up_calibration(const Study& study) {
+  const Study loops = calibration_study(study);
+  Calibration calibration{loops.seed, {}};
+  double score = 0.0;
+  for (std::int64_t index = 0; index < loops.experiment_count(); ++index) {
+    calibration.loops.push_back({draw_experiment(loops, index).kind, {}});
+    for (std::size_t method = 0; method < study.methods.size(); ++method)
+      calibration.loops.back().scores.push_back(score += 0.25);
+  }
+  calibration.loops[0].scores[0] = std::nan("");
+  return calibration;
 }
 
 /// An experiment that is left out.
@@ -68,6 +84,7 @@ Campaign campaign_sample() {
   campaign.basis = run_basis_case(campaign.study, factory);
   campaign.methods = made_up_methods(campaign.study);
   campaign.study.methods = method_names(campaign);
+  campaign.calibration = made_up_calibration(campaign.study);
   ExperimentRunner runner(campaign.study, campaign.basis, {std::string(kChainMethod)}, factory);
   for (std::int64_t i = 0; i < 8; ++i)
     campaign.records.push_back(runner.run(i, i < 2 ? StorePolicy::all : StorePolicy::none));

@@ -24,7 +24,8 @@ FOR_PEOPLE = {"/cv", "/mv", "/md", "/impact", "/basis/cv", "/basis/mv", "/basis/
 READ_OF = {"/s0_perturbation": {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"},
            "/scenarios": set(), "/findings": set()}
 OF_EVERY_METHOD = {"cv", "mv", "lag", "lag_time"}
-FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/study_resolved", "/basis/title"}
+FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/study_resolved", "/basis/title", "/calibration/title",
+                         "/calibration/false_alarms"}
 READ_ATTRIBUTES_OF_METHODS = {"description", "milliseconds", "mpmbench_version", "git_sha", "command"}
 
 
@@ -42,7 +43,7 @@ def is_for_people(path):
 def is_attribute_for_people(group, name):
     if group.startswith("/methods/"):
         return name not in READ_ATTRIBUTES_OF_METHODS
-    return f"{group.rstrip('/')}/{name}" in FOR_PEOPLE_ATTRIBUTES or group not in ("/", "/basis")
+    return f"{group.rstrip('/')}/{name}" in FOR_PEOPLE_ATTRIBUTES or group not in ("/", "/basis", "/calibration")
 
 
 def objects(path):
@@ -164,6 +165,10 @@ class Damage:
         assert "'channel_flagged': found 3; allowed: -1 to 1" in after("methods/badwe2009/channel_flagged", (0, 0, 0), 3)
         assert "'cv_source': found 9; allowed: -1 to 3" in after("methods/botelho/cv_source", (0, 0), 9)
         assert "/methods/sse/experiment" in after("methods/sse/experiment", 0, 77)
+        assert "'kind': found 1; allowed: 0 to 2" in after("calibration/kind", 0, 1)
+        assert "'/calibration/method': found other methods" in after("calibration/method", 0, "sse")
+        assert "seed of '/calibration': found 3; allowed: " in self.after(
+            lambda file: file["calibration"].attrs.__setitem__("seed", numpy.uint64(3)))
         assert after("findings/value", 0, 9.0) is None  # follows from the verdicts
 
     def wrong_scenarios(self):
