@@ -17,11 +17,11 @@ auto members(const NonlinearModel& model) {
 }  // namespace
 
 std::unique_ptr<Plant> nonlinear_plant(const NonlinearModel& model, double sample_time,
-                                       const OdeOptions& options,
-                                       const std::vector<ParameterChange>& changes) {
+                                       const OdeOptions& options, const std::vector<ParameterChange>& changes,
+                                       Eigen::Index onset) {
   std::shared_ptr<const OdeSystem> at_rest = model.make_system({});
   auto plant = std::make_unique<OdePlant>(changes.empty() ? at_rest : model.make_system(changes), sample_time,
-                                          options, at_rest);
+                                          options, at_rest, changes.empty() ? 0 : onset);
   return std::make_unique<DeviationPlant>(std::move(plant), model.operating_input);
 }
 

@@ -51,6 +51,19 @@ std::complex<double> evaluate(const Eigen::VectorXd& coefficients, std::complex<
   return value;
 }
 
+/// p(s) q(s).
+Eigen::VectorXd product(const Eigen::VectorXd& p, const Eigen::VectorXd& q) {
+  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(p.size() + q.size() - 1);
+  for (Eigen::Index i = 0; i < p.size(); ++i)
+    coefficients.segment(i, q.size()) += p(i) * q;
+  return coefficients;
+}
+
+/// p'(0) / p(0).
+double relative_slope(const Eigen::VectorXd& p) {
+  return p.size() > 1 ? p(p.size() - 2) / p(p.size() - 1) : 0.0;
+}
+
 /// p(s) -> p(factor * s).
 Eigen::VectorXd with_argument_scaled(Eigen::VectorXd coefficients, double factor) {
   double power = 1;
@@ -127,6 +140,18 @@ TransferFunction TransferFunction::with_dead_time_shifted(double delta) const {
                      "a finite number >= 0");
   }
   return {numerator_, denominator_, shifted};
+}
+
+double TransferFunction::residence_time() const {
+  if (is_integrating())
+    throw InputError("residence time of a transfer function", "a pole at s = 0 (integrating channel)",
+                     "channels without a pole at s = 0");
+  return is_zero() ? 0.0 : relative_slope(denominator_) - relative_slope(numerator_);
+}
+
+TransferFunction in_series(const TransferFunction& first, const TransferFunction& second) {
+  return {product(first.numerator(), second.numerator()), product(first.denominator(), second.denominator()),
+          first.dead_time() + second.dead_time()};
 }
 
 bool operator==(const TransferFunction& a, const TransferFunction& b) {

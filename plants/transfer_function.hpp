@@ -62,6 +62,10 @@ class TransferFunction {
   /// finite.
   TransferFunction with_dead_time_shifted(double delta) const;
 
+  /// The mean residence time of the rational part, a_{n-1} / a_n - b_{m-1} / b_m: the time constant of a
+  /// first-order function; 0 for a static one. Errors: InputError for an integrating channel.
+  double residence_time() const;
+
   /// Are all coefficients and the dead time the same? Other coefficients with the same G differ.
   friend bool operator==(const TransferFunction& a, const TransferFunction& b);
 
@@ -70,5 +74,8 @@ class TransferFunction {
   Eigen::VectorXd denominator_;
   double dead_time_;
 };
+
+/// G_1(s) G_2(s): the output of the one is the input of the other.
+TransferFunction in_series(const TransferFunction& first, const TransferFunction& second);
 
 }  // namespace mpm

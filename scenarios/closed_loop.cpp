@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "plants/changing_plant.hpp"
 #include "plants/error.hpp"
 #include "plants/linear_plant.hpp"
+#include "scenarios/other_fault.hpp"
 #include "scenarios/signals.hpp"
 
 namespace mpm {
@@ -38,7 +41,7 @@ Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
   trajectory.y.setZero(study.cv_count(), samples);
   trajectory.u.setZero(study.mv_count(), samples);
   trajectory.u_target.setZero(study.mv_count(), samples);
-  trajectory.d = signals.d;
+  trajectory.d = signals.d_measured.size() > 0 ? signals.d_measured : signals.d;
   trajectory.y_set = signals.y_set;
   return trajectory;
 }
@@ -58,6 +61,94 @@ void begin(Plant& plant, const Eigen::VectorXd& input, Trajectory& trajectory) {
     fail(trajectory, LoopFailure::no_steady_state,
          fmt::format("the plant has no steady state to begin at: {}", error.what()));
   }
+}
+
+/// What stands between the controller and the plant: a valve, an operator, a changed limit.
+class Surroundings {
+ public:
+  Surroundings(const Study& study, const LoopSignals& signals) : faults_(signals.faults), u_d_(signals.u_d) {
+    if (faults_.limit) {
+      shifted_ = study.controller.cv_soft;
+      shifted_.lower(faults_.limit->cv) += faults_.limit->shift;
+      shifted_.upper(faults_.limit->cv) += faults_.limit->shift;
+    }
+  }
+
+  /// Before the controller decides on sample k.
+  void prepare(Eigen::Index k, Mpc& controller) {
+    if (faults_.limit && k == faults_.limit->sample)
+      controller.set_cv_soft(shifted_);
+  }
+
+  /// `u` is what the controller asks for at sample k; it becomes what the record has, and `acting` what the
+  /// plant gets.
+  void pass(Eigen::Index k, const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::Ref<Eigen::VectorXd> u,
+            Eigen::Ref<Eigen::VectorXd> acting) {
+    if (faults_.hold && k >= faults_.hold->sample)
+      u(faults_.hold->mv) = before(faults_.hold->mv);
+    acting = u;
+    if (faults_.valve && k >= faults_.valve->sample) {
+      const LoopFaults::Valve& fault = *faults_.valve;
+      if (!valve_)
+        valve_.emplace(fault.stickband, fault.jump, before(fault.mv));
+      acting(fault.mv) = valve_->follow(u(fault.mv));
+    }
+    if (u_d_.size() > 0)
+      acting += u_d_.col(k);
+  }
+
+ private:
+  const LoopFaults& faults_;
+  const Eigen::MatrixXd& u_d_;
+  Limits shifted_;
+  std::optional<StickyValve> valve_;
+};
+
+/// The faults of the loop, at the sample of the onset.
+LoopFaults loop_faults(const ExperimentDraw& draw) {
+  LoopFaults faults;
+  if (!draw.other)
+    return faults;
+  const OtherFault& fault = *draw.other;
+  switch (fault.kind) {
+    case OtherFaultKind::stiction:
+    case OtherFaultKind::deadband:
+      faults.valve = {fault.variable, fault.size, fault.jump, draw.onset.sample};
+      break;
+    case OtherFaultKind::held_mv:
+      faults.hold = {fault.variable, draw.onset.sample};
+      break;
+    case OtherFaultKind::limit:
+      faults.limit = {fault.variable, fault.size, draw.onset.sample};
+      break;
+    case OtherFaultKind::sensor_bias:
+    case OtherFaultKind::sensor_drift:
+    case OtherFaultKind::md_gain:
+    case OtherFaultKind::md_noise:
+      break;  // signals
+  }
+  return faults;
+}
+
+/// a(k) of the onset over the record.
+Eigen::VectorXd shares(const Onset& onset, Eigen::Index samples) {
+  Eigen::VectorXd a(samples);
+  for (Eigen::Index k = 0; k < samples; ++k)
+    a(k) = onset.share(k);
+  return a;
+}
+
+/// The plant of the experiment.
+std::unique_ptr<Plant> plant_of(const Study& study, const ExperimentDraw& draw) {
+  const double Ts = study.controller.sample_time;
+  if (study.nonlinear)
+    return nonlinear_plant(study.nonlinear->model, Ts, study.nonlinear->integration, draw.parameters,
+                           draw.onset.sample);
+  TransferMatrix plant = with_mismatches(study.plant.G, draw.mismatches);
+  if (draw.onset.from_the_start() || draw.mismatches.empty())
+    return std::make_unique<LinearPlant>(plant, Ts);
+  return std::make_unique<ChangingPlant>(study.plant.G, plant, Ts,
+                                         shares(draw.onset, study.simulation.samples));
 }
 
 }  // namespace
@@ -93,6 +184,11 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   if (signals.y_set.size() > 0)
     require_shape("setpoints", signals.y_set, study.cv_count(), samples);
 
+  if (signals.u_d.size() > 0)
+    require_shape("disturbances of the MVs", signals.u_d, study.mv_count(), samples);
+  if (signals.d_measured.size() > 0)
+    require_shape("measurements of the MDs", signals.d_measured, study.md_count(), samples);
+
   const Eigen::Index within =
       signals.within_plant.size() > 0 ? plant.input_count() - study.mv_count() - study.md_count() : 0;
   if (signals.within_plant.size() > 0)
@@ -106,12 +202,16 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   controller.reset(input.head(study.mv_count()), d_rest);
 
   Trajectory trajectory = empty_trajectory(study, signals);
+  Surroundings surroundings(study, signals);
+  Eigen::VectorXd u = input.head(study.mv_count());
+  Eigen::VectorXd u_before = u;
   begin(plant, input, trajectory);
   for (Eigen::Index k = 0; k < samples && trajectory.failure == LoopFailure::none; ++k) {
     trajectory.y.col(k) = plant.output() + signals.y_d.col(k) + signals.noise.col(k);
     if (signals.y_set.size() > 0)
       controller.set_setpoints(signals.y_set.col(k));
-    const ControlMove& move = controller.step(trajectory.y.col(k), signals.d.col(k));
+    surroundings.prepare(k, controller);
+    const ControlMove& move = controller.step(trajectory.y.col(k), trajectory.d.col(k));
     trajectory.solver.steps += 1;
     trajectory.solver.iterations += move.iterations;
     trajectory.solver.fallbacks += move.fallbacks;
@@ -124,7 +224,9 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
       break;
     trajectory.solver.largest_kkt_residual =
         std::max(trajectory.solver.largest_kkt_residual, move.kkt_residual);
-    input.head(study.mv_count()) = move.u;
+    u = move.u;
+    surroundings.pass(k, u_before, u, input.head(study.mv_count()));
+    u_before = u;
     input.segment(study.mv_count(), study.md_count()) = signals.d.col(k);
     if (within > 0)
       input.tail(within) = signals.within_plant.col(k);
@@ -132,7 +234,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
       fail(trajectory, LoopFailure::plant, "the plant could not be integrated");
       break;
     }
-    trajectory.u.col(k) = move.u;
+    trajectory.u.col(k) = u;
     trajectory.u_target.col(k) = move.u_target;
     trajectory.samples_done = k + 1;
   }
@@ -152,14 +254,15 @@ Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, c
     rest.tuning.reset();
     return simulate_experiment(with_tuning(study, draw), rest, factory, observer);
   }
-  const LoopSignals signals{measured_disturbances(study), measurement_noise(study, draw.index),
-                            unmeasured_disturbances(study, draw), setpoints(study),
-                            disturbances_within_plant(study, draw)};
-  if (!study.nonlinear)
-    return run_closed_loop(study, with_mismatches(study.plant.G, draw.mismatches), signals, factory,
-                           observer);
-  const std::unique_ptr<Plant> plant = nonlinear_plant(study.nonlinear->model, study.controller.sample_time,
-                                                       study.nonlinear->integration, draw.parameters);
+  LoopSignals signals{measured_disturbances(study), measurement_noise(study, draw.index),
+                      unmeasured_disturbances(study, draw), setpoints(study),
+                      disturbances_within_plant(study, draw)};
+  signals.u_d = disturbances_of_mvs(study, draw);
+  signals.d_measured = measurements_of_mds(study, draw);
+  signals.faults = loop_faults(draw);
+  if (const Eigen::MatrixXd errors = sensor_errors(study, draw); errors.size() > 0)
+    signals.y_d += errors;
+  const std::unique_ptr<Plant> plant = plant_of(study, draw);
   return run_closed_loop(study, *plant, signals, factory, observer);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -45,6 +46,10 @@ std::string_view to_string(LoopFailure failure);
 /// | u_target | u_target | nu x N | targets of the optimizer                     |
 /// | d        | d        | nd x N | measured disturbances, d(k) acts from k on   |
 /// | y_set    | y_set    | ny x N | setpoints; empty when no CV has one          |
+///
+/// They are what a historian of the loop has: of a valve that sticks and of a disturbance on an MV it sees
+/// what the controller asked for, of an MV that is held the value at which it is held, and of the MDs the
+/// measurements.
 struct Trajectory {
   ControlStatus status = ControlStatus::ok;
   Eigen::Index samples_done = 0;  ///< columns after these are zero when the status is not `ok`
@@ -52,6 +57,29 @@ struct Trajectory {
   SolverStatistics solver;
   LoopFailure failure = LoopFailure::none;  ///< another one if and only if the status is `failed`
   std::string message = {};                 ///< what failed, for people; empty when nothing did
+};
+
+/// What differs in a loop from what the controller takes for granted, besides the signals: at most one of
+/// each, from a sample on.
+struct LoopFaults {
+  struct Valve {
+    Eigen::Index mv;
+    double stickband, jump;  ///< of a StickyValve
+    int sample;
+  };
+  struct Hold {
+    Eigen::Index mv;
+    int sample;
+  };
+  struct LimitShift {
+    Eigen::Index cv;
+    double shift;  ///< of both soft limits, CV unit
+    int sample;
+  };
+
+  std::optional<Valve> valve = {};
+  std::optional<Hold> hold = {};  ///< the MV stays where it is, and the record says so
+  std::optional<LimitShift> limit = {};
 };
 
 /// The signals that act on a loop from outside.
@@ -63,6 +91,9 @@ struct LoopSignals {
   /// Unmeasured disturbances that act within the plant: its inputs after MVs and MDs, from sample k on, one
   /// column a sample. Empty: they stay zero.
   Eigen::MatrixXd within_plant{};
+  Eigen::MatrixXd u_d{};         ///< added to the MVs on their way to the plant, nu x N; empty: nothing
+  Eigen::MatrixXd d_measured{};  ///< MDs as controller and record have them, nd x N; empty: d
+  LoopFaults faults{};
 };
 
 /// Called after each step with the controller, whose two problems and answers it may look at.

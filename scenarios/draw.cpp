@@ -12,82 +12,33 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "scenarios/fault_draw.hpp"
 #include "scenarios/random_stream.hpp"
 
 namespace mpm {
 namespace {
 
-using Channel = std::pair<Eigen::Index, Eigen::Index>;
-
-std::vector<Channel> mv_channels(const Study& study) {
-  std::vector<Channel> channels;
-  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
-      if (!study.plant.G(cv, mv).is_zero())
-        channels.emplace_back(cv, mv);
-  if (channels.empty())
-    throw InputError("plant", "no channel from an MV to a CV", "at least one");
-  return channels;
+double nominal_value(const NonlinearModel& model, const std::string& name) {
+  const auto place = std::find_if(model.parameters.begin(), model.parameters.end(),
+                                  [&](const auto& parameter) { return parameter.name == name; });
+  assert(place != model.parameters.end());
+  return place->nominal;
 }
 
-/// A place drawn with these relative frequencies.
-std::size_t draw_place(std::span<const double> weights, RandomStream& stream) {
-  const double point = stream.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
-  double sum = 0.0;
-  std::size_t last = 0;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    sum += weights[i];
-    if (point < sum)
-      return i;
-    if (weights[i] > 0.0)
-      last = i;
-  }
-  return last;  // by rounding only
-}
-
-// A dead time cannot become negative: a bounded distribution is shrunk onto what is possible, so that the
-// draw still gives a mismatch; an unbounded one is cut off.
-double possible_shift(double shift, const Distribution& distribution, double dead_time) {
-  if (distribution.minimum() >= -dead_time)
-    return shift;
-  const double span = distribution.maximum() - distribution.minimum();
-  if (!std::isfinite(span) || span == 0.0 || distribution.maximum() <= -dead_time)
-    return std::max(shift, -dead_time);
-  const double quantile = (shift - distribution.minimum()) / span;
-  return -dead_time + quantile * (distribution.maximum() + dead_time);
-}
-
-Mismatch draw_mismatch(const Study& study, std::int64_t index) {
-  RandomStream stream(study.seed, static_cast<std::uint64_t>(index), StreamId::mismatch);
-  const std::vector<Channel> channels = mv_channels(study);
-  const auto [cv, mv] = channels[stream.below(channels.size())];
-  const MismatchRanges& ranges = study.mismatch;
-  const auto parameter = static_cast<MismatchParameter>(draw_place(ranges.parameter_weight, stream));
-  double value = 0.0;
-  switch (parameter) {
+double scaled(const Mismatch& mismatch, double scale) {
+  switch (mismatch.parameter) {
     case MismatchParameter::gain:
-      value = ranges.gain_factor.sample(stream);
-      break;
     case MismatchParameter::time_constant:
-      value = ranges.time_constant_factor.sample(stream);
-      break;
+      return std::pow(mismatch.value, scale);
     case MismatchParameter::dead_time:
-      value = possible_shift(ranges.dead_time_shift.sample(stream), ranges.dead_time_shift,
-                             study.plant.G(cv, mv).dead_time());
-      break;
+    case MismatchParameter::second_order:
+    case MismatchParameter::inverse_response:
+      return scale * mismatch.value;
+    case MismatchParameter::sign:
     case MismatchParameter::channel:
-      assert(false);  // is never drawn
       break;
   }
-  return {cv, mv, parameter, value};
-}
-
-Disturbance draw_disturbance(const Study& study, std::int64_t index) {
-  RandomStream stream(study.seed, static_cast<std::uint64_t>(index), StreamId::disturbance_draw);
-  const auto cv = static_cast<Eigen::Index>(stream.below(static_cast<std::uint64_t>(study.cv_count())));
-  const double gain = study.disturbance.gain.sample(stream);
-  const double time_constant = study.disturbance.time_constant.sample(stream);
-  return {cv, gain, time_constant};
+  return mismatch.value;
 }
 
 TuningChange draw_tuning(const Study& study, std::int64_t index) {
@@ -123,7 +74,7 @@ std::vector<AffectedCv> ExperimentDraw::affected() const {
   for (const Mismatch& mismatch : mismatches)
     faults[mismatch.cv].first = true;
   for (const Disturbance& disturbance : disturbances)
-    if (!disturbance.inner_input)
+    if (disturbance.is_on_cv())
       faults[disturbance.cv].second = true;
   if (affected_cvs) {
     const auto own = std::exchange(faults, {});
@@ -136,7 +87,8 @@ std::vector<AffectedCv> ExperimentDraw::affected() const {
   for (const auto& [cv, fault] : faults)
     list.push_back({cv, fault.first && fault.second ? FaultSource::mpm_ud
                         : fault.first               ? FaultSource::mpm
-                                                    : FaultSource::ud});
+                        : fault.second              ? FaultSource::ud
+                                                    : FaultSource::none});
   return list;
 }
 
@@ -162,8 +114,8 @@ ExperimentDraw ExperimentDraw::disturbance_alone() const {
 
 KindSequence::KindSequence(const ExperimentCounts& counts) {
   // A kind without experiments is never behind, so that adding one to the list changes no other study.
-  constexpr std::array kinds{ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud,
-                             ExperimentKind::healthy, ExperimentKind::tuning};
+  constexpr std::array kinds{ExperimentKind::mpm,     ExperimentKind::ud,     ExperimentKind::mpm_ud,
+                             ExperimentKind::healthy, ExperimentKind::tuning, ExperimentKind::other};
   std::array<std::pair<ExperimentKind, int>, kinds.size()> wanted;
   for (std::size_t k = 0; k < kinds.size(); ++k)
     wanted[k] = {kinds[k], counts.of(kinds[k])};
@@ -206,13 +158,36 @@ ExperimentDraw draw_experiment(const Study& study, std::int64_t index) {
   draw.kind = KindSequence(study.experiments)[index];
   const bool both = draw.kind == ExperimentKind::mpm_ud;
   if (draw.kind == ExperimentKind::mpm || both)
-    draw.mismatches = {draw_mismatch(study, index)};
+    draw_mismatch(study, draw);
   if (draw.kind == ExperimentKind::ud || both)
-    draw.disturbances = {draw_disturbance(study, index)};
-  if (both)
-    draw.disturbances.front().cv = draw.mismatches.front().cv;
+    draw_disturbance(study, draw);
   if (draw.kind == ExperimentKind::tuning)
     draw.tuning = draw_tuning(study, index);
+  if (draw.kind == ExperimentKind::other)
+    draw_other_fault(study, draw);
+  if (!is_faultless(draw.kind))
+    draw.onset = draw_onset(study, index);
+  return draw;
+}
+
+ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultScales& scales) {
+  if (scales == FaultScales{})
+    return draw;
+  for (Mismatch& mismatch : draw.mismatches)
+    mismatch.value = scaled(mismatch, scales.mismatch);
+  for (ParameterChange& parameter : draw.parameters) {
+    const double nominal = nominal_value(study.nonlinear->model, parameter.name);
+    parameter.value = nominal * std::pow(parameter.value / nominal, scales.mismatch);
+  }
+  for (Disturbance& disturbance : draw.disturbances)
+    disturbance.gain *= scales.disturbance;
+  if (draw.other) {
+    OtherFault& fault = *draw.other;
+    fault.size = fault.kind == OtherFaultKind::md_gain ? std::pow(fault.size, scales.other)
+                                                       : scales.other * fault.size;
+    fault.jump *= scales.other;
+  }
+  draw.scales = scales;
   return draw;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenarios/fault.hpp"
+#include "scenarios/other_fault.hpp"
 #include "scenarios/study.hpp"
 
 namespace mpm {
@@ -12,11 +13,29 @@ namespace mpm {
 /// A CV that an experiment affects, and by what.
 struct AffectedCv {
   Eigen::Index cv;
-  FaultSource by;  ///< mpm, ud, or mpm_ud for both
+  FaultSource by;  ///< mpm, ud, or mpm_ud for both; none: another fault
 };
 
-/// What one experiment does to the loop: drawn at random, with at most one fault of either sort or a change
-/// of the tuning, or a named scenario of the study.
+/// By how much the faults of an experiment are larger than they were drawn, in a study that asks for faults
+/// of a given effect.
+///
+/// | member      | of                                  | what becomes of the drawn value x        |
+/// |-------------|-------------------------------------|------------------------------------------|
+/// | mismatch    | factors of gain, time constant and plant parameters | x^scale; that of a sign stays |
+/// |             | shifts of the dead time, further lags, inverse responses | scale x          |
+/// | disturbance | gain of G_d                         | scale x                                  |
+/// | other       | OtherFault::size and jump           | scale x; the factor of an MD: x^scale    |
+struct FaultScales {
+  double mismatch = 1.0;
+  double disturbance = 1.0;
+  double other = 1.0;
+
+  bool operator==(const FaultScales&) const = default;
+};
+
+/// What one experiment does to the loop: drawn at random, with a mismatch, a disturbance, both, another fault
+/// or a change of the tuning, or a named scenario of the study. A mismatch may reach over several channels
+/// and a disturbance over several CVs (MismatchExtent, DisturbancePlace).
 struct ExperimentDraw {
   std::int64_t index = 0;
   ExperimentKind kind = ExperimentKind::healthy;
@@ -27,6 +46,9 @@ struct ExperimentDraw {
   std::optional<std::vector<Eigen::Index>> affected_cvs = {};
   std::vector<ParameterChange> parameters = {};  ///< of a nonlinear plant; a mismatch, too
   std::optional<TuningChange> tuning = {};       ///< of the controller; no fault of model or plant
+  std::optional<OtherFault> other = {};          ///< around the model, which is right
+  Onset onset = {};                              ///< of all faults but that of the tuning
+  FaultScales scales = {};                       ///< those of the sizes above
 
   /// The CVs that are affected, in their order. A CV that has no fault of its own is affected by what is
   /// wrong in the experiment.
@@ -56,10 +78,14 @@ class KindSequence {
   std::vector<ExperimentKind> period_;
 };
 
-/// Experiment `index` of the study: a pure function of (study, seed, index). In a random experiment with
-/// mismatch and disturbance both are on the same CV, as (6.23) needs. Throws InputError for a negative index,
-/// and for one that is no scenario of a study of named scenarios.
+/// Experiment `index` of the study, with the scales 1: a pure function of (study, seed, index). In a random
+/// experiment with mismatch and disturbance the first ones of both are on the same CV, as (6.23) needs,
+/// unless the disturbance is on an MV or the plant is nonlinear. Throws InputError for a negative index, and
+/// for one that is no scenario of a study of named scenarios.
 ExperimentDraw draw_experiment(const Study& study, std::int64_t index);
+
+/// The experiment `draw`, which has the scales 1, with these.
+ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultScales& scales);
 
 /// The basis case: nothing is wrong.
 ExperimentDraw basis_draw();

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <tuple>
 #include <utility>
+#include <variant>
 
 #include "plants/same_members.hpp"
 
@@ -20,6 +21,13 @@ TransferFunction changed(const TransferFunction& channel, const Mismatch& mismat
     case MismatchParameter::channel:
       assert(mismatch.channel);
       return *mismatch.channel;
+    case MismatchParameter::second_order:
+      return in_series(channel, TransferFunction::first_order(1.0, mismatch.value));
+    case MismatchParameter::inverse_response:
+      return in_series(channel, TransferFunction(Eigen::Vector2d(-mismatch.value, 1.0),
+                                                 Eigen::Vector2d(mismatch.value, 1.0)));
+    case MismatchParameter::sign:
+      return channel.with_gain_scaled(mismatch.value);
   }
   return channel;
 }
@@ -30,11 +38,36 @@ auto members(const Mismatch& mismatch) {
 }
 
 auto members(const Disturbance& disturbance) {
-  const auto& [cv, gain, time_constant, model, Gd, signal, inner_input] = disturbance;
-  return std::tie(cv, gain, time_constant, model, Gd, signal, inner_input);
+  const auto& [cv, gain, time_constant, model, Gd, signal, inner_input, mv, shares_signal] = disturbance;
+  return std::tie(cv, gain, time_constant, model, Gd, signal, inner_input, mv, shares_signal);
+}
+
+void scale(WhiteNoise& noise, double factor) {
+  noise.factor *= factor;
+}
+void scale(Sine& sine, double factor) {
+  sine.amplitude *= factor;
+}
+void scale(Ramp& ramp, double factor) {
+  ramp.slope *= factor;
+}
+void scale(StepSequence& sequence, double factor) {
+  for (StepSequence::Step& step : sequence.steps)
+    step.level *= factor;
+}
+void scale(RandomWalk& walk, double factor) {
+  walk.factor *= factor;
+}
+void scale(Bursts& bursts, double factor) {
+  bursts.factor *= factor;
 }
 
 }  // namespace
+
+DisturbanceSignal scaled(DisturbanceSignal signal, double factor) {
+  std::visit([factor](auto& form) { scale(form, factor); }, signal);
+  return signal;
+}
 
 TransferMatrix with_mismatches(TransferMatrix model, const std::vector<Mismatch>& mismatches) {
   TransferMatrix plant = std::move(model);
@@ -63,6 +96,7 @@ FaultSource source_of(ExperimentKind kind) {
       return FaultSource::mpm_ud;
     case ExperimentKind::healthy:
     case ExperimentKind::tuning:
+    case ExperimentKind::other:
       break;
   }
   return FaultSource::none;
@@ -80,6 +114,8 @@ std::string_view to_string(ExperimentKind kind) {
       return "mpm_ud";
     case ExperimentKind::tuning:
       return "tuning";
+    case ExperimentKind::other:
+      return "other";
   }
   return "unknown";
 }
@@ -108,6 +144,12 @@ std::string_view to_string(MismatchParameter parameter) {
       return "dead_time";
     case MismatchParameter::channel:
       return "channel";
+    case MismatchParameter::second_order:
+      return "second_order";
+    case MismatchParameter::inverse_response:
+      return "inverse_response";
+    case MismatchParameter::sign:
+      return "sign";
   }
   return "unknown";
 }

@@ -18,6 +18,12 @@ enum class StreamId : std::uint32_t {
   audit = 7,               ///< which experiments are run again as a check
   identification = 8,      ///< moves of the references in the records that T0 is identified from
   tuning = 9,              ///< which weight of the controller is changed, and by how much
+  mismatch_extent = 10,    ///< which further channels or parameters a mismatch has
+  disturbance_shape = 11,  ///< signal and place of the unmeasured disturbance, and those on further CVs
+  other_fault = 12,        ///< which instrument, valve, limit or MV is at fault, and by how much
+  md_measurement = 13,     ///< noise on the measurement of an MD
+  onset = 14,              ///< when the faults begin
+  impact = 15,             ///< how large the effect of the faults is to be
   suite_cell = 40,         ///< the seed of a cell of a suite
   /// Of the second disturbance of a named scenario; the following numbers are those of the third and so on.
   further_disturbance_signals = 0x1000,

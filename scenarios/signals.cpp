@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <variant>
 
 #include "plants/linear_plant.hpp"
@@ -73,6 +74,26 @@ Eigen::RowVectorXd values(const StepSequence& sequence, const SignalSetting& at)
   return v;
 }
 
+Eigen::RowVectorXd values(const RandomWalk& walk, SignalSetting at) {
+  Eigen::RowVectorXd v = Eigen::RowVectorXd::Zero(at.samples);
+  for (Eigen::Index k = 1; k < v.size(); ++k)
+    v(k) = v(k - 1) + walk.factor * at.standard_deviation * at.white.normal();
+  return v;
+}
+
+Eigen::RowVectorXd values(const Bursts& bursts, SignalSetting at) {
+  Eigen::RowVectorXd v = Eigen::RowVectorXd::Zero(at.samples);
+  bool on = false;
+  for (Eigen::Index k = 0; k < v.size(); ++k) {
+    const double noise = at.white.normal();
+    if (on)
+      v(k) = bursts.factor * at.standard_deviation * noise;
+    if (at.white.uniform() < 1.0 / (on ? bursts.length : bursts.pause))
+      on = !on;
+  }
+  return v;
+}
+
 Eigen::RowVectorXd through_model(const Disturbance& disturbance, double Ts, const Eigen::RowVectorXd& v) {
   if (disturbance.model == DisturbanceModel::direct)
     return v;
@@ -90,14 +111,37 @@ StreamId disturbance_stream(std::size_t number) {
                      : static_cast<StreamId>(kFurther + static_cast<std::uint32_t>(number - 1));
 }
 
+Eigen::RowVectorXd signal_values(const Study& study, std::int64_t index, std::size_t number,
+                                 const DisturbanceSignal& signal) {
+  return disturbance_signal(signal, study.disturbance.v_standard_deviation, study.controller.sample_time,
+                            study.simulation.samples, stream_of(study, index, disturbance_stream(number)));
+}
+
+void begin_at(const Onset& onset, Eigen::Ref<Eigen::RowVectorXd> signal) {
+  if (onset.from_the_start())
+    return;
+  for (Eigen::Index k = 0; k < signal.size(); ++k)
+    signal(k) *= onset.share(k);
+}
+
 /// y_d of disturbance `number` of the experiment.
 Eigen::RowVectorXd values(const Study& study, const ExperimentDraw& draw, std::size_t number) {
   const Disturbance& disturbance = draw.disturbances[number];
-  const double Ts = study.controller.sample_time;
-  return through_model(
-      disturbance, Ts,
-      disturbance_signal(disturbance.signal, study.disturbance.v_standard_deviation, Ts,
-                         study.simulation.samples, stream_of(study, draw.index, disturbance_stream(number))));
+  const std::size_t whose = disturbance.shares_signal ? 0 : number;
+  Eigen::RowVectorXd v = signal_values(study, draw.index, whose, draw.disturbances[whose].signal);
+  begin_at(draw.onset, v);
+  return through_model(disturbance, study.controller.sample_time, v);
+}
+
+/// The disturbances that `place` puts in a row, none for those that are elsewhere.
+template <class Place>
+Eigen::MatrixXd sum_of_disturbances(const Study& study, const ExperimentDraw& draw, Eigen::Index rows,
+                                    Place place) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(rows, study.simulation.samples);
+  for (std::size_t i = 0; i < draw.disturbances.size(); ++i)
+    if (const std::optional<Eigen::Index> row = place(draw.disturbances[i]))
+      sum.row(*row) += values(study, draw, i);
+  return sum;
 }
 
 }  // namespace
@@ -136,23 +180,63 @@ Eigen::RowVectorXd disturbance_signal(const DisturbanceSignal& signal, double st
       signal);
 }
 
+Eigen::RowVectorXd disturbance_output(const Study& study, std::int64_t index,
+                                      const Disturbance& disturbance) {
+  return through_model(disturbance, study.controller.sample_time,
+                       signal_values(study, index, 0, disturbance.signal));
+}
+
 Eigen::MatrixXd unmeasured_disturbances(const Study& study, const ExperimentDraw& draw) {
-  Eigen::MatrixXd y_d = Eigen::MatrixXd::Zero(study.cv_count(), study.simulation.samples);
-  for (std::size_t i = 0; i < draw.disturbances.size(); ++i)
-    if (!draw.disturbances[i].inner_input)
-      y_d.row(draw.disturbances[i].cv) += values(study, draw, i);
-  return y_d;
+  return sum_of_disturbances(study, draw, study.cv_count(), [](const Disturbance& disturbance) {
+    return disturbance.is_on_cv() ? std::optional(disturbance.cv) : std::nullopt;
+  });
+}
+
+Eigen::MatrixXd disturbances_of_mvs(const Study& study, const ExperimentDraw& draw) {
+  if (std::none_of(draw.disturbances.begin(), draw.disturbances.end(),
+                   [](const Disturbance& disturbance) { return disturbance.mv.has_value(); }))
+    return {};
+  return sum_of_disturbances(study, draw, study.mv_count(),
+                             [](const Disturbance& disturbance) { return disturbance.mv; });
 }
 
 Eigen::MatrixXd disturbances_within_plant(const Study& study, const ExperimentDraw& draw) {
   if (!study.nonlinear)
     return {};
-  const auto inner_inputs = static_cast<Eigen::Index>(study.nonlinear->model.inner_inputs.size());
-  Eigen::MatrixXd within = Eigen::MatrixXd::Zero(inner_inputs, study.simulation.samples);
-  for (std::size_t i = 0; i < draw.disturbances.size(); ++i)
-    if (draw.disturbances[i].inner_input)
-      within.row(*draw.disturbances[i].inner_input) += values(study, draw, i);
-  return within;
+  return sum_of_disturbances(study, draw,
+                             static_cast<Eigen::Index>(study.nonlinear->model.inner_inputs.size()),
+                             [](const Disturbance& disturbance) { return disturbance.inner_input; });
+}
+
+Eigen::MatrixXd sensor_errors(const Study& study, const ExperimentDraw& draw) {
+  const std::optional<OtherFault>& fault = draw.other;
+  const bool drifts = fault && fault->kind == OtherFaultKind::sensor_drift;
+  if (!drifts && !(fault && fault->kind == OtherFaultKind::sensor_bias))
+    return {};
+  const Eigen::Index N = study.simulation.samples;
+  const Onset onset = drifts
+                          ? Onset{draw.onset.sample, std::max(1, static_cast<int>(N) - 1 - draw.onset.sample)}
+                          : draw.onset;
+  Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(study.cv_count(), N);
+  for (Eigen::Index k = 0; k < N; ++k)
+    errors(fault->variable, k) = onset.share(k) * fault->size;
+  return errors;
+}
+
+Eigen::MatrixXd measurements_of_mds(const Study& study, const ExperimentDraw& draw) {
+  const std::optional<OtherFault>& fault = draw.other;
+  if (!fault || sort_of(fault->kind) != VariableSort::md)
+    return {};
+  Eigen::MatrixXd d = measured_disturbances(study);
+  Eigen::RowVectorXd error = (fault->size - 1.0) * d.row(fault->variable);
+  if (fault->kind == OtherFaultKind::md_noise) {
+    RandomStream stream = stream_of(study, draw.index, StreamId::md_measurement);
+    for (double& e : error)
+      e = fault->size * stream.normal();
+  }
+  begin_at(draw.onset, error);
+  d.row(fault->variable) += error;
+  return d;
 }
 
 }  // namespace mpm

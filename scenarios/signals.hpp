@@ -23,10 +23,24 @@ Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index);
 Eigen::RowVectorXd disturbance_signal(const DisturbanceSignal& signal, double standard_deviation,
                                       double sample_time, Eigen::Index samples, RandomStream white);
 
-/// The unmeasured disturbances of the experiment on every CV, ny x samples: the sum of y_d = G_d v, each from
-/// rest with v held over a sample (figure 6.1c), or of y_d = v where nothing stands between. Zero where the
-/// experiment has none.
+/// y_d of `disturbance` as the first one of experiment `index`, from the start of the record on; 1 x samples.
+Eigen::RowVectorXd disturbance_output(const Study& study, std::int64_t index, const Disturbance& disturbance);
+
+/// The unmeasured disturbances of the experiment on every CV, ny x samples: the sum of y_d = G_d (a v), each
+/// from rest with v held over a sample (figure 6.1c), or of y_d = a v where nothing stands between; a(k) is
+/// Onset::share(). Zero where the experiment has none.
 Eigen::MatrixXd unmeasured_disturbances(const Study& study, const ExperimentDraw& draw);
+
+/// The same on the MVs between controller and plant, nu x samples. Empty (0 x 0) where there are none.
+Eigen::MatrixXd disturbances_of_mvs(const Study& study, const ExperimentDraw& draw);
+
+/// What a sensor with a bias or a drift adds to the measurements, ny x samples; empty (0 x 0) without one. A
+/// drift goes from the onset to its size at the last sample.
+Eigen::MatrixXd sensor_errors(const Study& study, const ExperimentDraw& draw);
+
+/// The MDs as they are measured, nd x samples, when the experiment has a wrong measurement of one; otherwise
+/// empty (0 x 0).
+Eigen::MatrixXd measurements_of_mds(const Study& study, const ExperimentDraw& draw);
 
 /// The unmeasured disturbances on the inner inputs of the nonlinear plant, one row an inner input, each held
 /// over a sample. Empty (0 x 0) where the plant is linear.

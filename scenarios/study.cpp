@@ -1,5 +1,7 @@
 #include "scenarios/study.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <tuple>
 
 #include "plants/same_members.hpp"
@@ -18,6 +20,16 @@ auto members(const SimulationOptions& options) {
 
 bool operator==(const SimulationOptions& a, const SimulationOptions& b) {
   return same_members(members(a), members(b));
+}
+
+bool Study::has_plain_faults() const {
+  const auto none_after = [](const auto& weights, std::ptrdiff_t plain) {
+    return std::all_of(weights.begin() + plain, weights.end(), [](double weight) { return weight == 0.0; });
+  };
+  return experiments.other == 0 && none_after(mismatch.parameter_weight, 3) &&
+         none_after(mismatch.extent_weight, 1) && mismatch.plant_parameters.empty() &&
+         none_after(disturbance.signal_weight, 1) && none_after(disturbance.place_weight, 1) &&
+         !asks_for_impact() && onset == OnsetRanges{};
 }
 
 }  // namespace mpm

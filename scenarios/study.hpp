@@ -13,6 +13,8 @@
 #include "scenarios/assessment_options.hpp"
 #include "scenarios/distribution.hpp"
 #include "scenarios/fault.hpp"
+#include "scenarios/fault_ranges.hpp"
+#include "scenarios/other_fault.hpp"
 #include "scenarios/tuning.hpp"
 #include "solvers/mpc_options.hpp"
 
@@ -48,8 +50,9 @@ struct ExperimentCounts {
   int mpm_ud = 0;
   int healthy = 0;  ///< nothing is wrong
   int tuning = 0;
+  int other = 0;
 
-  int total() const { return mpm + ud + mpm_ud + healthy + tuning; }
+  int total() const { return mpm + ud + mpm_ud + healthy + tuning + other; }
   int of(ExperimentKind kind) const {
     switch (kind) {
       case ExperimentKind::healthy:
@@ -62,33 +65,13 @@ struct ExperimentCounts {
         return mpm_ud;
       case ExperimentKind::tuning:
         return tuning;
+      case ExperimentKind::other:
+        return other;
     }
     return 0;
   }
 
   bool operator==(const ExperimentCounts&) const = default;
-};
-
-/// Ranges of the random mismatches (table 6.4). Channels are pairs of a CV and an MV with non-zero gain.
-struct MismatchRanges {
-  /// Relative frequency of gain, time constant and dead time; they need not sum to one.
-  std::array<double, 3> parameter_weight{1.0, 1.0, 1.0};
-  Distribution gain_factor = Distribution::uniform(0.3, 1.5);
-  Distribution time_constant_factor = Distribution::uniform(0.3, 3.0);
-  /// Added to the dead time, in the time unit of the plant. Where the sum would be negative the draw is
-  /// confined to shifts of at least minus the dead time (docs/methods.md).
-  Distribution dead_time_shift = Distribution::uniform(-2.0, 2.0);
-
-  bool operator==(const MismatchRanges&) const = default;
-};
-
-/// Ranges of the random unmeasured disturbances: G_d = gain / (time_constant s + 1) driven by white noise v.
-struct DisturbanceRanges {
-  Distribution gain = Distribution::uniform(0.1, 3.0);
-  Distribution time_constant = Distribution::uniform(30.0, 300.0);
-  double v_standard_deviation = 1.0;  ///< of the white normal sequence, held over a sample
-
-  bool operator==(const DisturbanceRanges&) const = default;
 };
 
 /// Which way the active soft limit is stepped when T0 is determined. A range MPC answers the two differently:
@@ -216,6 +199,8 @@ struct Study {
   MismatchRanges mismatch;
   DisturbanceRanges disturbance;
   TuningRanges tuning;
+  OtherRanges other;
+  OnsetRanges onset;
   SensitivityOptions sensitivity;
   S0PerturbationOptions s0_perturbation;
   DiagnosisOptions diagnosis;
@@ -227,6 +212,11 @@ struct Study {
   std::string source;                   ///< the full text of the file
 
   bool names_scenarios() const { return !scenarios.empty(); }
+  /// Is every random experiment one parameter of one channel and white noise on one CV, from the start and as
+  /// drawn, so that a handful of numbers says all of it?
+  bool has_plain_faults() const;
+  /// Are sizes of faults scaled until the loops have the effect that it asks for?
+  bool asks_for_impact() const { return mismatch.impact || disturbance.impact || other.impact; }
   /// Experiments of one full run.
   int experiment_count() const {
     return names_scenarios() ? static_cast<int>(scenarios.size()) : experiments.total();

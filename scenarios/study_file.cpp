@@ -62,11 +62,13 @@ Study read_study(std::string_view text, const std::string& file_name, TomlDraft*
   study.controller = read_controller(document, study.plant);
   study.simulation = read_simulation(document, study.plant, study.controller);
   study.scenarios = read_scenarios(document, study);
-  study.experiments = read_experiments(document, study);
+  study.experiments = read_experiments(document);
   study.disturbance = read_disturbance(document);
   if (!study.names_scenarios()) {
-    study.mismatch = read_mismatch(document, study.plant);
+    study.mismatch = read_mismatch(document, study);
     study.tuning = read_tuning(document, study);
+    study.other = read_other(document, study);
+    study.onset = read_onset(document, study);
   }
   study.sensitivity = read_sensitivity(document, study.plant, study.controller);
   study.s0_perturbation = read_s0_perturbation(document, study.plant, study.controller);

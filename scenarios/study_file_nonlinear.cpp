@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -39,11 +41,16 @@ std::string nonlinear_names() {
   return names;
 }
 
-ParameterChange read_change(const TomlTable& table, const NonlinearModel& model) {
+/// The parameter that the key `name` names.
+const NonlinearModel::Parameter& read_parameter(const TomlTable& table, const NonlinearModel& model) {
   std::vector<std::string> names;
   for (const NonlinearModel::Parameter& parameter : model.parameters)
     names.push_back(parameter.name);
-  const NonlinearModel::Parameter& parameter = model.parameters[read_one_of(table, "name", names)];
+  return model.parameters[read_one_of(table, "name", names)];
+}
+
+ParameterChange read_change(const TomlTable& table, const NonlinearModel& model) {
+  const NonlinearModel::Parameter& parameter = read_parameter(table, model);
   if (table.has("value") == table.has("factor"))
     table.refuse("", table.has("value") ? "both value and factor" : "neither value nor factor",
                  "exactly one of the two");
@@ -94,6 +101,35 @@ std::vector<ParameterChange> read_parameter_changes(const TomlTable& scenario, c
     table.located("", [&] { return study.nonlinear->model.make_system(changes); });
   }
   return changes;
+}
+
+std::vector<PlantParameterRange> read_plant_parameters(const TomlTable& mismatch, const Study& study) {
+  const bool drawn = study.experiments.mpm + study.experiments.mpm_ud > 0;
+  if (!mismatch.has("plant_parameter")) {
+    if (study.nonlinear && drawn)
+      mismatch.refuse("plant_parameter", "nothing",
+                      "the parameters that random mismatches of the nonlinear "
+                      "plant change");
+    return {};
+  }
+  if (!study.nonlinear)
+    mismatch.refuse("plant_parameter", "parameters of a plant that is simulated by its linear model",
+                    kNonlinear);
+  std::vector<PlantParameterRange> ranges;
+  for (const TomlTable& table :
+       mismatch.tables("plant_parameter", study_file_keys("mismatch.plant_parameter[]"))) {
+    const NonlinearModel::Parameter& parameter = read_parameter(table, study.nonlinear->model);
+    const Distribution factor = read_distribution(table, "factor", NumberRule::positive());
+    for (const double end : {factor.minimum(), factor.maximum()})
+      table.located("factor", [&] {
+        return study.nonlinear->model.make_system({{parameter.name, end * parameter.nominal}});
+      });
+    PlantParameterRange range{parameter.name, factor, {}};
+    for (const std::size_t cv : read_some_of(table, "affected", variable_names(study.plant.cvs)))
+      range.affected_cvs.push_back(static_cast<Eigen::Index>(cv));
+    ranges.push_back(std::move(range));
+  }
+  return ranges;
 }
 
 Eigen::Index read_inner_input(const TomlTable& disturbance, const Study& study) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -61,13 +63,34 @@ inline constexpr double kMaxDeadTimeSamples = 10000;
 std::vector<Scenario> read_scenarios(const TomlTable& document, const Study& study);
 
 /// [experiments] (study_file_draws.cpp), as the next three. None in a study of named scenarios.
-ExperimentCounts read_experiments(const TomlTable& document, const Study& study);
+ExperimentCounts read_experiments(const TomlTable& document);
 
-/// [mismatch]
-MismatchRanges read_mismatch(const TomlTable& document, const PlantModel& plant);
+/// [mismatch]; `study` has its plant and its experiments.
+MismatchRanges read_mismatch(const TomlTable& document, const Study& study);
+
+/// The list `plant_parameter` of [mismatch] (study_file_nonlinear.cpp).
+std::vector<PlantParameterRange> read_plant_parameters(const TomlTable& mismatch, const Study& study);
 
 /// [disturbance]
 DisturbanceRanges read_disturbance(const TomlTable& document);
+
+/// [other] (study_file_other.cpp), as the next one; `study` has its plant, controller, simulation and
+/// experiments.
+OtherRanges read_other(const TomlTable& document, const Study& study);
+
+/// [onset]
+OnsetRanges read_onset(const TomlTable& document, const Study& study);
+
+/// A table of weights: all of the names, or none of them, in which case `weights` stay as they are. Names
+/// after the first `required` may be left out and have then the weight 0.
+void read_weights(const TomlTable& table, std::span<const std::string_view> names, std::size_t required,
+                  std::span<double> weights);
+
+/// Refuses a table of weights that are all 0.
+void refuse_no_weight(const TomlTable& table, std::span<const double> weights);
+
+/// The size of an effect (FaultScales) under `key`; none without the key.
+std::optional<Distribution> read_impact(const TomlTable& table);
 
 /// [tuning]; `study` has its controller and its experiments.
 TuningRanges read_tuning(const TomlTable& document, const Study& study);

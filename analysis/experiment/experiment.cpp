@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/experiment/fault_scale.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
@@ -118,10 +119,14 @@ void ExperimentRunner::add_dominance(AssessmentRecord& chain, Eigen::Index true_
 ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, const StepObserver& observer) {
   ExperimentRecord record;
   record.draw = draw_experiment(study_, index);
+  if (has_asked_impact(study_, record.draw))
+    record.draw = with_scales(
+        study_, record.draw,
+        scales_for_impact(study_, record.draw, basis_.trajectory.y, factory_, record.solver, observer));
   FinishedLoop main = simulate(record.draw, observer);
   record.status = main.status;
   record.message = main.message;
-  record.solver = main.trajectory.solver;
+  record.solver.add(main.trajectory.solver);
   if (main.own)
     record.solver.add(main.own->solver);
   if (record.status == ExperimentStatus::ok)

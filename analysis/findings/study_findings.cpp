@@ -110,7 +110,7 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
 }
 
 std::vector<std::string> finding_names(Study study) {
-  study.experiments = {.mpm = 1, .ud = 1, .mpm_ud = 1, .healthy = 1, .tuning = 1};
+  study.experiments = {.mpm = 1, .ud = 1, .mpm_ud = 1, .healthy = 1, .tuning = 1, .other = 1};
   study.s0_perturbation.multipliers = {1.0};
   study.calibration.emplace();
   std::vector<std::string> names;

@@ -120,7 +120,8 @@ void require_consistent(const ExperimentRecord& record, const Study& study, cons
   const ExperimentDraw& draw = record.draw;
   if (!draw.named) {
     require(study.experiments.of(draw.kind) > 0, "kind", "a kind that the study counts");
-    require(is_faultless(draw.kind) || draw.true_cv() >= 0, "true_cv", "the CV of the fault");
+    require(is_faultless(draw.kind) || draw.true_cv() >= 0 || !study.has_plain_faults(), "true_cv",
+            "the CV of the fault");
     if (draw.tuning) {
       require(is_possible(*draw.tuning, study.controller), "tuning_index", "a variable with this weight");
       require(std::isfinite(draw.tuning->factor) && draw.tuning->factor > 0.0, "tuning_factor",
@@ -139,14 +140,20 @@ void require_consistent(const ExperimentRecord& record, const Study& study, cons
   }
 }
 
-/// The scenario of a record, whose faults are in the study and in no variable.
-void take_scenario(ExperimentRecord& record, const Study& study, const std::string& file) {
-  if (record.draw.index >= study.experiment_count())
+/// Does the study say more of its experiments than the variables of an archive do?
+bool has_further_draws(const Study& study) {
+  return study.names_scenarios() || !study.has_plain_faults();
+}
+
+/// The draw of a record from the study, whose faults are in no variable or not all of them; its scales are in
+/// variables.
+void take_draw(ExperimentRecord& record, const Study& study, const std::string& file) {
+  if (study.names_scenarios() && record.draw.index >= study.experiment_count())
     throw ArchiveError(
         fmt::format("{}: variable 'experiment': found {}; allowed: 0 to {}, the scenarios of "
                     "the study",
                     file, record.draw.index, study.experiment_count() - 1));
-  ExperimentDraw draw = draw_experiment(study, record.draw.index);
+  ExperimentDraw draw = with_scales(study, draw_experiment(study, record.draw.index), record.draw.scales);
   const auto require = [&](bool condition, const char* variable, const std::string& allowed) {
     if (!condition)
       throw ArchiveError(
@@ -267,8 +274,8 @@ std::vector<ExperimentRecord> read_records(const Hdf5Group& root, const Study& s
         read_variable(group, variable, along, file);
   }
   for (ExperimentRecord& record : records) {
-    if (study.names_scenarios())
-      take_scenario(record, study, file);
+    if (has_further_draws(study))
+      take_draw(record, study, file);
     require_consistent(record, study, file);
   }
   return records;

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "analysis/experiment/judgement.hpp"
 #include "plants/non_finite.hpp"
@@ -153,9 +154,95 @@ VariableText kind_text(const Study& study) {
                     "mpm: model-plant mismatch; ud: unmeasured disturbance; mpm_ud: both",
                     enum_flags(std::array{ExperimentKind::healthy, ExperimentKind::mpm, ExperimentKind::ud,
                                           ExperimentKind::mpm_ud, ExperimentKind::tuning})};
+  if (study.experiments.other > 0) {
+    text.flags =
+        enum_flags(std::array{ExperimentKind::healthy, ExperimentKind::mpm, ExperimentKind::ud,
+                              ExperimentKind::mpm_ud, ExperimentKind::tuning, ExperimentKind::other});
+    text.comment += "; other: neither, see other_fault";
+  }
   if (study.experiments.tuning > 0)
     text.comment += "; tuning: a weight of the controller";
   return text;
+}
+
+Flags parameter_flags(const Study& study) {
+  if (study.has_plain_faults())
+    return enum_flags(
+        std::array{MismatchParameter::gain, MismatchParameter::time_constant, MismatchParameter::dead_time});
+  return enum_flags(kRandomMismatchParameters);
+}
+
+/// The shape of the signal of the first disturbance.
+DisturbanceShape shape_of(const DisturbanceSignal& signal) {
+  return std::visit(
+      []<class Signal>(const Signal&) {
+        return std::is_same_v<Signal, StepSequence> ? DisturbanceShape::step
+               : std::is_same_v<Signal, Ramp>       ? DisturbanceShape::ramp
+               : std::is_same_v<Signal, RandomWalk> ? DisturbanceShape::random_walk
+               : std::is_same_v<Signal, Sine>       ? DisturbanceShape::sine
+               : std::is_same_v<Signal, Bursts>     ? DisturbanceShape::burst
+                                                    : DisturbanceShape::white;
+      },
+      signal);
+}
+
+/// What follows from study and index alone, beyond one parameter of one channel and noise on one CV.
+std::vector<RecordVariable> further_draws(const Study& study) {
+  const auto follows = []<class T>(VariableText text, std::function<T(const ExperimentDraw&)> get) {
+    return only(
+        RecordUse::archive_only,
+        scalar<T>(std::move(text), [get = std::move(get)](const Record& r) { return get(r.draw); }, {}));
+  };
+  const auto whole = [&](VariableText text, std::function<std::int32_t(const ExperimentDraw&)> get) {
+    return follows(std::move(text), std::move(get));
+  };
+  const auto flag = [&](VariableText text, std::function<std::int8_t(const ExperimentDraw&)> get) {
+    return follows(std::move(text), std::move(get));
+  };
+  const auto quantity = [&](VariableText text, std::function<double(const ExperimentDraw&)> get) {
+    return follows(std::move(text), std::move(get));
+  };
+  std::vector<RecordVariable> variables{
+      whole({"mismatches", "parameters of channels or of the plant that differ from the model", "1"},
+            [](const ExperimentDraw& draw) {
+              return static_cast<std::int32_t>(draw.mismatches.size() + draw.parameters.size());
+            }),
+      whole({"disturbances", "places where an unmeasured disturbance acts", "1"},
+            [](const ExperimentDraw& draw) { return static_cast<std::int32_t>(draw.disturbances.size()); }),
+      flag({"ud_signal", "shape of the signal of the unmeasured disturbance", "1", "-1: no disturbance",
+            with_none(enum_flags(kDisturbanceShapes))},
+           [](const ExperimentDraw& draw) {
+             return draw.disturbances.empty()
+                        ? std::int8_t{-1}
+                        : static_cast<std::int8_t>(shape_of(draw.disturbances.front().signal));
+           }),
+      whole({"ud_mv", "position in mv of the MV on which the unmeasured disturbance acts", "1", "-1: on none",
+             index_flags(study.plant.mvs)},
+            [](const ExperimentDraw& draw) {
+              return static_cast<std::int32_t>(
+                  draw.disturbances.empty() ? -1 : draw.disturbances.front().mv.value_or(-1));
+            }),
+      whole({"onset", "sample at which the faults begin", "1"},
+            [](const ExperimentDraw& draw) { return static_cast<std::int32_t>(draw.onset.sample); }),
+      whole({"onset_growth", "samples over which the faults grow", "1"},
+            [](const ExperimentDraw& draw) { return static_cast<std::int32_t>(draw.onset.growth); })};
+  if (study.experiments.other == 0)
+    return variables;
+  variables.push_back(flag({"other_fault", "what is wrong besides model and disturbance", "1", "-1: nothing",
+                            with_none(enum_flags(kOtherFaultKinds))},
+                           [](const ExperimentDraw& draw) {
+                             return draw.other ? static_cast<std::int8_t>(draw.other->kind) : std::int8_t{-1};
+                           }));
+  variables.push_back(
+      whole({"other_variable", "position of the CV, MV or MD at fault, in cv, mv or md", "1", "-1: none"},
+            [](const ExperimentDraw& draw) {
+              return static_cast<std::int32_t>(draw.other ? draw.other->variable : -1);
+            }));
+  variables.push_back(
+      quantity({"other_size", "size of the other fault", "1",
+                "in the unit of its variable, a factor for the gain of an MD; NaN: none"},
+               [](const ExperimentDraw& draw) { return draw.other ? draw.other->size : kNaN; }));
+  return variables;
 }
 
 RecordTable drawn(const Study& study) {
@@ -174,12 +261,9 @@ RecordTable drawn(const Study& study) {
       of_fault<std::int32_t>({"true_mv", "position of the MV of the mismatched channel in mv", "1",
                               "-1: no mismatch, or a named scenario", index_flags(study.plant.mvs)},
                              &M::mismatches, &Mismatch::input, -1),
-      of_fault<std::int8_t>(
-          {"parameter", "parameter of the channel that differs from the model", "1",
-           "-1: no mismatch, or a named scenario",
-           with_none(enum_flags(std::array{MismatchParameter::gain, MismatchParameter::time_constant,
-                                           MismatchParameter::dead_time}))},
-          &M::mismatches, &Mismatch::parameter, -1),
+      of_fault<std::int8_t>({"parameter", "parameter of the channel that differs from the model", "1",
+                             "-1: no mismatch, or a named scenario", with_none(parameter_flags(study))},
+                            &M::mismatches, &Mismatch::parameter, -1),
       of_fault<double>({"parameter_value", "size of the mismatch", "1",
                         "factor of gain or time constant; shift of the dead time in " + time +
                             "; NaN: no mismatch, or a named scenario"},
@@ -191,6 +275,9 @@ RecordTable drawn(const Study& study) {
                         "NaN: no disturbance, or a named scenario"},
                        &M::disturbances, &Disturbance::time_constant, kNaN),
   };
+  if (!study.has_plain_faults())
+    for (RecordVariable& variable : further_draws(study))
+      table.variables.push_back(std::move(variable));
   if (study.experiments.tuning == 0)
     return table;
   table.variables.push_back(of_tuning<std::int8_t>(
@@ -204,6 +291,31 @@ RecordTable drawn(const Study& study) {
       &TuningChange::index, -1));
   table.variables.push_back(of_tuning<double>({"tuning_factor", "factor of the weight", "1", "NaN: none"},
                                               &TuningChange::factor, kNaN));
+  return table;
+}
+
+/// A scale of the faults; with it the draw is made anew.
+RecordVariable of_scale(const Study& study, VariableText text, double FaultScales::*scale) {
+  return scalar<double>(
+      std::move(text), [scale](const Record& record) { return record.draw.scales.*scale; },
+      [study, scale](Record& record, double value) {
+        FaultScales scales = record.draw.scales;
+        scales.*scale = value;
+        record.draw = with_scales(study, draw_experiment(study, record.draw.index), scales);
+      });
+}
+
+/// The sizes that pilot loops have found, which bytes have to keep.
+RecordTable fault_scales(const Study& study) {
+  RecordTable table;
+  table.dimension = "experiment";
+  const char* const meaning = "by which the drawn sizes are scaled for the effect that the study asks for";
+  table.variables = {
+      of_scale(study, {"mismatch_scale", meaning, "1", "exponent of factors, factor of times"},
+               &FaultScales::mismatch),
+      of_scale(study, {"disturbance_scale", meaning, "1", "factor of the gain"}, &FaultScales::disturbance),
+      of_scale(study, {"other_scale", meaning, "1", "factor of the size; exponent of the factor of an MD"},
+               &FaultScales::other)};
   return table;
 }
 
@@ -431,7 +543,10 @@ RecordTable method_table(const AssessmentForm& form, std::size_t method) {
 }
 
 std::vector<RecordTable> record_tables(const Study& study, const AssessmentForms& forms) {
-  std::vector<RecordTable> tables{drawn(study), outcomes(study, forms)};
+  std::vector<RecordTable> tables{drawn(study)};
+  if (study.asks_for_impact())
+    tables.push_back(fault_scales(study));
+  tables.push_back(outcomes(study, forms));
   for (std::size_t m = 0; m < forms.size(); ++m)
     tables.push_back(method_table(*forms[m], m));
   tables.push_back(kept_loops(study));

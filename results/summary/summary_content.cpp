@@ -14,7 +14,7 @@ std::vector<KindCount> kind_counts(const Campaign& campaign) {
   if (campaign.study.names_scenarios())
     return counts;
   for (const ExperimentKind kind : {ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud,
-                                    ExperimentKind::healthy, ExperimentKind::tuning})
+                                    ExperimentKind::healthy, ExperimentKind::tuning, ExperimentKind::other})
     if (campaign.study.experiments.of(kind) > 0)
       counts.push_back(
           {kind, std::count_if(campaign.records.begin(), campaign.records.end(),

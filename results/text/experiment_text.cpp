@@ -41,6 +41,7 @@ std::string input_name(const Study& study, Eigen::Index input) {
 std::string mismatch_text(const Study& study, const Mismatch& mismatch) {
   const std::string channel =
       fmt::format("{}/{}", cv_name(study, mismatch.cv), input_name(study, mismatch.input));
+  const std::string time = fmt::format("{:.3g} {}", mismatch.value, unit_text(study.plant.time_unit));
   switch (mismatch.parameter) {
     case MismatchParameter::gain:
       return fmt::format("gain of {} x {:.3g}", channel, mismatch.value);
@@ -51,6 +52,12 @@ std::string mismatch_text(const Study& study, const Mismatch& mismatch) {
                          unit_text(study.plant.time_unit));
     case MismatchParameter::channel:
       return fmt::format("{} is {}", channel, transfer_function_text(*mismatch.channel));
+    case MismatchParameter::second_order:
+      return fmt::format("further lag of {} in {}", time, channel);
+    case MismatchParameter::inverse_response:
+      return fmt::format("inverse response of {} in {}", time, channel);
+    case MismatchParameter::sign:
+      return fmt::format("gain of {} has the other sign", channel);
   }
   return "unknown";
 }
@@ -64,6 +71,8 @@ std::string parameter_text(const Study& study, const ParameterChange& change) {
 }
 
 std::string place_text(const Study& study, const Disturbance& disturbance) {
+  if (disturbance.mv)
+    return study.plant.mvs[static_cast<std::size_t>(*disturbance.mv)].name;
   return disturbance.inner_input
              ? study.nonlinear->model.inner_inputs[static_cast<std::size_t>(*disturbance.inner_input)]
              : cv_name(study, disturbance.cv);
@@ -80,14 +89,19 @@ std::string signal_text(const Study& study, const DisturbanceSignal& signal) {
     return fmt::format("sine of amplitude {:.3g}, period {:.4g} {}", sine->amplitude, sine->period, time);
   if (const auto* ramp = std::get_if<Ramp>(&signal))
     return fmt::format("ramp of {:.3g} a {} from {:g} {}", ramp->slope, time, ramp->start, time);
+  if (const auto* walk = std::get_if<RandomWalk>(&signal))
+    return fmt::format("random walk of {:.3g}", walk->factor * study.disturbance.v_standard_deviation);
+  if (const auto* bursts = std::get_if<Bursts>(&signal))
+    return fmt::format("bursts of {:.3g}", bursts->factor * study.disturbance.v_standard_deviation);
   const std::size_t steps = std::get<StepSequence>(signal).steps.size();
   return fmt::format("{} step{}", steps, steps == 1 ? "" : "s");
 }
 
-/// A random disturbance has always the same signal, which is not worth a word.
+/// The white signal of a random disturbance is not worth a word.
 std::string disturbance_text(const Study& study, const Disturbance& disturbance, bool named) {
   const std::string on = "disturbance on " + place_text(study, disturbance);
-  const std::string signal = named ? ", " + signal_text(study, disturbance.signal) : "";
+  const bool worth_saying = named || !std::holds_alternative<WhiteNoise>(disturbance.signal);
+  const std::string signal = worth_saying ? fmt::format(", {}", signal_text(study, disturbance.signal)) : "";
   switch (disturbance.model) {
     case DisturbanceModel::first_order:
       return fmt::format("{}: gain {:.3g}, time constant {:.3g} {}{}", on, disturbance.gain,
@@ -109,6 +123,24 @@ std::string tuning_text(const Study& study, const TuningChange& tuning) {
                      tuning.factor);
 }
 
+/// "stiction of u2: 0.05"
+std::string other_text(const Study& study, const OtherFault& fault) {
+  std::string kind(to_string(fault.kind));
+  std::replace(kind.begin(), kind.end(), '_', ' ');
+  const VariableSort sort = sort_of(fault.kind);
+  const auto& variables = sort == VariableSort::cv   ? study.plant.cvs
+                          : sort == VariableSort::mv ? study.plant.mvs
+                                                     : study.plant.mds;
+  const std::string& name = variables[static_cast<std::size_t>(fault.variable)].name;
+  return fault.kind == OtherFaultKind::held_mv ? fmt::format("{}: {}", kind, name)
+                                               : fmt::format("{} of {}: {:.3g}", kind, name, fault.size);
+}
+
+std::string onset_text(const Onset& onset) {
+  return onset.growth == 0 ? fmt::format("from sample {}", onset.sample)
+                           : fmt::format("from sample {} to {}", onset.sample, onset.sample + onset.growth);
+}
+
 }  // namespace
 
 std::string kind_name(ExperimentKind kind) {
@@ -117,6 +149,8 @@ std::string kind_name(ExperimentKind kind) {
       return "healthy";
     case ExperimentKind::tuning:
       return "tuning";
+    case ExperimentKind::other:
+      return "other";
     case ExperimentKind::mpm:
     case ExperimentKind::ud:
     case ExperimentKind::mpm_ud:
@@ -154,6 +188,10 @@ std::string fault_text(const Study& study, const ExperimentDraw& draw) {
     add(disturbance_text(study, disturbance, draw.named));
   if (draw.tuning)
     add(tuning_text(study, *draw.tuning));
+  if (draw.other)
+    add(other_text(study, *draw.other));
+  if (!draw.onset.from_the_start())
+    add(onset_text(draw.onset));
   return text.empty() ? "nothing" : text;
 }
 

@@ -432,6 +432,30 @@ Campaign faultless_campaign() {
   return campaign;
 }
 
+Campaign rich_campaign() {
+  Numbers numbers;
+  std::string text = with_setpoint(small_study());
+  const std::string last_count = "mpm_ud = 1\n";
+  text.replace(text.find(last_count), last_count.size(), "mpm_ud = 1\nother = 3\n");
+  text +=
+      "\n[mismatch]\nextent_weights = {parameter = 1, channel = 1, mv = 1}\nimpact = {uniform = [0.5, 2]}\n"
+      "[disturbance]\nsignal_weights = {white = 1, step = 1, sine = 1}\n"
+      "place_weights = {cv = 1, mv = 1, several = 1}\nimpact = {uniform = [0.5, 2]}\n"
+      "[onset]\nsample = {uniform = [10, 20]}\ngrowth = {uniform = [0, 9]}\n";
+  Campaign campaign;
+  campaign.study = parse_study(text + kReplications + kMethods, "small");
+  campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
+  add_methods(campaign);
+  campaign.basis = basis_case(numbers, campaign.study, {{1, ConstraintKind::upper_limit}});
+  for (std::int64_t index = 0; index < 48; ++index) {
+    const double scale = 0.5 + 0.1 * static_cast<double>(index);
+    const ExperimentDraw draw =
+        with_scales(campaign.study, draw_experiment(campaign.study, index), {scale, 1.0 / scale, 0.3});
+    campaign.records.push_back(record(numbers, campaign, draw, made_up_status(index)));
+  }
+  return campaign;
+}
+
 Campaign empty_campaign() {
   Numbers numbers;
   std::string text = small_study();

@@ -22,6 +22,10 @@ Campaign made_up_campaign();
 /// them.
 Campaign drawn_campaign();
 
+/// One whose faults reach further, begin later and are scaled to an effect, so that an archive has the study
+/// say what they are.
+Campaign rich_campaign();
+
 /// The same without experiments, kept loops, active limits and measured disturbances: every dimension that
 /// can be empty is.
 Campaign empty_campaign();

@@ -62,6 +62,9 @@ TEST_CASE("draw_experiment: values lie in the ranges of table 6.4 and cover the 
       case MismatchParameter::dead_time:
         CHECK((m.value >= std::max(-2.0, -dead_time) && m.value <= 2.0));
         break;
+      case MismatchParameter::second_order:
+      case MismatchParameter::inverse_response:
+      case MismatchParameter::sign:
       case MismatchParameter::channel:
         FAIL("a random draw never replaces a channel");
     }

@@ -77,8 +77,11 @@ std::string random_study_text() {
                   "noise_standard_deviation = {level = 0.01, heat = 0.3}\n"
                   "[[simulation.step]]\ncv = \"level\"\nsample = 5\nlevel = 0.2\n");
   text +=
-      "healthy = 4\ntuning = 5\n"
-      "[mismatch]\nparameter_weights = {gain = 1, time_constant = 0, dead_time = 0.1}\n"
+      "healthy = 4\ntuning = 5\nother = 6\n"
+      "[other]\nimpact = {constant = 1.5}\nweights = {stiction = 1, limit = 2}\n"
+      "[disturbance]\nimpact = {uniform = [0.5, 2]}\nsignal_weights = {sine = 1}\n"
+      "[mismatch]\nimpact = {log_uniform = [0.5, 2]}\nparameter_weights = {gain = 1, time_constant = 0, "
+      "dead_time = 0.1}\n"
       "dead_time_shift = {normal = [0.1, 0.5]}\ngain_factor = {constant = 0.7}\n"
       "[tuning]\nparameter_weights = {move_suppression = 1, target_weight = 2, slack_weight = 3, "
       "setpoint_weight = 4}\n"
@@ -155,11 +158,23 @@ disturbance = [{input = "D4", gain = 8, time_constant = 70}]
 )";
 }
 
+/// The same with random changes of its parameters.
+std::string random_tank_text() {
+  return replaced(
+      replaced(project_file("tests/scenarios/data/quadruple-tank.toml"), "catalogue = \"quadruple-tank\"\n",
+               "catalogue = \"quadruple-tank\"\nsimulated = \"nonlinear\"\n"),
+      "[experiments]", R"([mismatch]
+plant_parameter = [{name = "cd1", factor = {uniform = [0.8, 1.2]}, affected = ["h1"]},
+                   {name = "k2", factor = {constant = 0.9}, affected = ["h2", "h3"]}]
+
+[experiments])");
+}
+
 /// Studies of the tests, among them those with the keys that no shipped one has.
 std::vector<Study> of_tests() {
   std::vector<Study> studies;
-  for (const std::string& text :
-       {small_study(), random_study_text(), scenario_study_text(), nonlinear_study_text()})
+  for (const std::string& text : {small_study(), random_study_text(), scenario_study_text(),
+                                  nonlinear_study_text(), random_tank_text()})
     studies.push_back(parse_study(text, "s.toml"));
   return studies;
 }
@@ -229,11 +244,30 @@ TEST_CASE("every key of a study file comes out in a resolved study", "[resolved_
 
 TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolved_study]") {
   const Keys written = keys_of(parse_study(small_study(), "small.toml"));
-  const Keys without_value{{"sensitivity", "active_cvs"}, {"sensitivity", "fixed_mvs"}};
-  for (const char* name :
-       {"experiments", "mismatch", "mismatch.parameter_weights", "disturbance", "tuning",
-        "tuning.parameter_weights", "sensitivity", "diagnosis", "assessment", "assessment.sun",
-        "assessment.badwe2009", "assessment.badwe2010", "assessment.yu-qin", "assessment.sse", "aggregate"})
+  const Keys without_value{{"sensitivity", "active_cvs"}, {"sensitivity", "fixed_mvs"},
+                           {"mismatch", "impact"},        {"mismatch", "plant_parameter"},
+                           {"disturbance", "impact"},     {"other", "impact"}};
+  for (const char* name : {"experiments",
+                           "mismatch",
+                           "mismatch.parameter_weights",
+                           "mismatch.extent_weights",
+                           "disturbance",
+                           "disturbance.signal_weights",
+                           "disturbance.place_weights",
+                           "other",
+                           "other.weights",
+                           "onset",
+                           "tuning",
+                           "tuning.parameter_weights",
+                           "sensitivity",
+                           "diagnosis",
+                           "assessment",
+                           "assessment.sun",
+                           "assessment.badwe2009",
+                           "assessment.badwe2010",
+                           "assessment.yu-qin",
+                           "assessment.sse",
+                           "aggregate"})
     for (const std::string& key : study_file_keys(name)) {
       INFO("[" << name << "] " << key);
       CHECK(written.count({name, key}) != without_value.count({name, key}));

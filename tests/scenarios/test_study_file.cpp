@@ -164,7 +164,7 @@ TEST_CASE("the ranges of mismatch and disturbance land in their place", "[study_
       "dead_time_shift = {normal = [0.5, 2]}\n"
       "[disturbance]\ngain = {uniform = [1, 2]}\ntime_constant = {constant = 40}\nv_standard_deviation = "
       "3\n");
-  CHECK(study.mismatch.parameter_weight == std::array<double, 3>{2, 0, 0.5});
+  CHECK(study.mismatch.parameter_weight == std::array<double, 6>{2, 0, 0.5, 0, 0, 0});
   CHECK(study.mismatch.gain_factor == Distribution::constant(0.5));
   CHECK(study.mismatch.time_constant_factor == Distribution::log_uniform(0.2, 5));
   CHECK(study.mismatch.dead_time_shift == Distribution::normal(0.5, 2));

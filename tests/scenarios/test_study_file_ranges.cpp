@@ -107,7 +107,7 @@ TEST_CASE("the ranges of mismatches are checked", "[study_file]") {
        "parameter_weights", "mismatch.parameter_weights.gain: found -1; allowed: a number >= 0"},
       {"", "[mismatch]\nparameter_weights = {gain = 0, time_constant = 0, dead_time = 0}\n",
        "parameter_weights",
-       "mismatch.parameter_weights: found three weights of 0; allowed: at least one > 0"},
+       "mismatch.parameter_weights: found weights that are all 0; allowed: at least one > 0"},
       {"", "[mismatch]\ngain_factor = {uniform = [0, 1]}\n", "gain_factor",
        "mismatch.gain_factor: found draws from 0 to 1; allowed: " + every_draw("> 0")},
       {"", "[mismatch]\ntime_constant_factor = {normal = [1, 0.1]}\n", "time_constant_factor",
@@ -231,4 +231,29 @@ TEST_CASE("the options of the diagnosis and of the aggregates are checked", "[st
 }
 
 }  // namespace
+TEST_CASE("faults beyond one parameter and white noise are checked", "[study_file]") {
+  check_refusals({
+      {"", "[mismatch]\nextent_weights = {parameter = 0}\n", "extent_weights",
+       "mismatch.extent_weights: found weights that are all 0; allowed: at least one > 0"},
+      {"", "[mismatch]\nplant_parameter = [{name = \"a\"}]\n", "plant_parameter",
+       "mismatch.plant_parameter: found parameters of a plant that is simulated by its linear model; "
+       "allowed: "
+       "plant.simulated = \"nonlinear\""},
+      {"", "[mismatch]\nimpact = {uniform = [0, 1]}\n", "impact",
+       "mismatch.impact: found draws from 0 to 1; allowed: a distribution whose every draw is a number > 0"},
+      {"", "[disturbance]\nsignal_weights = {sine = 1, saw = 1}\n", "signal_weights",
+       "disturbance.signal_weights: found unknown key 'saw'; allowed: white, step, ramp, random_walk, sine, "
+       "burst"},
+      {"", "[disturbance]\nplace_weights = {cv = -1}\n", "place_weights",
+       "disturbance.place_weights.cv: found -1; allowed: a number >= 0"},
+      {"mpm_ud = 1\n", "mpm_ud = 1\nother = 2\n[other]\nweights = {md_gain = 0}\n", "weights",
+       "other.weights: found a weight of 0 for everything that the loops can have; allowed: at least one > "
+       "0"},
+      {"", "[onset]\nsample = {uniform = [0, 61]}\n", "sample = {uniform = [0, 61]",
+       "onset.sample: found draws up to 61; allowed: draws below 60, the samples of the record"},
+      {"", "[onset]\ngrowth = {uniform = [-1, 1]}\n", "growth",
+       "onset.growth: found draws from -1 to 1; allowed: a distribution whose every draw is a number >= 0"},
+  });
+}
+
 }  // namespace mpm

@@ -26,9 +26,10 @@ using namespace mpm::testing;
 using Catch::Contains;
 using Names = std::vector<std::string>;
 
-/// Of random experiments with perturbed S0, with bad tunings, and of named scenarios.
+/// Of random experiments with perturbed S0, with bad tunings, of named scenarios, and with faults of all
+/// sorts.
 std::vector<Campaign> campaigns() {
-  return {drawn_campaign(), faultless_campaign(), scenario_campaign()};
+  return {drawn_campaign(), faultless_campaign(), scenario_campaign(), rich_campaign()};
 }
 
 RecordBytes bytes_for(const Campaign& campaign) {

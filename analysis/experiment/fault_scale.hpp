@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "scenarios/closed_loop.hpp"
+#include "scenarios/draw.hpp"
+#include "scenarios/study.hpp"
+#include "solvers/qp_solver.hpp"
+
+// Fault sizes that mean the same on every plant: by what they do to the variance of the affected CVs.
+
+namespace mpm {
+
+/// Does the study ask for faults of this experiment of a given effect?
+bool has_asked_impact(const Study& study, const ExperimentDraw& draw);
+
+/// The effect of the faults of an experiment is the largest change of the variance of an affected CV,
+///
+///   max |Ivar_basis,i - 1| over the affected CVs i,   Ivar_basis of (6.22),
+///
+/// infinite where the loop does not run to its end.
+double effect(const Study& study, const ExperimentDraw& draw, const Trajectory& loop,
+              const Eigen::MatrixXd& y_basis);
+
+/// The scales at which the faults of `draw`, which has the scales 1, have the effect that the study draws for
+/// them (`impact` of [mismatch], [disturbance] and [other]): found by pilot loops, with mismatch and
+/// disturbance each alone. They have the noise of the experiment, so that an experiment with one fault has
+/// the effect itself. The effect need not grow with the scale, and some faults never reach it: a dead time
+/// cannot become negative, a factor leaves neither [0.1, 10] nor, for a parameter of a nonlinear plant, its
+/// range. Then the scale is that of the pilot loop whose effect is nearest. `y_basis` is that of the basis
+/// case; `pilots` takes the work of the pilot loops.
+FaultScales scales_for_impact(const Study& study, const ExperimentDraw& draw, const Eigen::MatrixXd& y_basis,
+                              const QpSolverFactory& factory, SolverStatistics& pilots,
+                              const StepObserver& observer = {});
+
+}  // namespace mpm
