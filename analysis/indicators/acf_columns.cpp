@@ -33,7 +33,7 @@ struct Record {
 constexpr std::array<Record, 3> kRecords{
     {{"y", &AcfComparison::y}, {"y0", &AcfComparison::y0}, {"y0_diag", &AcfComparison::y0_diag}}};
 
-using Columns = std::vector<NumberColumn<AcfComparison>>;
+using AcfColumns = std::vector<NumberColumn<AcfComparison>>;
 
 /// The words of enumerators that count from 0.
 template <class Enum, std::size_t n>
@@ -45,7 +45,7 @@ std::vector<std::string> words(const std::array<Enum, n>& enumerators) {
   return list;
 }
 
-void append_features(Columns& columns, const Record& record) {
+void append_features(AcfColumns& columns, const Record& record) {
   const std::string of = std::string(" of ") + record.name;
   const auto name = [&record](const char* quantity) { return std::string(quantity) + "_" + record.name; };
   const auto member = record.member;
@@ -71,7 +71,7 @@ void append_features(Columns& columns, const Record& record) {
 }  // namespace
 
 std::vector<NumberColumn<AcfComparison>> acf_columns() {
-  Columns columns;
+  AcfColumns columns;
   for (const Record& record : kRecords) {
     append_features(columns, record);
   }
