@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -46,6 +47,12 @@ Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
   return trajectory;
 }
 
+/// Do the soft limits have other values from this sample on?
+bool some_limit_moves(const Study& study, Eigen::Index k) {
+  const std::vector<LimitStep>& steps = study.simulation.limit_steps;
+  return std::any_of(steps.begin(), steps.end(), [k](const LimitStep& step) { return step.sample == k; });
+}
+
 void fail(Trajectory& trajectory, LoopFailure failure, std::string message) {
   trajectory.status = ControlStatus::failed;
   trajectory.failure = failure;
@@ -66,18 +73,19 @@ void begin(Plant& plant, const Eigen::VectorXd& input, Trajectory& trajectory) {
 /// What stands between the controller and the plant: a valve, an operator, a changed limit.
 class Surroundings {
  public:
-  Surroundings(const Study& study, const LoopSignals& signals) : faults_(signals.faults), u_d_(signals.u_d) {
-    if (faults_.limit) {
-      shifted_ = study.controller.cv_soft;
-      shifted_.lower(faults_.limit->cv) += faults_.limit->shift;
-      shifted_.upper(faults_.limit->cv) += faults_.limit->shift;
-    }
-  }
+  Surroundings(const Study& study, const LoopSignals& signals)
+      : study_(study), faults_(signals.faults), u_d_(signals.u_d) {}
 
-  /// Before the controller decides on sample k.
-  void prepare(Eigen::Index k, Mpc& controller) {
-    if (faults_.limit && k == faults_.limit->sample)
-      controller.set_cv_soft(shifted_);
+  /// Before the controller decides on sample k: its soft limits, where they move.
+  void prepare(Eigen::Index k, Mpc& controller) const {
+    if (!some_limit_moves(study_, k) && !(faults_.limit && k == faults_.limit->sample))
+      return;
+    Limits limits = soft_limits(study_, k);
+    if (faults_.limit && k >= faults_.limit->sample) {
+      limits.lower(faults_.limit->cv) += faults_.limit->shift;
+      limits.upper(faults_.limit->cv) += faults_.limit->shift;
+    }
+    controller.set_cv_soft(limits);
   }
 
   /// `u` is what the controller asks for at sample k; it becomes what the record has, and `acting` what the
@@ -98,9 +106,9 @@ class Surroundings {
   }
 
  private:
+  const Study& study_;
   const LoopFaults& faults_;
   const Eigen::MatrixXd& u_d_;
-  Limits shifted_;
   std::optional<StickyValve> valve_;
 };
 
@@ -183,16 +191,18 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   require_shape("unmeasured disturbances", signals.y_d, study.cv_count(), samples);
   if (signals.y_set.size() > 0)
     require_shape("setpoints", signals.y_set, study.cv_count(), samples);
+  if (signals.dither.size() > 0)
+    require_shape("dither", signals.dither, study.mv_count(), samples);
 
   if (signals.u_d.size() > 0)
     require_shape("disturbances of the MVs", signals.u_d, study.mv_count(), samples);
   if (signals.d_measured.size() > 0)
     require_shape("measurements of the MDs", signals.d_measured, study.md_count(), samples);
 
-  const Eigen::Index within =
+  const Eigen::Index inner =
       signals.within_plant.size() > 0 ? plant.input_count() - study.mv_count() - study.md_count() : 0;
   if (signals.within_plant.size() > 0)
-    require_shape("disturbances within the plant", signals.within_plant, within, samples);
+    require_shape("disturbances within the plant", signals.within_plant, inner, samples);
 
   Mpc controller(study.plant.G, study.mv_count(), study.controller, factory);
   const Eigen::VectorXd d_rest = Eigen::VectorXd::Zero(study.md_count());
@@ -225,11 +235,16 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     trajectory.solver.largest_kkt_residual =
         std::max(trajectory.solver.largest_kkt_residual, move.kkt_residual);
     u = move.u;
+    if (signals.dither.size() > 0) {
+      const Limits& hard = study.controller.mv_hard;
+      u = (move.u + signals.dither.col(k)).cwiseMax(hard.lower).cwiseMin(hard.upper);
+      controller.set_acting(u);
+    }
     surroundings.pass(k, u_before, u, input.head(study.mv_count()));
     u_before = u;
     input.segment(study.mv_count(), study.md_count()) = signals.d.col(k);
-    if (within > 0)
-      input.tail(within) = signals.within_plant.col(k);
+    if (inner > 0)
+      input.tail(inner) = signals.within_plant.col(k);
     if (plant.advance(input) != PlantStatus::ok) {
       fail(trajectory, LoopFailure::plant, "the plant could not be integrated");
       break;
@@ -254,9 +269,10 @@ Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, c
     rest.tuning.reset();
     return simulate_experiment(with_tuning(study, draw), rest, factory, observer);
   }
-  LoopSignals signals{measured_disturbances(study), measurement_noise(study, draw.index),
-                      unmeasured_disturbances(study, draw), setpoints(study),
-                      disturbances_within_plant(study, draw)};
+  LoopSignals signals{
+      measured_disturbances(study),           draw.noise_factor * measurement_noise(study, draw.index),
+      unmeasured_disturbances(study, draw),   setpoints(study),
+      disturbances_within_plant(study, draw), dither(study)};
   signals.u_d = disturbances_of_mvs(study, draw);
   signals.d_measured = measurements_of_mds(study, draw);
   signals.faults = loop_faults(draw);

@@ -91,6 +91,8 @@ struct LoopSignals {
   /// Unmeasured disturbances that act within the plant: its inputs after MVs and MDs, from sample k on, one
   /// column a sample. Empty: they stay zero.
   Eigen::MatrixXd within_plant{};
+  /// Test signals that are added to the moves of the controller, nu x N; empty: none.
+  Eigen::MatrixXd dither{};
   Eigen::MatrixXd u_d{};         ///< added to the MVs on their way to the plant, nu x N; empty: nothing
   Eigen::MatrixXd d_measured{};  ///< MDs as controller and record have them, nd x N; empty: d
   LoopFaults faults{};
@@ -101,7 +103,12 @@ using StepObserver = std::function<void(const Mpc& controller)>;
 
 /// Runs the controller of the study on `plant`, whose inputs are the MVs and then the MDs of the study, from
 /// the steady state of the nominal model at zero disturbances that Mpc::nominal_target() gives for the
-/// first setpoints.
+/// first setpoints. The soft limits are those of soft_limits() at each sample.
+///
+/// What acts, and what the record shows, is the move of the controller and the dither, within the hard limits
+/// of the MV. The controller knows it, as one does that is told of a plant test: its model has the MVs that
+/// act, and it plans without the dither.
+///
 /// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant
 /// cannot be integrated (status `failed`), and does not begin when the plant has no steady state there
 /// (`failed` as well). Throws InputError when a signal has not the shape that the study

@@ -53,6 +53,11 @@ TuningChange draw_tuning(const Study& study, std::int64_t index) {
   return {parameter, variable, study.tuning.factor.sample(stream)};
 }
 
+double draw_noise_factor(const Study& study, std::int64_t index) {
+  RandomStream stream(study.seed, static_cast<std::uint64_t>(index), StreamId::noise_factor);
+  return study.simulation.noise.factor.sample(stream);
+}
+
 ExperimentDraw named_experiment(const Study& study, std::int64_t index) {
   if (index >= study.experiment_count())
     throw InputError("experiment index", fmt::format("{}", index),
@@ -64,7 +69,9 @@ ExperimentDraw named_experiment(const Study& study, std::int64_t index) {
           scenario.disturbances,
           true,
           scenario.affected_cvs,
-          scenario.parameters};
+          scenario.parameters,
+          {},
+          draw_noise_factor(study, index)};
 }
 
 }  // namespace
@@ -155,6 +162,7 @@ ExperimentDraw draw_experiment(const Study& study, std::int64_t index) {
     return named_experiment(study, index);
   ExperimentDraw draw;
   draw.index = index;
+  draw.noise_factor = draw_noise_factor(study, index);
   draw.kind = KindSequence(study.experiments)[index];
   const bool both = draw.kind == ExperimentKind::mpm_ud;
   if (draw.kind == ExperimentKind::mpm || both)

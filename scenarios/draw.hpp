@@ -49,6 +49,7 @@ struct ExperimentDraw {
   std::optional<OtherFault> other = {};          ///< around the model, which is right
   Onset onset = {};                              ///< of all faults but that of the tuning
   FaultScales scales = {};                       ///< those of the sizes above
+  double noise_factor = 1.0;  ///< of the measurement noise (NoiseOptions::factor); no fault either
 
   /// The CVs that are affected, in their order. A CV that has no fault of its own is affected by what is
   /// wrong in the experiment.
@@ -62,6 +63,8 @@ struct ExperimentDraw {
 
 /// The index under which the basis case draws its noise: no experiment of a study has it.
 inline constexpr std::int64_t kBasisIndex = -1;
+/// The index of the basis case with other noise (SelfCheck::repeat).
+inline constexpr std::int64_t kRepeatIndex = -2;
 
 /// The order of kinds over the experiments of a study.
 ///

@@ -25,6 +25,11 @@ enum class StreamId : std::uint32_t {
   onset = 14,              ///< when the faults begin
   impact = 15,             ///< how large the effect of the faults is to be
   suite_cell = 40,         ///< the seed of a cell of a suite
+  noise_factor = 20,       ///< size of the measurement noise of an experiment
+  outliers = 21,           ///< which samples of the record are outliers, and of which size
+  missing = 22,            ///< which samples of the record are missing
+  md_noise = 23,           ///< variation of the measured disturbances
+  dither = 24,             ///< test signals that are added to MVs
   /// Of the second disturbance of a named scenario; the following numbers are those of the third and so on.
   further_disturbance_signals = 0x1000,
 };

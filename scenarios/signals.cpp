@@ -13,18 +13,13 @@
 namespace mpm {
 namespace {
 
-RandomStream stream_of(const Study& study, std::int64_t index, StreamId id) {
-  // The basis index -1 becomes the largest unsigned one, which no experiment reaches.
-  return {study.seed, static_cast<std::uint64_t>(index), id};
-}
-
 void add_steps(const std::vector<SignalStep>& steps, Eigen::MatrixXd& signal) {
   for (const SignalStep& step : steps)
     signal.row(step.variable).tail(signal.cols() - step.sample).setConstant(step.level);
 }
 
 void add_random_steps(const Study& study, Eigen::MatrixXd& d) {
-  RandomStream stream = stream_of(study, kBasisIndex, StreamId::excitation);
+  RandomStream stream = experiment_stream(study, kBasisIndex, StreamId::excitation);
   for (Eigen::Index md = 0; md < d.rows(); ++md) {
     for (double next = 0.0;;) {
       next += std::max(1.0, study.simulation.step_interval.sample(stream));
@@ -35,6 +30,41 @@ void add_random_steps(const Study& study, Eigen::MatrixXd& d) {
       d.row(md).tail(d.cols() - from).setConstant(level);
     }
   }
+}
+
+void add_md_noise(const Study& study, Eigen::MatrixXd& d) {
+  const double tau = study.simulation.md_noise_time_constant;
+  const double phi = tau > 0.0 ? std::exp(-study.controller.sample_time / tau) : 0.0;
+  const double innovation = std::sqrt(1.0 - phi * phi);
+  RandomStream stream = experiment_stream(study, kBasisIndex, StreamId::md_noise);
+  Eigen::VectorXd v(d.rows());
+  for (Eigen::Index k = 0; k < d.cols(); ++k)
+    for (Eigen::Index md = 0; md < d.rows(); ++md) {
+      const double white = stream.normal();
+      v(md) = k == 0 ? white : phi * v(md) + innovation * white;
+      d(md, k) += study.simulation.md_noise_standard_deviation(md) * v(md);
+    }
+}
+
+/// A quantile of Student's t with 4 degrees of freedom over its standard deviation sqrt(2) (Shaw 2006,
+/// "Sampling Student's t distribution", J. Comput. Finance 9(4), 37-73).
+double student_quantile(double p) {
+  const double a = 4.0 * p * (1.0 - p);
+  const double q = std::cos(std::acos(std::sqrt(a)) / 3.0) / std::sqrt(a);
+  return std::copysign(std::numbers::sqrt2 * std::sqrt(std::max(0.0, q - 1.0)), p - 0.5);
+}
+
+/// A quantile of the Laplace distribution with variance 1, whose scale is 1/sqrt(2).
+double laplace_quantile(double p) {
+  return std::copysign(std::log(2.0 * std::min(p, 1.0 - p)) / std::numbers::sqrt2, p - 0.5);
+}
+
+/// An innovation with variance 1. Each form takes one value of the stream, at the same quantile.
+double innovation(NoiseDistribution distribution, RandomStream& stream) {
+  if (distribution == NoiseDistribution::normal)
+    return stream.normal();
+  const double p = stream.uniform() + 0x1p-54;  // midpoints, as those of RandomStream::normal(): never 0
+  return distribution == NoiseDistribution::student ? student_quantile(p) : laplace_quantile(p);
 }
 
 /// What the value of a signal depends on.
@@ -114,7 +144,8 @@ StreamId disturbance_stream(std::size_t number) {
 Eigen::RowVectorXd signal_values(const Study& study, std::int64_t index, std::size_t number,
                                  const DisturbanceSignal& signal) {
   return disturbance_signal(signal, study.disturbance.v_standard_deviation, study.controller.sample_time,
-                            study.simulation.samples, stream_of(study, index, disturbance_stream(number)));
+                            study.simulation.samples,
+                            experiment_stream(study, index, disturbance_stream(number)));
 }
 
 void begin_at(const Onset& onset, Eigen::Ref<Eigen::RowVectorXd> signal) {
@@ -146,12 +177,43 @@ Eigen::MatrixXd sum_of_disturbances(const Study& study, const ExperimentDraw& dr
 
 }  // namespace
 
+RandomStream experiment_stream(const Study& study, std::int64_t index, StreamId id) {
+  // The basis index -1 becomes the largest unsigned one, which no experiment reaches.
+  return {study.seed, static_cast<std::uint64_t>(index), id};
+}
+
 Eigen::MatrixXd measured_disturbances(const Study& study) {
   Eigen::MatrixXd d = Eigen::MatrixXd::Zero(study.md_count(), study.simulation.samples);
   if (study.simulation.random_steps)
     add_random_steps(study, d);
   add_steps(study.simulation.steps, d);
+  if (study.simulation.md_noise_standard_deviation.size() > 0)
+    add_md_noise(study, d);
   return d;
+}
+
+Eigen::MatrixXd dither(const Study& study) {
+  if (study.simulation.dither.empty())
+    return {};
+  RandomStream stream = experiment_stream(study, kBasisIndex, StreamId::dither);
+  Eigen::MatrixXd added = Eigen::MatrixXd::Zero(study.mv_count(), study.simulation.samples);
+  for (const Dither& signal : study.simulation.dither)
+    for (Eigen::Index k = 0; k < added.cols(); ++k)
+      added(signal.mv, k) = k % signal.hold != 0   ? added(signal.mv, k - 1)
+                            : stream.below(2) == 0 ? -signal.amplitude
+                                                   : signal.amplitude;
+  return added;
+}
+
+Limits soft_limits(const Study& study, Eigen::Index k) {
+  Limits limits = study.controller.cv_soft;
+  for (const LimitStep& step : study.simulation.limit_steps) {
+    if (step.sample > k)
+      break;
+    limits.lower(step.cv) = step.lower;
+    limits.upper(step.cv) = step.upper;
+  }
+  return limits;
 }
 
 Eigen::MatrixXd setpoints(const Study& study) {
@@ -163,12 +225,16 @@ Eigen::MatrixXd setpoints(const Study& study) {
 }
 
 Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index) {
-  RandomStream stream = stream_of(study, index, StreamId::measurement_noise);
-  Eigen::MatrixXd noise(study.cv_count(), study.simulation.samples);
+  const SimulationOptions& simulation = study.simulation;
+  const double phi = simulation.noise.autocorrelation;
+  RandomStream stream = experiment_stream(study, index, StreamId::measurement_noise);
+  Eigen::MatrixXd noise(study.cv_count(), simulation.samples);
   for (Eigen::Index k = 0; k < noise.cols(); ++k)
     for (Eigen::Index cv = 0; cv < noise.rows(); ++cv)
-      noise(cv, k) = study.simulation.noise_standard_deviation(cv) * stream.normal();
-  return noise;
+      noise(cv, k) = innovation(simulation.noise.distribution, stream);
+  for (Eigen::Index k = 1; k < noise.cols() && phi != 0.0; ++k)
+    noise.col(k) = phi * noise.col(k - 1) + std::sqrt(1.0 - phi * phi) * noise.col(k);
+  return simulation.noise_standard_deviation.asDiagonal() * noise;
 }
 
 Eigen::RowVectorXd disturbance_signal(const DisturbanceSignal& signal, double standard_deviation,
@@ -230,7 +296,7 @@ Eigen::MatrixXd measurements_of_mds(const Study& study, const ExperimentDraw& dr
   Eigen::MatrixXd d = measured_disturbances(study);
   Eigen::RowVectorXd error = (fault->size - 1.0) * d.row(fault->variable);
   if (fault->kind == OtherFaultKind::md_noise) {
-    RandomStream stream = stream_of(study, draw.index, StreamId::md_measurement);
+    RandomStream stream = experiment_stream(study, draw.index, StreamId::md_measurement);
     for (double& e : error)
       e = fault->size * stream.normal();
   }

@@ -1,21 +1,37 @@
 #pragma once
 
+#include <cstdint>
+
 #include <Eigen/Core>
 
 #include "scenarios/draw.hpp"
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study.hpp"
+#include "solvers/mpc_options.hpp"
 
 namespace mpm {
 
+/// The stream of experiment `index` of the study; the basis case has kBasisIndex.
+RandomStream experiment_stream(const Study& study, std::int64_t index, StreamId id);
+
 /// The measured disturbances, nd x samples: the same in every experiment of a study, as in figure 6.17.
+/// Steps, and the variation md_noise: from rest in its own variance, v(k) = exp(-Ts/tau) v(k-1) + white
+/// noise.
 Eigen::MatrixXd measured_disturbances(const Study& study);
 
 /// The setpoints, ny x samples: the same in every experiment of a study; zero for CVs without a setpoint.
 /// Empty (0 x 0) when no CV has one.
 Eigen::MatrixXd setpoints(const Study& study);
 
-/// White normal measurement noise of the experiment, ny x samples.
+/// The test signals that are added to the MVs, nu x samples: the same in every experiment of a study. Empty
+/// (0 x 0) when no MV has one.
+Eigen::MatrixXd dither(const Study& study);
+
+/// The soft limits of the CVs from sample k on: those of the controller, moved by the limit steps up to k.
+Limits soft_limits(const Study& study, Eigen::Index k);
+
+/// The measurement noise of the experiment for a noise factor of 1 (NoiseOptions), ny x samples: white and
+/// normal, unless the study asks for another distribution or for an autocorrelation.
 Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index);
 
 /// The signal v of a disturbance, one value a sample. `white` gives the normal numbers of a white one, and

@@ -15,33 +15,12 @@
 #include "scenarios/fault.hpp"
 #include "scenarios/fault_ranges.hpp"
 #include "scenarios/other_fault.hpp"
+#include "scenarios/record_options.hpp"
+#include "scenarios/simulation_options.hpp"
 #include "scenarios/tuning.hpp"
 #include "solvers/mpc_options.hpp"
 
 namespace mpm {
-
-/// One step of a signal, of a measured disturbance or a setpoint: from `sample` on it has the value `level`.
-struct SignalStep {
-  Eigen::Index variable;
-  int sample;
-  double level;
-
-  bool operator==(const SignalStep&) const = default;
-};
-
-/// Length, noise and excitation of every closed loop of the study.
-struct SimulationOptions {
-  int samples = 400;
-  Eigen::VectorXd noise_standard_deviation;  ///< of the white normal measurement noise, one a CV
-  Eigen::VectorXd initial_setpoint;          ///< ny; of CVs with a setpoint
-  std::vector<SignalStep> setpoint_steps;    ///< of CVs; the same in every experiment
-  std::vector<SignalStep> steps;             ///< of MDs, in the order of their samples; or
-  bool random_steps = false;                 ///< steps drawn once for the study, the same in every experiment
-  Distribution step_interval = Distribution::uniform(60, 100);  ///< samples between random steps
-  Distribution step_level = Distribution::uniform(-0.4, 0.4);   ///< level after a random step
-
-  friend bool operator==(const SimulationOptions& a, const SimulationOptions& b);
-};
 
 /// How many experiments of each kind make one full study.
 struct ExperimentCounts {
@@ -128,6 +107,13 @@ enum class VarianceCentre { setpoint, mean };
 /// Which experiments the rates of I_MPM are counted over.
 enum class SourcePopulation { impactful, feasible };
 
+/// How a study assures itself of its basis case.
+enum class SelfCheck {
+  ivar,    ///< Ivar of the chain lies in the band for every CV: what the verdicts of the thesis need
+  repeat,  ///< so does Ivar_basis (6.22) of the basis case with other noise: what the truth of impact needs
+  none,
+};
+
 /// The open choices of the diagnosis chain.
 struct DiagnosisOptions {
   double impact_lower = 0.8;  ///< Ivar outside [impact_lower, impact_upper] is impactful
@@ -139,7 +125,8 @@ struct DiagnosisOptions {
   double longest_window = 2.0;
   int window_stride = 1;  ///< samples between window lengths
   SourcePopulation source_population = SourcePopulation::impactful;
-  double self_check_lower = 0.8;  ///< Ivar of the basis case must lie in this band for every CV
+  SelfCheck self_check = SelfCheck::ivar;
+  double self_check_lower = 0.8;  ///< the index of the self-check must lie in this band for every CV
   double self_check_upper = 1.2;
 
   /// Does this Ivar lie outside the band of impact? False for NaN.
@@ -194,6 +181,7 @@ struct Study {
   std::optional<NonlinearSimulation> nonlinear;  ///< none: the plant is linear as well
   MpcOptions controller;
   SimulationOptions simulation;
+  RecordOptions record;
   ExperimentCounts experiments;     ///< of random experiments; all 0 in a study of named scenarios
   std::vector<Scenario> scenarios;  ///< the experiments of a study of named scenarios, in their order
   MismatchRanges mismatch;

@@ -61,6 +61,7 @@ Study read_study(std::string_view text, const std::string& file_name, TomlDraft*
   study.nonlinear = read_nonlinear_simulation(document);
   study.controller = read_controller(document, study.plant);
   study.simulation = read_simulation(document, study.plant, study.controller);
+  study.record = read_record(document, study);
   study.scenarios = read_scenarios(document, study);
   study.experiments = read_experiments(document);
   study.disturbance = read_disturbance(document);

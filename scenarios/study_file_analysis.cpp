@@ -121,6 +121,10 @@ DiagnosisOptions read_diagnosis(const TomlTable& document) {
       table, "source_population",
       {{"impactful", SourcePopulation::impactful}, {"feasible", SourcePopulation::feasible}},
       options.source_population);
+  options.self_check = read_choice_or<SelfCheck>(
+      table, "self_check",
+      {{"ivar", SelfCheck::ivar}, {"repeat", SelfCheck::repeat}, {"none", SelfCheck::none}},
+      options.self_check);
   std::tie(options.self_check_lower, options.self_check_upper) =
       read_band_or(table, "self_check_band", positive, {options.self_check_lower, options.self_check_upper});
   return options;

@@ -45,6 +45,9 @@ Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantMod
 SimulationOptions read_simulation(const TomlTable& document, const PlantModel& plant,
                                   const MpcOptions& controller);
 
+/// [record]; `study` has its plant and its simulation (study_file_record.cpp).
+RecordOptions read_record(const TomlTable& document, const Study& study);
+
 /// The transfer function in the keys gain, time_constant, numerator, denominator and dead_time of a table
 /// (study_file_plant.cpp), as the next two.
 TransferFunction read_transfer_function(const TomlTable& table);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -14,20 +15,35 @@ namespace {
 
 constexpr std::int64_t kMaxSamples = 1'000'000;
 
-/// One number for all CVs, or a table with one a CV.
-Eigen::VectorXd read_noise(const TomlTable& simulation, const std::vector<std::string>& cvs) {
-  const std::string key = "noise_standard_deviation";
+/// One number for all variables, or a table with one each; `each` says what they are.
+Eigen::VectorXd read_deviations(const TomlTable& parent, const std::string& key, const std::string& each,
+                                const std::vector<std::string>& names) {
   const NumberRule rule = NumberRule::at_least(0);
-  const auto count = static_cast<Eigen::Index>(cvs.size());
-  const toml::node& node = simulation.require(key, "a number >= 0, or a table with one for each CV");
+  const auto count = static_cast<Eigen::Index>(names.size());
+  const toml::node& node =
+      parent.require(key, fmt::format("a number >= 0, or a table with one for each {}", each));
   if (!node.is_table()) {
-    return Eigen::VectorXd::Constant(count, read_number(simulation, key, rule));
+    return Eigen::VectorXd::Constant(count, read_number(parent, key, rule));
   }
-  const TomlTable table = simulation.table(key, cvs);
-  Eigen::VectorXd noise(count);
+  const TomlTable table = parent.table(key, names);
+  Eigen::VectorXd deviations(count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    noise(i) = read_number(table, cvs[static_cast<std::size_t>(i)], rule);
+    deviations(i) = read_number(table, names[static_cast<std::size_t>(i)], rule);
   }
+  return deviations;
+}
+
+NoiseOptions read_noise(const TomlTable& simulation) {
+  const TomlTable table = simulation.table("noise", study_file_keys("simulation.noise"));
+  NoiseOptions noise;
+  noise.distribution = read_choice_or<NoiseDistribution>(table, "distribution",
+                                                         {{"normal", NoiseDistribution::normal},
+                                                          {"student", NoiseDistribution::student},
+                                                          {"laplace", NoiseDistribution::laplace}},
+                                                         noise.distribution);
+  noise.autocorrelation =
+      read_number_or(table, "autocorrelation", NumberRule::inside(-1, 1), noise.autocorrelation);
+  noise.factor = read_distribution_or(table, "factor", NumberRule::at_least(0), noise.factor);
   return noise;
 }
 
@@ -64,7 +80,54 @@ void read_random_steps(const TomlTable& simulation, SimulationOptions& options) 
   options.step_level = read_distribution_or(table, "level", NumberRule::finite(), options.step_level);
 }
 
-/// MDs are excited in one of two ways, setpoints by steps; a loop without both cannot be excited.
+/// A limit may move where there is one: the problems of the controller have a row for it, and no other.
+void read_limit_steps(const TomlTable& simulation, const PlantModel& plant, const MpcOptions& controller,
+                      SimulationOptions& options) {
+  std::set<std::pair<Eigen::Index, int>> taken;
+  for (const TomlTable& table : simulation.tables("limit_step", study_file_keys("simulation.limit_step[]"))) {
+    const auto cv = static_cast<Eigen::Index>(read_one_of(table, "cv", variable_names(plant.cvs)));
+    const auto sample = static_cast<int>(read_whole(table, "sample", 0, options.samples - 1));
+    const auto [lower, upper] = read_limits(table, "soft");
+    const auto moves = [](double from, double to) { return std::isfinite(from) == std::isfinite(to); };
+    const Limits &soft = controller.cv_soft, &hard = controller.cv_hard;
+    if (!controller.has_soft_limit(cv))
+      table.refuse("cv", "a CV without a soft limit", "a CV with one");
+    if (!moves(soft.lower(cv), lower) || !moves(soft.upper(cv), upper) || lower < hard.lower(cv) ||
+        upper > hard.upper(cv))
+      table.refuse("soft", fmt::format("[{}, {}]", lower, upper),
+                   fmt::format("limits where [{}, {}] has them, within the hard ones [{}, {}]",
+                               soft.lower(cv), soft.upper(cv), hard.lower(cv), hard.upper(cv)));
+    if (!taken.emplace(cv, sample).second)
+      table.refuse("sample", fmt::format("{} for a second step of this CV", sample), "one step a sample");
+    options.limit_steps.push_back({cv, sample, lower, upper});
+  }
+  std::sort(options.limit_steps.begin(), options.limit_steps.end(),
+            [](const LimitStep& a, const LimitStep& b) {
+              return std::tie(a.sample, a.cv) < std::tie(b.sample, b.cv);
+            });
+}
+
+void read_md_noise(const TomlTable& simulation, const std::vector<std::string>& mds,
+                   SimulationOptions& options) {
+  if (mds.empty())
+    simulation.refuse("md_noise", "variation of measured disturbances",
+                      "none, because the plant has no measured disturbance");
+  const TomlTable table = simulation.table("md_noise", study_file_keys("simulation.md_noise"));
+  options.md_noise_standard_deviation = read_deviations(table, "standard_deviation", "MD", mds);
+  options.md_noise_time_constant =
+      read_number_or(table, "time_constant", NumberRule::at_least(0), options.md_noise_time_constant);
+}
+
+void read_dither(const TomlTable& simulation, const std::vector<std::string>& mvs,
+                 SimulationOptions& options) {
+  for (const TomlTable& table : simulation.tables("dither", study_file_keys("simulation.dither[]")))
+    options.dither.push_back({static_cast<Eigen::Index>(read_one_of(table, "mv", mvs)),
+                              read_number(table, "amplitude", NumberRule::positive()),
+                              static_cast<int>(read_whole_or(table, "hold", 1, options.samples, 1))});
+}
+
+/// MDs are stepped in one of two ways. A loop without any excitation has to be asked for by name: what the
+/// variances then compare is noise.
 void refuse_wrong_excitation(const TomlTable& simulation, const std::vector<std::string>& mds,
                              const std::vector<std::string>& setpoint_cvs, const SimulationOptions& options) {
   const bool random_steps = simulation.has("random_steps");
@@ -75,9 +138,13 @@ void refuse_wrong_excitation(const TomlTable& simulation, const std::vector<std:
   if (!options.steps.empty() && random_steps) {
     simulation.refuse("", "both step of an MD and random_steps", "exactly one of the two");
   }
-  const bool excited = random_steps || !options.steps.empty() || !options.setpoint_steps.empty();
-  if (!excited && !(mds.empty() && setpoint_cvs.empty())) {
-    simulation.refuse("", "neither step nor random_steps", "steps of setpoints or MDs, or random_steps");
+  if (simulation.has("excitation")) {
+    read_one_of(simulation, "excitation", {"none"});
+    if (options.is_excited())
+      simulation.refuse("excitation", "'none' beside steps, md_noise or dither", "one of the two");
+  } else if (!options.is_excited() && !(mds.empty() && setpoint_cvs.empty())) {
+    simulation.refuse("", "no excitation",
+                      "step, random_steps, limit_step, md_noise, dither, or excitation = \"none\"");
   }
 }
 
@@ -89,7 +156,10 @@ SimulationOptions read_simulation(const TomlTable& document, const PlantModel& p
   const std::vector<std::string> mds = variable_names(plant.mds);
   SimulationOptions options;
   options.samples = static_cast<int>(read_whole(table, "samples", 1, kMaxSamples));
-  options.noise_standard_deviation = read_noise(table, variable_names(plant.cvs));
+  options.noise_standard_deviation =
+      read_deviations(table, "noise_standard_deviation", "CV", variable_names(plant.cvs));
+  if (table.has("noise"))
+    options.noise = read_noise(table);
   options.initial_setpoint = read_initial_setpoints(document, plant, controller);
   std::vector<std::string> setpoint_cvs;
   std::vector<Eigen::Index> cv_of_setpoint;
@@ -108,6 +178,12 @@ SimulationOptions read_simulation(const TomlTable& document, const PlantModel& p
   if (table.has("random_steps")) {
     read_random_steps(table, options);
   }
+  if (table.has("limit_step"))
+    read_limit_steps(table, plant, controller, options);
+  if (table.has("md_noise"))
+    read_md_noise(table, mds, options);
+  if (table.has("dither"))
+    read_dither(table, variable_names(plant.mvs), options);
   refuse_wrong_excitation(table, mds, setpoint_cvs, options);
   return options;
 }

@@ -73,6 +73,7 @@ void Mpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<con
   require_signal("measured disturbances", d, md_gain_.cols());
   input_ << u, d;
   model_.reset(input_);
+  is_pending_ = false;
   if (targets_)
     targets_->reset();
   solver_->reset();
@@ -123,8 +124,10 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
                              const Eigen::Ref<const Eigen::VectorXd>& d) {
   require_signal("measured CVs", y, bias_.size());
   require_signal("measured disturbances", d, md_gain_.cols());
+  if (is_pending_)
+    model_.advance(input_);
   bias_ = y - model_.output();
-  input_.tail(d.size()) = d;
+  input_ << move_.u, d;
   move_.status = ControlStatus::ok;
   move_.kkt_residual = 0.0;
   move_.iterations = 0;
@@ -132,8 +135,13 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   if (!targets_ || solve_targets())
     solve_moves();
   input_.head(nu_) = move_.u;
-  model_.advance(input_);
+  is_pending_ = true;
   return move_;
+}
+
+void Mpc::set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) {
+  require_signal("MVs", u, nu_);
+  input_.head(nu_) = u;
 }
 
 bool Mpc::solve_targets() {

@@ -58,11 +58,16 @@ class Mpc {
   /// a wrong size or a number that is not finite.
   void reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<const Eigen::VectorXd>& d);
 
-  /// The move of this sample; the model state is advanced with it. When the status is not `ok` the MVs stay
-  /// where they are. The reference stays valid until the next call. Throws InputError for a wrong size or a
-  /// number that is not finite.
+  /// The move of this sample; the model goes on with it at the next step, unless set_acting() is called. When
+  /// the status is not `ok` the MVs stay where they are. The reference stays valid until the next call.
+  /// Throws InputError for a wrong size or a number that is not finite.
   const ControlMove& step(const Eigen::Ref<const Eigen::VectorXd>& y,
                           const Eigen::Ref<const Eigen::VectorXd>& d);
+
+  /// MVs that act from the last step on in place of those of its move, because something is added to them
+  /// that the controller knows, such as a test signal. The model is advanced with them; the next move is
+  /// still counted from the last one. Throws InputError as step().
+  void set_acting(const Eigen::Ref<const Eigen::VectorXd>& u);
 
   /// The problems of the last step; there is no target problem without targets. When the targets have no
   /// answer, the moves are those of an earlier step.
@@ -92,7 +97,8 @@ class Mpc {
   MpcQp qp_;
   std::optional<TargetOptimizer> targets_;
   std::unique_ptr<QpSolver> solver_;
-  Eigen::VectorXd input_;  ///< (u(k-1), d(k)), then (u(k), d(k))
+  Eigen::VectorXd input_;    ///< (u(k-1), d(k)), then what acts, (u(k), d(k))
+  bool is_pending_ = false;  ///< input_ acts, and the model has not been advanced with it
   Eigen::VectorXd bias_, y_at_zero_, setpoint_;
   Eigen::VectorXd setpoint_weight_;
   Limits cv_soft_, target_range_;

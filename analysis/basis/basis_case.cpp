@@ -8,11 +8,24 @@
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/draw.hpp"
 
 namespace mpm {
 namespace {
 
-void check_health(const Study& study, BasisCase& basis) {
+/// Ivar_basis (6.22) of the basis case with noise that no experiment has. A loop that does not run to its end
+/// has none: NaN, outside of every band.
+Eigen::VectorXd repeated_indices(const Study& study, const BasisCase& basis, const QpSolverFactory& factory) {
+  ExperimentDraw again = basis_draw();
+  again.index = kRepeatIndex;
+  const Trajectory loop = simulate_experiment(study, again, factory);
+  if (loop.status != ControlStatus::ok)
+    return Eigen::VectorXd::Constant(study.cv_count(), kNaN);
+  return basis_variance_indices(study, loop.y, basis.trajectory.y);
+}
+
+void check_health(const Study& study, const QpSolverFactory& factory, BasisCase& basis) {
   const DiagnosisOptions& options = study.diagnosis;
   if (basis.trajectory.failure == LoopFailure::plant) {
     basis.explanation = fmt::format("the nominal loop fails at sample {}: {}", basis.trajectory.samples_done,
@@ -25,21 +38,30 @@ void check_health(const Study& study, BasisCase& basis) {
                     to_string(basis.trajectory.status), basis.trajectory.samples_done);
     return;
   }
-  const Eigen::VectorXd& ivar = basis.diagnosis.ivar;
+  if (options.self_check == SelfCheck::none) {
+    basis.healthy = true;
+    basis.explanation = "the study asks for no self-check of its basis case (diagnosis.self_check)";
+    return;
+  }
+  const bool repeated = options.self_check == SelfCheck::repeat;
+  const Eigen::VectorXd ivar = repeated ? repeated_indices(study, basis, factory) : basis.diagnosis.ivar;
+  const std::string what =
+      repeated ? "Ivar_basis of the nominal loop with other noise" : "Ivar of the nominal loop";
+  std::string why = repeated ? "the record is too short to tell an impact from chance"
+                             : "noise outweighs the excitation, and every verdict of this study would be "
+                               "unreliable";
+  if (!repeated && !study.simulation.is_excited())
+    why += "; diagnosis.self_check = \"repeat\" is the check of a study without excitation";
   Eigen::Index worst = 0;
   (ivar.array() - 1.0).abs().maxCoeff(&worst);
   basis.healthy =
       (ivar.array() >= options.self_check_lower && ivar.array() <= options.self_check_upper).all();
   const std::string& name = study.plant.cvs[static_cast<std::size_t>(worst)].name;
   basis.explanation =
-      basis.healthy
-          ? fmt::format(
-                "Ivar of the nominal loop lies within [{}, {}] for every CV; farthest from 1: {} with {:.3f}",
-                options.self_check_lower, options.self_check_upper, name, ivar(worst))
-          : fmt::format(
-                "Ivar of the nominal loop is {:.3f} for {}, outside [{}, {}]: noise outweighs the "
-                "excitation, and every verdict of this study would be unreliable",
-                ivar(worst), name, options.self_check_lower, options.self_check_upper);
+      basis.healthy ? fmt::format("{} lies within [{}, {}] for every CV; farthest from 1: {} with {:.3f}",
+                                  what, options.self_check_lower, options.self_check_upper, name, ivar(worst))
+                    : fmt::format("{} is {:.3f} for {}, outside [{}, {}]: {}", what, ivar(worst), name,
+                                  options.self_check_lower, options.self_check_upper, why);
 }
 
 /// A CV without an active limit has T0 = 0, which no multiplier changes.
@@ -81,7 +103,7 @@ BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, con
     DiagnosisChain chain(study);
     basis.diagnosis = chain.diagnose(basis.trajectory.y, basis.nominal);
   }
-  check_health(study, basis);
+  check_health(study, factory, basis);
   return basis;
 }
 

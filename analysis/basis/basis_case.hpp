@@ -15,7 +15,9 @@ namespace mpm {
 ///
 /// With too little excitation the variances of the active CVs are mostly noise, which S0 filters out of y0,
 /// and Ivar of a perfect model is far from 1: every experiment would then count as impactful and the location
-/// of the CV would be chance. A study must therefore pass this check first.
+/// of the CV would be chance. A study must therefore pass this check first. One without excitation asks for
+/// another check (SelfCheck): its y0 has no variance of its own, and what can be known is whether the
+/// variance of a healthy loop comes out the same twice, which is what Ivar_basis (6.22) is held against.
 struct BasisCase {
   OperatingPoint point;
   NominalSensitivity sensitivity;

@@ -7,6 +7,7 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "scenarios/historian.hpp"
 
 namespace mpm {
 namespace {
@@ -82,9 +83,10 @@ ExperimentRunner::FinishedLoop ExperimentRunner::finished(const ExperimentDraw& 
     loop.assessed.y_sim = simulated_output(study_.plant.G, study_.controller.sample_time, basis_.point.u,
                                            loop.trajectory.u, loop.trajectory.d);
   else if (loop.own)
-    loop.assessed = assessed_loop(loop.own->study, loop.own->basis.point, loop.trajectory);
+    loop.assessed =
+        assessed_loop(loop.own->study, loop.own->basis.point, recorded(study_, draw.index, loop.trajectory));
   else
-    loop.assessed = assessed_loop(study_, basis_.point, loop.trajectory);
+    loop.assessed = assessed_loop(study_, basis_.point, recorded(study_, draw.index, loop.trajectory));
   return loop;
 }
 
@@ -136,8 +138,8 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
     assess_alone(record, observer);
   if (record.status == ExperimentStatus::ok) {
     record.ivar_basis = basis_variance_indices(study_, main.trajectory.y, basis_.trajectory.y);
-    if (true_cv >= 0)
-      record.perturbed = perturbation_.ivar_diag(true_cv, Eigen::RowVectorXd(main.trajectory.y.row(true_cv)),
+    if (true_cv >= 0 && !main.assessed.y.row(true_cv).hasNaN())  // S0 acts on every sample
+      record.perturbed = perturbation_.ivar_diag(true_cv, Eigen::RowVectorXd(main.assessed.y.row(true_cv)),
                                                  Eigen::RowVectorXd(main.assessed.y_sim.row(true_cv)));
   } else {
     record.assessments = unassessed(panel_.forms());

@@ -53,9 +53,12 @@ struct ExperimentRecord {
   std::string message;                        ///< why it failed; empty otherwise
   Eigen::VectorXd ivar_basis;                 ///< ny, basis_variance_indices(); empty unless the status is ok
   std::vector<AssessmentRecord> assessments;  ///< by each method of the study, in their order
-  PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for
+  PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for, or
+                            ///< its record has gaps
   SolverStatistics solver;  ///< of all loops of the experiment
-  std::optional<LoopRecord> loop;  ///< the loop that was assessed, when it was asked for
+  /// The loop that was assessed, when it was asked for: as it was measured. recorded() gives what the methods
+  /// saw.
+  std::optional<LoopRecord> loop;
 
   /// What the method of this name says; null when it is not one of the study.
   const AssessmentRecord* by(std::string_view method) const;

@@ -6,6 +6,8 @@
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/non_finite.hpp"
+#include "scenarios/draw.hpp"
+#include "scenarios/historian.hpp"
 
 namespace mpm {
 
@@ -35,8 +37,13 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
   return assessed;
 }
 
+Eigen::MatrixXd recorded_basis(const AssessmentContext& context) {
+  return recorded(context.study, kBasisIndex, context.basis.trajectory).y;
+}
+
 AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory) {
-  return {study, basis, std::move(factory), assessed_loop(study, basis.point, basis.trajectory)};
+  return {study, basis, std::move(factory),
+          assessed_loop(study, basis.point, recorded(study, kBasisIndex, basis.trajectory))};
 }
 
 }  // namespace mpm

@@ -17,7 +17,7 @@ namespace mpm {
 ///
 /// | symbol | member | shape  | meaning                                                       |
 /// |--------|--------|--------|---------------------------------------------------------------|
-/// | y      | y      | ny x N | measured CVs                                                  |
+/// | y      | y      | ny x N | measured CVs; NaN where a sample is missing                   |
 /// | u      | u      | nu x N | MVs, u(k) acts from sample k on                               |
 /// | u_target | u_target | nu x N | targets of the optimizer; zero without one               |
 /// | d      | d      | nd x N | measured disturbances, d(k) acts from sample k on             |
@@ -32,9 +32,9 @@ struct AssessedLoop {
   std::vector<Eigen::Index> setpoint_cvs() const;
 };
 
-/// The records of a loop of `study` that ran to its end and starts at the operating point `point`. The
-/// setpoint of a CV in a range is, where `study.assessment.setpoints` wants that of the optimizer,
-/// optimizer_steady_state(); NaN when it does not, or when the controller has no targets.
+/// The records `loop` of a loop of `study` (recorded()) that ran to its end and starts at the operating point
+/// `point`. The setpoint of a CV in a range is, where `study.assessment.setpoints` wants that of the
+/// optimizer, optimizer_steady_state(); NaN when it does not, or when the controller has no targets.
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop);
 
 /// What a method may know besides the records of the loop that it assesses. `study` and `basis` must outlive
@@ -47,7 +47,11 @@ struct AssessmentContext {
   std::optional<AssessedLoop> benchmark = {};
 };
 
-/// The context of the loops of `study`, whose benchmark is the basis case: nothing is wrong in it.
+/// The CVs of the basis case as the historian keeps them, ny x N: what a method may know of them.
+Eigen::MatrixXd recorded_basis(const AssessmentContext& context);
+
+/// The context of the loops of `study`, whose benchmark is the record of the basis case: nothing is wrong in
+/// it.
 AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory);
 
 }  // namespace mpm

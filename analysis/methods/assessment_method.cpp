@@ -1,6 +1,9 @@
 #include "analysis/methods/assessment_method.hpp"
 
 #include <cassert>
+#include <cstddef>
+
+#include <fmt/format.h>
 
 #include "plants/error.hpp"
 
@@ -10,6 +13,16 @@ namespace {
 /// Some row of the record changes.
 bool moves(const Eigen::MatrixXd& record) {
   return record.cols() > 0 && (record.colwise() - record.col(0)).cwiseAbs().maxCoeff() > 0.0;
+}
+
+/// "37 of 400 samples of y2", of the CV that has the fewest; empty when none is missing.
+std::string missing_samples(const Study& study, const Eigen::MatrixXd& y) {
+  const Eigen::VectorX<Eigen::Index> missing = y.array().isNaN().rowwise().count().matrix();
+  Eigen::Index worst = 0;
+  return missing.size() == 0 || missing.maxCoeff(&worst) == 0
+             ? ""
+             : fmt::format("{} of {} samples of {}", missing(worst), y.cols(),
+                           study.plant.cvs[static_cast<std::size_t>(worst)].name);
 }
 
 bool some_setpoint_moves(const AssessedLoop& loop) {
@@ -23,6 +36,12 @@ bool some_setpoint_moves(const AssessedLoop& loop) {
 
 std::optional<std::string> unmet_requirement(const AssessmentRequirements& requirements,
                                              const AssessmentContext& context, const AssessedLoop& loop) {
+  if (requirements.complete_record) {
+    if (const std::string missing = missing_samples(context.study, loop.y); !missing.empty())
+      return fmt::format("it needs a complete record, and {} are missing", missing);
+    if (requirements.benchmark && context.benchmark && context.benchmark->y.hasNaN())
+      return "it needs a complete benchmark period, and samples of it are missing";
+  }
   const bool needs_setpoints = requirements.setpoints || requirements.moving_setpoints;
   if (needs_setpoints && loop.setpoint_cvs().empty())
     return "it needs setpoints, and the controller holds every CV in a range";

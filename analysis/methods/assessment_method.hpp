@@ -21,6 +21,7 @@ struct AssessmentRequirements {
   bool moving_setpoints = false;  ///< some setpoint changes during the record
   bool benchmark = false;         ///< a period in which the controller did what it was designed for
   bool moving_mvs = false;        ///< some MV moves during the record
+  bool complete_record = true;    ///< no sample of a CV is missing, in the record and in the benchmark
 };
 
 /// What a method gives a number for: the whole loop, each CV, each channel, or each CV at each lag.

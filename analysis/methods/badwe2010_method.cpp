@@ -46,7 +46,7 @@ class Badwe2010 final : public AssessmentMethod {
  public:
   explicit Badwe2010(const AssessmentContext& context)
       : diagnosis_(context.study.diagnosis),
-        y_basis_(context.basis.trajectory.y),
+        y_basis_(recorded_basis(context)),
         options_(options_of(context.study.assessment.badwe2010)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
@@ -102,7 +102,7 @@ class Badwe2010 final : public AssessmentMethod {
   }
 
   const DiagnosisOptions& diagnosis_;
-  const Eigen::MatrixXd& y_basis_;
+  Eigen::MatrixXd y_basis_;
   DesignedOutputOptions options_;
 };
 

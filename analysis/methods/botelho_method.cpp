@@ -1,5 +1,10 @@
 #include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/assessment_method.hpp"
@@ -9,14 +14,32 @@
 namespace mpm {
 namespace {
 
+/// A study that does not ask for Ivar of the basis case may have one whose variance is mostly noise: S0
+/// filters it out of y0, and Ivar of a perfect model is far from 1.
+std::optional<std::string> why_noise_outweighs(const AssessmentContext& context) {
+  const DiagnosisOptions& options = context.study.diagnosis;
+  if (options.self_check == SelfCheck::ivar)
+    return std::nullopt;
+  const Eigen::VectorXd& ivar = context.basis.diagnosis.ivar;
+  for (Eigen::Index cv = 0; cv < ivar.size(); ++cv)
+    if (!(ivar(cv) >= options.self_check_lower && ivar(cv) <= options.self_check_upper))
+      return fmt::format(
+          "it needs excitation that outweighs the noise: Ivar of the basis case is {:.3g} for {}", ivar(cv),
+          context.study.plant.cvs[static_cast<std::size_t>(cv)].name);
+  return std::nullopt;
+}
+
 class Botelho final : public AssessmentMethod {
  public:
   explicit Botelho(const AssessmentContext& context)
       : options_(context.study.diagnosis),
         estimator_(context.study, context.basis.point, context.basis.sensitivity, context.factory),
-        chain_(context.study) {}
+        chain_(context.study),
+        without_excitation_(why_noise_outweighs(context)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
+    if (without_excitation_)
+      return Assessment::not_applicable(*without_excitation_);
     Trajectory record;
     record.y = loop.y;
     record.u = loop.u;
@@ -46,6 +69,7 @@ class Botelho final : public AssessmentMethod {
   const DiagnosisOptions& options_;
   NominalEstimator estimator_;
   DiagnosisChain chain_;
+  std::optional<std::string> without_excitation_;  ///< why the method does not apply to any loop of the study
 };
 
 }  // namespace

@@ -29,7 +29,8 @@ class Counterfactual final : public AssessmentMethod {
       : study_(context.study),
         factory_(context.factory),
         y_set_(setpoints(context.study)),
-        y_basis_(context.basis.trajectory.y) {
+        dither_(dither(context.study)),
+        y_basis_(recorded_basis(context)) {
     const Trajectory nominal =
         simulated(context.basis.trajectory.d, Eigen::MatrixXd::Zero(y_basis_.rows(), y_basis_.cols()));
     if (nominal.status == ControlStatus::ok)
@@ -66,8 +67,11 @@ class Counterfactual final : public AssessmentMethod {
  private:
   /// The loop of the controller on its model under the disturbances `d`, with `errors` added to the outputs.
   Trajectory simulated(const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors) const {
-    const LoopSignals signals{
-        .d = d, .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()), .y_d = errors, .y_set = y_set_};
+    const LoopSignals signals{.d = d,
+                              .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
+                              .y_d = errors,
+                              .y_set = y_set_,
+                              .dither = dither_};
     return run_closed_loop(study_, study_.plant.G, signals, factory_);
   }
 
@@ -92,7 +96,7 @@ class Counterfactual final : public AssessmentMethod {
 
   const Study& study_;
   QpSolverFactory factory_;
-  Eigen::MatrixXd y_set_;
+  Eigen::MatrixXd y_set_, dither_;
   Eigen::MatrixXd y_basis_;
   Eigen::ArrayXd noise_share_;  ///< v / var y_b of each CV; empty when the basis case cannot be simulated
 };

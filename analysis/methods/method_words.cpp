@@ -25,7 +25,8 @@ std::string needs_text(const MethodDescription& method) {
   return listed({{needs.setpoints && !needs.moving_setpoints, "setpoints"},
                  {needs.moving_setpoints, "setpoints that move"},
                  {needs.benchmark, "a benchmark period"},
-                 {needs.moving_mvs, "MVs that move"}});
+                 {needs.moving_mvs, "MVs that move"},
+                 {needs.complete_record, "every sample"}});
 }
 
 std::string answers_text(const MethodDescription& method) {

@@ -10,16 +10,32 @@
 namespace mpm {
 namespace {
 
-/// Mean squares of y - y_sim; 0 for a model that is exact up to the rounding of y.
-/// `errors` are the simulation_errors() of the loop.
-Eigen::VectorXd mean_squared_errors(const AssessedLoop& loop, const Eigen::VectorXd& errors) {
+/// The measured CVs without an error where a sample is missing.
+Eigen::MatrixXd without_gaps(const AssessedLoop& loop) {
+  return loop.y.array().isNaN().select(loop.y_sim, loop.y);
+}
+
+/// Mean squares of y - y_sim over the samples that are there; 0 for a model that is exact up to the rounding
+/// of y. `y` is without_gaps(), `errors` are its simulation_errors().
+Eigen::VectorXd mean_squared_errors(const AssessedLoop& loop, const Eigen::MatrixXd& y,
+                                    const Eigen::VectorXd& errors) {
   if (!errors.allFinite())
     throw InputError("simulation errors", "a value that is not finite", "finite values only");
-  Eigen::VectorXd squares = errors.cwiseAbs2() / static_cast<double>(loop.samples());
-  for (Eigen::Index cv = 0; cv < squares.size(); ++cv)
-    if (squares(cv) <= variance_floor(loop.y.row(cv).transpose()))
+  const Eigen::VectorX<Eigen::Index> missing = loop.y.array().isNaN().rowwise().count().matrix();
+  Eigen::VectorXd squares = errors.cwiseAbs2();
+  for (Eigen::Index cv = 0; cv < squares.size(); ++cv) {
+    if (missing(cv) == loop.samples())
+      throw InputError("record of a CV", "no sample at all", "one or more");
+    squares(cv) /= static_cast<double>(loop.samples() - missing(cv));
+    if (squares(cv) <= variance_floor(y.row(cv).transpose()))
       squares(cv) = 0.0;
+  }
   return squares;
+}
+
+Eigen::VectorXd squares_of(const AssessedLoop& loop) {
+  const Eigen::MatrixXd y = without_gaps(loop);
+  return mean_squared_errors(loop, y, simulation_errors(y, loop.y_sim));
 }
 
 /// What a monitor of the prediction error says, which does not ask whether the error reaches the control.
@@ -27,13 +43,12 @@ class SimulationErrorMonitor final : public AssessmentMethod {
  public:
   /// The requirements of the method say that there is a benchmark.
   explicit SimulationErrorMonitor(const AssessmentContext& context)
-      : threshold_(context.study.assessment.sse.threshold),
-        benchmark_(mean_squared_errors(*context.benchmark,
-                                       simulation_errors(context.benchmark->y, context.benchmark->y_sim))) {}
+      : threshold_(context.study.assessment.sse.threshold), benchmark_(squares_of(*context.benchmark)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
-    const Eigen::VectorXd sse = simulation_errors(loop.y, loop.y_sim);
-    const Eigen::VectorXd squares = mean_squared_errors(loop, sse);
+    const Eigen::MatrixXd y = without_gaps(loop);
+    const Eigen::VectorXd sse = simulation_errors(y, loop.y_sim);
+    const Eigen::VectorXd squares = mean_squared_errors(loop, y, sse);
     Assessment assessment;
     assessment.score = 0.0;
     assessment.numbers.push_back({"tsse", sse.sum()});
@@ -61,7 +76,7 @@ AssessmentMethodInfo sse_method() {
   return {{.name = "sse",
            .title = "simulation errors (SSE)",
            .verdict = "the mean squared simulation error of some CV is above that of the benchmark",
-           .requirements = {.benchmark = true},
+           .requirements = {.benchmark = true, .complete_record = false},
            .locates_cvs = true,
            .numbers = {{"tsse", NumberScope::loop, "sum of the SSE of all CVs (6.21)"},
                        {"sse", NumberScope::cv, "norm of y - y_sim (4.17)"},

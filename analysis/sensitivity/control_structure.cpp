@@ -1,6 +1,7 @@
 #include "analysis/sensitivity/control_structure.hpp"
 
 #include "analysis/sensitivity/active_limit.hpp"
+#include "scenarios/signals.hpp"
 
 namespace mpm {
 
@@ -20,8 +21,9 @@ std::vector<ControlStructure> control_structures(const Study& study, const Traje
   std::vector<ControlStructure> structures(static_cast<std::size_t>(y.cols()));
   for (Eigen::Index k = 0; k < y.cols(); ++k) {
     ControlStructure& structure = structures[static_cast<std::size_t>(k)];
+    const Limits soft = soft_limits(study, k);
     for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
-      const double lower = options.cv_soft.lower(cv), upper = options.cv_soft.upper(cv);
+      const double lower = soft.lower(cv), upper = soft.upper(cv);
       if (options.has_setpoint(cv))
         structure.active.push_back({cv, ConstraintKind::setpoint});
       else if (at_or_above(y(cv, k), upper))

@@ -7,7 +7,9 @@
 #include <fmt/ranges.h>
 
 #include "plants/error.hpp"
+#include "plants/row_major.hpp"
 #include "results/archive/record_tables.hpp"
+#include "scenarios/historian.hpp"
 
 namespace mpm {
 namespace {
@@ -135,7 +137,17 @@ std::string findings_csv(const Campaign& campaign) {
   return text;
 }
 
-/// One row a sample of the loops that were kept.
+/// The CVs of the loop as the methods saw them, row by row.
+std::vector<std::string> recorded_cells(const Study& study, const ExperimentRecord& record) {
+  const RowMajorMatrix y = recorded(study, record.draw.index, record.loop->trajectory).y;
+  std::vector<std::string> list;
+  for (const double value : y.reshaped<Eigen::RowMajor>())
+    list.push_back(number(value));
+  return list;
+}
+
+/// One row a sample of the loops that were kept, as they were measured, and as their record shows them where
+/// that is something else.
 std::string loops_csv(const Campaign& campaign) {
   std::vector<RecordVariable> signals;
   for (RecordTable& table : record_tables(campaign.study, forms_of(campaign)))
@@ -147,6 +159,9 @@ std::string loops_csv(const Campaign& campaign) {
   for (const RecordVariable& signal : signals)
     for (const std::string& heading : headings(campaign, signal, 1))
       head.push_back(field(heading));
+  if (campaign.study.record.alters())
+    for (const std::string& name : coordinates(campaign, "cv", 0))
+      head.push_back(field(fmt::format("y_recorded.{}", name)));
   std::string text = line(head);
   const auto samples = static_cast<std::size_t>(campaign.study.simulation.samples);
   for (const ExperimentRecord& record : campaign.records) {
@@ -155,6 +170,8 @@ std::string loops_csv(const Campaign& campaign) {
     std::vector<std::vector<std::string>> columns;  // of each signal, row by row
     for (const RecordVariable& signal : signals)
       columns.push_back(cells(signal, record));
+    if (campaign.study.record.alters())
+      columns.push_back(recorded_cells(campaign.study, record));
     for (std::size_t sample = 0; sample < samples; ++sample) {
       std::vector<std::string> row{
           fmt::format("{}", record.draw.index), fmt::format("{}", sample),

@@ -278,6 +278,12 @@ RecordTable drawn(const Study& study) {
   if (!study.has_plain_faults())
     for (RecordVariable& variable : further_draws(study))
       table.variables.push_back(std::move(variable));
+  if (study.simulation.noise.factor != Distribution::constant(1))
+    table.variables.push_back(scalar<double>(
+        {"noise_factor", "factor of the standard deviations of the measurement noise", "1",
+         "against those of the study, which the basis case has"},
+        [](const Record& r) { return r.draw.noise_factor; },
+        [](Record& r, double value) { r.draw.noise_factor = value; }));
   if (study.experiments.tuning == 0)
     return table;
   table.variables.push_back(of_tuning<std::int8_t>(

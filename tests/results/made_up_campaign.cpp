@@ -421,6 +421,8 @@ Campaign faultless_campaign() {
   std::string text = with_setpoint(small_study());
   const std::string last_count = "mpm_ud = 1\n";
   text.replace(text.find(last_count), last_count.size(), "mpm_ud = 0\nhealthy = 3\ntuning = 8\n");
+  const std::string noise = "noise_standard_deviation = 0.01\n";
+  text.insert(text.find(noise) + noise.size(), "noise = {factor = {uniform = [0.5, 2]}}\n");
   Campaign campaign;
   campaign.study = parse_study(text + kReplications + kMethods, "small");
   campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};

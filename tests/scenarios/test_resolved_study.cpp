@@ -73,12 +73,19 @@ std::vector<Study> shipped() {
 std::string random_study_text() {
   std::string text = replaced(small_study(), "[controller.cv.level]\n",
                               "[controller.cv.level]\nsetpoint_weight = 4\nsetpoint = 0.1\n");
-  text = replaced(text, "noise_standard_deviation = 0.01",
-                  "noise_standard_deviation = {level = 0.01, heat = 0.3}\n"
-                  "[[simulation.step]]\ncv = \"level\"\nsample = 5\nlevel = 0.2\n");
+  text = replaced(
+      text, "noise_standard_deviation = 0.01",
+      "noise_standard_deviation = {level = 0.01, heat = 0.3}\n"
+      "noise = {distribution = 'student', autocorrelation = -0.3, factor = {log_uniform = [0.5, 2]}}\n"
+      "md_noise = {standard_deviation = 0.1, time_constant = 3}\n"
+      "limit_step = [{cv = 'heat', sample = 9, soft = [-inf, 0.4]}]\n"
+      "dither = [{mv = 'cold', amplitude = 0.1, hold = 4}]\n"
+      "[[simulation.step]]\ncv = \"level\"\nsample = 5\nlevel = 0.2\n");
   text +=
       "healthy = 4\ntuning = 5\nother = 6\n"
       "[other]\nimpact = {constant = 1.5}\nweights = {stiction = 1, limit = 2}\n"
+      "[record]\nquantisation = 0.5\ncompression = 2\noutliers = {share = 0.01, size = {constant = 7}}\n"
+      "missing = {share = 0.1, length = 4, fill = 'hold'}\n"
       "[disturbance]\nimpact = {uniform = [0.5, 2]}\nsignal_weights = {sine = 1}\n"
       "[mismatch]\nimpact = {log_uniform = [0.5, 2]}\nparameter_weights = {gain = 1, time_constant = 0, "
       "dead_time = 0.1}\n"
@@ -170,11 +177,18 @@ plant_parameter = [{name = "cd1", factor = {uniform = [0.8, 1.2]}, affected = ["
 [experiments])");
 }
 
+/// The small study in which nothing but noise and faults moves the loop.
+std::string unexcited_study_text() {
+  const std::string text = small_study();
+  return text.substr(0, text.find("[[simulation.step]]")) +
+         "excitation = 'none'\n[experiments]\nmpm = 1\nud = 1\nmpm_ud = 0\n";
+}
+
 /// Studies of the tests, among them those with the keys that no shipped one has.
 std::vector<Study> of_tests() {
   std::vector<Study> studies;
   for (const std::string& text : {small_study(), random_study_text(), scenario_study_text(),
-                                  nonlinear_study_text(), random_tank_text()})
+                                  nonlinear_study_text(), random_tank_text(), unexcited_study_text()})
     studies.push_back(parse_study(text, "s.toml"));
   return studies;
 }

@@ -48,10 +48,11 @@ TEST_CASE("a plant with measured disturbances must be excited", "[study_file]") 
   const std::size_t begin = text.find("[[simulation.step]]");
   text.erase(begin, text.find("[experiments]") - begin);
   const std::string line = std::to_string(line_of(text, "[simulation]"));
-  CHECK(refusal(text) ==
-        "s.toml:" + line +
-            ": simulation: found neither step nor random_steps; allowed: steps of setpoints or MDs, or "
-            "random_steps");
+  CHECK(
+      refusal(text) ==
+      "s.toml:" + line +
+          ": simulation: found no excitation; allowed: step, random_steps, limit_step, md_noise, dither, or "
+          "excitation = \"none\"");
   CHECK(refusal(replaced(text, "= 0.01", "= 0.01\nstep = []")).find("simulation.step: found a list of 0") !=
         std::string::npos);
   CHECK(refusal(replaced(text, "= 0.01", "= 0.01\nrandom_steps.interval.uniform = [0, 9]")) ==

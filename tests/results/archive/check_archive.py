@@ -198,8 +198,8 @@ def check_scenarios(path, variables, attributes):
 
 
 def is_faultless(name):
-    """A variable that only studies with healthy experiments or bad tunings have."""
-    return re.fullmatch(r"tuning_\w+", name) is not None
+    """A variable that only studies with bad tunings, or with noise of several sizes, have."""
+    return re.fullmatch(r"tuning_\w+|noise_factor", name) is not None
 
 
 def check_faultless(path, variables):

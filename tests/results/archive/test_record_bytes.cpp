@@ -109,6 +109,7 @@ TEST_CASE("record bytes: named scenarios and changed tunings are drawn anew, wit
       CHECK(draw.affected_cvs == record.draw.affected_cvs);
       CHECK(draw.named == record.draw.named);
       CHECK(draw.tuning == record.draw.tuning);
+      CHECK(draw.noise_factor == record.draw.noise_factor);
     }
 }
 

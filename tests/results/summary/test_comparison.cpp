@@ -150,11 +150,11 @@ TEST_CASE("comparison of a study with a calibration: its rates, thresholds, and 
 
 TEST_CASE("comparison words: what a method needs and tells") {
   AssessmentMethodInfo method;
-  CHECK(needs_text(method) == "nothing else");
+  CHECK(needs_text(method) == "every sample");
   CHECK(answers_text(method) == "nothing else");
   method.requirements = {.setpoints = true, .moving_setpoints = true, .benchmark = true};
   method.locates_cvs = method.tells_sources = true;
-  CHECK(needs_text(method) == "setpoints that move, a benchmark period");
+  CHECK(needs_text(method) == "setpoints that move, a benchmark period, every sample");
   CHECK(answers_text(method) == "the CV, the source");
 }
 
