@@ -63,15 +63,15 @@ ExperimentDraw named_experiment(const Study& study, std::int64_t index) {
     throw InputError("experiment index", fmt::format("{}", index),
                      fmt::format("0 to {}, the named scenarios of the study", study.experiment_count() - 1));
   const Scenario& scenario = study.scenarios[static_cast<std::size_t>(index)];
-  return {index,
-          kind_of(scenario.mismatches, scenario.parameters, scenario.disturbances),
-          scenario.mismatches,
-          scenario.disturbances,
-          true,
-          scenario.affected_cvs,
-          scenario.parameters,
-          {},
-          draw_noise_factor(study, index)};
+  ExperimentDraw draw{index,
+                      kind_of(scenario.mismatches, scenario.parameters, scenario.disturbances),
+                      scenario.mismatches,
+                      scenario.disturbances,
+                      true,
+                      scenario.affected_cvs,
+                      scenario.parameters};
+  draw.noise_factor = draw_noise_factor(study, index);
+  return draw;
 }
 
 }  // namespace

@@ -199,7 +199,8 @@ def check_scenarios(path, variables, attributes):
 
 def is_faultless(name):
     """A variable that only studies with bad tunings, or with noise of several sizes, have."""
-    return re.fullmatch(r"tuning_\w+|noise_factor", name) is not None
+    further = r"tuning_\w+|noise_factor|mismatches|disturbances|ud_signal|ud_mv|onset\w*|other_\w+|\w+_scale"
+    return re.fullmatch(further, name) is not None
 
 
 def check_faultless(path, variables):
