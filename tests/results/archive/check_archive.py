@@ -199,14 +199,30 @@ def check_scenarios(path, variables, attributes):
 
 def is_faultless(name):
     """A variable that only studies with bad tunings, or with noise of several sizes, have."""
-    further = r"tuning_\w+|noise_factor|mismatches|disturbances|ud_signal|ud_mv|onset\w*|other_\w+|\w+_scale"
-    return re.fullmatch(further, name) is not None
+    return re.fullmatch(r"tuning_\w+|noise_factor", name) is not None
+
+
+def is_further(name):
+    """A variable that only studies with faults beyond those of the thesis have."""
+    return re.fullmatch(r"mismatches|disturbances|ud_signal|ud_mv|onset\w*|other_\w+|\w+_scale", name) is not None
+
+
+def check_further(path, variables):
+    with h5py.File(path) as file:
+        found = variables_of(file)
+        expected = {name: form for name, form in variables["/"].items() if not is_faultless(name)}
+        assert found == expected, found.items() ^ expected.items()
+        for name in found:
+            check_variable(file[name])
+        assert ((file["kind"][()] == 5) == (file["other_fault"][()] >= 0)).all()
+        assert set(file["ud_signal"]) == {-1, 0, 1, 4} and (file["onset"][()] < 20).all()
 
 
 def check_faultless(path, variables):
     with h5py.File(path) as file:
         found = variables_of(file)
-        assert found == variables["/"], found.items() ^ variables["/"].items()
+        expected = {name: form for name, form in variables["/"].items() if not is_further(name)}
+        assert found == expected, found.items() ^ expected.items()
         for name in found:
             check_variable(file[name])
         assert file["kind"].attrs["flag_meanings"] == "healthy mpm ud mpm_ud tuning"
@@ -239,7 +255,7 @@ def main(writer, file_format):
         subprocess.run([writer, path], check=True)
         assert seal.is_sealed(path)
         random = {
-            group: {name: form for name, form in names.items() if not is_faultless(name) and not (group == "/methods/botelho" and is_of_scenarios(name))}
+            group: {name: form for name, form in names.items() if not is_faultless(name) and not is_further(name) and not (group == "/methods/botelho" and is_of_scenarios(name))}
             for group, names in variables.items()
             if group not in ("/scenarios", "/nominal_direct")
         }
@@ -250,6 +266,8 @@ def main(writer, file_format):
         check_scenarios(path, variables, attributes)
         subprocess.run([writer, path, "faultless"], check=True)
         check_faultless(path, variables)
+        subprocess.run([writer, path, "further"], check=True)
+        check_further(path, variables)
         subprocess.run([writer, path, "empty"], check=True)
         check_empty(path, variables)
 

@@ -1,4 +1,4 @@
-// usage: write_sample_archive FILE [empty|scenarios|faultless]
+// usage: write_sample_archive FILE [empty|scenarios|faultless|further]
 
 #include <cstdio>
 #include <exception>
@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     const mpm::Campaign campaign = which == "empty"       ? mpm::testing::empty_campaign()
                                    : which == "scenarios" ? mpm::testing::scenario_campaign()
                                    : which == "faultless" ? mpm::testing::faultless_campaign()
+                                   : which == "further"   ? mpm::testing::rich_campaign()
                                                           : campaign_sample();
     mpm::write_archive(argv[1], campaign, mpm::findings_of(campaign));
     return 0;
