@@ -103,6 +103,8 @@ Campaign run_campaign(Study study, const RunOptions& options, const CampaignHook
   if (calibration)
     tally += calibration->series.tally();
   campaign.basis = stoppable_basis_case(campaign.study, factory, hooks.stop, tally);
+  if (hooks.on_basis)
+    hooks.on_basis(campaign.study, campaign.basis);
   require_health(campaign.basis, options);
   if (hooks.on_start)
     hooks.on_start(tally.done, tally.count);

@@ -17,6 +17,8 @@ namespace mpm {
 struct CampaignHooks {
   /// Asked at each step of the basis case, and before each experiment.
   StopRequest stop = {};
+  /// Called once the basis case is there, before it is checked.
+  std::function<void(const Study&, const BasisCase&)> on_basis = {};
   /// Called once before the first experiment: an earlier run has left `done` of the `count` experiments.
   std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
   /// Called after each experiment that is done, in the order of completion.

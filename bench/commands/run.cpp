@@ -4,10 +4,13 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/validation/study_warnings.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
@@ -48,13 +51,27 @@ void clean_up(const std::filesystem::path& output) {
   remove_abandoned_files(output);
 }
 
+/// What one should look at, without the advice, which `validate` gives.
+void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
+  std::vector<StudyWarning> warnings = study_warnings(study);
+  if (basis.healthy)  // otherwise the run is refused with what the self-check says, or the user knows it
+    for (StudyWarning& warning : basis_warnings(study, basis))
+      warnings.push_back(std::move(warning));
+  for (const StudyWarning& warning : warnings)
+    progress.note(fmt::format("warning: {}: {}", warning.key, warning.found));
+}
+
 ExitCode run(const RunArguments& options, const std::string& command_line) {
   const Study study = find_study(options.study);
   require_output_folder(options.output, "archive");
 
   Progress progress(options.quiet);
+  CampaignHooks hooks = hooks_of(progress);
+  hooks.on_basis = [&progress](const Study& of_run, const BasisCase& basis) {
+    warn_of(of_run, basis, progress);
+  };
   try {
-    Campaign campaign = run_campaign(study, options.run, hooks_of(progress), shard_folder_of(options.output));
+    Campaign campaign = run_campaign(study, options.run, hooks, shard_folder_of(options.output));
     note_command(campaign, command_line);
     const StudyFindings findings = findings_of(campaign);
     write_archive(options.output, campaign, findings);

@@ -11,7 +11,7 @@ ROOMS = ["plants", "solvers", "scenarios", "analysis", "results", "bench"]
 # the room itself that its folders may include stands here by its name.
 FOLDERS = {
     "analysis": ["statistics", "identification", "sensitivity", "indicators", "basis", "methods", "experiment",
-                 "findings", "reproduction"],
+                 "findings", "reproduction", "validation"],
     "results": ["files", "archive", "text", "plot", "summary", "gates", "report", "reproduction", "suite"],
     "bench": ["version.hpp", "files", "outcome", "byte_stream.hpp", "record_bytes.hpp", "outcome_bytes.hpp", "execution",
               "shards", "campaign", "comparison_runner.hpp", "console", "commands", "perf"],

@@ -1,0 +1,122 @@
+#include "analysis/validation/study_forecast.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "analysis/experiment/judgement.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kOftenInfeasible = 0.2;
+constexpr double kWideInterval = 0.3;
+
+/// Of Wilson's interval of the rate `p` of about `loops` loops.
+double interval_width(double p, double loops, double confidence) {
+  const auto total = static_cast<std::int64_t>(std::llround(loops));
+  const auto hits = static_cast<std::int64_t>(std::llround(p * static_cast<double>(total)));
+  const Interval interval = wilson_interval(hits, total, confidence);
+  return interval.upper - interval.lower;
+}
+
+double median_cost(std::span<const ExperimentRecord> pilot, std::size_t method) {
+  std::vector<double> costs;
+  for (const ExperimentRecord& record : pilot)
+    if (record.status == ExperimentStatus::ok)
+      costs.push_back(record.assessments[method].milliseconds);
+  if (costs.empty())
+    return 0.0;
+  std::nth_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2), costs.end());
+  return costs[costs.size() / 2];
+}
+
+std::int64_t loop_bytes(const Study& study) {
+  const Eigen::Index setpoints = study.controller.has_setpoints() ? study.cv_count() : 0;
+  const Eigen::Index rows =
+      2 * study.cv_count() + 2 * study.mv_count() + study.md_count() + setpoints;  // y, y_sim, u, u_target, d
+  return static_cast<std::int64_t>(rows) * study.simulation.samples *
+         static_cast<std::int64_t>(sizeof(double));
+}
+
+/// "some reason", of the first loop on which the method has no verdict, when it has one on none; empty
+/// otherwise.
+std::string why_silent(std::span<const ExperimentRecord> pilot, std::size_t method) {
+  std::string reason;
+  for (const ExperimentRecord& record : pilot) {
+    if (record.status != ExperimentStatus::ok)
+      continue;
+    if (record.assessments[method].answered())
+      return "";
+    if (reason.empty())
+      reason = record.assessments[method].reason;
+  }
+  return reason;
+}
+
+}  // namespace
+
+StudyForecast forecast(const Study& study, std::span<const ExperimentRecord> pilot) {
+  std::int64_t ok = 0, faulty = 0, with_impact = 0, without_fault = 0, wrong = 0;
+  for (const ExperimentRecord& record : pilot) {
+    if (record.status != ExperimentStatus::ok)
+      continue;
+    ++ok;
+    const bool fault = to_be_flagged(study, record, FlagTruth::fault);
+    faulty += fault ? 1 : 0;
+    without_fault += fault ? 0 : 1;
+    with_impact += to_be_flagged(study, record, FlagTruth::impact) ? 1 : 0;
+    wrong += !record.assessments.empty() && judge(study, record, record.assessments.front()).wrong() ? 1 : 0;
+  }
+  const double confidence = study.aggregate.confidence;
+  const auto run = static_cast<std::int64_t>(pilot.size());
+  StudyForecast forecast;
+  forecast.experiments = study.experiment_count();
+  forecast.feasible = rate(ok, run, confidence);
+  forecast.impact = rate(with_impact, faulty, confidence);
+  forecast.to_keep = rate(wrong, ok, confidence);
+  const double scale = static_cast<double>(forecast.experiments) / static_cast<double>(run);
+  forecast.loops_with_impact = scale * static_cast<double>(with_impact);
+  forecast.loops_without_fault = scale * static_cast<double>(without_fault);
+  forecast.detection_width = interval_width(0.5, forecast.loops_with_impact, confidence);
+  forecast.false_alarm_width = interval_width(0.05, forecast.loops_without_fault, confidence);
+  forecast.bytes_of_a_loop = loop_bytes(study);
+  for (std::size_t m = 0; m < pilot.front().assessments.size(); ++m)
+    forecast.methods.push_back({pilot.front().assessments[m].form->method().name, median_cost(pilot, m)});
+  return forecast;
+}
+
+std::vector<StudyWarning> forecast_warnings(const Study& study, const StudyForecast& forecast,
+                                            std::span<const ExperimentRecord> pilot) {
+  std::vector<StudyWarning> warnings;
+  const Rate& feasible = forecast.feasible;
+  if (feasible.value < 1.0 - kOftenInfeasible)
+    warnings.push_back({"experiments",
+                        fmt::format("{} of {} loops of the pilot cannot be run to their end",
+                                    feasible.total - feasible.hits, feasible.total),
+                        "they are left out of every rate: widen hard limits, or draw smaller faults"});
+  for (std::size_t m = 0; m < forecast.methods.size(); ++m)
+    if (const std::string reason = why_silent(pilot, m); !reason.empty())
+      warnings.push_back(
+          {"methods.names",
+           fmt::format("{} says nothing of any loop of the pilot: {}", forecast.methods[m].method, reason),
+           "leave it out, or give it what it needs"});
+  if (study.names_scenarios())
+    return warnings;
+  if (forecast.impact.total > 0 && forecast.impact.hits == 0)
+    warnings.push_back(
+        {"experiments",
+         fmt::format("no fault of the pilot has an impact ({} of them)", forecast.impact.total),
+         "draw larger faults; rates over loops with impact will have no loops"});
+  else if (forecast.impact.total > 0 && forecast.detection_width > kWideInterval)
+    warnings.push_back(
+        {"experiments",
+         fmt::format("about {:.0f} loops with impact: a rate of 0.5 over them is known to +- {:.2f}",
+                     forecast.loops_with_impact, forecast.detection_width / 2.0),
+         "four times as many experiments halve the interval"});
+  return warnings;
+}
+
+}  // namespace mpm
