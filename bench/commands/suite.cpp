@@ -14,6 +14,9 @@
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/version.hpp"
+#include "results/plot/figure_drawing.hpp"
+#include "results/plot/figure_format.hpp"
+#include "results/plot/gnuplot.hpp"
 #include "results/suite/leaderboard_output.hpp"
 #include "scenarios/suite_file.hpp"
 
@@ -28,6 +31,16 @@ struct SuiteArguments {
   bool json = false;
   bool quiet = false;
 };
+
+/// The page and the figure. What has been computed is shown all the same without gnuplot.
+void write_pictures(const std::filesystem::path& folder, const Leaderboard& board, Progress& progress) {
+  try {
+    write_text(folder / "leaderboard.html", leaderboard_html(board));
+    write_text(folder / "leaderboard.svg", draw_figure(leaderboard_figure(board), FigureFormat::svg));
+  } catch (const GnuplotError& error) {
+    progress.warn(fmt::format("no page: {}", error.what()));
+  }
+}
 
 /// Runs the suite, or what is missing of it, and shows its leaderboard, which is also left in the folder as a
 /// page and as JSON.
@@ -61,7 +74,7 @@ ExitCode run_suite_command(const SuiteArguments& options, const std::string& com
   const Leaderboard board = make_leaderboard(suite, run.run.methods, mpmbench_version(), std::move(cells));
   const std::string json = leaderboard_json(board);
   write_text(run.folder / "leaderboard.json", json);
-  write_text(run.folder / "leaderboard.html", leaderboard_html(board));
+  write_pictures(run.folder, board, progress);
   fmt::print("{}", options.json ? json : leaderboard_text(board));
   return ExitCode::done;
 }

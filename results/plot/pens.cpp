@@ -11,7 +11,21 @@ constexpr std::array<std::string_view, 7> kColours{colour::kBlue, colour::kOrang
                                                    colour::kBlack};
 constexpr std::array<Dash, 3> kDashes{Dash::solid, Dash::dashed, Dash::dotted};
 
+/// Of the methods, in their order; neighbours differ in dash as well.
+constexpr std::array<Pen, 7> kMethodPens{{
+    {colour::kBlue, Dash::solid, Mark::dot, 2.0, 0.8},
+    {colour::kVermillion, Dash::dashed, Mark::square, 2.0, 0.8},
+    {colour::kGreen, Dash::solid, Mark::triangle, 2.0, 0.9},
+    {colour::kPurple, Dash::dashed, Mark::diamond, 2.0, 1.0},
+    {colour::kOrange, Dash::solid, Mark::circle, 2.0, 0.8},
+    {colour::kSky, Dash::dotted, Mark::hollow_diamond, 2.0, 1.0},
+    {colour::kBlack, Dash::dashed, Mark::circle, 1.5, 0.8},
+}};
 }  // namespace
+
+Pen method_pen(std::size_t method) {
+  return kMethodPens[method % kMethodPens.size()];
+}
 
 Pen cv_pen(Eigen::Index cv, bool thick) {
   const auto i = static_cast<std::size_t>(cv);

@@ -1,41 +1,31 @@
 #include "results/report/comparison_figures.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "results/plot/panel_script.hpp"
+#include "results/plot/pens.hpp"
 
 namespace mpm {
 namespace {
 
-/// Of the methods, in their order; neighbours differ in dash as well.
-constexpr std::array<Pen, 7> kPens{{
-    {colour::kBlue, Dash::solid, Mark::dot, 2.0, 0.8},
-    {colour::kVermillion, Dash::dashed, Mark::square, 2.0, 0.8},
-    {colour::kGreen, Dash::solid, Mark::triangle, 2.0, 0.9},
-    {colour::kPurple, Dash::dashed, Mark::diamond, 2.0, 1.0},
-    {colour::kOrange, Dash::solid, Mark::circle, 2.0, 0.8},
-    {colour::kSky, Dash::dotted, Mark::hollow_diamond, 2.0, 1.0},
-    {colour::kBlack, Dash::dashed, Mark::circle, 1.5, 0.8},
-}};
 const Pen kChance{colour::kGrey, Dash::dotted, Mark::none, 1.2};
 
 using Methods = std::vector<MethodFindings>;
 
 /// A curve in the pen of its method.
 Pen curve_pen(std::size_t method) {
-  Pen pen = kPens[method % kPens.size()];
+  Pen pen = method_pen(method);
   pen.mark = Mark::none;
   return pen;
 }
 
 /// Whiskers in the colour of their method, solid so that short ones can be seen.
 Pen whisker_pen(std::size_t method) {
-  Pen pen = kPens[method % kPens.size()];
+  Pen pen = method_pen(method);
   pen.dash = Dash::solid;
   return pen;
 }
@@ -176,11 +166,11 @@ Figure comparison_roc_figure(const Methods& methods, FlagTruth truth) {
         truth == FlagTruth::fault ? methods[m].rates.roc_area : methods[m].rates.roc_impact_area;
     figure.legend.push_back({fmt::format("{}, area {:.3f} ({:.3f} to {:.3f})", methods[m].name(), curve.area,
                                          area.lower, area.upper),
-                             kPens[m % kPens.size()]});
+                             method_pen(m)});
   }
   for (std::size_t m = 0; m < methods.size() && truth == FlagTruth::fault; ++m)
     if (methods[m].rates.roc.defined())
-      panel.points({verdict_point(methods[m])}, kPens[m % kPens.size()]);
+      panel.points({verdict_point(methods[m])}, method_pen(m));
   figure.legend.push_back({"chance", kChance});
   figure.panels = {panel.finish(words.description, 360)};
   return figure;

@@ -6,6 +6,7 @@
 
 #include "analysis/findings/method_rates.hpp"
 #include "results/plot/plot_text.hpp"
+#include "results/report/figure_html.hpp"
 #include "results/report/html_page.hpp"
 #include "results/report/html_table.hpp"
 #include "results/suite/leaderboard_output.hpp"
@@ -81,7 +82,15 @@ std::string passed_section(const Leaderboard& board) {
                         nobody.empty() ? "every family is passed by some method"
                                        : fmt::format("nobody passes {}", fmt::join(nobody, ", ")));
   }
-  return fmt::format("{}</ul>\n<p>{}</p></section>\n", html, html_text(marks_text()));
+  html += "</ul>\n";
+  for (const std::string& sentence : legend_sentences())
+    html += fmt::format("<p>{}</p>\n", html_text(sentence));
+  return fmt::format("{}</section>\n", html);
+}
+
+std::string figure_section(const Leaderboard& board) {
+  return fmt::format("<section id=\"figure\"><h2>Detection and false alarms</h2>\n{}</section>\n",
+                     figure_html(leaderboard_figure(board)));
 }
 
 std::string families_section(const Leaderboard& board) {
@@ -135,7 +144,7 @@ std::string silences_section(const Leaderboard& board) {
 
 std::string leaderboard_html(const Leaderboard& board) {
   const std::string body =
-      passed_section(board) +
+      passed_section(board) + figure_section(board) +
       scores_section(board, "by-family", "By family, pooled over the plants", board.families,
                      board.by_family) +
       scores_section(board, "by-plant", "By plant, pooled over the families", board.plants, board.by_plant) +

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "analysis/findings/leaderboard.hpp"
+#include "results/plot/figure.hpp"
 
 namespace mpm {
 
@@ -12,7 +13,11 @@ std::string leaderboard_text(const Leaderboard& board);
 /// The same as JSON (docs/suite.md), with all rates, by family and by plant.
 std::string leaderboard_json(const Leaderboard& board);
 
-/// The same as a page that needs nothing else: the tables are coloured by the numbers in them.
+/// The same as a page that needs nothing else: the tables are coloured by the numbers in them. Errors:
+/// GnuplotError.
 std::string leaderboard_html(const Leaderboard& board);
+
+/// Detection against false alarms, a panel a family.
+Figure leaderboard_figure(const Leaderboard& board);
 
 }  // namespace mpm

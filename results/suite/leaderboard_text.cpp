@@ -26,18 +26,30 @@ std::string score_text(const PooledScores& scores, const LeaderboardScore& score
                      100 * rate->interval.upper, marks_of(scores));
 }
 
-/// A sentence under a name, in lines of at most kTextWidth characters where a word allows it.
-std::string item_text(const std::string& name, const std::string& sentence) {
-  std::string text, line = fmt::format("  {}:", name);
+/// A sentence in lines of at most kTextWidth characters where a word allows it, all but the first set in.
+std::string wrapped(const std::string& sentence, const std::string& set_in) {
+  std::string text, line;
   std::istringstream words(sentence);
   for (std::string word; words >> word;) {
     if (line.size() + 1 + word.size() > kTextWidth) {
       text += fmt::format("{}\n", line);
-      line = "   ";
+      line = set_in;
     }
-    line += fmt::format(" {}", word);
+    line += fmt::format("{}{}", line.empty() || line == set_in ? "" : " ", word);
   }
   return fmt::format("{}{}\n", text, line);
+}
+
+/// A sentence under a name.
+std::string item_text(const std::string& name, const std::string& sentence) {
+  return wrapped(fmt::format("- {}: {}", name, sentence), "  ");
+}
+
+std::string legend_text() {
+  std::string text;
+  for (const std::string& sentence : legend_sentences())
+    text += wrapped(sentence, "");
+  return text;
 }
 
 /// The families, and all of them together.
@@ -126,7 +138,7 @@ std::string leaderboard_text(const Leaderboard& board) {
   for (const LeaderboardScore& score : leaderboard_scores())
     text += blocks_text(board, std::string(score.title),
                         [&](const PooledScores& scores) { return score_text(scores, score); });
-  return fmt::format("{}\n{}\n{}{}{}", text, marks_text(), nobody_text(board), silences_text(board),
+  return fmt::format("{}\n{}\n{}{}{}", text, legend_text(), nobody_text(board), silences_text(board),
                      troubles_text(board));
 }
 

@@ -10,15 +10,19 @@ std::string marks_of(const PooledScores& scores) {
   return fmt::format("{}{}", scores.too_many_false_alarms() ? "*" : "", scores.answers_in_part() ? "~" : "");
 }
 
-std::string marks_text() {
-  return fmt::format(
-      "* the interval of its own false alarms on healthy loops lies above {:g} %\n"
-      "~ verdicts on fewer than {:g} % of the loops: not the same loops as those of the others\n"
-      "passed: verdicts on {:g} % of the loops, false alarms on at most {:g} %, and {:g} % of the faults "
-      "with "
-      "an impact\nflagged (D), of the flagged CVs right (L), of all sources right (S)\n",
-      100 * kMostFalseAlarms, 100 * kFewestAnswers, 100 * kFewestAnswers, 100 * kPassingFalseAlarms,
-      100 * kPassingShare);
+std::vector<std::string> legend_sentences() {
+  return {
+      fmt::format("* The interval of its own false alarms on healthy loops lies above {:g} %.",
+                  100 * kMostFalseAlarms),
+      fmt::format(
+          "~ It gives verdicts on fewer than {:g} % of the loops: not on the same loops as the others.",
+          100 * kFewestAnswers),
+      fmt::format("Passed is what is done with verdicts on {0:g} % of the loops and false alarms on at most "
+                  "{1:g} % of "
+                  "the healthy ones: D, {2:g} % of the faults with an impact flagged; L, in {2:g} % of the "
+                  "flagged loops "
+                  "the affected CV named; S, in {2:g} % of all loops with a fault the right source named.",
+                  100 * kFewestAnswers, 100 * kPassingFalseAlarms, 100 * kPassingShare)};
 }
 
 char letter_of(LeaderboardTask task) {

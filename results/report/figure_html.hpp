@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "results/plot/figure.hpp"
+
+namespace mpm {
+
+/// A figure for a page: legend, panels, caption. Errors: GnuplotError.
+std::string figure_html(const Figure& figure);
+
+}  // namespace mpm
