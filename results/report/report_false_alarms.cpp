@@ -68,7 +68,7 @@ Panel group_panel(const Campaign& campaign, const FalseAlarms& group) {
       "Ivar farthest from 1 of the experiments of the group {}, with the band of impact.", group.label()));
 }
 
-std::string rates_table(const ReportInput& input) {
+std::string false_alarm_rates_table(const ReportInput& input) {
   HtmlTable table(
       "Experiments in which model and plant agree: shares of the feasible ones that the chain calls a "
       "modelling error with impact, and which source it names.",
@@ -119,7 +119,7 @@ ReportSection false_alarm_section(const ReportInput& input) {
   if (!figure.panels.empty())
     section.add(std::move(figure));
   section.add(sensitivity_sentence(input.campaign.study));
-  section.add(rates_table(input));
+  section.add(false_alarm_rates_table(input));
   return section;
 }
 
