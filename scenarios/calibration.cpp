@@ -38,9 +38,10 @@ Study calibration_study(const Study& study) {
   loops.experiments = {};
   loops.experiments.healthy = study.calibration->healthy;
   loops.experiments.ud = study.calibration->ud;
-  if (study.simulation.random_steps) {
+  if (study.simulation.random_steps || study.simulation.md_noise_standard_deviation.size() > 0) {
     loops.simulation.steps = as_steps(measured_disturbances(study));
     loops.simulation.random_steps = false;
+    loops.simulation.md_noise_standard_deviation = {};
   }
   return loops;
 }

@@ -195,7 +195,8 @@ Eigen::MatrixXd measured_disturbances(const Study& study) {
 Eigen::MatrixXd dither(const Study& study) {
   if (study.simulation.dither.empty())
     return {};
-  RandomStream stream = experiment_stream(study, kBasisIndex, StreamId::dither);
+  // A designed signal, not a random one of the study: that of the seed 0 for all.
+  RandomStream stream(0, static_cast<std::uint64_t>(kBasisIndex), StreamId::dither);
   Eigen::MatrixXd added = Eigen::MatrixXd::Zero(study.mv_count(), study.simulation.samples);
   for (const Dither& signal : study.simulation.dither)
     for (Eigen::Index k = 0; k < added.cols(); ++k)

@@ -23,8 +23,8 @@ Eigen::MatrixXd measured_disturbances(const Study& study);
 /// Empty (0 x 0) when no CV has one.
 Eigen::MatrixXd setpoints(const Study& study);
 
-/// The test signals that are added to the MVs, nu x samples: the same in every experiment of a study. Empty
-/// (0 x 0) when no MV has one.
+/// The test signals that are added to the MVs, nu x samples: the same in every experiment of a study and
+/// under every seed. Empty (0 x 0) when no MV has one.
 Eigen::MatrixXd dither(const Study& study);
 
 /// The soft limits of the CVs from sample k on: those of the controller, moved by the limit steps up to k.

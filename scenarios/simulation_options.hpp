@@ -71,7 +71,7 @@ struct SimulationOptions {
   Eigen::VectorXd md_noise_standard_deviation = {};
   double md_noise_time_constant =
       0.0;                          ///< of its autocorrelation exp(-t/tau), time unit of the plant; 0: white
-  std::vector<Dither> dither = {};  ///< of MVs, drawn once for the study
+  std::vector<Dither> dither = {};  ///< of MVs; the same under every seed
 
   /// Does anything but noise and faults move the loop?
   bool is_excited() const {

@@ -64,7 +64,10 @@ TEST_CASE("calibration: its seed is never that of the study", "[calibration]") {
 
 TEST_CASE("calibration: its loops are healthy or disturbed, with other noise and the excitation of the study",
           "[calibration]") {
-  std::string text = replaced(small_study(), "= 0.01", "= 0.01\nrandom_steps.interval.uniform = [3, 9]");
+  std::string text =
+      replaced(small_study(), "= 0.01",
+               "= 0.01\nrandom_steps.interval.uniform = [3, 9]\n"
+               "md_noise = {standard_deviation = 0.1}\ndither = [{mv = 'hot', amplitude = 0.1}]");
   const std::size_t begin = text.find("[[simulation.step]]");
   text.erase(begin, text.find("[experiments]") - begin);
   Study study = parse_study(text + kCalibration + "healthy = 4\nud = 2\n", "s");
@@ -78,6 +81,7 @@ TEST_CASE("calibration: its loops are healthy or disturbed, with other noise and
     CHECK(measurement_noise(loops, index) != measurement_noise(study, index));
   }
   CHECK(healthy == 4);
+  CHECK(dither(loops) == dither(study));
   const Eigen::MatrixXd d = measured_disturbances(study);
   CHECK(measured_disturbances(loops) == d);
   CHECK((d.array() != 0.0).any());

@@ -65,6 +65,7 @@ TEST_CASE("every method sees every family of records, and one that needs every s
       {"", "[record]\noutliers = {share = 0.02}\nquantisation = 2\ncompression = 1.5\n", false},
       {"", "[record]\nmissing = {share = 0.1, length = 4, fill = \"linear\"}\n", false},
       {"", "[record]\nmissing = {share = 0.1, length = 4}\n", true},
+      {"dither = [{mv = \"u1\", amplitude = 0.1, hold = 5}]\n", "", false},
       {"noise = {distribution = \"student\", autocorrelation = 0.7, factor = {constant = 2}}\n", "", false},
   };
   for (const Family& family : families) {
@@ -92,6 +93,24 @@ TEST_CASE("every method sees every family of records, and one that needs every s
       CHECK(assessments.front().score == record.by("sse")->score);
     }
   }
+}
+
+TEST_CASE("loops moved by limits and by disturbances that vary are assessed by whom they are for",
+          "[records]") {
+  const Study study = changed_study("chapter6",
+                                    "md_noise = {standard_deviation = 0.05, time_constant = 20}\n"
+                                    "limit_step = [{cv = \"y1\", sample = 100, soft = [-0.2, 0.4]}]\n",
+                                    "");
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  CHECK(basis.healthy);
+  const ExperimentRecord record = experiment(study, basis, 0, StorePolicy::none);
+  REQUIRE(record.status == ExperimentStatus::ok);
+  for (const AssessmentRecord& said : record.assessments) {
+    INFO(said.form->method().name << ": " << said.reason);
+    CHECK((said.answered() || said.status == AssessmentStatus::not_applicable));
+  }
+  CHECK(record.by("botelho")->answered());
+  CHECK(record.by("counterfactual")->answered());
 }
 
 TEST_CASE("sse: a gap is left out of the mean", "[records]") {
