@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,13 +16,6 @@
 
 namespace mpm {
 namespace {
-
-double nominal_value(const NonlinearModel& model, const std::string& name) {
-  const auto place = std::find_if(model.parameters.begin(), model.parameters.end(),
-                                  [&](const auto& parameter) { return parameter.name == name; });
-  assert(place != model.parameters.end());
-  return place->nominal;
-}
 
 double scaled(const Mismatch& mismatch, double scale) {
   switch (mismatch.parameter) {
@@ -184,7 +176,7 @@ ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultS
   for (Mismatch& mismatch : draw.mismatches)
     mismatch.value = scaled(mismatch, scales.mismatch);
   for (ParameterChange& parameter : draw.parameters) {
-    const double nominal = nominal_value(study.nonlinear->model, parameter.name);
+    const double nominal = nominal_value(study, parameter.name);
     parameter.value = nominal * std::pow(parameter.value / nominal, scales.mismatch);
   }
   for (Disturbance& disturbance : draw.disturbances)

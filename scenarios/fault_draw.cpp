@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,10 +14,6 @@
 
 namespace mpm {
 namespace {
-
-RandomStream stream_of_draw(const Study& study, std::int64_t index, StreamId id) {
-  return {study.seed, static_cast<std::uint64_t>(index), id};
-}
 
 template <class T>
 T draw_from(const std::vector<T>& list, RandomStream& stream) {
@@ -122,10 +119,7 @@ std::vector<Mismatch> reaching(const Study& study, MismatchExtent extent, const 
 void draw_plant_parameter(const Study& study, ExperimentDraw& draw, RandomStream& stream) {
   const std::vector<PlantParameterRange>& ranges = study.mismatch.plant_parameters;
   const PlantParameterRange& range = ranges[stream.below(ranges.size())];
-  const auto nominal =
-      std::find_if(study.nonlinear->model.parameters.begin(), study.nonlinear->model.parameters.end(),
-                   [&](const auto& parameter) { return parameter.name == range.name; });
-  draw.parameters = {{range.name, nominal->nominal * range.factor.sample(stream)}};
+  draw.parameters = {{range.name, nominal_value(study, range.name) * range.factor.sample(stream)}};
   draw.affected_cvs = range.affected_cvs;
 }
 
@@ -298,6 +292,14 @@ OtherFault other_fault(const Study& study, OtherFaultKind kind, Eigen::Index var
 
 }  // namespace
 
+double nominal_value(const Study& study, std::string_view parameter) {
+  const std::vector<NonlinearModel::Parameter>& parameters = study.nonlinear->model.parameters;
+  const auto place = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const auto& each) { return each.name == parameter; });
+  assert(place != parameters.end());
+  return place->nominal;
+}
+
 std::size_t draw_place(std::span<const double> weights, RandomStream& stream) {
   const double point = stream.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
   double sum = 0.0;
@@ -313,7 +315,7 @@ std::size_t draw_place(std::span<const double> weights, RandomStream& stream) {
 }
 
 void draw_mismatch(const Study& study, ExperimentDraw& draw) {
-  RandomStream stream = stream_of_draw(study, draw.index, StreamId::mismatch);
+  RandomStream stream = experiment_stream(study, draw.index, StreamId::mismatch);
   if (study.nonlinear) {
     draw_plant_parameter(study, draw, stream);
     return;
@@ -321,18 +323,18 @@ void draw_mismatch(const Study& study, ExperimentDraw& draw) {
   const ChannelPlace channel = draw_from(mv_channels(study), stream);
   const auto parameter = kRandomMismatchParameters[draw_place(study.mismatch.parameter_weight, stream)];
   const Mismatch first = mismatch_of(study, channel, parameter, stream);
-  RandomStream further = stream_of_draw(study, draw.index, StreamId::mismatch_extent);
+  RandomStream further = experiment_stream(study, draw.index, StreamId::mismatch_extent);
   const auto extent = kMismatchExtents[draw_place(study.mismatch.extent_weight, further)];
   draw.mismatches = reaching(study, extent, first, further);
 }
 
 void draw_disturbance(const Study& study, ExperimentDraw& draw) {
-  RandomStream stream = stream_of_draw(study, draw.index, StreamId::disturbance_draw);
+  RandomStream stream = experiment_stream(study, draw.index, StreamId::disturbance_draw);
   const auto cv = static_cast<Eigen::Index>(stream.below(static_cast<std::uint64_t>(study.cv_count())));
   const double gain = study.disturbance.gain.sample(stream);
   const double time_constant = study.disturbance.time_constant.sample(stream);
   draw.disturbances = {{draw.mismatches.empty() ? cv : draw.mismatches.front().cv, gain, time_constant}};
-  RandomStream further = stream_of_draw(study, draw.index, StreamId::disturbance_shape);
+  RandomStream further = experiment_stream(study, draw.index, StreamId::disturbance_shape);
   const auto shape = kDisturbanceShapes[draw_place(study.disturbance.signal_weight, further)];
   const auto place = kDisturbancePlaces[draw_place(study.disturbance.place_weight, further)];
   Disturbance& first = draw.disturbances.front();
@@ -349,7 +351,7 @@ void draw_disturbance(const Study& study, ExperimentDraw& draw) {
 }
 
 void draw_other_fault(const Study& study, ExperimentDraw& draw) {
-  RandomStream stream = stream_of_draw(study, draw.index, StreamId::other_fault);
+  RandomStream stream = experiment_stream(study, draw.index, StreamId::other_fault);
   const auto weights = other_weights(study);
   const OtherFaultKind kind = kOtherFaultKinds[draw_place(weights, stream)];
   const Eigen::Index variable = draw_from(variables_of(study, kind), stream);
@@ -362,7 +364,7 @@ void draw_other_fault(const Study& study, ExperimentDraw& draw) {
 }
 
 Onset draw_onset(const Study& study, std::int64_t index) {
-  RandomStream stream = stream_of_draw(study, index, StreamId::onset);
+  RandomStream stream = experiment_stream(study, index, StreamId::onset);
   const double sample = study.onset.sample.sample(stream);
   const double growth = study.onset.growth.sample(stream);
   return {static_cast<int>(sample), static_cast<int>(growth)};

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "scenarios/draw.hpp"
 #include "scenarios/random_stream.hpp"
@@ -24,6 +25,9 @@ void draw_disturbance(const Study& study, ExperimentDraw& draw);
 
 /// The other fault, with the CVs that it affects.
 void draw_other_fault(const Study& study, ExperimentDraw& draw);
+
+/// The value of a parameter of the nonlinear plant of the study that its model rests on.
+double nominal_value(const Study& study, std::string_view parameter);
 
 Onset draw_onset(const Study& study, std::int64_t index);
 

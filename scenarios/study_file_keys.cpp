@@ -4,10 +4,6 @@
 #include <cassert>
 
 namespace mpm {
-namespace {
-
-/// The aggregates of analysis/study_aggregate.hpp that a study may give reported values for.
-}  // namespace
 
 const std::vector<StudyFileTable>& study_file_tables() {
   static const std::vector<StudyFileTable> tables{

@@ -7,6 +7,7 @@
 
 #include "analysis/indicators/diagnosis.hpp"
 #include "plants/non_finite.hpp"
+#include "scenarios/fault_draw.hpp"
 #include "scenarios/random_stream.hpp"
 
 namespace mpm {
@@ -42,11 +43,9 @@ double largest_scale(const Study& study, const Mismatch& mismatch) {
 
 double largest_scale(const Study& study, const ParameterChange& change) {
   const auto& ranges = study.mismatch.plant_parameters;
-  const auto& parameters = study.nonlinear->model.parameters;
-  const auto named = [&](const auto& each) { return each.name == change.name; };
+  const auto named = [&](const PlantParameterRange& each) { return each.name == change.name; };
   const Distribution& range = std::find_if(ranges.begin(), ranges.end(), named)->factor;
-  const double nominal = std::find_if(parameters.begin(), parameters.end(), named)->nominal;
-  return scale_to_end(change.value / nominal, range.minimum(), range.maximum());
+  return scale_to_end(change.value / nominal_value(study, change.name), range.minimum(), range.maximum());
 }
 
 double largest_scale(const Study& study, const ExperimentDraw& draw) {

@@ -79,6 +79,10 @@ StudyForecast forecast(const Study& study, std::span<const ExperimentRecord> pil
   forecast.to_keep = rate(wrong, ok, confidence);
   const double scale = static_cast<double>(forecast.experiments) / static_cast<double>(run);
   forecast.loops_with_impact = scale * static_cast<double>(with_impact);
+  const double faults = scale * static_cast<double>(faulty);
+  if (faulty > 0)
+    forecast.loops_with_impact_interval = {faults * forecast.impact.interval.lower,
+                                           faults * forecast.impact.interval.upper};
   forecast.loops_without_fault = scale * static_cast<double>(without_fault);
   forecast.detection_width = interval_width(0.5, forecast.loops_with_impact, confidence);
   forecast.false_alarm_width = interval_width(0.05, forecast.loops_without_fault, confidence);

@@ -18,7 +18,8 @@ struct StudyForecast {
   Rate feasible;                 ///< of the pilot: status ok
   Rate impact;                   ///< of the feasible ones with a fault: the fault has an impact
   Rate to_keep;                  ///< of the feasible ones: the first method is wrong, StorePolicy::flagged
-  double loops_with_impact = 0;  ///< expected in the whole study
+  double loops_with_impact = 0;  ///< expected in the whole study, and where `impact` has its interval
+  Interval loops_with_impact_interval{0, 0};
   double loops_without_fault = 0;
   /// Width of Wilson's interval of a rate of 1/2 over the loops with impact, and of one of 1/20 over those
   /// without a fault: how well the study will know what it is for. 1 without a loop.

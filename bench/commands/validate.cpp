@@ -146,8 +146,7 @@ std::string text_of(const Validation& found, int jobs) {
         "rate of "
         "0.5 is known to +- {:.3f}\n",
         forecast.impact.hits, forecast.impact.total, forecast.loops_with_impact,
-        forecast.impact.interval.lower * forecast.loops_with_impact / std::max(forecast.impact.value, 1e-12),
-        forecast.impact.interval.upper * forecast.loops_with_impact / std::max(forecast.impact.value, 1e-12),
+        forecast.loops_with_impact_interval.lower, forecast.loops_with_impact_interval.upper,
         forecast.detection_width / 2.0);
   if (forecast.loops_without_fault > 0)
     text += fmt::format(

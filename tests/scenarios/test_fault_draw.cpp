@@ -93,6 +93,7 @@ TEST_CASE("random disturbances: each shape is what it is called") {
                            RandomStream(1, static_cast<std::uint64_t>(i), StreamId::kind));
     quiet += static_cast<double>((v.array() == 0.0).count()) / 2000.0 / 40.0;
   }
+  // Two squares of normal numbers a loop, 40 loops: the ratio scatters by a fifth, and 0.5 is 2.5 of that.
   CHECK(slow / fast == Approx(16.0).epsilon(0.5));
   CHECK(quiet == Approx(0.8).epsilon(0.1));  // pause 80, length 20
 }

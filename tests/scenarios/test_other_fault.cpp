@@ -136,6 +136,7 @@ TEST_CASE("other faults: a changed limit moves the CV that rests on it") {
       simulate_experiment(study, draw_of(OtherFaultKind::limit, 0, -0.2, {.sample = 30}), testing::kFactory);
   REQUIRE(shifted.status == ControlStatus::ok);
   CHECK(shifted.y.leftCols(30) == healthy.y.leftCols(30));
+  // By half: the optimizer trades the limit against the targets of the MVs, and the MDs step in between.
   CHECK((shifted.y - healthy.y).rightCols(60).row(0).mean() == Approx(-0.2).epsilon(0.5));
 }
 

@@ -143,6 +143,10 @@ TEST_CASE("a pilot says how many loops with impact there will be, and how well r
   std::vector<ExperimentRecord> mild(5, made_up(study, ExperimentKind::mpm, 1.1));
   CHECK_THAT(to_string(forecast_warnings(study, forecast(study, mild), mild).front()),
              Contains("no fault of the pilot has an impact (5 of them)"));
+  // None of five is not none of all: the share may be up to 43 % (Wilson, 95 %).
+  const Interval possible = forecast(study, mild).loops_with_impact_interval;
+  CHECK(possible.lower == Approx(0.0).margin(1e-9));
+  CHECK(possible.upper == Approx(0.434 * study.experiment_count()).epsilon(0.01));
   Study small = study;
   small.experiments = {.mpm = 10, .healthy = 10};
   std::vector<ExperimentRecord> few(10, made_up(study, ExperimentKind::mpm, 1.5));
