@@ -1,6 +1,8 @@
 #include "analysis/experiment/judgement.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace mpm {
 namespace {
@@ -42,6 +44,26 @@ std::optional<Channel> mismatched_channel(const Study& study, const ExperimentDr
   if (draw.mismatches.size() != 1 || draw.mismatches[0].input >= study.mv_count())
     return std::nullopt;
   return Channel{draw.mismatches[0].cv, draw.mismatches[0].input};
+}
+
+/// What a parameter is where there is no mismatch.
+double without_mismatch(MismatchParameter parameter) {
+  return parameter == MismatchParameter::gain || parameter == MismatchParameter::time_constant ||
+                 parameter == MismatchParameter::sign
+             ? 1.0
+             : 0.0;
+}
+
+void judge_mismatch(const Mismatch& truth, const AssessmentRecord& assessment, Judgement& judgement) {
+  const std::optional<NamedMismatch> named = assessment.named_mismatch();
+  const bool right = assessment.flagged && named && named->channel == Channel{truth.cv, truth.input} &&
+                     named->parameter == truth.parameter;
+  judgement.parameter = correctness(right);
+  if (!right || std::isnan(named->size))
+    return;
+  judgement.size = correctness(named->lower <= truth.value && truth.value <= named->upper);
+  judgement.size_error =
+      std::abs(named->size - truth.value) / std::abs(truth.value - without_mismatch(truth.parameter));
 }
 
 }  // namespace
@@ -95,8 +117,10 @@ Judgement judge(const Study& study, const ExperimentRecord& record, const Assess
   if (method.tells_sources && single && in_source_population(study, assessment))
     judgement.predicted_source = correctness(assessment.predicted_source == source_of(draw.kind));
   const std::optional<Channel> channel = mismatched_channel(study, draw);
-  if (method.names_channels && assessment.flagged && channel)
-    judgement.channel = correctness(assessment.names(*channel));
+  if (method.names_channels && channel)
+    judgement.channel = correctness(assessment.flagged && assessment.names(*channel));
+  if (method.names_mismatches && channel)
+    judge_mismatch(draw.mismatches[0], assessment, judgement);
   if (draw.named && method.locates_cvs)
     judgement.cvs = judge_cvs(record, assessment);
   return judgement;

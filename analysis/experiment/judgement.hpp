@@ -37,17 +37,24 @@ struct CvJudgement {
 
 /// The answer of a method on one experiment against the truth.
 ///
-/// | member    | question                                          | of experiments with a verdict |
-/// |-----------|---------------------------------------------------|--------------------------------------------|
-/// | predicted_cv | is the worst CV the affected one               | flagged, a fault that affects one CV |
-/// | predicted_source | is its source the right one                | with a single fault,
-/// in_source_population() | | channel   | is the mismatched channel among the named         | flagged, with
-/// one mismatch, of an MV       | | cvs       | is every CV of a named scenario judged rightly    | named
-/// scenarios                            |
+/// | member           | question                                  | of experiments with a verdict |
+/// |------------------|-------------------------------------------|------------------------------------------|
+/// | predicted_cv     | is the worst CV the affected one          | flagged, a fault that affects one CV | |
+/// predicted_source | is its source the right one               | with a single fault, in_source_population()
+/// | | channel          | is the mismatched channel among the named | with one mismatch, of an MV; that of a
+/// loop that is not flagged is not named | | parameter        | are its channel and parameter those of the
+/// mismatch that is named | as channel       | | size             | does the interval of its size hold the
+/// true one | those whose parameter is right     | | cvs              | is every CV of a named scenario
+/// judged rightly | named scenarios                     |
 struct Judgement {
   Correctness predicted_cv = Correctness::not_judged;
   Correctness predicted_source = Correctness::not_judged;
   Correctness channel = Correctness::not_judged;
+  Correctness parameter = Correctness::not_judged;
+  Correctness size = Correctness::not_judged;
+  /// |size - true size| over the true deviation from the model (1 of a factor, 0 of what is added), of those
+  /// whose parameter is right: 1 is no better than the model. NaN otherwise.
+  double size_error = kNaN;
   std::optional<CvJudgement> cvs;
   bool flagged = false;                ///< the loop is
   bool flagged_without_fault = false;  ///< it is, and model and plant agree

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/holm.hpp"
-#include "analysis/statistics/quantile.hpp"
 #include "plants/non_finite.hpp"
 
 namespace mpm {
@@ -35,9 +34,11 @@ struct Count {
 
 struct Counts {
   Count answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
-      false_alarm_healthy, false_alarm_tuning, located, source, channel, source_all, abstained;
+      false_alarm_healthy, false_alarm_tuning, located, source, channel, channel_impact, parameter_impact,
+      size_covered, source_all, abstained;
   Count false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
-  std::vector<double> fault_scores, healthy_scores, impact_scores, no_impact_scores, milliseconds;
+  std::vector<double> fault_scores, healthy_scores, impact_scores, no_impact_scores, milliseconds,
+      channels_named, size_errors;
   CalibratedThresholds thresholds;
 
   void add(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
@@ -91,18 +92,28 @@ struct Counts {
     }
     if (record.draw.kind == ExperimentKind::ud)
       detected_ud.add(said.flagged);
+    const Judgement judgement = judge(study, record, said);
     if (said.flagged)
-      add_diagnosis(judge(study, record, said));
+      add_diagnosis(judgement, said);
+    if (impact) {
+      channel_impact.add(judgement.channel);
+      parameter_impact.add(judgement.parameter);
+    }
   }
 
-  void add_diagnosis(const Judgement& judgement) {
+  void add_diagnosis(const Judgement& judgement, const AssessmentRecord& said) {
     located.add(judgement.predicted_cv);
     source.add(judgement.predicted_source);
     channel.add(judgement.channel);
+    if (judgement.channel != Correctness::not_judged)
+      channels_named.push_back(said.values("channel_flagged").sum());
+    size_covered.add(judgement.size);
+    if (!std::isnan(judgement.size_error))
+      size_errors.push_back(judgement.size_error);
   }
 };
 
-constexpr std::array<MethodRateInfo, 18> kRates{{
+constexpr std::array<MethodRateInfo, 21> kRates{{
     {"answered", "answered", "of all loops those on which the method gave a verdict", &MethodRates::answered},
     {"detected", "detected", "of the loops with a fault those that are flagged", &MethodRates::detected},
     {"detected_mpm", "detected, mismatch", "of the loops with a mismatch alone those that are flagged",
@@ -130,6 +141,18 @@ constexpr std::array<MethodRateInfo, 18> kRates{{
     {"channel", "channel named",
      "of the flagged loops with one mismatch of an MV those in which its channel is named",
      &MethodRates::channel},
+    {"channel_impact", "channel, with impact",
+     "of the loops with one mismatch of an MV that has an impact, flagged or not, those that are flagged and "
+     "whose channel is named",
+     &MethodRates::channel_impact},
+    {"parameter_impact", "parameter, with impact",
+     "of the loops with one mismatch of an MV that has an impact, flagged or not, those that are flagged and "
+     "whose channel and parameter are those that the method is surest of",
+     &MethodRates::parameter_impact},
+    {"size_covered", "size in interval",
+     "of the flagged loops with one mismatch of an MV whose channel and parameter are named those in which "
+     "the interval of its size holds the true size",
+     &MethodRates::size_covered},
     {"source_all", "fault told, three ways",
      "of the loops with a fault, with or without verdict, those that are flagged with the right source: "
      "mismatch, disturbance or both",
@@ -155,6 +178,17 @@ constexpr std::array<MethodRateInfo, 18> kRates{{
      "of the loops with a mismatch alone those above the threshold that is calibrated for 5 % of false "
      "alarms among loops without a fault and with a disturbance alone",
      &MethodRates::power_05_mpm, true},
+}};
+
+constexpr std::array<MethodEstimateInfo, 2> kEstimates{{
+    {"channels_named", "channels named, mean",
+     "mean number of channels named, over the flagged loops with one mismatch of an MV",
+     &MethodRates::channels_named, false},
+    {"size_error", "error of the size, median",
+     "median error of the size over the deviation of the true one from the model, over the flagged loops "
+     "with "
+     "one mismatch of an MV whose channel and parameter are named",
+     &MethodRates::size_error},
 }};
 
 constexpr std::array<ThresholdInfo, 4> kThresholds{{
@@ -193,6 +227,10 @@ std::vector<MethodRateInfo> method_rate_infos(const Study& study) {
   return infos;
 }
 
+std::span<const MethodEstimateInfo> method_estimate_infos() {
+  return kEstimates;
+}
+
 std::span<const ThresholdInfo> threshold_infos() {
   return kThresholds;
 }
@@ -224,6 +262,9 @@ MethodRates method_rates(const Study& study, std::size_t method, std::span<const
                     .located = counts.located.rate(confidence),
                     .source = counts.source.rate(confidence),
                     .channel = counts.channel.rate(confidence),
+                    .channel_impact = counts.channel_impact.rate(confidence),
+                    .parameter_impact = counts.parameter_impact.rate(confidence),
+                    .size_covered = counts.size_covered.rate(confidence),
                     .source_all = counts.source_all.rate(confidence),
                     .abstained = counts.abstained.rate(confidence),
                     .false_alarm_calibrated = counts.false_alarm_calibrated.rate(confidence),
@@ -236,15 +277,13 @@ MethodRates method_rates(const Study& study, std::size_t method, std::span<const
                     .roc_area = {},
                     .roc_impact = {},
                     .roc_impact_area = {},
-                    .milliseconds = kNone};
+                    .channels_named = mean_estimate(counts.channels_named),
+                    .size_error = median_estimate(counts.size_errors, confidence),
+                    .milliseconds = median_estimate(counts.milliseconds, confidence).value};
   std::tie(rates.roc, rates.roc_area) =
       curve_with_area(counts.fault_scores, counts.healthy_scores, confidence);
   std::tie(rates.roc_impact, rates.roc_impact_area) =
       curve_with_area(counts.impact_scores, counts.no_impact_scores, confidence);
-  if (!counts.milliseconds.empty()) {
-    std::sort(counts.milliseconds.begin(), counts.milliseconds.end());
-    rates.milliseconds = sorted_quantile(counts.milliseconds, 0.5);
-  }
   return rates;
 }
 
@@ -265,6 +304,12 @@ std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const
                       "area under the ROC curve of its score, faults with an impact against all other loops")
                      .with(rates.roc_impact.area, rates.roc_impact_area,
                            rates.roc_impact.positives + rates.roc_impact.negatives));
+  for (const MethodEstimateInfo& info : method_estimate_infos()) {
+    const Estimate& found = rates.*info.estimate;
+    Finding row = like(info.name, info.title, info.meaning);
+    row.has_interval = info.has_interval;
+    rows.push_back(row.with(found.value, found.interval, found.count));
+  }
   if (!study.calibration)
     return rows;
   for (const ThresholdInfo& info : threshold_infos()) {

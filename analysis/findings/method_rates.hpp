@@ -9,6 +9,7 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/calibration.hpp"
 #include "analysis/findings/finding.hpp"
+#include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/mcnemar.hpp"
 #include "analysis/statistics/roc.hpp"
@@ -16,12 +17,13 @@
 namespace mpm {
 
 /// How often one method is right. A loop without a verdict counts in `answered` only; method_rate_infos()
-/// says what each rate counts.
+/// says what each rate counts, and method_estimate_infos() what each estimate is.
 struct MethodRates {
   std::string
       reason;  ///< why there was no verdict on the first loop without one; empty when it always gave one
   Rate answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
-      false_alarm_healthy, false_alarm_tuning, located, source, channel, source_all, abstained;
+      false_alarm_healthy, false_alarm_tuning, located, source, channel, channel_impact, parameter_impact,
+      size_covered, source_all, abstained;
   // At calibrated thresholds; nothing is counted without one.
   Rate false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
   CalibratedThresholds thresholds;
@@ -30,6 +32,7 @@ struct MethodRates {
   RocCurve
       roc_impact;  ///< loops with a fault that has an impact against those with another one and healthy ones
   Interval roc_impact_area;
+  Estimate channels_named, size_error;
   double milliseconds;  ///< median processor time a loop, of those answered; NaN without
 };
 
@@ -48,6 +51,18 @@ std::span<const MethodRateInfo> method_rate_infos();
 /// Those that this study can have.
 std::vector<MethodRateInfo> method_rate_infos(const Study& study);
 
+/// A number of a method that is no share of loops, under the name that text, JSON and archive have for it.
+struct MethodEstimateInfo {
+  const char* name;     ///< "size_error"
+  const char* title;    ///< for people
+  const char* meaning;  ///< which loops are looked at, and what of them is counted
+  Estimate MethodRates::*estimate;
+  bool has_interval = true;
+};
+
+/// Every estimate of MethodRates once, in the order in which people read them.
+std::span<const MethodEstimateInfo> method_estimate_infos();
+
 /// A calibrated threshold under the name that its finding and JSON have.
 struct ThresholdInfo {
   const char* name;     ///< "threshold_05"
@@ -64,7 +79,7 @@ MethodRates method_rates(const Study& study, std::size_t method, std::span<const
                          const Calibration& calibration = {});
 
 /// Its rows: "compare.METHOD.RATE" for each rate that the study can have, "compare.METHOD.roc_area",
-/// "compare.METHOD.roc_area_impact", and in a study with a calibration the thresholds.
+/// "compare.METHOD.roc_area_impact", the estimates, and in a study with a calibration the thresholds.
 std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method);
 
 /// How the false alarms of a method agree with what it states of them.

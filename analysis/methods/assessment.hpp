@@ -43,6 +43,14 @@ struct Channel {
   friend bool operator==(const Channel&, const Channel&) = default;
 };
 
+/// The mismatch that a method is surest of: which parameter of which channel, and how large.
+struct NamedMismatch {
+  Channel channel;
+  MismatchParameter parameter;
+  double size = kNaN;                 ///< as Mismatch::value; NaN: the method gives no size
+  double lower = kNaN, upper = kNaN;  ///< its interval, of the confidence aggregate.confidence; NaN: none
+};
+
 /// One number of a method, by a name of MethodDescription::numbers. Of the whole loop (cv and column -1), of
 /// a CV (column -1), of a channel (its MV in `column`) or of a CV at a lag (the lag in `column`).
 struct AssessmentNumber {
@@ -61,8 +69,9 @@ struct Assessment {
   /// How far the loop is from being flagged, larger is worse: what a ROC curve is drawn over. It need not be
   /// that of a CV.
   double score = kNaN;
-  std::vector<CvAssessment> cvs;          ///< ny; empty when the method does not look at CVs alone
-  std::vector<Channel> flagged_channels;  ///< of methods that name channels
+  std::vector<CvAssessment> cvs;                     ///< ny; empty when the method does not look at CVs alone
+  std::vector<Channel> flagged_channels;             ///< of methods that name channels
+  std::optional<NamedMismatch> named_mismatch = {};  ///< of methods that name mismatches; none: none is named
   std::vector<AssessmentNumber> numbers;
 
   /// The CV with the largest score; none without one.

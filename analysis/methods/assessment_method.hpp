@@ -65,9 +65,10 @@ struct MethodDescription {
   std::string title;    ///< "Sun et al. (2013)"
   std::string verdict;  ///< what a flagged loop is, in one line
   AssessmentRequirements requirements;
-  bool locates_cvs = false;     ///< Assessment::cvs has verdicts
-  bool names_channels = false;  ///< Assessment::flagged_channels
-  bool tells_sources = false;   ///< CvAssessment::source
+  bool locates_cvs = false;       ///< Assessment::cvs has verdicts
+  bool names_channels = false;    ///< Assessment::flagged_channels
+  bool tells_sources = false;     ///< CvAssessment::source
+  bool names_mismatches = false;  ///< Assessment::named_mismatch
   /// The share of loops without a fault that the method says it flags; none: it says nothing of it.
   std::optional<double> stated_false_alarms = {};
   std::vector<AssessmentNumberInfo> numbers;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 #include "analysis/methods/method_table.hpp"
@@ -13,6 +14,13 @@ namespace {
 
 const std::vector<std::string>& no_yes() {
   static const std::vector<std::string> words{"no", "yes"};
+  return words;
+}
+
+std::vector<std::string> mismatch_parameters() {
+  std::vector<std::string> words;
+  for (int value = 0; value <= static_cast<int>(MismatchParameter::sign); ++value)
+    words.emplace_back(to_string(static_cast<MismatchParameter>(value)));
   return words;
 }
 
@@ -31,6 +39,15 @@ std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& metho
   if (method.names_channels)
     numbers.push_back({"channel_flagged", NumberScope::channel, "the method names this channel of the model",
                        "1", no_yes()});
+  if (method.names_mismatches) {
+    numbers.push_back({"mismatch_parameter", NumberScope::channel,
+                       "parameter of this channel that the method says is wrong", "1",
+                       mismatch_parameters()});
+    numbers.push_back(
+        {"mismatch_size", NumberScope::channel, "its size, as `mismatch_value` of an experiment is one"});
+    numbers.push_back({"mismatch_lower", NumberScope::channel, "lower end of the interval of the size"});
+    numbers.push_back({"mismatch_upper", NumberScope::channel, "upper end of the interval of the size"});
+  }
   return numbers;
 }
 
@@ -103,6 +120,19 @@ bool AssessmentRecord::names(const Channel& channel) const {
   return number("channel_flagged", channel.cv, channel.mv) == 1.0;
 }
 
+std::optional<NamedMismatch> AssessmentRecord::named_mismatch() const {
+  const Eigen::MatrixXd parameters = values("mismatch_parameter");
+  for (Eigen::Index cv = 0; cv < parameters.rows(); ++cv)
+    for (Eigen::Index mv = 0; mv < parameters.cols(); ++mv)
+      if (!std::isnan(parameters(cv, mv)))
+        return NamedMismatch{{cv, mv},
+                             static_cast<MismatchParameter>(parameters(cv, mv)),
+                             number("mismatch_size", cv, mv),
+                             number("mismatch_lower", cv, mv),
+                             number("mismatch_upper", cv, mv)};
+  return std::nullopt;
+}
+
 std::vector<AssessmentRecord> unassessed(const AssessmentForms& forms) {
   std::vector<AssessmentRecord> records(forms.size());
   for (std::size_t method = 0; method < forms.size(); ++method)
@@ -139,6 +169,13 @@ AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessme
     record.numbers.segment(place.first, place.size()).setZero();
     for (const Channel& channel : assessment.flagged_channels)
       record.set_number("channel_flagged", 1.0, channel.cv, channel.mv);
+  }
+  if (const auto& named = assessment.named_mismatch; named && method.names_mismatches) {
+    const auto [cv, mv] = named->channel;
+    record.set_number("mismatch_parameter", static_cast<double>(named->parameter), cv, mv);
+    record.set_number("mismatch_size", named->size, cv, mv);
+    record.set_number("mismatch_lower", named->lower, cv, mv);
+    record.set_number("mismatch_upper", named->upper, cv, mv);
   }
   for (const AssessmentNumber& number : assessment.numbers)
     record.set_number(number.name, number.value, std::max<Eigen::Index>(number.cv, 0),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,8 @@ struct NumberPlace {
 /// | cv_score        | cv      | locate CVs: CvAssessment::score                          |
 /// | cv_source       | cv      | tell sources: FaultSource of a flagged CV or the worst one |
 /// | channel_flagged | channel | name channels: 1 for a channel that is named, 0 for others |
+/// | mismatch_parameter, mismatch_size, mismatch_lower, mismatch_upper | channel | name mismatches: those of
+/// Assessment::named_mismatch in the place of its channel, NaN elsewhere |
 class AssessmentForm {
  public:
   AssessmentForm(MethodDescription method, const Study& study);
@@ -91,6 +94,8 @@ struct AssessmentRecord {
   void set_number(std::string_view name, double value, Eigen::Index row = 0, Eigen::Index column = 0);
   /// Whether the method names this channel.
   bool names(const Channel& channel) const;
+  /// The mismatch that it names; none: it names none, or gave no verdict.
+  std::optional<NamedMismatch> named_mismatch() const;
 };
 
 /// The records of a loop that no method has assessed.

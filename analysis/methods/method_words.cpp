@@ -32,7 +32,8 @@ std::string needs_text(const MethodDescription& method) {
 std::string answers_text(const MethodDescription& method) {
   return listed({{method.locates_cvs, "the CV"},
                  {method.names_channels, "the channels"},
-                 {method.tells_sources, "the source"}});
+                 {method.tells_sources, "the source"},
+                 {method.names_mismatches, "the parameter"}});
 }
 
 }  // namespace mpm

@@ -56,20 +56,22 @@ std::optional<double> stated_in(const Json& json) {
 
 Json method_json(const MethodDescription& method) {
   const AssessmentRequirements& needs = method.requirements;
-  return {
-      {"name", method.name},
-      {"title", method.title},
-      {"verdict", method.verdict},
-      {"needs",
-       {{"setpoints", needs.setpoints},
-        {"moving_setpoints", needs.moving_setpoints},
-        {"benchmark", needs.benchmark},
-        {"moving_mvs", needs.moving_mvs},
-        {"complete_record", needs.complete_record}}},
-      {"answers",
-       {{"cv", method.locates_cvs}, {"channel", method.names_channels}, {"source", method.tells_sources}}},
-      {"stated_false_alarms",
-       method.stated_false_alarms ? Json(*method.stated_false_alarms) : Json(nullptr)}};
+  return {{"name", method.name},
+          {"title", method.title},
+          {"verdict", method.verdict},
+          {"needs",
+           {{"setpoints", needs.setpoints},
+            {"moving_setpoints", needs.moving_setpoints},
+            {"benchmark", needs.benchmark},
+            {"moving_mvs", needs.moving_mvs},
+            {"complete_record", needs.complete_record}}},
+          {"answers",
+           {{"cv", method.locates_cvs},
+            {"channel", method.names_channels},
+            {"source", method.tells_sources},
+            {"mismatch", method.names_mismatches}}},
+          {"stated_false_alarms",
+           method.stated_false_alarms ? Json(*method.stated_false_alarms) : Json(nullptr)}};
 }
 
 std::string method_description_json(const MethodDescription& method) {
@@ -103,6 +105,7 @@ MethodDescription method_description(const std::string& text, const std::string&
                              .locates_cvs = answers.at("cv"),
                              .names_channels = answers.at("channel"),
                              .tells_sources = answers.at("source"),
+                             .names_mismatches = answers.value("mismatch", false),
                              .stated_false_alarms = stated_in(json),
                              .numbers = {}};
     for (const Json& number : json.at("numbers"))

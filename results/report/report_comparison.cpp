@@ -32,6 +32,12 @@ std::string rate_cell(const Rate& rate) {
                                        html_interval(rate.interval, true), rate.total);
 }
 
+std::string estimate_cell(const Estimate& estimate) {
+  return estimate.count == 0 ? html_number(NAN)
+                             : fmt::format("{}<br><small>{}<br>of {}</small>", html_number(estimate.value),
+                                           html_interval(estimate.interval), estimate.count);
+}
+
 /// What the method states of its false alarms, and a mark when that is not what it does.
 std::string stated_cell(const MethodFindings& method) {
   const MethodDescription& description = method.form->method();
@@ -59,6 +65,18 @@ std::string rates_table(const Study& study, const Methods& methods) {
       cells.push_back(rate_cell(method.rates.*info.rate));
     table.row(cells);
   }
+  for (const MethodEstimateInfo& info : method_estimate_infos()) {
+    const auto of = [&](const MethodFindings& method) -> const Estimate& {
+      return method.rates.*info.estimate;
+    };
+    if (std::none_of(methods.begin(), methods.end(),
+                     [&](const auto& method) { return of(method).count > 0; }))
+      continue;
+    std::vector<std::string> cells{html_text(info.title)};
+    for (const MethodFindings& method : methods)
+      cells.push_back(estimate_cell(of(method)));
+    table.row(cells);
+  }
   std::vector<std::string> stated{"false alarms, stated"};
   for (const MethodFindings& method : methods)
     stated.push_back(stated_cell(method));
@@ -70,6 +88,8 @@ std::string rates_table(const Study& study, const Methods& methods) {
 std::string rates_legend(const Study& study) {
   std::string html = "<p><small>";
   for (const MethodRateInfo& info : method_rate_infos(study))
+    html += fmt::format("<strong>{}</strong>: {}. ", html_text(info.title), html_text(info.meaning));
+  for (const MethodEstimateInfo& info : method_estimate_infos())
     html += fmt::format("<strong>{}</strong>: {}. ", html_text(info.title), html_text(info.meaning));
   return fmt::format(
       "{}<strong>false alarms, stated</strong>: share of healthy loops that the method says it flags; marked "

@@ -22,6 +22,15 @@ std::string rate_text(const Rate& rate) {
                      100 * rate.interval.upper, rate.total);
 }
 
+std::string estimate_text(const Estimate& estimate) {
+  if (estimate.count == 0)
+    return "-";
+  const Interval& interval = estimate.interval;
+  return std::isnan(interval.lower) ? fmt::format("{:.3g} {:>4}", estimate.value, estimate.count)
+                                    : fmt::format("{:.3g} [{:.3g}, {:.3g}] {:>4}", estimate.value,
+                                                  interval.lower, interval.upper, estimate.count);
+}
+
 std::string area_text(const RocCurve& roc, const Interval& area) {
   if (!roc.defined())
     return "-";
@@ -61,6 +70,10 @@ std::string rates_text(const Study& study, const std::vector<MethodFindings>& me
       [](const MethodFindings& m) { return area_text(m.rates.roc, m.rates.roc_area); });
   row("area under ROC, impact",
       [](const MethodFindings& m) { return area_text(m.rates.roc_impact, m.rates.roc_impact_area); });
+  for (const MethodEstimateInfo& info : method_estimate_infos())
+    if (std::any_of(methods.begin(), methods.end(),
+                    [&](const MethodFindings& m) { return (m.rates.*info.estimate).count > 0; }))
+      row(info.title, [&](const MethodFindings& m) { return estimate_text(m.rates.*info.estimate); });
   row("ms a loop, median", cost_text);
   return table.text();
 }

@@ -227,6 +227,41 @@ TEST_CASE("rates of a method: channels are counted for methods that name them, u
   }
 }
 
+TEST_CASE("rates of a method: channel, parameter and size of a mismatch with impact", "[method_rates]") {
+  MethodDescription method;
+  method.name = "namer";
+  method.names_channels = method.names_mismatches = true;
+  const auto form = std::make_shared<const AssessmentForm>(method, study());
+  const auto truth = [](double impact) {
+    ExperimentRecord record = made_up_record(0, kMpm, 1, impact);
+    record.draw.mismatches = {{1, 2, MismatchParameter::gain, 0.5}};
+    record.ivar_basis.setConstant(impact);
+    return record;
+  };
+  const auto says = [&](Channel channel, MismatchParameter parameter, double size, bool flagged = true) {
+    Assessment said;
+    said.flagged = flagged;
+    said.flagged_channels = {channel, {0, 0}};
+    said.named_mismatch = {channel, parameter, size, size - 0.1, size + 0.1};
+    return kept(form, said);
+  };
+  constexpr auto kGain = MismatchParameter::gain;
+  Case made;
+  for (const AssessmentRecord& said :
+       {says({1, 2}, kGain, 0.55), says({1, 2}, kGain, 0.8), says({1, 2}, MismatchParameter::dead_time, 3.0),
+        says({1, 3}, kGain, 0.5), says({1, 2}, kGain, 0.5, false)})
+    made.add(truth(3.0), said, said);
+  made.add(truth(1.0), says({1, 2}, kGain, 0.7), verdict(false));  // without impact
+  const MethodRates rates = made.rates();
+  check_rate(rates.channel, 4, 5);         // of those that are flagged
+  check_rate(rates.channel_impact, 3, 5);  // what is not flagged is not named
+  check_rate(rates.parameter_impact, 2, 5);
+  check_rate(rates.size_covered, 1, 3);
+  CHECK(rates.size_error.value == Approx(0.4));  // 0.1, 0.4 and 0.6 of the deviation of 0.5
+  CHECK(rates.channels_named.value == 2.0);
+  CHECK(rates.channels_named.count == 5);
+}
+
 TEST_CASE("rates of a method: the area under ROC is the share of pairs in the right order",
           "[method_rates]") {
   RandomStream stream(1, 2, StreamId::measurement_noise);
@@ -381,7 +416,8 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   made.add(kNone, verdict(false, 0.0));
   const MethodRates rates = made.rates();
   const std::vector<Finding> rows = rows_of(study(), rates, testing::chain_form()->method());
-  REQUIRE(rows.size() == method_rate_infos(study()).size() + 2);
+  const std::size_t estimates = method_estimate_infos().size();
+  REQUIRE(rows.size() == method_rate_infos(study()).size() + 2 + estimates);
   CHECK(rows[0].name == "compare.botelho.answered");
   CHECK(rows[1].name == "compare.botelho.detected");
   CHECK(rows[1].value == 0.5);
@@ -390,12 +426,12 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   CHECK(rows[1].is_share());
   CHECK(rows[1].method == "botelho");
   CHECK(rows[1].interval.lower == rates.detected.interval.lower);
-  const Finding& area = rows[rows.size() - 2];
+  const Finding& area = rows[rows.size() - estimates - 2];
   CHECK(area.name == "compare.botelho.roc_area");
   CHECK_FALSE(area.is_share());
   CHECK(area.value == 1.0);
   CHECK(area.count == 3);
-  CHECK(rows.back().name == "compare.botelho.roc_area_impact");
+  CHECK(rows[rows.size() - estimates - 1].name == "compare.botelho.roc_area_impact");
 
   // Rates at calibrated thresholds, and the thresholds, are of studies with a calibration.
   CHECK(std::none_of(rows.begin(), rows.end(),
@@ -403,7 +439,7 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   Study calibrated = study();
   calibrated.calibration.emplace();
   CHECK(rows_of(calibrated, rates, testing::chain_form()->method()).size() ==
-        method_rate_infos().size() + 2 + threshold_infos().size());
+        method_rate_infos().size() + 2 + estimates + threshold_infos().size());
 }
 
 }  // namespace mpm

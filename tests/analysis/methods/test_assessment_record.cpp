@@ -139,6 +139,24 @@ TEST_CASE("an answer that is kept has every number under its name") {
   CHECK(record.values("nothing").size() == 0);
 }
 
+TEST_CASE("an answer that is kept names its mismatch in the place of its channel, or none") {
+  MethodDescription method = talker();
+  method.names_mismatches = true;
+  const auto form = form_of(method);
+  CHECK_FALSE(kept(form, {}).named_mismatch());
+  Assessment said;
+  said.named_mismatch = {{4, 2}, MismatchParameter::dead_time, 3.0, 2.5, 4.0};
+  const AssessmentRecord record = kept(form, said);
+  CHECK(record.values("mismatch_parameter").array().isNaN().count() ==
+        short_study().cv_count() * short_study().mv_count() - 1);
+  const auto named = record.named_mismatch();
+  REQUIRE(named);
+  CHECK(named->channel == Channel{4, 2});
+  CHECK(named->parameter == MismatchParameter::dead_time);
+  CHECK((named->size == 3.0 && named->lower == 2.5 && named->upper == 4.0));
+  CHECK_FALSE(kept(form_of(talker()), said).named_mismatch());  // a method that does not say it names any
+}
+
 TEST_CASE("an answer that is kept: a number that was not given is NaN, one that is set stays in its place") {
   AssessmentRecord record = kept(form_of(talker()), {});
   CHECK(record.answered());
