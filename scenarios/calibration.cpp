@@ -36,6 +36,7 @@ Study calibration_study(const Study& study) {
   Study loops = study;
   loops.seed = calibration_seed(study);
   loops.experiments = {};
+  loops.monitoring.reset();
   loops.experiments.healthy = study.calibration->healthy;
   loops.experiments.ud = study.calibration->ud;
   if (study.simulation.random_steps || study.simulation.md_noise_standard_deviation.size() > 0) {

@@ -154,6 +154,20 @@ struct CalibrationOptions {
   bool operator==(const CalibrationOptions&) const = default;
 };
 
+/// How methods watch a loop while it runs: each assesses the last `window` samples, every `stride` samples.
+struct MonitoringOptions {
+  int window = 200;  ///< samples
+  int stride = 50;   ///< samples from one window to the next
+
+  /// How many windows lie in a record.
+  int count(int samples) const { return (samples - window) / stride + 1; }
+  /// First sample of a window, and the one after its last.
+  int begin(int number) const { return number * stride; }
+  int end(int number) const { return begin(number) + window; }
+
+  bool operator==(const MonitoringOptions&) const = default;
+};
+
 /// A number that somebody has reported for this study, by the name of the finding that it stands beside.
 struct ReportedValue {
   std::string name;
@@ -194,6 +208,7 @@ struct Study {
   DiagnosisOptions diagnosis;
   std::vector<std::string> methods{"botelho"};    ///< of assessment, by name; "all" alone: every one
   AssessmentOptions assessment;                   ///< options of the methods
+  std::optional<MonitoringOptions> monitoring;    ///< none: methods see whole records only
   std::optional<CalibrationOptions> calibration;  ///< none: every method has its own threshold only
   AggregateOptions aggregate;
   std::vector<ReportedValue> reported;  ///< shown beside the results, never used to make them

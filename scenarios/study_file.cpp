@@ -76,6 +76,7 @@ Study read_study(std::string_view text, const std::string& file_name, TomlDraft*
   study.diagnosis = read_diagnosis(document);
   study.methods = read_methods(document);
   study.assessment = read_assessment(document);
+  study.monitoring = read_monitoring(document, study);
   study.calibration = read_calibration(document, study);
   study.aggregate = read_aggregate(document);
   study.reported = read_reported(document);

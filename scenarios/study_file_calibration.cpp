@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -6,11 +7,13 @@
 #include "scenarios/study_file_keys.hpp"
 #include "scenarios/study_file_parts.hpp"
 #include "scenarios/toml_values.hpp"
+#include "scenarios/window_scan.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr std::int64_t kMaxCalibrationLoops = 1'000'000;  // of one kind
+constexpr std::int64_t kShortestMonitoringWindow = kShortestWindow + kFewestCorrelatedPairs;
 constexpr std::int64_t kLargestCalibrationSeed = std::numeric_limits<std::int64_t>::max();
 
 /// Loops of the same seed would be those that the thresholds are tried on.
@@ -22,6 +25,22 @@ std::uint64_t read_calibration_seed(const TomlTable& table, const Study& study) 
 }
 
 }  // namespace
+
+std::optional<MonitoringOptions> read_monitoring(const TomlTable& document, const Study& study) {
+  if (!document.has("monitoring"))
+    return std::nullopt;
+  const TomlTable table = document.table("monitoring", study_file_keys("monitoring"));
+  if (study.names_scenarios())
+    table.refuse("", "monitoring of a study of named scenarios", "only in a study of random experiments");
+  const std::int64_t samples = study.simulation.samples;
+  MonitoringOptions options;
+  options.window = static_cast<int>(read_whole_or(table, "window",
+                                                  std::min<std::int64_t>(kShortestMonitoringWindow, samples),
+                                                  samples, std::min<std::int64_t>(options.window, samples)));
+  options.stride = static_cast<int>(
+      read_whole_or(table, "stride", 1, samples, std::min<std::int64_t>(options.stride, samples)));
+  return options;
+}
 
 std::optional<CalibrationOptions> read_calibration(const TomlTable& document, const Study& study) {
   if (!document.has("calibration"))

@@ -7,10 +7,10 @@ namespace mpm {
 
 const std::vector<StudyFileTable>& study_file_tables() {
   static const std::vector<StudyFileTable> tables{
-      {"", {"study",       "plant",      "controller",  "simulation",      "record",
-            "experiments", "scenario",   "mismatch",    "disturbance",     "tuning",
-            "other",       "onset",      "sensitivity", "s0_perturbation", "diagnosis",
-            "methods",     "assessment", "calibration", "aggregate",       "reference"}},
+      {"", {"study",       "plant",           "controller",  "simulation", "record",     "experiments",
+            "scenario",    "mismatch",        "disturbance", "tuning",     "other",      "onset",
+            "sensitivity", "s0_perturbation", "diagnosis",   "methods",    "assessment", "monitoring",
+            "calibration", "aggregate",       "reference"}},
       {"study", {"name", "title", "seed"}},
       {"plant",
        {"catalogue", "simulated", "relative_tolerance", "absolute_tolerance", "step_limit", "name", "title",
@@ -84,6 +84,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
       {"assessment.badwe2010", {"smallest_order", "largest_order", "criterion", "max_iterations"}},
       {"assessment.yu-qin", {"confidence", "largest_lag", "first_sample"}},
       {"assessment.sse", {"threshold"}},
+      {"monitoring", {"window", "stride"}},
       {"calibration", {"false_alarms", "healthy", "ud", "seed"}},
       {"aggregate", {"confidence", "bootstrap_replications"}},
       {"reference", {"FINDING"}},

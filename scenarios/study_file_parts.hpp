@@ -113,6 +113,9 @@ DiagnosisOptions read_diagnosis(const TomlTable& document);
 std::vector<std::string> read_methods(const TomlTable& document);
 AssessmentOptions read_assessment(const TomlTable& document);
 
+/// [monitoring]; none without the table. `study` has its simulation and its scenarios.
+std::optional<MonitoringOptions> read_monitoring(const TomlTable& document, const Study& study);
+
 /// [calibration] (study_file_calibration.cpp); none without the table. `study` has its seed and its
 /// scenarios.
 std::optional<CalibrationOptions> read_calibration(const TomlTable& document, const Study& study);

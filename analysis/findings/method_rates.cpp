@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "analysis/findings/monitored_loop.hpp"
 #include "analysis/statistics/holm.hpp"
 #include "plants/non_finite.hpp"
 
@@ -37,6 +39,9 @@ struct Counts {
       false_alarm_healthy, false_alarm_tuning, located, source, channel, channel_impact, parameter_impact,
       size_covered, source_all, abstained;
   Count false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
+  Count monitored_impact;
+  std::int64_t false_alarms = 0, verdicts_before = 0;
+  std::vector<double> delays;
   std::vector<double> fault_scores, healthy_scores, impact_scores, no_impact_scores, milliseconds,
       channels_named, size_errors;
   CalibratedThresholds thresholds;
@@ -49,6 +54,8 @@ struct Counts {
       return;
     if (!std::isnan(said.milliseconds))  // it would break the order for the median
       milliseconds.push_back(said.milliseconds);
+    if (study.monitoring)
+      add_windows(study, record, said);
     if (record.draw.kind == ExperimentKind::tuning)
       false_alarm_tuning.add(said.flagged);
     else if (is_faultless(record.draw.kind))
@@ -67,6 +74,18 @@ struct Counts {
   void add_source(const ExperimentRecord& record, const AssessmentRecord& said) {
     source_all.add(tells_fault(record, said));
     abstained.add(named_source(said) == FaultSource::none);
+  }
+
+  void add_windows(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
+    if (record.draw.kind == ExperimentKind::tuning)
+      return;
+    const MonitoredLoop found = monitored_loop(study, record, said);
+    false_alarms += found.false_alarms;
+    verdicts_before += found.verdicts_before;
+    if (std::isnan(found.delay) || !has_impact(study.diagnosis, record))
+      return;
+    monitored_impact.add(std::isfinite(found.delay));
+    delays.push_back(found.delay);
   }
 
   void add_healthy(const AssessmentRecord& said) {
@@ -113,7 +132,7 @@ struct Counts {
   }
 };
 
-constexpr std::array<MethodRateInfo, 21> kRates{{
+constexpr std::array<MethodRateInfo, 22> kRates{{
     {"answered", "answered", "of all loops those on which the method gave a verdict", &MethodRates::answered},
     {"detected", "detected", "of the loops with a fault those that are flagged", &MethodRates::detected},
     {"detected_mpm", "detected, mismatch", "of the loops with a mismatch alone those that are flagged",
@@ -163,24 +182,28 @@ constexpr std::array<MethodRateInfo, 21> kRates{{
     {"false_alarm_calibrated", "calibrated: false alarms",
      "of the loops without a fault and with the tuning of the design those above the threshold that is "
      "calibrated for the false alarms of the study, calibration.false_alarms",
-     &MethodRates::false_alarm_calibrated, true},
+     &MethodRates::false_alarm_calibrated, StudyFeature::calibration},
     {"power_01", "at 1 %: detected",
      "of the loops with a fault those above the threshold that is calibrated for 1 % of false alarms",
-     &MethodRates::power_01, true},
+     &MethodRates::power_01, StudyFeature::calibration},
     {"power_05", "at 5 %: detected",
      "of the loops with a fault those above the threshold that is calibrated for 5 % of false alarms",
-     &MethodRates::power_05, true},
+     &MethodRates::power_05, StudyFeature::calibration},
     {"power_05_impact", "at 5 %: with impact",
      "of the loops with a fault that has an impact those above the threshold that is calibrated for 5 % of "
      "false alarms",
-     &MethodRates::power_05_impact, true},
+     &MethodRates::power_05_impact, StudyFeature::calibration},
     {"power_05_mpm", "at 5 %: mpm, not ud",
      "of the loops with a mismatch alone those above the threshold that is calibrated for 5 % of false "
      "alarms among loops without a fault and with a disturbance alone",
-     &MethodRates::power_05_mpm, true},
+     &MethodRates::power_05_mpm, StudyFeature::calibration},
+    {"monitored_impact", "windows: with impact",
+     "of the loops with a fault that has an impact those in which some window that ends after the onset is "
+     "flagged",
+     &MethodRates::monitored_impact, StudyFeature::monitoring},
 }};
 
-constexpr std::array<MethodEstimateInfo, 2> kEstimates{{
+constexpr std::array<MethodEstimateInfo, 4> kEstimates{{
     {"channels_named", "channels named, mean",
      "mean number of channels named, over the flagged loops with one mismatch of an MV",
      &MethodRates::channels_named, false},
@@ -189,6 +212,15 @@ constexpr std::array<MethodEstimateInfo, 2> kEstimates{{
      "with "
      "one mismatch of an MV whose channel and parameter are named",
      &MethodRates::size_error},
+    {"detection_delay", "windows: delay, median",
+     "median time from the onset to the end of the first flagged window, in the time unit of the plant, over "
+     "the loops with a fault that has an impact; infinite where no window is flagged",
+     &MethodRates::detection_delay, true, StudyFeature::monitoring},
+    {"false_alarms_a_day", "windows: alarms a day",
+     "alarms that begin in windows without a fault, over the time that these windows watch: before the "
+     "onset, "
+     "and in loops without a fault and with the tuning of the design",
+     &MethodRates::false_alarms_a_day, true, StudyFeature::monitoring},
 }};
 
 constexpr std::array<ThresholdInfo, 4> kThresholds{{
@@ -204,6 +236,18 @@ constexpr std::array<ThresholdInfo, 4> kThresholds{{
      &CalibratedThresholds::not_mpm},
 }};
 
+bool has(const Study& study, StudyFeature feature) {
+  switch (feature) {
+    case StudyFeature::any:
+      return true;
+    case StudyFeature::calibration:
+      return study.calibration.has_value();
+    case StudyFeature::monitoring:
+      return study.monitoring.has_value();
+  }
+  return false;
+}
+
 /// A curve, and the interval of the area under it.
 std::pair<RocCurve, Interval> curve_with_area(const std::vector<double>& positives,
                                               const std::vector<double>& negatives, double confidence) {
@@ -212,6 +256,18 @@ std::pair<RocCurve, Interval> curve_with_area(const std::vector<double>& positiv
   if (curve.defined())
     area = area_interval(curve.area, curve.positives, curve.negatives, confidence);
   return {std::move(curve), area};
+}
+
+/// A window watches the time from the one before it.
+Estimate alarms_a_day(const Study& study, const Counts& counts) {
+  const std::optional<double> days = days_in(study.plant.time_unit);
+  if (!study.monitoring || !days)
+    return {};
+  const double stride = study.monitoring->stride * study.controller.sample_time * *days;
+  Estimate alarms = poisson_rate(counts.false_alarms, static_cast<double>(counts.verdicts_before) * stride,
+                                 study.aggregate.confidence);
+  alarms.count = counts.verdicts_before;
+  return alarms;
 }
 
 }  // namespace
@@ -223,12 +279,19 @@ std::span<const MethodRateInfo> method_rate_infos() {
 std::vector<MethodRateInfo> method_rate_infos(const Study& study) {
   std::vector<MethodRateInfo> infos;
   std::copy_if(kRates.begin(), kRates.end(), std::back_inserter(infos),
-               [&](const MethodRateInfo& info) { return !info.calibrated || study.calibration; });
+               [&](const MethodRateInfo& info) { return has(study, info.of); });
   return infos;
 }
 
 std::span<const MethodEstimateInfo> method_estimate_infos() {
   return kEstimates;
+}
+
+std::vector<MethodEstimateInfo> method_estimate_infos(const Study& study) {
+  std::vector<MethodEstimateInfo> infos;
+  std::copy_if(kEstimates.begin(), kEstimates.end(), std::back_inserter(infos),
+               [&](const MethodEstimateInfo& info) { return has(study, info.of); });
+  return infos;
 }
 
 std::span<const ThresholdInfo> threshold_infos() {
@@ -272,6 +335,9 @@ MethodRates method_rates(const Study& study, std::size_t method, std::span<const
                     .power_05 = counts.power_05.rate(confidence),
                     .power_05_impact = counts.power_05_impact.rate(confidence),
                     .power_05_mpm = counts.power_05_mpm.rate(confidence),
+                    .monitored_impact = counts.monitored_impact.rate(confidence),
+                    .detection_delay = median_estimate(counts.delays, confidence),
+                    .false_alarms_a_day = alarms_a_day(study, counts),
                     .thresholds = counts.thresholds,
                     .roc = {},
                     .roc_area = {},
@@ -304,7 +370,7 @@ std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const
                       "area under the ROC curve of its score, faults with an impact against all other loops")
                      .with(rates.roc_impact.area, rates.roc_impact_area,
                            rates.roc_impact.positives + rates.roc_impact.negatives));
-  for (const MethodEstimateInfo& info : method_estimate_infos()) {
+  for (const MethodEstimateInfo& info : method_estimate_infos(study)) {
     const Estimate& found = rates.*info.estimate;
     Finding row = like(info.name, info.title, info.meaning);
     row.has_interval = info.has_interval;

@@ -26,6 +26,9 @@ struct MethodRates {
       size_covered, source_all, abstained;
   // At calibrated thresholds; nothing is counted without one.
   Rate false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
+  // On moving windows; nothing is counted in a study that does not monitor.
+  Rate monitored_impact;
+  Estimate detection_delay, false_alarms_a_day;
   CalibratedThresholds thresholds;
   RocCurve roc;       ///< of the score, loops with a fault against healthy ones
   Interval roc_area;  ///< of roc.area; NaN when there is no curve
@@ -36,6 +39,9 @@ struct MethodRates {
   double milliseconds;  ///< median processor time a loop, of those answered; NaN without
 };
 
+/// Which studies have a number.
+enum class StudyFeature : std::int8_t { any, calibration, monitoring };
+
 /// A rate of a method under the name that text, JSON, archive, report and gates have for it. All are shares
 /// of loops.
 struct MethodRateInfo {
@@ -43,7 +49,7 @@ struct MethodRateInfo {
   const char* title;    ///< for people: "false alarms, healthy"
   const char* meaning;  ///< which loops are looked at, and which of them count
   Rate MethodRates::*rate;
-  bool calibrated = false;  ///< of studies with a calibration only
+  StudyFeature of = StudyFeature::any;
 };
 
 /// Every rate of MethodRates once, in the order in which people read them.
@@ -58,10 +64,13 @@ struct MethodEstimateInfo {
   const char* meaning;  ///< which loops are looked at, and what of them is counted
   Estimate MethodRates::*estimate;
   bool has_interval = true;
+  StudyFeature of = StudyFeature::any;
 };
 
 /// Every estimate of MethodRates once, in the order in which people read them.
 std::span<const MethodEstimateInfo> method_estimate_infos();
+/// Those that this study can have.
+std::vector<MethodEstimateInfo> method_estimate_infos(const Study& study);
 
 /// A calibrated threshold under the name that its finding and JSON have.
 struct ThresholdInfo {

@@ -14,26 +14,26 @@
 namespace mpm {
 namespace {
 
-SetpointTrajectories centres(const Study& study) {
+/// The window length of the ellipses (5.3.1): the prediction horizon, or the nearest that the record has room
+/// for.
+int one_window(const Study& study, Eigen::Index samples) {
+  const auto longest = static_cast<int>(samples - kFewestCorrelatedPairs);
+  return std::clamp(static_cast<int>(study.controller.prediction_horizon), kShortestWindow,
+                    std::max(kShortestWindow, longest));
+}
+
+}  // namespace
+
+SetpointTrajectories variance_centres(const Study& study, Eigen::Index first, Eigen::Index samples) {
   const Eigen::MatrixXd y_set = setpoints(study);
   if (y_set.size() == 0 || study.diagnosis.variance_centre == VarianceCentre::mean)
     return {};
   SetpointTrajectories trajectories(static_cast<std::size_t>(study.cv_count()));
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
     if (study.controller.has_setpoint(cv))
-      trajectories[static_cast<std::size_t>(cv)] = y_set.row(cv).transpose();
+      trajectories[static_cast<std::size_t>(cv)] = y_set.row(cv).segment(first, samples).transpose();
   return trajectories;
 }
-
-/// The window length of the ellipses (5.3.1): the prediction horizon, or the nearest that the record has room
-/// for.
-int one_window(const Study& study) {
-  const auto longest = static_cast<int>(study.simulation.samples - kFewestCorrelatedPairs);
-  return std::clamp(static_cast<int>(study.controller.prediction_horizon), kShortestWindow,
-                    std::max(kShortestWindow, longest));
-}
-
-}  // namespace
 
 double total_simulation_error(const Diagnosis& diagnosis) {
   if (diagnosis.cvs.empty())
@@ -75,17 +75,19 @@ double location_margin(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, Locat
 
 Eigen::VectorXd basis_variance_indices(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
                                        const Eigen::Ref<const Eigen::MatrixXd>& y_basis) {
-  return variance_indices(y, y_basis, centres(study));
+  return variance_indices(y, y_basis, variance_centres(study, 0, study.simulation.samples));
 }
 
-DiagnosisChain::DiagnosisChain(const Study& study)
+DiagnosisChain::DiagnosisChain(const Study& study) : DiagnosisChain(study, 0, study.simulation.samples) {}
+
+DiagnosisChain::DiagnosisChain(const Study& study, Eigen::Index first, Eigen::Index samples)
     : options_(study.diagnosis),
       every_cv_(study.names_scenarios()),
-      y_set_(centres(study)),
+      y_set_(variance_centres(study, first, samples)),
       windows_(window_scan(study)),
-      scanner_(study.simulation.samples),
-      window_(one_window(study)),
-      distribution_scanner_(study.simulation.samples) {}
+      scanner_(samples),
+      window_(one_window(study, samples)),
+      distribution_scanner_(samples) {}
 
 Diagnosis DiagnosisChain::diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y,
                                    const NominalOutputs& nominal) {

@@ -75,11 +75,17 @@ double location_margin(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, Locat
 Eigen::VectorXd basis_variance_indices(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
                                        const Eigen::Ref<const Eigen::MatrixXd>& y_basis);
 
+/// What the variances of the samples `first` ... first + samples - 1 of a record are taken about: the
+/// setpoints of CVs that have one; empty where that is the mean for all.
+SetpointTrajectories variance_centres(const Study& study, Eigen::Index first, Eigen::Index samples);
+
 /// Runs the chain on records y (ny x N); keeps the workspace of the indicators between calls, so each thread
 /// needs its own.
 class DiagnosisChain {
  public:
   explicit DiagnosisChain(const Study& study);
+  /// Of records that are `samples` samples of a loop of the study, from sample `first` on.
+  DiagnosisChain(const Study& study, Eigen::Index first, Eigen::Index samples);
 
   /// Of a study of named scenarios with every CV on its own.
   Diagnosis diagnose(const Eigen::Ref<const Eigen::MatrixXd>& y, const NominalOutputs& nominal);

@@ -26,7 +26,8 @@ std::vector<Eigen::Index> AssessedLoop::setpoint_cvs() const {
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop) {
   const Eigen::MatrixXd y_sim =
       simulated_output(study.plant.G, study.controller.sample_time, point.u, loop.u, loop.d);
-  AssessedLoop assessed{loop.y, loop.u, loop.u_target, loop.d, y_sim, {}};
+  AssessedLoop assessed{
+      .y = loop.y, .u = loop.u, .u_target = loop.u_target, .d = loop.d, .y_sim = y_sim, .y_set = {}};
   assessed.y_set =
       study.assessment.setpoints == AssessmentSetpoints::optimizer && study.controller.has_targets()
           ? optimizer_steady_state(study, loop, y_sim)
@@ -35,6 +36,20 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
     if (study.controller.has_setpoint(cv))
       assessed.y_set.row(cv) = loop.y_set.row(cv);
   return assessed;
+}
+
+AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::Index samples) {
+  const auto cut = [&](const Eigen::MatrixXd& signal) -> Eigen::MatrixXd {
+    return signal.cols() == 0 ? signal : Eigen::MatrixXd(signal.middleCols(first, samples));
+  };
+  return {.y = cut(record.y),
+          .u = cut(record.u),
+          .u_target = cut(record.u_target),
+          .d = cut(record.d),
+          .y_sim = cut(record.y_sim),
+          .y_set = cut(record.y_set),
+          .whole = &record,
+          .first = first};
 }
 
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context) {

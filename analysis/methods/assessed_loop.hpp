@@ -23,8 +23,18 @@ namespace mpm {
 /// | d      | d      | nd x N | measured disturbances, d(k) acts from sample k on             |
 /// | y_sim  | y_sim  | ny x N | G0 (u, d)                                              (6.4)  |
 /// | y_set  | y_set  | ny x N | setpoints; NaN for a CV without one, see AssessmentSetpoints  |
+///
+/// Of a window that moves over a record these are its samples, and `whole` is the record. A method that
+/// filters or simulates the loop does so from the start of the record, from_start(), where the loop was at
+/// its operating point, and judges the samples of the window.
 struct AssessedLoop {
   Eigen::MatrixXd y, u, u_target, d, y_sim, y_set;
+  const AssessedLoop* whole = nullptr;  ///< the record that this is a window of; null: it is whole
+  Eigen::Index first = 0;               ///< sample of it at which the window begins
+
+  const AssessedLoop& from_start() const { return whole ? *whole : *this; }
+  /// The columns of the window out of a signal of the record, one column a sample.
+  auto in_window(const Eigen::MatrixXd& signal) const { return signal.middleCols(first, samples()); }
 
   Eigen::Index samples() const { return y.cols(); }
   bool has_setpoint(Eigen::Index cv) const;
@@ -36,6 +46,9 @@ struct AssessedLoop {
 /// `point`. The setpoint of a CV in a range is, where `study.assessment.setpoints` wants that of the
 /// optimizer, optimizer_steady_state(); NaN when it does not, or when the controller has no targets.
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop);
+
+/// The window of `samples` samples of a record from sample `first` on. `record` must outlive it.
+AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::Index samples);
 
 /// What a method may know besides the records of the loop that it assesses. `study` and `basis` must outlive
 /// it.

@@ -24,8 +24,9 @@ struct AssessmentRequirements {
   bool complete_record = true;    ///< no sample of a CV is missing, in the record and in the benchmark
 };
 
-/// What a method gives a number for: the whole loop, each CV, each channel, or each CV at each lag.
-enum class NumberScope { loop, cv, channel, cv_lag };
+/// What a method gives a number for: the whole loop, each CV, each channel, each CV at each lag, or each
+/// window of a study that monitors.
+enum class NumberScope { loop, cv, channel, cv_lag, window };
 
 /// A number that a method gives besides its verdicts. Archive, findings, report and gates take it from here.
 struct AssessmentNumberInfo {

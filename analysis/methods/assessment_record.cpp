@@ -58,13 +58,20 @@ AssessmentForm::AssessmentForm(MethodDescription method, const Study& study) : m
     add(std::move(info), study);
   for (const AssessmentNumberInfo& info : method_.numbers)
     add(info, study);
+  if (study.monitoring) {
+    add({"window_flagged", NumberScope::window, "the method flags the loop in this window", "1", no_yes()},
+        study);
+    add({"window_score", NumberScope::window, "its score in this window, larger is worse"}, study);
+  }
 }
 
 void AssessmentForm::add(AssessmentNumberInfo info, const Study& study) {
-  const bool of_loop = info.scope == NumberScope::loop;
+  const bool of_loop = info.scope == NumberScope::loop || info.scope == NumberScope::window;
   const Eigen::Index columns = info.scope == NumberScope::channel  ? study.mv_count()
                                : info.scope == NumberScope::cv_lag ? lag_count(study)
-                                                                   : 1;
+                               : info.scope == NumberScope::window
+                                   ? study.monitoring->count(study.simulation.samples)
+                                   : 1;
   places_.push_back({std::move(info), size_, of_loop ? 1 : study.cv_count(), columns});
   size_ += places_.back().size();
 }
@@ -118,6 +125,13 @@ void AssessmentRecord::set_number(std::string_view name, double value, Eigen::In
 
 bool AssessmentRecord::names(const Channel& channel) const {
   return number("channel_flagged", channel.cv, channel.mv) == 1.0;
+}
+
+void add_window(AssessmentRecord& record, Eigen::Index window, const Assessment& said) {
+  if (said.status != AssessmentStatus::ok)
+    return;
+  record.set_number("window_flagged", said.flagged ? 1.0 : 0.0, 0, window);
+  record.set_number("window_score", said.score, 0, window);
 }
 
 std::optional<NamedMismatch> AssessmentRecord::named_mismatch() const {

@@ -26,6 +26,7 @@ namespace mpm {
 /// | cv      | ny   | 1            |
 /// | channel | ny   | nu           |
 /// | cv_lag  | ny   | lags         |
+/// | window  | 1    | windows of study.monitoring |
 struct NumberPlace {
   AssessmentNumberInfo info;
   Eigen::Index first, rows, columns;
@@ -34,7 +35,8 @@ struct NumberPlace {
 };
 
 /// The form of the answers of one method on the loops of one study: its own numbers, after those that follow
-/// from what it tells:
+/// from what it tells, and before `window_flagged` (1, 0; NaN: no verdict) and `window_score` of a study that
+/// monitors:
 ///
 /// | name            | scope   | of methods that |
 /// |-----------------|---------|-----------------|
@@ -103,5 +105,8 @@ std::vector<AssessmentRecord> unassessed(const AssessmentForms& forms);
 
 /// The answer in the form in which it is kept.
 AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessment& assessment);
+
+/// Puts what the method says of a window into the record of the whole loop, on which it must have a verdict.
+void add_window(AssessmentRecord& record, Eigen::Index window, const Assessment& said);
 
 }  // namespace mpm

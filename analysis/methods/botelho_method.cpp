@@ -32,7 +32,8 @@ std::optional<std::string> why_noise_outweighs(const AssessmentContext& context)
 class Botelho final : public AssessmentMethod {
  public:
   explicit Botelho(const AssessmentContext& context)
-      : options_(context.study.diagnosis),
+      : study_(context.study),
+        options_(context.study.diagnosis),
         estimator_(context.study, context.basis.point, context.basis.sensitivity, context.factory),
         chain_(context.study),
         without_excitation_(why_noise_outweighs(context)) {}
@@ -40,13 +41,22 @@ class Botelho final : public AssessmentMethod {
   Assessment assess(const AssessedLoop& loop) override {
     if (without_excitation_)
       return Assessment::not_applicable(*without_excitation_);
+    const AssessedLoop& whole = loop.from_start();
     Trajectory record;
-    record.y = loop.y;
-    record.u = loop.u;
-    record.u_target = loop.u_target;
-    record.d = loop.d;
-    const NominalOutputs nominal = estimator_.estimate(record, loop.y_sim);
-    const Diagnosis diagnosis = chain_.diagnose(loop.y, nominal);
+    record.y = whole.y;
+    record.u = whole.u;
+    record.u_target = whole.u_target;
+    record.d = whole.d;
+    const NominalOutputs nominal = estimator_.estimate(record, whole.y_sim);
+    if (!loop.whole)
+      return judged(loop.y, nominal, chain_);
+    DiagnosisChain chain(study_, loop.first, loop.samples());
+    return judged(loop.y, {loop.y_sim, loop.in_window(nominal.y0), loop.in_window(nominal.y0_diag)}, chain);
+  }
+
+ private:
+  Assessment judged(const Eigen::MatrixXd& y, const NominalOutputs& nominal, DiagnosisChain& chain) const {
+    const Diagnosis diagnosis = chain.diagnose(y, nominal);
     Assessment assessment;
     assessment.flagged = diagnosis.impactful;
     assessment.score = 0.0;
@@ -54,7 +64,7 @@ class Botelho final : public AssessmentMethod {
       assessment.score = std::max(assessment.score, distance(diagnosis.ivar(cv)));
       const bool flagged = options_.has_impact(diagnosis.ivar_diag(cv));
       const FaultSource source = cv == diagnosis.predicted_cv ? diagnosis.predicted_source
-                                 : flagged ? chain_.source_of(chain_.indicator_of(cv, loop.y, nominal))
+                                 : flagged ? chain.source_of(chain.indicator_of(cv, y, nominal))
                                            : FaultSource::none;
       assessment.cvs.push_back({flagged, distance(diagnosis.ivar_diag(cv)), source});
     }
@@ -62,10 +72,10 @@ class Botelho final : public AssessmentMethod {
     return assessment;
   }
 
- private:
   /// Of a variance index from 1, as the study measures it to locate a CV.
   double distance(double ivar) const { return distance_from_one(ivar, options_.location_distance); }
 
+  const Study& study_;
   const DiagnosisOptions& options_;
   NominalEstimator estimator_;
   DiagnosisChain chain_;

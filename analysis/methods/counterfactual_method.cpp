@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/assessment_method.hpp"
+#include "analysis/statistics/variance.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/signals.hpp"
@@ -22,7 +25,7 @@ namespace {
 /// with the errors of all CVs added the loop gives y back. y holds noise and y0 none; v, what noise adds to
 /// the variance, is that of the basis case y_b of the same controller, so that only the size of the noise is
 /// known of it. A loop is simulated for y0, and where some Ivar lies outside the band of impact one for each
-/// CV.
+/// CV. Of a window the record is simulated from its start, once for all windows.
 class Counterfactual final : public AssessmentMethod {
  public:
   explicit Counterfactual(const AssessmentContext& context)
@@ -30,19 +33,21 @@ class Counterfactual final : public AssessmentMethod {
         factory_(context.factory),
         y_set_(setpoints(context.study)),
         dither_(dither(context.study)),
-        y_basis_(recorded_basis(context)) {
-    const Trajectory nominal =
-        simulated(context.basis.trajectory.d, Eigen::MatrixXd::Zero(y_basis_.rows(), y_basis_.cols()));
+        loops_(static_cast<std::size_t>(context.study.cv_count()) + 1) {
+    const Eigen::MatrixXd y_basis = recorded_basis(context);
+    const SetpointTrajectories centres = variance_centres(study_, 0, y_basis.cols());
+    const Trajectory& nominal =
+        simulated(0, context.basis.trajectory.d, Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols()));
     if (nominal.status == ControlStatus::ok)
-      noise_share_ =
-          (1.0 - basis_variance_indices(study_, y_basis_, nominal.y).array().inverse()).cwiseMax(0.0);
+      noise_ = (variances(y_basis, centres) - variances(nominal.y, centres)).cwiseMax(0.0);
   }
 
   Assessment assess(const AssessedLoop& loop) override {
-    if (noise_share_.size() == 0)
+    if (noise_.size() == 0)
       return Assessment::failed("the controller does not run on its own model without noise");
-    const Eigen::MatrixXd e = loop.y - loop.y_sim;
-    const Trajectory nominal = simulated(loop.d, Eigen::MatrixXd::Zero(e.rows(), e.cols()));
+    const AssessedLoop& whole = loop.from_start();
+    const Eigen::MatrixXd e = whole.y - whole.y_sim;
+    const Trajectory& nominal = simulated(0, whole.d, Eigen::MatrixXd::Zero(e.rows(), e.cols()));
     if (nominal.status != ControlStatus::ok)
       return Assessment::failed("the controller does not run on its own model under these disturbances");
     const Eigen::VectorXd ivar = indices(loop, nominal);
@@ -65,29 +70,40 @@ class Counterfactual final : public AssessmentMethod {
   }
 
  private:
+  /// A loop that was simulated, with what it was simulated under.
+  struct Simulated {
+    Eigen::MatrixXd d, errors;
+    Trajectory loop;
+  };
+
   /// The loop of the controller on its model under the disturbances `d`, with `errors` added to the outputs.
-  Trajectory simulated(const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors) const {
-    const LoopSignals signals{.d = d,
-                              .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
-                              .y_d = errors,
-                              .y_set = y_set_,
-                              .dither = dither_};
-    return run_closed_loop(study_, study_.plant.G, signals, factory_);
+  /// Each place keeps its last one: windows of a record ask for the same, and so do all records whose
+  /// disturbances are those of the study.
+  const Trajectory& simulated(std::size_t place, const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors) {
+    Simulated& kept = loops_[place];
+    if (kept.loop.y.size() == 0 || kept.d != d || kept.errors != errors) {
+      const LoopSignals signals{.d = d,
+                                .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
+                                .y_d = errors,
+                                .y_set = y_set_,
+                                .dither = dither_};
+      kept = {d, errors, run_closed_loop(study_, study_.plant.G, signals, factory_)};
+    }
+    return kept.loop;
   }
 
-  /// var y / (var y0 + v) of each CV, ny. With v = share var y_b its inverse is
-  /// var y0 / var y + share var y_b / var y.
+  /// var y / (var y0 + v) of each CV, ny.
   Eigen::VectorXd indices(const AssessedLoop& loop, const Trajectory& nominal) const {
-    const Eigen::ArrayXd of_nominal = basis_variance_indices(study_, loop.y, nominal.y);
-    const Eigen::ArrayXd of_basis = basis_variance_indices(study_, loop.y, y_basis_);
-    return (of_nominal.inverse() + noise_share_ * of_basis.inverse()).inverse();
+    const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
+    const Eigen::ArrayXd of_nominal = variance_indices(loop.y, loop.in_window(nominal.y), centres);
+    return (of_nominal.inverse() + noise_.array() / variances(loop.y, centres).array()).inverse();
   }
 
   /// Ivar_diag of one CV; NaN when its loop does not run to its end.
-  double diagonal_index(const AssessedLoop& loop, const Eigen::MatrixXd& e, Eigen::Index cv) const {
+  double diagonal_index(const AssessedLoop& loop, const Eigen::MatrixXd& e, Eigen::Index cv) {
     Eigen::MatrixXd others = e;
     others.row(cv).setZero();
-    const Trajectory nominal = simulated(loop.d, others);
+    const Trajectory& nominal = simulated(static_cast<std::size_t>(cv) + 1, loop.from_start().d, others);
     return nominal.status == ControlStatus::ok ? indices(loop, nominal)(cv) : kNaN;
   }
 
@@ -97,8 +113,8 @@ class Counterfactual final : public AssessmentMethod {
   const Study& study_;
   QpSolverFactory factory_;
   Eigen::MatrixXd y_set_, dither_;
-  Eigen::MatrixXd y_basis_;
-  Eigen::ArrayXd noise_share_;  ///< v / var y_b of each CV; empty when the basis case cannot be simulated
+  std::vector<Simulated> loops_;  ///< y0, then y0_diag of each CV
+  Eigen::VectorXd noise_;         ///< v of each CV; empty when the basis case cannot be simulated
 };
 
 }  // namespace

@@ -30,6 +30,10 @@ AssessmentRecord MethodPanel::timed(std::size_t method, Assessor& assessor, cons
   const double start = thread_seconds();
   AssessmentRecord record = kept(forms_[method], assessor.assess(loop));
   record.milliseconds = 1e3 * (thread_seconds() - start);
+  if (const auto& monitoring = context_.study.monitoring; monitoring && record.answered())
+    for (int window = 0; window < monitoring->count(static_cast<int>(loop.samples())); ++window)
+      add_window(record, window,
+                 assessor.assess(window_of(loop, monitoring->begin(window), monitoring->window)));
   return record;
 }
 

@@ -36,6 +36,7 @@ class MethodPanel {
 
  private:
   AssessmentRecord assessed(std::size_t method, const AssessedLoop& loop, const TunedBasis* own);
+  /// The answer of a method, the time that it took for the whole record, and its windows.
   AssessmentRecord timed(std::size_t method, Assessor& assessor, const AssessedLoop& loop) const;
 
   QpSolverFactory factory_;

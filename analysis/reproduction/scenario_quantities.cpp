@@ -25,6 +25,7 @@ QuantityScope table_scope(NumberScope scope) {
       return QuantityScope::cv;
     case NumberScope::channel:
     case NumberScope::cv_lag:  // of no method whose numbers stand in a table
+    case NumberScope::window:
       break;
   }
   return QuantityScope::channel;

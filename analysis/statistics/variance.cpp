@@ -18,6 +18,20 @@ double zero_below(double floor, double value) {
   return value <= floor ? 0.0 : value;
 }
 
+void require_setpoints(Eigen::Index cvs, const SetpointTrajectories& y_set) {
+  const auto setpoints = static_cast<Eigen::Index>(y_set.size());
+  if (setpoints != 0 && setpoints != cvs) {
+    throw InputError("number of setpoints", fmt::format("{}", setpoints),
+                     fmt::format("0 or {}, one a CV", cvs));
+  }
+}
+
+/// Null for a CV without one.
+const Eigen::VectorXd* setpoint_of(Eigen::Index cv, const SetpointTrajectories& y_set) {
+  return y_set.empty() || !y_set[static_cast<std::size_t>(cv)] ? nullptr
+                                                               : &*y_set[static_cast<std::size_t>(cv)];
+}
+
 }  // namespace
 
 double variance(const Signal& signal) {
@@ -62,6 +76,17 @@ double variance_index(const Signal& y, const Signal& y_ref, const Signal& y_set)
                         zero_below(variance_floor(y_ref), variance_about(y_ref, y_set)));
 }
 
+Eigen::VectorXd variances(const Eigen::Ref<const Eigen::MatrixXd>& y, const SetpointTrajectories& y_set) {
+  require_setpoints(y.rows(), y_set);
+  Eigen::VectorXd found(y.rows());
+  for (Eigen::Index i = 0; i < y.rows(); ++i) {
+    const Eigen::VectorXd of_y = y.row(i);
+    const auto* const setpoint = setpoint_of(i, y_set);
+    found[i] = setpoint ? variance_about(of_y, *setpoint) : variance(of_y);
+  }
+  return found;
+}
+
 Eigen::VectorXd variance_indices(const Eigen::Ref<const Eigen::MatrixXd>& y,
                                  const Eigen::Ref<const Eigen::MatrixXd>& y_ref,
                                  const SetpointTrajectories& y_set) {
@@ -70,18 +95,13 @@ Eigen::VectorXd variance_indices(const Eigen::Ref<const Eigen::MatrixXd>& y,
                      fmt::format("{} x {} and {} x {}", y.rows(), y.cols(), y_ref.rows(), y_ref.cols()),
                      "equal shapes");
   }
-  const auto setpoints = static_cast<Eigen::Index>(y_set.size());
-  if (setpoints != 0 && setpoints != y.rows()) {
-    throw InputError("number of setpoints", fmt::format("{}", setpoints),
-                     fmt::format("0 or {}, one a CV", y.rows()));
-  }
+  require_setpoints(y.rows(), y_set);
   Eigen::VectorXd index(y.rows());
   for (Eigen::Index i = 0; i < y.rows(); ++i) {
     const Eigen::VectorXd of_y = y.row(i);
     const Eigen::VectorXd of_ref = y_ref.row(i);
-    const bool at_setpoint = setpoints != 0 && y_set[static_cast<std::size_t>(i)].has_value();
-    index[i] = at_setpoint ? variance_index(of_y, of_ref, *y_set[static_cast<std::size_t>(i)])
-                           : variance_index(of_y, of_ref);
+    const auto* const setpoint = setpoint_of(i, y_set);
+    index[i] = setpoint ? variance_index(of_y, of_ref, *setpoint) : variance_index(of_y, of_ref);
   }
   return index;
 }

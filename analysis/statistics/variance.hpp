@@ -21,6 +21,15 @@ double variance_about(const Eigen::Ref<const Eigen::VectorXd>& signal, double se
 double variance_about(const Eigen::Ref<const Eigen::VectorXd>& signal,
                       const Eigen::Ref<const Eigen::VectorXd>& setpoint);
 
+/// Setpoints of the CVs of a loop: entry i has one value a sample for a CV at a setpoint, and none for a CV
+/// that is kept in a range.
+using SetpointTrajectories = std::vector<std::optional<Eigen::VectorXd>>;
+
+/// Variance of each CV of y, ny x N: about its setpoint if it has one, about the mean if not; `y_set` is
+/// empty when no CV has one.
+/// @throws InputError for a number of setpoints other than 0 or ny, and as `variance` and `variance_about`
+Eigen::VectorXd variances(const Eigen::Ref<const Eigen::MatrixXd>& y, const SetpointTrajectories& y_set = {});
+
 /// Quotient of two variances. A denominator of 0 gives +infinity, and NaN when the numerator is 0 as well.
 double variance_ratio(double numerator, double denominator);
 
@@ -45,10 +54,6 @@ double variance_index(const Eigen::Ref<const Eigen::VectorXd>& y,
 double variance_index(const Eigen::Ref<const Eigen::VectorXd>& y,
                       const Eigen::Ref<const Eigen::VectorXd>& y_ref,
                       const Eigen::Ref<const Eigen::VectorXd>& y_set);
-
-/// Setpoints of the CVs of a loop: entry i has one value a sample for a CV at a setpoint, and none for a CV
-/// that is kept in a range.
-using SetpointTrajectories = std::vector<std::optional<Eigen::VectorXd>>;
 
 /// Variance index of each CV: about its setpoint if it has one, (3.24), (A2.3), about the means if not,
 /// (6.7), (A2.4).

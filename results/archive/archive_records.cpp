@@ -46,6 +46,21 @@ Hdf5Group group_at(const Hdf5Group& root, const std::string& path) {
                                       : group_at(root.group(path.substr(0, slash)), path.substr(slash + 1));
 }
 
+/// The windows by their number, and when each ends: that is when its verdict is there.
+void write_windows(Hdf5Group& group, const Study& study) {
+  std::vector<std::int32_t> numbers;
+  std::vector<double> ends;
+  for (int window = 0; window < study.monitoring->count(study.simulation.samples); ++window) {
+    numbers.push_back(window);
+    ends.push_back(study.monitoring->end(window) * study.controller.sample_time);
+  }
+  group.write_dimension("window", numbers,
+                        attributes<std::int32_t>({"window", "number of the moving window"}));
+  group.write(
+      "window_end", {"window"}, ends,
+      attributes<double>({"window_end", "time at which the window ends", unit_text(study.plant.time_unit)}));
+}
+
 void write_dimension(Hdf5Group& group, const std::string& name, const Campaign& campaign) {
   const Study& study = campaign.study;
   if (name == "cv")
@@ -58,6 +73,8 @@ void write_dimension(Hdf5Group& group, const std::string& name, const Campaign& 
     write_sample_dimension(group, name, "sample number", "time", study, 0, study.simulation.samples);
   else if (name == "lag")
     write_sample_dimension(group, name, "lag in samples", "lag_time", study, 0, lag_count(study));
+  else if (name == "window")
+    write_windows(group, study);
   else if (name == "multiplier")
     group.write_dimension(name, study.s0_perturbation.multipliers,
                           attributes<double>({name, "multiplier of the time constant or the damping of S0"}));

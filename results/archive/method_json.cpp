@@ -14,10 +14,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::pair<NumberScope, const char*>, 4> kScopes{{{NumberScope::loop, "loop"},
+constexpr std::array<std::pair<NumberScope, const char*>, 5> kScopes{{{NumberScope::loop, "loop"},
                                                                       {NumberScope::cv, "cv"},
                                                                       {NumberScope::channel, "channel"},
-                                                                      {NumberScope::cv_lag, "cv_lag"}}};
+                                                                      {NumberScope::cv_lag, "cv_lag"},
+                                                                      {NumberScope::window, "window"}}};
 
 const char* name_of(NumberScope scope) {
   for (const auto& [known, name] : kScopes)

@@ -415,11 +415,15 @@ std::vector<std::string> dimensions_of(NumberScope scope) {
       return {"cv", "mv"};
     case NumberScope::cv_lag:
       return {"cv", "lag"};
+    case NumberScope::window:
+      return {"window"};
   }
   return {};
 }
 
 std::vector<std::size_t> shape_of(const NumberPlace& place) {
+  if (place.info.scope == NumberScope::window)
+    return {count_of(place.columns)};
   std::vector<std::size_t> shape{count_of(place.rows), count_of(place.columns)};
   shape.resize(dimensions_of(place.info.scope).size());
   return shape;
@@ -429,6 +433,8 @@ VariableText text_of(const NumberPlace& place) {
   VariableText text{place.info.name, place.info.meaning, place.info.unit, "NaN without a verdict"};
   if (place.info.scope == NumberScope::cv_lag)
     text.coordinates = "lag_time";
+  if (place.info.scope == NumberScope::window)
+    text.coordinates = "window_end";
   if (place.info.words.empty())
     return text;
   text.comment = "-1: nothing is said";

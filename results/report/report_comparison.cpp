@@ -89,7 +89,7 @@ std::string rates_legend(const Study& study) {
   std::string html = "<p><small>";
   for (const MethodRateInfo& info : method_rate_infos(study))
     html += fmt::format("<strong>{}</strong>: {}. ", html_text(info.title), html_text(info.meaning));
-  for (const MethodEstimateInfo& info : method_estimate_infos())
+  for (const MethodEstimateInfo& info : method_estimate_infos(study))
     html += fmt::format("<strong>{}</strong>: {}. ", html_text(info.title), html_text(info.meaning));
   return fmt::format(
       "{}<strong>false alarms, stated</strong>: share of healthy loops that the method says it flags; marked "

@@ -51,9 +51,9 @@ Json thresholds_json(const CalibratedThresholds& thresholds) {
   return json;
 }
 
-Json estimates_json(const MethodRates& rates) {
+Json estimates_json(const Study& study, const MethodRates& rates) {
   Json json = Json::object();
-  for (const MethodEstimateInfo& info : method_estimate_infos()) {
+  for (const MethodEstimateInfo& info : method_estimate_infos(study)) {
     const Estimate& found = rates.*info.estimate;
     json[info.name] = {{"value", found.value},
                        {"lower", found.interval.lower},
@@ -68,7 +68,7 @@ Json method_findings_json(const Study& study, const MethodFindings& method) {
   Json json = method_json(method.form->method());
   json["reason"] = proper_utf8(rates.reason);
   json["rates"] = rates_json(study, rates);
-  json["estimates"] = estimates_json(rates);
+  json["estimates"] = estimates_json(study, rates);
   json["false_alarm_mark"] = to_string(false_alarm_mark(method.form->method(), rates));
   json["roc"] = roc_json(rates.roc, rates.roc_area);
   json["roc_impact"] = roc_json(rates.roc_impact, rates.roc_impact_area);

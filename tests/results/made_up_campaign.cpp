@@ -443,7 +443,8 @@ Campaign rich_campaign() {
       "\n[mismatch]\nextent_weights = {parameter = 1, channel = 1, mv = 1}\nimpact = {uniform = [0.5, 2]}\n"
       "[disturbance]\nsignal_weights = {white = 1, step = 1, sine = 1}\n"
       "place_weights = {cv = 1, mv = 1, several = 1}\nimpact = {uniform = [0.5, 2]}\n"
-      "[onset]\nsample = {uniform = [10, 20]}\ngrowth = {uniform = [0, 9]}\n";
+      "[onset]\nsample = {uniform = [10, 20]}\ngrowth = {uniform = [0, 9]}\n"
+      "[monitoring]\nwindow = 24\nstride = 3\n";
   Campaign campaign;
   campaign.study = parse_study(text + kReplications + kMethods, "small");
   campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};

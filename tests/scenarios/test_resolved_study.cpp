@@ -97,7 +97,7 @@ std::string random_study_text() {
       "multipliers = [0.25";
   for (int i = 1; i < 80; ++i)
     text += ", " + std::to_string(0.25 + 0.1 * i) + (i % 30 == 0 ? "\n" : "");
-  text += "]\n[calibration]\nhealthy = 50\nseed = 8\n[reference]\n";
+  text += "]\n[monitoring]\nwindow = 30\nstride = 7\n[calibration]\nhealthy = 50\nseed = 8\n[reference]\n";
   for (const std::string& key : study_file_keys("reference"))
     text += "\"" + key + "\" = 0.123\n";
   return text;

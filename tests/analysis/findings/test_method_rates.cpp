@@ -416,7 +416,7 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   made.add(kNone, verdict(false, 0.0));
   const MethodRates rates = made.rates();
   const std::vector<Finding> rows = rows_of(study(), rates, testing::chain_form()->method());
-  const std::size_t estimates = method_estimate_infos().size();
+  const std::size_t estimates = method_estimate_infos(study()).size();
   REQUIRE(rows.size() == method_rate_infos(study()).size() + 2 + estimates);
   CHECK(rows[0].name == "compare.botelho.answered");
   CHECK(rows[1].name == "compare.botelho.detected");
@@ -433,13 +433,15 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   CHECK(area.count == 3);
   CHECK(rows[rows.size() - estimates - 1].name == "compare.botelho.roc_area_impact");
 
-  // Rates at calibrated thresholds, and the thresholds, are of studies with a calibration.
+  // Rates at calibrated thresholds, and the thresholds, are of studies with a calibration; delays of those
+  // that monitor.
   CHECK(std::none_of(rows.begin(), rows.end(),
                      [](const Finding& row) { return row.name == "compare.botelho.power_05"; }));
   Study calibrated = study();
   calibrated.calibration.emplace();
+  calibrated.monitoring.emplace();
   CHECK(rows_of(calibrated, rates, testing::chain_form()->method()).size() ==
-        method_rate_infos().size() + 2 + estimates + threshold_infos().size());
+        method_rate_infos().size() + 2 + method_estimate_infos().size() + threshold_infos().size());
 }
 
 }  // namespace mpm

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/method_table.hpp"
+#include "analysis/sensitivity/nominal_estimator.hpp"
+#include "analysis/statistics/variance.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/signals.hpp"
 #include "scenarios/study_library.hpp"
@@ -24,6 +26,40 @@ TEST_CASE("counterfactual: the basis case is healthy, a fault is flagged and its
     CHECK(said.flagged);
     CHECK(said.worst_cv() == draw.true_cv());
   }
+}
+
+TEST_CASE("windows: methods that simulate or filter a loop do so from the start of the record") {
+  const Study study = find_study("chapter6");
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
+  const AssessedLoop record = assessed_loop(
+      study, basis.point, simulate_experiment(study, draw_experiment(study, 15), testing::kFactory));
+  for (const char* method : {"botelho", "counterfactual"}) {
+    INFO(method);
+    Assessor assessor(assessment_method(method), context);
+    const auto ivar_of = [&](const AssessedLoop& loop) {
+      const Assessment said = assessor.assess(loop);
+      REQUIRE(said.status == AssessmentStatus::ok);
+      return said.number("ivar", 0);
+    };
+    // The window that is the whole record is judged as the record is.
+    CHECK(ivar_of(window_of(record, 0, record.samples())) == ivar_of(record));
+  }
+  // Of a window in mid-record y0 is that of the record, cut: filtered anew from there it would be another
+  // one.
+  Assessor chain(assessment_method("botelho"), context);
+  Trajectory loop;
+  loop.y = record.y;
+  loop.u = record.u;
+  loop.u_target = record.u_target;
+  loop.d = record.d;
+  const NominalOutputs nominal =
+      NominalEstimator(study, basis.point, basis.sensitivity, testing::kFactory).estimate(loop, record.y_sim);
+  const Eigen::VectorXd expected =
+      variance_indices(record.y.middleCols(150, 200), nominal.y0.middleCols(150, 200));
+  const Assessment said = chain.assess(window_of(record, 150, 200));
+  for (Eigen::Index cv = 0; cv < expected.size(); ++cv)
+    CHECK(said.number("ivar", cv) == expected(cv));
 }
 
 TEST_CASE("counterfactual: with the simulation errors of all CVs added, the loop of the model gives y back") {

@@ -216,6 +216,10 @@ def check_further(path, variables):
         for name in found:
             check_variable(file[name])
         assert ((file["kind"][()] == 5) == (file["other_fault"][()] >= 0)).all()
+        method = file["methods/" + next(iter(file["methods"]))]
+        ends = method["window_end"][()]
+        assert (numpy.diff(ends) > 0).all() and len(ends) == method["window_flagged"].shape[1] > 1
+        assert set(numpy.unique(method["window_flagged"])) <= {-1, 0, 1} and method["window_score"].shape == method["window_flagged"].shape
         assert set(file["ud_signal"]) == {-1, 0, 1, 4} and (file["onset"][()] < 20).all()
 
 

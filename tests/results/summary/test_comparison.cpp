@@ -130,7 +130,7 @@ TEST_CASE("comparison of a study with a calibration: its rates, thresholds, and 
                           std::vector(30, CalibrationLoop{ExperimentKind::healthy, {0.25, 0.5, kNaN, 0.5}})};
   const StudyFindings findings = findings_of(campaign);
   const std::string text = comparison_text(campaign, findings);
-  for (const MethodRateInfo& info : method_rate_infos())
+  for (const MethodRateInfo& info : method_rate_infos(campaign.study))
     CHECK_THAT(text, Contains(std::string("\n") + info.title));
   CHECK_THAT(text, Contains("thresholds on 30 healthy loops and 100 with a disturbance of seed 77"));
   CHECK_THAT(text, Contains("no threshold_01 of botelho: 30 calibration loops with a verdict are too few"));
