@@ -83,6 +83,23 @@ struct SseOptions {
   bool operator==(const SseOptions&) const = default;
 };
 
+/// What the method `likelihood` takes for possible before it sees a record (analysis/methods/fault_priors).
+enum class FaultPriors : std::int8_t {
+  wide = 0,   ///< whatever a plant may have: one fault or several, of any size
+  study = 1,  ///< the faults that the study draws, as often and as large as it draws them
+};
+
+/// Of the method `likelihood`, analysis/methods/likelihood_method.
+struct LikelihoodOptions {
+  FaultPriors priors = FaultPriors::wide;
+  double fault_probability = 0.5;  ///< of some fault in a loop, before the record is seen; of wide priors
+  double flag_probability = 0.5;   ///< a loop or a CV is flagged when a fault is more probable than this
+  /// A source is named when it is at least so probable, given that there is a fault; 0: always.
+  double source_probability = 0.0;
+
+  bool operator==(const LikelihoodOptions&) const = default;
+};
+
 /// [assessment]
 struct AssessmentOptions {
   AssessmentSetpoints setpoints = AssessmentSetpoints::controller;
@@ -91,6 +108,7 @@ struct AssessmentOptions {
   Badwe2010Options badwe2010;
   YuQinOptions yu_qin;
   SseOptions sse;
+  LikelihoodOptions likelihood;
 
   bool operator==(const AssessmentOptions&) const = default;
 };

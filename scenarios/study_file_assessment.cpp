@@ -141,6 +141,21 @@ SseOptions read_sse(const TomlTable& assessment) {
   return options;
 }
 
+LikelihoodOptions read_likelihood(const TomlTable& assessment) {
+  const TomlTable table = assessment.table_or_empty("likelihood", study_file_keys("assessment.likelihood"));
+  LikelihoodOptions options;
+  options.priors = read_choice_or<FaultPriors>(
+      table, "priors", {{"wide", FaultPriors::wide}, {"study", FaultPriors::study}}, options.priors);
+  const NumberRule probability = NumberRule::inside(0, 1);
+  options.fault_probability =
+      read_number_or(table, "fault_probability", probability, options.fault_probability);
+  options.flag_probability = read_number_or(table, "flag_probability", probability, options.flag_probability);
+  options.source_probability =
+      read_number_or(table, "source_probability", {.low = 0, .high = 1, .low_included = true},
+                     options.source_probability);
+  return options;
+}
+
 }  // namespace
 
 std::vector<std::string> read_methods(const TomlTable& document) {
@@ -160,6 +175,7 @@ AssessmentOptions read_assessment(const TomlTable& document) {
   options.badwe2010 = read_badwe2010(table);
   options.yu_qin = read_yu_qin(table);
   options.sse = read_sse(table);
+  options.likelihood = read_likelihood(table);
   return options;
 }
 

@@ -1,0 +1,157 @@
+#include "analysis/identification/kalman_whitening.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace mpm {
+namespace {
+
+/// Variances and gains of the filter, the same for every series: they depend on the models and on which
+/// samples are observed. With x^ the state given the samples up to k - 1 and P its variance, the innovation of
+/// an observed sample behind an observed one is
+///
+///   z(k) - phi z(k-1) - (a - phi) x^(k-1),   S = (a - phi)^2 P + b^2 + 1 - phi^2,
+///
+/// and that of the first one or behind a gap is z(k) - a x^(k-1), S = a^2 P + b^2 + 1. The state goes on as
+/// x^(k) = a x^(k-1) + K innovation.
+class Gains {
+ public:
+  explicit Gains(const NoiseModels& models)
+      : models_(models),
+        difference_(models.a - models.phi),
+        squared_a_(models.a.square()),
+        squared_b_(models.b.square()),
+        P_(Eigen::ArrayXd::Zero(models.count())),
+        determinant_(Eigen::ArrayXd::Ones(models.count())),
+        log_determinant_(Eigen::ArrayXd::Zero(models.count())) {}
+
+  /// To the next sample; whether the sample before it counts in the innovation.
+  bool observe() {
+    const bool chained = models_.phi != 0.0 && previous_;
+    if (!(settled_ && previous_))
+      renew(chained);
+    determinant_ *= S;
+    if (++factors_ == kFactors)
+      fold();
+    previous_ = true;
+    first_ = false;
+    return chained;
+  }
+
+  /// Over a sample that is not there.
+  void skip() {
+    P_ = predicted();
+    previous_ = settled_ = first_ = false;
+  }
+
+  /// Factor of the state in the innovation, and of its prediction.
+  const Eigen::ArrayXd& state_factor(bool chained) const { return chained ? difference_ : models_.a; }
+
+  Eigen::ArrayXd log_determinant() {
+    fold();
+    return log_determinant_;
+  }
+
+  Eigen::ArrayXd S, inverse_S, K;
+
+ private:
+  static constexpr int kFactors = 16;  // of S <= 1e19 before the logarithm is taken
+
+  Eigen::ArrayXd predicted() const {
+    if (first_ && !models_.starts_from_rest)
+      return squared_b_ / (1.0 - squared_a_);
+    return first_ ? Eigen::ArrayXd::Zero(models_.count()).eval() : (squared_a_ * P_ + squared_b_).eval();
+  }
+
+  void renew(bool chained) {
+    const Eigen::ArrayXd ahead = predicted();
+    Eigen::ArrayXd covariance = ahead;
+    if (chained) {
+      covariance = models_.a * difference_ * P_ + squared_b_;
+      S = difference_.square() * P_ + squared_b_ + (1.0 - models_.phi * models_.phi);
+    } else {
+      S = ahead + 1.0;
+    }
+    inverse_S = S.inverse();
+    K = covariance * inverse_S;
+    const Eigen::ArrayXd next = ahead - K * covariance;
+    settled_ = previous_ && ((next - P_).abs() <= 1e-13 * (1.0 + next)).all();
+    P_ = next;
+  }
+
+  void fold() {
+    log_determinant_ += determinant_.log();
+    determinant_.setOnes();
+    factors_ = 0;
+  }
+
+  const NoiseModels& models_;
+  Eigen::ArrayXd difference_, squared_a_, squared_b_, P_, determinant_, log_determinant_;
+  bool previous_ = false, settled_ = false, first_ = true;
+  int factors_ = 0;
+};
+
+}  // namespace
+
+const Eigen::ArrayXd& WhitenedProducts::of(Eigen::Index i, Eigen::Index j) const {
+  if (i < j)
+    std::swap(i, j);
+  return products[static_cast<std::size_t>(i * (i + 1) / 2 + j)];
+}
+
+WhitenedProducts whitened_products(const NoiseModels& models,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& series) {
+  const Eigen::Index p = series.rows();
+  Gains gains(models);
+  WhitenedProducts sums;
+  sums.products.assign(static_cast<std::size_t>(p * (p + 1) / 2), Eigen::ArrayXd::Zero(models.count()));
+  Eigen::ArrayXXd state = Eigen::ArrayXXd::Zero(models.count(), p);
+  Eigen::ArrayXXd innovation(models.count(), p);
+  Eigen::ArrayXd scaled(models.count());
+  for (Eigen::Index k = 0; k < series.cols(); ++k) {
+    if (std::isnan(series(0, k))) {
+      state.colwise() *= models.a;
+      gains.skip();
+      continue;
+    }
+    const bool chained = gains.observe();
+    std::size_t pair = 0;
+    for (Eigen::Index i = 0; i < p; ++i) {
+      const double z = chained ? series(i, k) - models.phi * series(i, k - 1) : series(i, k);
+      innovation.col(i) = z - gains.state_factor(chained) * state.col(i);
+      state.col(i) = models.a * state.col(i) + gains.K * innovation.col(i);
+      scaled = innovation.col(i) * gains.inverse_S;
+      for (Eigen::Index j = 0; j <= i; ++j)
+        sums.products[pair++] += scaled * innovation.col(j);
+    }
+  }
+  sums.log_determinant = gains.log_determinant();
+  return sums;
+}
+
+Eigen::MatrixXd whitened(const NoiseModels& models, const Eigen::Ref<const Eigen::MatrixXd>& series,
+                         double& log_determinant) {
+  const NoiseModels one{models.a.head(1), models.b.head(1), models.phi, models.starts_from_rest};
+  Gains gains(one);
+  const double a = one.a(0);
+  Eigen::MatrixXd white = Eigen::MatrixXd::Zero(series.rows(), series.cols());
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(series.rows());
+  Eigen::VectorXd innovation(series.rows());
+  for (Eigen::Index k = 0; k < series.cols(); ++k) {
+    if (std::isnan(series(0, k))) {
+      state *= a;
+      gains.skip();
+      continue;
+    }
+    const bool chained = gains.observe();
+    innovation = series.col(k) - gains.state_factor(chained)(0) * state;
+    if (chained)
+      innovation -= models.phi * series.col(k - 1);
+    state = a * state + gains.K(0) * innovation;
+    white.col(k) = innovation * std::sqrt(gains.inverse_S(0));
+  }
+  log_determinant = gains.log_determinant()(0);
+  return white;
+}
+
+}  // namespace mpm

@@ -1,0 +1,326 @@
+#include "analysis/methods/cv_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+/// Gains of log L below which a fault is not worth a closer look, and drops from the best below which it is.
+constexpr double kFaint = 5.0, kWorthALook = 2.0, kLost = 12.0;
+constexpr std::size_t kMostLooks = 4;
+constexpr int kMostSteps = 3;       // of a size that is refined
+constexpr double kStill = 0.3;      // in its standard deviations
+constexpr double kNarrow = 0.2;     // of what is possible, below which a slope says all of m
+constexpr double kNoWeight = 1e-9;  // of a part of the posterior
+
+/// SSE(t) = squares - 2 t product + t^2 slope_squares, of e - t m.
+struct Parabola {
+  double squares, product, slope_squares;
+
+  double operator()(double t) const { return squares - 2.0 * t * product + t * t * slope_squares; }
+};
+
+/// The part of the evidence that sizes from `low` to `high` have, theta = origin + scale t.
+struct SizeCell {
+  double origin, scale;
+  double low, high;  ///< of t
+};
+
+struct CellEvidence {
+  TruncatedNormal size;
+  double best_size, best_log_likelihood;
+};
+
+CellEvidence cell_evidence(const Parabola& squares, const SizeCell& cell, const Distribution& prior,
+                           double log_determinant, const ScaleLikelihood& likelihood) {
+  const bool moves = squares.slope_squares > 0.0;
+  const double mean = moves ? squares.product / squares.slope_squares : 0.5 * (cell.low + cell.high);
+  const double best = std::clamp(mean, cell.low, cell.high);
+  const double least = std::max(squares(best), 0.0);
+  const double deviation =
+      moves ? 1.0 / std::sqrt(likelihood.precision(least) * squares.slope_squares) : kInfinity;
+  const double off = (best - mean) / deviation;
+  const double log_likelihood = likelihood(log_determinant, least);
+  const double size = cell.origin + cell.scale * best;
+  const auto [lowest, highest] = support(prior);
+  const double log_density = std::log(density(prior, std::clamp(size, lowest, highest)) * cell.scale);
+  return {{log_likelihood + 0.5 * off * off + log_normal_integral(cell.low, cell.high, mean, deviation) +
+               log_density,
+           cell.origin + cell.scale * mean, cell.scale * deviation, cell.origin + cell.scale * cell.low,
+           cell.origin + cell.scale * cell.high},
+          size,
+          log_likelihood};
+}
+
+MismatchEvidence nothing_yet() {
+  return {-kInfinity, kNaN, -kInfinity, {}};
+}
+
+void add(MismatchEvidence& evidence, const CellEvidence& cell) {
+  evidence.log_evidence = log_sum(evidence.log_evidence, cell.size.log_mass);
+  evidence.sizes.push_back(cell.size);
+  if (cell.best_log_likelihood > evidence.best_log_likelihood) {
+    evidence.best_log_likelihood = cell.best_log_likelihood;
+    evidence.best_size = cell.best_size;
+  }
+}
+
+/// The same, shifted by a factor of the probability.
+MismatchEvidence weighed(MismatchEvidence evidence, double log_weight) {
+  evidence.log_evidence += log_weight;
+  for (TruncatedNormal& part : evidence.sizes)
+    part.log_mass += log_weight;
+  return evidence;
+}
+
+double sum_of(const std::vector<MismatchEvidence>& all) {
+  double sum = -kInfinity;
+  for (const MismatchEvidence& each : all)
+    sum = log_sum(sum, each.log_evidence);
+  return sum;
+}
+
+double best_of(const std::vector<MismatchEvidence>& all) {
+  double best = -kInfinity;
+  for (const MismatchEvidence& each : all)
+    best = std::max(best, each.best_log_likelihood);
+  return best;
+}
+
+/// The work on one record.
+class RecordLikelihood {
+ public:
+  RecordLikelihood(const CvPrior& prior, const BaseNoise& base, const ScaleLikelihood& likelihood, bool rest,
+                   const std::vector<MismatchResponses>& responses, const Eigen::RowVectorXd& e,
+                   const Eigen::Ref<const Eigen::MatrixXd>& u,
+                   const Eigen::Ref<const Eigen::VectorXd>& initial_u)
+      : prior_(prior),
+        base_(base),
+        likelihood_(likelihood),
+        rest_(rest),
+        responses_(responses),
+        e_(e),
+        u_(u),
+        initial_u_(initial_u) {
+    simulate();
+  }
+
+  CvEvidence evidence() const {
+    const WeighedModels base = base_models(base_, rest_);
+    CvEvidence evidence{};
+    evidence.mismatch_alone = on_grids(base, &evidence.healthy);
+    const double best = best_of(evidence.mismatch_alone);
+    for (std::size_t i = 0; i < responses_.size(); ++i)
+      if (evidence.mismatch_alone[i].best_log_likelihood > std::max(best - kLost, evidence.healthy + kFaint))
+        look_again(i, false, evidence.mismatch_alone[i]);
+    const WeighedModels disturbances = scan(e_);
+    evidence.ud = disturbances.log_evidence();
+    const Eigen::Index strongest = disturbances.best();
+    evidence.disturbance_a = disturbances.models.a(strongest);
+    evidence.disturbance_b = base_.deviation * disturbances.models.b(strongest);
+    evidence.mismatch_with_disturbance = with_disturbance(evidence, disturbances);
+    evidence.mpm = sum_of(evidence.mismatch_alone);
+    evidence.both = sum_of(evidence.mismatch_with_disturbance);
+    return evidence;
+  }
+
+ private:
+  Eigen::RowVectorXd input(std::size_t i) const {
+    return u_.row(responses_[i].prior().channel.mv);
+  }
+  double initial(std::size_t i) const { return initial_u_(responses_[i].prior().channel.mv); }
+
+  Eigen::RowVectorXd response(std::size_t i, double size) const {
+    return responses_[i].at(size, input(i), initial(i)) / base_.deviation;
+  }
+
+  void simulate() {
+    std::vector<Eigen::MatrixXd> grids;
+    Eigen::Index rows = 1;
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+      first_row_.push_back(rows);
+      grids.push_back(responses_[i].on_grid(input(i), initial(i)) / base_.deviation);
+      rows += grids.back().rows();
+    }
+    series_.resize(rows, e_.size());
+    series_.row(0) = e_;
+    for (std::size_t i = 0; i < grids.size(); ++i)
+      series_.middleRows(first_row_[i], grids[i].rows()) = grids[i];
+  }
+
+  WeighedModels scan(const Eigen::Ref<const Eigen::MatrixXd>& series) const {
+    return scan_disturbances(prior_.disturbances, base_, rest_, likelihood_, series);
+  }
+
+  /// All mismatches under one model of the noise, on their grids; the likelihood of none in `without`.
+  std::vector<MismatchEvidence> on_grids(const WeighedModels& model, double* without) const {
+    double log_determinant = 0.0;
+    const Eigen::MatrixXd white = whitened(model.models, series_, log_determinant);
+    const Eigen::Index rows = white.rows();
+    Eigen::ArrayXd with_e = Eigen::ArrayXd::Zero(rows), squares = with_e, with_next = with_e.head(rows - 1);
+    for (Eigen::Index k = 0; k < white.cols(); ++k) {
+      with_e += white(0, k) * white.col(k).array();
+      squares += white.col(k).array().square();
+      with_next += white.col(k).head(rows - 1).array() * white.col(k).tail(rows - 1).array();
+    }
+    *without = likelihood_(log_determinant, squares(0));
+    std::vector<MismatchEvidence> all;
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+      const MismatchResponses& response = responses_[i];
+      MismatchEvidence evidence = nothing_yet();
+      const std::vector<double>& sizes = response.sizes();
+      for (std::size_t c = 0; c + 1 < sizes.size(); ++c) {
+        const double width = sizes[c + 1] - sizes[c];
+        const Eigen::Index row = first_row_[i] + (response.is_linear() ? 0 : static_cast<Eigen::Index>(c));
+        Parabola parabola{};
+        if (response.is_linear()) {
+          const double at = sizes[c] - 1.0;  // of G0 u
+          parabola = {squares(0) - 2.0 * at * with_e(row) + at * at * squares(row),
+                      width * (with_e(row) - at * squares(row)), width * width * squares(row)};
+        } else {
+          const double difference_squares =
+              std::max(squares(row) + squares(row + 1) - 2.0 * with_next(row), 0.0);
+          parabola = {squares(0) - 2.0 * with_e(row) + squares(row),
+                      with_e(row + 1) - with_e(row) - with_next(row) + squares(row), difference_squares};
+        }
+        add(evidence, cell_evidence(parabola, {sizes[c], width, 0.0, 1.0}, response.prior().size,
+                                    log_determinant, likelihood_));
+      }
+      all.push_back(weighed(std::move(evidence), std::log(response.prior().weight)));
+    }
+    return all;
+  }
+
+  /// The evidence of one mismatch around its best size, with the exact m and its slope there: under the base
+  /// noise, or under the disturbances that are in what m leaves. Replaces `evidence` when the posterior is
+  /// narrow enough for a slope.
+  void look_again(std::size_t i, bool disturbed, MismatchEvidence& evidence) const {
+    const MismatchResponses& response = responses_[i];
+    const auto [low, high] = support(response.prior().size);
+    Eigen::MatrixXd pair(2, e_.size());
+    double size = evidence.best_size;
+    MismatchEvidence closer = nothing_yet();
+    for (int step = 0; step < kMostSteps; ++step) {
+      pair.row(0) = e_ - this->response(i, size);
+      pair.row(1) = response.slope(size, input(i), initial(i)) / base_.deviation;
+      const WeighedModels models =
+          disturbed ? scan(pair.row(0)).main_ones() : base_models(base_, rest_);
+      const WhitenedProducts sums = whitened_products(models.models, pair);
+      closer = nothing_yet();
+      for (Eigen::Index node = 0; node < models.models.count(); ++node) {
+        const Parabola parabola{sums.of(0, 0)(node), sums.of(1, 0)(node), sums.of(1, 1)(node)};
+        CellEvidence cell = cell_evidence(parabola, {size, 1.0, low - size, high - size},
+                                          response.prior().size, sums.log_determinant(node), likelihood_);
+        cell.size.log_mass += models.log_prior(node);
+        add(closer, cell);
+      }
+      double mean = 0.0, deviation = 0.0, total = 0.0;
+      for (const TruncatedNormal& part : closer.sizes) {
+        const double weight = std::exp(part.log_mass - closer.log_evidence);
+        if (weight < kNoWeight)
+          continue;
+        mean += weight * std::clamp(part.mean, low, high);
+        deviation += weight * part.deviation;
+        total += weight;
+      }
+      if (!(total > 0.0))
+        return;
+      mean /= total;
+      deviation /= total;
+      if (!response.is_linear() && deviation > kNarrow * (high - low))
+        return;
+      const bool still = std::abs(mean - size) < kStill * deviation;
+      size = mean;
+      if (still)
+        break;
+    }
+    closer.best_size = size;
+    evidence = weighed(std::move(closer), std::log(response.prior().weight));
+  }
+
+  /// Mismatches beside a disturbance. Looked for where a disturbance alone is best, and where the best
+  /// mismatch alone leaves one; the best of them are looked at again, for the others the disturbance is as
+  /// without them.
+  std::vector<MismatchEvidence> with_disturbance(const CvEvidence& so_far,
+                                                 const WeighedModels& disturbances) const {
+    std::vector<MismatchEvidence> all;
+    const double best_alone = std::max(best_of(so_far.mismatch_alone), disturbances.log_likelihood.maxCoeff());
+    if (best_alone < so_far.healthy + kFaint) {
+      for (const MismatchEvidence& alone : so_far.mismatch_alone)
+        all.push_back(weighed(alone, so_far.ud - so_far.healthy));
+      return all;
+    }
+    double without = 0.0;
+    const std::vector<MismatchEvidence> first = on_grids(disturbances.only(disturbances.best()), &without);
+    for (const MismatchEvidence& each : first)
+      all.push_back(weighed(each, so_far.ud - without));
+    std::vector<double> fits;
+    for (const MismatchEvidence& each : first)
+      fits.push_back(each.best_log_likelihood);
+    const auto strongest = std::max_element(
+        so_far.mismatch_alone.begin(), so_far.mismatch_alone.end(),
+        [](const auto& a, const auto& b) { return a.best_log_likelihood < b.best_log_likelihood; });
+    if (strongest != so_far.mismatch_alone.end() &&
+        strongest->best_log_likelihood > so_far.healthy + kFaint) {
+      const auto place = static_cast<std::size_t>(strongest - so_far.mismatch_alone.begin());
+      const WeighedModels left = scan(e_ - response(place, strongest->best_size));
+      double none = 0.0;
+      const std::vector<MismatchEvidence> second = on_grids(left.only(left.best()), &none);
+      const double likelihood_left = left.log_likelihood.maxCoeff();
+      for (std::size_t i = 0; i < second.size(); ++i) {
+        MismatchEvidence other = weighed(second[i], left.log_evidence() - likelihood_left);
+        fits[i] = std::max(fits[i], second[i].best_log_likelihood);
+        if (other.log_evidence > all[i].log_evidence)
+          all[i] = std::move(other);
+      }
+    }
+    std::vector<std::size_t> order(all.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return fits[a] > fits[b]; });
+    std::size_t looks = 0;
+    for (const std::size_t i : order) {
+      if (looks == kMostLooks || fits[i] < fits[order.front()] - kLost || fits[i] < without + kWorthALook)
+        break;
+      look_again(i, true, all[i]);
+      ++looks;
+    }
+    return all;
+  }
+
+  const CvPrior& prior_;
+  const BaseNoise& base_;
+  ScaleLikelihood likelihood_;
+  bool rest_;
+  const std::vector<MismatchResponses>& responses_;
+  const Eigen::RowVectorXd& e_;
+  const Eigen::Ref<const Eigen::MatrixXd>& u_;
+  const Eigen::Ref<const Eigen::VectorXd>& initial_u_;
+  Eigen::MatrixXd series_;                ///< e, and every response on its grid
+  std::vector<Eigen::Index> first_row_;  ///< of each mismatch in `series_`
+};
+
+}  // namespace
+
+CvLikelihood::CvLikelihood(const Study& study, const CvPrior& prior, const BaseNoise& base,
+                           double noise_freedom, bool starts_from_rest)
+    : prior_(prior), base_(base), freedom_(noise_freedom), starts_from_rest_(starts_from_rest) {
+  for (const SizePrior& mismatch : prior.mismatches)
+    responses_.emplace_back(study, mismatch);
+}
+
+CvEvidence CvLikelihood::of(const Eigen::Ref<const Eigen::RowVectorXd>& e,
+                            const Eigen::Ref<const Eigen::MatrixXd>& u,
+                            const Eigen::Ref<const Eigen::VectorXd>& initial_u) const {
+  const Eigen::RowVectorXd scaled = e / base_.deviation;
+  const auto samples = static_cast<double>((!scaled.array().isNaN()).count());
+  return RecordLikelihood(prior_, base_, {freedom_, samples}, starts_from_rest_, responses_, scaled, u,
+                          initial_u)
+      .evidence();
+}
+
+}  // namespace mpm

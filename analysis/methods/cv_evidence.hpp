@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/disturbance_scan.hpp"
+#include "analysis/methods/fault_priors.hpp"
+#include "analysis/methods/mismatch_responses.hpp"
+#include "analysis/statistics/truncated_normal.hpp"
+
+namespace mpm {
+
+/// The evidence for one wrong parameter of one channel, in the order of CvPrior::mismatches.
+struct MismatchEvidence {
+  double log_evidence;  ///< the weight of channel, parameter and size among the mismatches of the CV included
+  double best_size;
+  double best_log_likelihood;
+  std::vector<TruncatedNormal> sizes;  ///< the posterior of the size, with log_evidence as its mass in all
+};
+
+/// Logarithms of the probability of the simulation errors of one CV under what may be wrong with it.
+struct CvEvidence {
+  double healthy, mpm, ud, both;
+  std::vector<MismatchEvidence> mismatch_alone, mismatch_with_disturbance;
+  double disturbance_a, disturbance_b;  ///< of the best disturbance alone; b in CV units
+};
+
+/// The likelihood of the record of one CV. With e = y - y_sim of the CV and u the recorded MVs,
+///
+///   healthy      e = n
+///   mpm          e = m(theta) + n,        m(theta) = (G(theta) - G0) u of one channel and parameter
+///   ud           e = x + n,               x the disturbance, a first-order lag of white noise
+///   both         e = m(theta) + x + n
+///
+/// exactly, in closed loop, too: u(k) is made of what y was up to sample k, so that the probability of the
+/// record is the product of the probabilities of each y(k) given those before it and u, which the Kalman
+/// filter has. The sizes theta are integrated: between neighbours on a grid m is taken as a straight line,
+/// which makes the integral a closed one; the best parameters are looked at again around their best size, with
+/// the exact m and its slope. The disturbance is summed over scan_disturbances().
+class CvLikelihood {
+ public:
+  /// `prior` must outlive the likelihood.
+  CvLikelihood(const Study& study, const CvPrior& prior, const BaseNoise& base, double noise_freedom,
+               bool starts_from_rest);
+
+  /// `e` (N, CV unit): NaN where there is no sample; `u` (nu x N) with `initial_u` (nu) before it.
+  CvEvidence of(const Eigen::Ref<const Eigen::RowVectorXd>& e, const Eigen::Ref<const Eigen::MatrixXd>& u,
+                const Eigen::Ref<const Eigen::VectorXd>& initial_u) const;
+
+ private:
+  const CvPrior& prior_;
+  BaseNoise base_;
+  double freedom_;
+  bool starts_from_rest_;
+  std::vector<MismatchResponses> responses_;  ///< one a mismatch of the prior
+};
+
+}  // namespace mpm

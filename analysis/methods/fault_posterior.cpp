@@ -1,0 +1,248 @@
+#include "analysis/methods/fault_posterior.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "analysis/methods/base_noise.hpp"
+#include "analysis/statistics/truncated_normal.hpp"
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+/// Smallest noise against the size of the outputs: that of their rounding in a record without noise.
+constexpr double kLeastNoise = 1e-6;
+
+double log_weight(double prior, double evidence, double healthy) {
+  return prior > 0.0 ? std::log(prior) + evidence - healthy : -kInfinity;
+}
+
+/// Logarithms of the weights of the faults of a CV against none.
+struct CvWeights {
+  double mpm, ud, both;
+
+  double all() const { return log_sum(log_sum(mpm, ud), both); }
+};
+
+std::vector<CvWeights> weights_of(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence) {
+  std::vector<CvWeights> weights;
+  for (std::size_t i = 0; i < evidence.size(); ++i) {
+    const CvPrior& prior = priors.cvs[i];
+    const CvEvidence& of_cv = evidence[i];
+    weights.push_back({log_weight(prior.mpm, of_cv.mpm, of_cv.healthy),
+                       log_weight(prior.ud, of_cv.ud, of_cv.healthy),
+                       log_weight(prior.both, of_cv.both, of_cv.healthy)});
+  }
+  return weights;
+}
+
+/// log(e^x - 1), x > 0.
+double log_expm1(double x) {
+  return x > 30.0 ? x + std::log1p(-std::exp(-x)) : std::log(std::expm1(x));
+}
+
+FaultProbabilities of_one_fault(const std::vector<CvWeights>& weights) {
+  double total = 0.0;  // log of the weight of nothing
+  for (const CvWeights& cv : weights)
+    total = log_sum(total, cv.all());
+  FaultProbabilities probabilities{std::exp(-total), 0.0, 0.0, 0.0, -kInfinity, {}};
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const CvWeights& cv = weights[i];
+    double others = 0.0;
+    for (std::size_t j = 0; j < weights.size(); ++j)
+      if (j != i)
+        others = log_sum(others, weights[j].all());
+    probabilities.cvs.push_back({std::exp(cv.mpm - total), std::exp(cv.ud - total), std::exp(cv.both - total),
+                                 cv.all() - others});
+    probabilities.mpm += probabilities.cvs.back().mpm;
+    probabilities.ud += probabilities.cvs.back().ud;
+    probabilities.both += probabilities.cvs.back().both;
+    probabilities.log_odds = log_sum(probabilities.log_odds, cv.all());
+  }
+  return probabilities;
+}
+
+FaultProbabilities of_several_faults(const std::vector<CvWeights>& weights) {
+  FaultProbabilities probabilities{};
+  double log_healthy = 0.0, log_no_disturbance = 0.0, log_no_mismatch = 0.0;
+  for (const CvWeights& cv : weights) {
+    const double total = log_sum(0.0, cv.all());
+    probabilities.cvs.push_back(
+        {std::exp(cv.mpm - total), std::exp(cv.ud - total), std::exp(cv.both - total), cv.all()});
+    log_healthy -= total;
+    log_no_disturbance += log_sum(0.0, cv.mpm) - total;
+    log_no_mismatch += log_sum(0.0, cv.ud) - total;
+  }
+  probabilities.healthy = std::exp(log_healthy);
+  probabilities.mpm = std::exp(log_no_disturbance) - probabilities.healthy;
+  probabilities.ud = std::exp(log_no_mismatch) - probabilities.healthy;
+  probabilities.both =
+      std::max(0.0, 1.0 - probabilities.healthy - probabilities.mpm - probabilities.ud);
+  probabilities.log_odds = log_healthy < 0.0 ? log_expm1(-log_healthy) : -kInfinity;
+  return probabilities;
+}
+
+/// Is the noise of the records of this study known to be normal, of a size that the study says, and kept as it
+/// was measured?
+bool noise_is_known(const Study& study) {
+  const RecordOptions& record = study.record;
+  const bool kept = record.quantisation == 0.0 && record.compression == 0.0 &&
+                    (record.missing_share == 0.0 || record.fill == GapFill::none);
+  return kept && !study.nonlinear && !study.names_scenarios() &&
+         study.simulation.noise.distribution == NoiseDistribution::normal &&
+         (study.simulation.noise_standard_deviation.array() > 0.0).all();
+}
+
+std::vector<BaseNoise> base_noises(const AssessmentContext& context, FaultPriors priors) {
+  const Study& study = context.study;
+  const AssessedLoop& benchmark = *context.benchmark;
+  std::vector<BaseNoise> noises;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
+    if (priors == FaultPriors::study && noise_is_known(study)) {
+      noises.push_back({study.simulation.noise_standard_deviation(cv), study.simulation.noise.autocorrelation});
+      continue;
+    }
+    const double least = kLeastNoise * (1.0 + benchmark.y_sim.row(cv).cwiseAbs().maxCoeff());
+    noises.push_back(
+        fitted_base_noise(without_outliers(benchmark.y.row(cv) - benchmark.y_sim.row(cv)), least));
+  }
+  return noises;
+}
+
+Eigen::VectorXd deviations(const std::vector<BaseNoise>& noises) {
+  Eigen::VectorXd all(static_cast<Eigen::Index>(noises.size()));
+  for (std::size_t i = 0; i < noises.size(); ++i)
+    all(static_cast<Eigen::Index>(i)) = noises[i].deviation;
+  return all;
+}
+
+FaultSource most_probable_source(const FaultProbabilities::OfCv& cv, double least) {
+  const double largest = std::max({cv.mpm, cv.ud, cv.both});
+  if (!(largest > 0.0) || largest < least * cv.fault())
+    return FaultSource::none;
+  return largest == cv.mpm ? FaultSource::mpm : largest == cv.ud ? FaultSource::ud : FaultSource::mpm_ud;
+}
+
+const std::vector<MismatchEvidence>& mismatches_of_source(const CvEvidence& evidence, FaultSource source) {
+  return source == FaultSource::mpm ? evidence.mismatch_alone : evidence.mismatch_with_disturbance;
+}
+
+class FaultPosterior final : public AssessmentMethod {
+ public:
+  FaultPosterior(const AssessmentContext& context, FaultPriors priors)
+      : study_(context.study),
+        initial_u_(context.basis.point.u),
+        noises_(base_noises(context, priors)),
+        priors_(fault_priors(context.study, priors, context.study.assessment.likelihood.fault_probability,
+                             deviations(noises_))) {
+    if (priors == FaultPriors::study && !noise_is_known(study_))
+      priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
+    for (std::size_t cv = 0; cv < noises_.size(); ++cv)
+      likelihoods_.push_back(std::make_unique<CvLikelihood>(study_, priors_.cvs[cv], noises_[cv],
+                                                            priors_.noise_freedom, priors_.starts_from_rest));
+  }
+
+  Assessment assess(const AssessedLoop& loop) override {
+    std::vector<CvEvidence> evidence;
+    for (std::size_t i = 0; i < likelihoods_.size(); ++i) {
+      const auto cv = static_cast<Eigen::Index>(i);
+      const Eigen::RowVectorXd e = without_outliers(loop.y.row(cv) - loop.y_sim.row(cv));
+      if (e.array().isNaN().all())
+        return Assessment::failed("a CV has no sample");
+      evidence.push_back(likelihoods_[i]->of(e, loop.u, initial_u_));
+    }
+    return answer(fault_probabilities(priors_, evidence), evidence);
+  }
+
+ private:
+  /// Degrees of freedom of the variance of a noise that is taken from the benchmark.
+  static constexpr double kUnknownNoise = 4.0;
+
+  Assessment answer(const FaultProbabilities& probabilities, const std::vector<CvEvidence>& evidence) const {
+    const LikelihoodOptions& options = study_.assessment.likelihood;
+    Assessment assessment;
+    assessment.flagged = 1.0 - probabilities.healthy > options.flag_probability;
+    assessment.score = probabilities.log_odds;
+    for (const FaultProbabilities::OfCv& cv : probabilities.cvs)
+      assessment.cvs.push_back({cv.fault() > options.flag_probability, cv.log_odds, FaultSource::none});
+    const std::optional<Eigen::Index> worst = assessment.worst_cv();
+    for (std::size_t i = 0; i < assessment.cvs.size(); ++i) {
+      CvAssessment& cv = assessment.cvs[i];
+      if (cv.flagged == true || worst == static_cast<Eigen::Index>(i))
+        cv.source = most_probable_source(probabilities.cvs[i], options.source_probability);
+      name_mismatch(i, cv.source, evidence[i], assessment);
+    }
+    add_numbers(probabilities, evidence, worst, assessment);
+    return assessment;
+  }
+
+  /// The most probable parameter of a CV with a mismatch.
+  void name_mismatch(std::size_t cv, FaultSource source, const CvEvidence& evidence,
+                     Assessment& assessment) const {
+    if (!assessment.flagged || (source != FaultSource::mpm && source != FaultSource::mpm_ud))
+      return;
+    const auto& mismatches = mismatches_of_source(evidence, source);
+    const auto likeliest =
+        std::max_element(mismatches.begin(), mismatches.end(),
+                         [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+    const SizePrior& named =
+        priors_.cvs[cv].mismatches[static_cast<std::size_t>(likeliest - mismatches.begin())];
+    assessment.flagged_channels.push_back(named.channel);
+  }
+
+  void add_numbers(const FaultProbabilities& probabilities, const std::vector<CvEvidence>& evidence,
+                   std::optional<Eigen::Index> worst, Assessment& assessment) const {
+    assessment.numbers = {{"p_healthy", probabilities.healthy},
+                          {"p_mpm", probabilities.mpm},
+                          {"p_ud", probabilities.ud},
+                          {"p_both", probabilities.both}};
+    for (std::size_t i = 0; i < probabilities.cvs.size(); ++i) {
+      const auto cv = static_cast<Eigen::Index>(i);
+      const FaultProbabilities::OfCv& of_cv = probabilities.cvs[i];
+      assessment.numbers.push_back({"cv_p_mpm", of_cv.mpm, cv});
+      assessment.numbers.push_back({"cv_p_ud", of_cv.ud, cv});
+      assessment.numbers.push_back({"cv_p_both", of_cv.both, cv});
+    }
+    if (!worst)
+      return;
+    const CvEvidence& of_worst = evidence[static_cast<std::size_t>(*worst)];
+    const double a = of_worst.disturbance_a;
+    assessment.numbers.push_back(
+        {"ud_gain", of_worst.disturbance_b / ((1.0 - a) * study_.disturbance.v_standard_deviation)});
+    assessment.numbers.push_back({"ud_time_constant", -study_.controller.sample_time / std::log(a)});
+  }
+
+  const Study& study_;
+  Eigen::VectorXd initial_u_;
+  std::vector<BaseNoise> noises_;
+  FaultPriorSet priors_;
+  std::vector<std::unique_ptr<CvLikelihood>> likelihoods_;
+};
+
+}  // namespace
+
+FaultProbabilities fault_probabilities(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence) {
+  const std::vector<CvWeights> weights = weights_of(priors, evidence);
+  return priors.one_fault ? of_one_fault(weights) : of_several_faults(weights);
+}
+
+std::unique_ptr<AssessmentMethod> make_fault_posterior(const AssessmentContext& context, FaultPriors priors) {
+  return std::make_unique<FaultPosterior>(context, priors);
+}
+
+std::vector<AssessmentNumberInfo> fault_posterior_numbers() {
+  return {{"p_healthy", NumberScope::loop, "probability, given the record, that nothing is wrong"},
+          {"p_mpm", NumberScope::loop, "probability of mismatches alone"},
+          {"p_ud", NumberScope::loop, "probability of disturbances alone"},
+          {"p_both", NumberScope::loop, "probability of mismatches and disturbances"},
+          {"ud_gain", NumberScope::loop, "gain of G_d of the likeliest disturbance alone on the worst CV",
+           "CV unit"},
+          {"ud_time_constant", NumberScope::loop, "its time constant", "time unit of the plant"},
+          {"cv_p_mpm", NumberScope::cv, "probability that the CV has a mismatch alone"},
+          {"cv_p_ud", NumberScope::cv, "probability that it has a disturbance alone"},
+          {"cv_p_both", NumberScope::cv, "probability that it has both"}};
+}
+
+}  // namespace mpm

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "analysis/methods/assessment_method.hpp"
+#include "analysis/methods/cv_evidence.hpp"
+
+namespace mpm {
+
+/// How probable it is, given the record, that a CV has this fault, and how probable the faults of a loop are.
+struct FaultProbabilities {
+  struct OfCv {
+    double mpm, ud, both;  ///< P(this CV has it)
+    double log_odds;       ///< log(P(some fault of this CV) / P(none))
+
+    double fault() const { return mpm + ud + both; }
+  };
+  double healthy, mpm, ud, both;  ///< of the loop; they sum to 1
+  double log_odds;                ///< log((1 - healthy) / healthy)
+  std::vector<OfCv> cvs;
+};
+
+/// Priors and evidence of all CVs together. Of one fault: the weight of each is prior times evidence. Of
+/// several: the CVs are independent of each other, and with h_i, m_i, u_i, b_i what CV i has with which
+/// probability, nothing is wrong in the loop with prod h_i, and there are mismatches alone with
+/// prod (h_i + m_i) - prod h_i.
+FaultProbabilities fault_probabilities(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence);
+
+/// The method `likelihood` and, with the priors of the study, the ceiling of what any method can do on it.
+std::unique_ptr<AssessmentMethod> make_fault_posterior(const AssessmentContext& context, FaultPriors priors);
+
+/// The numbers that it gives.
+std::vector<AssessmentNumberInfo> fault_posterior_numbers();
+
+}  // namespace mpm
