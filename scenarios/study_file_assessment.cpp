@@ -150,9 +150,8 @@ LikelihoodOptions read_likelihood(const TomlTable& assessment) {
   options.fault_probability =
       read_number_or(table, "fault_probability", probability, options.fault_probability);
   options.flag_probability = read_number_or(table, "flag_probability", probability, options.flag_probability);
-  options.source_probability =
-      read_number_or(table, "source_probability", {.low = 0, .high = 1, .low_included = true},
-                     options.source_probability);
+  options.source_probability = read_number_or(
+      table, "source_probability", {.low = 0, .high = 1, .low_included = true}, options.source_probability);
   return options;
 }
 

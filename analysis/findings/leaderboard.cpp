@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <utility>
 
 #include "analysis/findings/method_rates.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -75,6 +77,28 @@ std::vector<SuiteAxis> used(const std::vector<SuiteAxis>& axis, std::vector<Cell
   return kept;
 }
 
+void add_shares(const PooledScores& ceiling, PooledScores& scores) {
+  for (const LeaderboardScore& score : leaderboard_scores()) {
+    const Rate* const reached = scores.of(score.rate);
+    const Rate* const possible = ceiling.of(score.rate);
+    const bool counted = !score.low_is_good && reached->total > 0 && possible->hits > 0;
+    scores.shares_of_ceiling.push_back(counted ? reached->value / possible->value : kNaN);
+  }
+}
+
+void add_shares(Leaderboard& board) {
+  const auto ceiling = std::find(board.methods.begin(), board.methods.end(), kCeilingMethod);
+  if (ceiling == board.methods.end())
+    return;
+  const auto place = static_cast<std::size_t>(ceiling - board.methods.begin());
+  for (std::size_t method = 0; method < board.methods.size(); ++method) {
+    for (auto* const along : {&board.by_family, &board.by_plant})
+      for (std::size_t column = 0; column < (*along)[method].size(); ++column)
+        add_shares((*along)[place][column], (*along)[method][column]);
+    add_shares(board.overall[place], board.overall[method]);
+  }
+}
+
 }  // namespace
 
 const Rate* MethodScores::of(std::string_view name) const {
@@ -100,6 +124,11 @@ CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
 bool PooledScores::answers_in_part() const {
   const Rate* const answered = of("answered");
   return answered != nullptr && answered->hits > 0 && answered->value < kFewestAnswers;
+}
+
+bool PooledScores::has_ceiling() const {
+  return std::any_of(shares_of_ceiling.begin(), shares_of_ceiling.end(),
+                     [](double share) { return !std::isnan(share); });
 }
 
 bool PooledScores::too_many_false_alarms() const {
@@ -166,6 +195,7 @@ Leaderboard make_leaderboard(const Suite& suite, const std::vector<std::string>&
       plants.push_back(pooled([plant](const CellScores& cell) { return cell.plant == plant; }));
     board.overall.push_back(pooled([](const CellScores&) { return true; }));
   }
+  add_shares(board);
   return board;
 }
 

@@ -42,7 +42,13 @@ CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings);
 struct PooledScores : MethodScores {
   std::size_t cells = 0;            ///< that were run
   std::size_t answering_cells = 0;  ///< on some loop of which it gave a verdict
+  /// Each of leaderboard_scores() over that of the method kCeilingMethod on the same cells; NaN where it was
+  /// not asked, where one of the two was not counted, and where low is good. It is above 1 where the loops
+  /// have what the ceiling does not know of.
+  std::vector<double> shares_of_ceiling = {};
 
+  /// Is there any of them?
+  bool has_ceiling() const;
   /// It gave a verdict on fewer than kFewestAnswers of the loops: its rates rest on a part of what those of
   /// others rest on.
   bool answers_in_part() const;
@@ -52,6 +58,9 @@ struct PooledScores : MethodScores {
 
 inline constexpr double kFewestAnswers = 0.9;
 inline constexpr double kMostFalseAlarms = 0.05;
+
+/// The method that knows what a study draws.
+inline constexpr std::string_view kCeilingMethod = "ceiling";
 
 /// What a method is asked to do.
 enum class LeaderboardTask { detection, location, source };

@@ -7,8 +7,8 @@ namespace mpm {
 namespace {
 
 /// Variances and gains of the filter, the same for every series: they depend on the models and on which
-/// samples are observed. With x^ the state given the samples up to k - 1 and P its variance, the innovation of
-/// an observed sample behind an observed one is
+/// samples are observed. With x^ the state given the samples up to k - 1 and P its variance, the innovation
+/// of an observed sample behind an observed one is
 ///
 ///   z(k) - phi z(k-1) - (a - phi) x^(k-1),   S = (a - phi)^2 P + b^2 + 1 - phi^2,
 ///

@@ -20,8 +20,8 @@ struct NoiseModels {
   Eigen::Index count() const { return a.size(); }
 };
 
-/// What the likelihood of normal series needs of them: with L the lower triangular factor of the covariance of
-/// the noise over the observed samples, log |L|^2 and the products (L^-1 s_i)' (L^-1 s_j).
+/// What the likelihood of normal series needs of them: with L the lower triangular factor of the covariance
+/// of the noise over the observed samples, log |L|^2 and the products (L^-1 s_i)' (L^-1 s_j).
 struct WhitenedProducts {
   Eigen::ArrayXd log_determinant;  ///< one a model
   /// products[i (i + 1) / 2 + j], j <= i: of the series i and j, one a model.
@@ -33,7 +33,8 @@ struct WhitenedProducts {
 /// By a Kalman filter with one state, which runs over all models abreast. `series` (p x N) has one series a
 /// row; a sample at which the first one is NaN is not observed in any. With phi != 0 the filter forgets what
 /// n was before a gap.
-WhitenedProducts whitened_products(const NoiseModels& models, const Eigen::Ref<const Eigen::MatrixXd>& series);
+WhitenedProducts whitened_products(const NoiseModels& models,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& series);
 
 /// L^-1 of each row of `series` under the first of the models, p x N, and 0 where nothing is observed; log
 /// |L|^2 in `log_determinant`.

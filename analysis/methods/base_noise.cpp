@@ -34,7 +34,8 @@ NoiseModels grid_of_models(Eigen::Index samples) {
   const double slowest = std::max(2.0 * kFastest, 0.5 * static_cast<double>(samples));
   for (Eigen::Index i = 0; i < kTimeConstants; ++i)
     for (Eigen::Index j = 0; j < kRatios; ++j) {
-      const double tau = kFastest * std::pow(slowest / kFastest, static_cast<double>(i) / (kTimeConstants - 1));
+      const double tau =
+          kFastest * std::pow(slowest / kFastest, static_cast<double>(i) / (kTimeConstants - 1));
       models.a(i * kRatios + j) = std::exp(-1.0 / tau);
       models.b(i * kRatios + j) =
           kSmallestRatio * std::pow(kLargestRatio / kSmallestRatio, static_cast<double>(j) / (kRatios - 1));

@@ -14,6 +14,7 @@ AssessmentMethodInfo ceiling_method() {
            .locates_cvs = true,
            .names_channels = true,
            .tells_sources = true,
+           .names_mismatches = true,
            .numbers = fault_posterior_numbers()},
           {},
           [](const AssessmentContext& context) { return make_fault_posterior(context, FaultPriors::study); }};

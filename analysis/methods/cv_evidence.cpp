@@ -13,7 +13,7 @@ namespace {
 /// Gains of log L below which a fault is not worth a closer look, and drops from the best below which it is.
 constexpr double kFaint = 5.0, kWorthALook = 2.0, kLost = 12.0;
 constexpr std::size_t kMostLooks = 4;
-constexpr int kMostSteps = 3;       // of a size that is refined
+constexpr int kMostSteps = 4;       // of a size that is refined
 constexpr double kStill = 0.3;      // in its standard deviations
 constexpr double kNarrow = 0.2;     // of what is possible, below which a slope says all of m
 constexpr double kNoWeight = 1e-9;  // of a part of the posterior
@@ -130,9 +130,7 @@ class RecordLikelihood {
   }
 
  private:
-  Eigen::RowVectorXd input(std::size_t i) const {
-    return u_.row(responses_[i].prior().channel.mv);
-  }
+  Eigen::RowVectorXd input(std::size_t i) const { return u_.row(responses_[i].prior().channel.mv); }
   double initial(std::size_t i) const { return initial_u_(responses_[i].prior().channel.mv); }
 
   Eigen::RowVectorXd response(std::size_t i, double size) const {
@@ -208,8 +206,7 @@ class RecordLikelihood {
     for (int step = 0; step < kMostSteps; ++step) {
       pair.row(0) = e_ - this->response(i, size);
       pair.row(1) = response.slope(size, input(i), initial(i)) / base_.deviation;
-      const WeighedModels models =
-          disturbed ? scan(pair.row(0)).main_ones() : base_models(base_, rest_);
+      const WeighedModels models = disturbed ? scan(pair.row(0)).main_ones() : base_models(base_, rest_);
       const WhitenedProducts sums = whitened_products(models.models, pair);
       closer = nothing_yet();
       for (Eigen::Index node = 0; node < models.models.count(); ++node) {
@@ -249,12 +246,6 @@ class RecordLikelihood {
   std::vector<MismatchEvidence> with_disturbance(const CvEvidence& so_far,
                                                  const WeighedModels& disturbances) const {
     std::vector<MismatchEvidence> all;
-    const double best_alone = std::max(best_of(so_far.mismatch_alone), disturbances.log_likelihood.maxCoeff());
-    if (best_alone < so_far.healthy + kFaint) {
-      for (const MismatchEvidence& alone : so_far.mismatch_alone)
-        all.push_back(weighed(alone, so_far.ud - so_far.healthy));
-      return all;
-    }
     double without = 0.0;
     const std::vector<MismatchEvidence> first = on_grids(disturbances.only(disturbances.best()), &without);
     for (const MismatchEvidence& each : first)
@@ -300,7 +291,7 @@ class RecordLikelihood {
   const Eigen::RowVectorXd& e_;
   const Eigen::Ref<const Eigen::MatrixXd>& u_;
   const Eigen::Ref<const Eigen::VectorXd>& initial_u_;
-  Eigen::MatrixXd series_;                ///< e, and every response on its grid
+  Eigen::MatrixXd series_;               ///< e, and every response on its grid
   std::vector<Eigen::Index> first_row_;  ///< of each mismatch in `series_`
 };
 

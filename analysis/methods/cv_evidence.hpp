@@ -36,8 +36,8 @@ struct CvEvidence {
 /// exactly, in closed loop, too: u(k) is made of what y was up to sample k, so that the probability of the
 /// record is the product of the probabilities of each y(k) given those before it and u, which the Kalman
 /// filter has. The sizes theta are integrated: between neighbours on a grid m is taken as a straight line,
-/// which makes the integral a closed one; the best parameters are looked at again around their best size, with
-/// the exact m and its slope. The disturbance is summed over scan_disturbances().
+/// which makes the integral a closed one; the best parameters are looked at again around their best size,
+/// with the exact m and its slope. The disturbance is summed over scan_disturbances().
 class CvLikelihood {
  public:
   /// `prior` must outlive the likelihood.

@@ -105,8 +105,7 @@ class DisturbanceScan {
     for (std::size_t place = 0; place < open.size(); ++place)
       for (Eigen::Index i = 0; i < kPoints; ++i) {
         const Eigen::Index node = static_cast<Eigen::Index>(place) * kPoints + i;
-        grids_[open[place]].log_likelihood(i) =
-            likelihood_(sums.log_determinant(node), sums.of(0, 0)(node));
+        grids_[open[place]].log_likelihood(i) = likelihood_(sums.log_determinant(node), sums.of(0, 0)(node));
       }
     return true;
   }
@@ -193,10 +192,10 @@ WeighedModels WeighedModels::only(Eigen::Index place) const {
 }
 
 WeighedModels base_models(const BaseNoise& base, bool starts_from_rest) {
-  return {{Eigen::ArrayXd::Constant(1, base.a), Eigen::ArrayXd::Constant(1, base.b), base.phi,
-           starts_from_rest},
-          Eigen::ArrayXd::Zero(1),
-          Eigen::ArrayXd::Zero(1)};
+  return {
+      {Eigen::ArrayXd::Constant(1, base.a), Eigen::ArrayXd::Constant(1, base.b), base.phi, starts_from_rest},
+      Eigen::ArrayXd::Zero(1),
+      Eigen::ArrayXd::Zero(1)};
 }
 
 WeighedModels scan_disturbances(const std::vector<DisturbancePrior>& prior, const BaseNoise& base,

@@ -54,8 +54,8 @@ FaultProbabilities of_one_fault(const std::vector<CvWeights>& weights) {
     for (std::size_t j = 0; j < weights.size(); ++j)
       if (j != i)
         others = log_sum(others, weights[j].all());
-    probabilities.cvs.push_back({std::exp(cv.mpm - total), std::exp(cv.ud - total), std::exp(cv.both - total),
-                                 cv.all() - others});
+    probabilities.cvs.push_back(
+        {std::exp(cv.mpm - total), std::exp(cv.ud - total), std::exp(cv.both - total), cv.all() - others});
     probabilities.mpm += probabilities.cvs.back().mpm;
     probabilities.ud += probabilities.cvs.back().ud;
     probabilities.both += probabilities.cvs.back().both;
@@ -78,14 +78,13 @@ FaultProbabilities of_several_faults(const std::vector<CvWeights>& weights) {
   probabilities.healthy = std::exp(log_healthy);
   probabilities.mpm = std::exp(log_no_disturbance) - probabilities.healthy;
   probabilities.ud = std::exp(log_no_mismatch) - probabilities.healthy;
-  probabilities.both =
-      std::max(0.0, 1.0 - probabilities.healthy - probabilities.mpm - probabilities.ud);
+  probabilities.both = std::max(0.0, 1.0 - probabilities.healthy - probabilities.mpm - probabilities.ud);
   probabilities.log_odds = log_healthy < 0.0 ? log_expm1(-log_healthy) : -kInfinity;
   return probabilities;
 }
 
-/// Is the noise of the records of this study known to be normal, of a size that the study says, and kept as it
-/// was measured?
+/// Is the noise of the records of this study known to be normal, of a size that the study says, and kept as
+/// it was measured?
 bool noise_is_known(const Study& study) {
   const RecordOptions& record = study.record;
   const bool kept = record.quantisation == 0.0 && record.compression == 0.0 &&
@@ -101,7 +100,8 @@ std::vector<BaseNoise> base_noises(const AssessmentContext& context, FaultPriors
   std::vector<BaseNoise> noises;
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
     if (priors == FaultPriors::study && noise_is_known(study)) {
-      noises.push_back({study.simulation.noise_standard_deviation(cv), study.simulation.noise.autocorrelation});
+      noises.push_back(
+          {study.simulation.noise_standard_deviation(cv), study.simulation.noise.autocorrelation});
       continue;
     }
     const double least = kLeastNoise * (1.0 + benchmark.y_sim.row(cv).cwiseAbs().maxCoeff());
@@ -172,14 +172,14 @@ class FaultPosterior final : public AssessmentMethod {
       CvAssessment& cv = assessment.cvs[i];
       if (cv.flagged == true || worst == static_cast<Eigen::Index>(i))
         cv.source = most_probable_source(probabilities.cvs[i], options.source_probability);
-      name_mismatch(i, cv.source, evidence[i], assessment);
+      name_mismatch(i, cv.source, evidence[i], worst == static_cast<Eigen::Index>(i), assessment);
     }
     add_numbers(probabilities, evidence, worst, assessment);
     return assessment;
   }
 
-  /// The most probable parameter of a CV with a mismatch.
-  void name_mismatch(std::size_t cv, FaultSource source, const CvEvidence& evidence,
+  /// The most probable parameter of a CV with a mismatch: its channel, and of the worst CV its size.
+  void name_mismatch(std::size_t cv, FaultSource source, const CvEvidence& evidence, bool worst,
                      Assessment& assessment) const {
     if (!assessment.flagged || (source != FaultSource::mpm && source != FaultSource::mpm_ud))
       return;
@@ -190,6 +190,12 @@ class FaultPosterior final : public AssessmentMethod {
     const SizePrior& named =
         priors_.cvs[cv].mismatches[static_cast<std::size_t>(likeliest - mismatches.begin())];
     assessment.flagged_channels.push_back(named.channel);
+    if (!worst)
+      return;
+    const double tail = 0.5 * (1.0 - study_.aggregate.confidence);
+    assessment.named_mismatch = {named.channel, named.parameter, mixture_quantile(likeliest->sizes, 0.5),
+                                 mixture_quantile(likeliest->sizes, tail),
+                                 mixture_quantile(likeliest->sizes, 1.0 - tail)};
   }
 
   void add_numbers(const FaultProbabilities& probabilities, const std::vector<CvEvidence>& evidence,

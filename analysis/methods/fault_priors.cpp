@@ -37,12 +37,12 @@ double normal_density(double z) {
 /// nothing of how large.
 Distribution scaled_factor(const Distribution& drawn) {
   const auto [low, high] = support(drawn);
-  return Distribution::log_uniform(low < 1.0 ? 1.0 / kLargestFactor : 1.0,
-                                   high > 1.0 ? kLargestFactor : 1.0);
+  return Distribution::log_uniform(low < 1.0 ? 1.0 / kLargestFactor : 1.0, high > 1.0 ? kLargestFactor : 1.0);
 }
 
 double longest_delay(const Study& study, const TransferFunction& channel) {
-  return std::max({channel.dead_time(), std::abs(channel.residence_time()), 2.0 * study.controller.sample_time});
+  return std::max(
+      {channel.dead_time(), std::abs(channel.residence_time()), 2.0 * study.controller.sample_time});
 }
 
 /// Shifts between two numbers, when there is room between them.
@@ -150,7 +150,8 @@ std::vector<DisturbancePrior> disturbances_of(const Study& study, FaultPriors pr
       drawn ? ranges.time_constant
             : Distribution::log_uniform(Ts, std::max(2.0, 0.5 * study.simulation.samples) * Ts);
   const bool sized = drawn && !ranges.impact;
-  const Distribution size = sized ? ranges.gain : Distribution::log_uniform(kSmallestDisturbance, kLargestDisturbance);
+  const Distribution size =
+      sized ? ranges.gain : Distribution::log_uniform(kSmallestDisturbance, kLargestDisturbance);
   std::vector<DisturbancePrior> disturbances;
   for (const auto& [tau, weight] : time_constants(taus)) {
     const double a = std::exp(-Ts / tau);
@@ -168,8 +169,8 @@ bool draws_one_fault(const Study& study) {
          std::all_of(places.begin() + 1, places.end(), [](double weight) { return weight == 0.0; });
 }
 
-/// nu for which the logarithm of a scaled inverse chi-square variable has the variance of that of the factor's
-/// square, 2 / nu for more than a few.
+/// nu for which the logarithm of a scaled inverse chi-square variable has the variance of that of the
+/// factor's square, 2 / nu for more than a few.
 double freedom_of(const Distribution& factor) {
   const auto [low, high] = support(factor);
   const double width = std::log(high / std::max(low, 1e-3 * high));

@@ -39,16 +39,17 @@ struct DisturbancePrior {
 
 /// What may be wrong with one CV.
 struct CvPrior {
-  double mpm, ud, both;                ///< weights against 1 for nothing
-  std::vector<SizePrior> mismatches;   ///< their weights sum to 1, if there is one
+  double mpm, ud, both;               ///< weights against 1 for nothing
+  std::vector<SizePrior> mismatches;  ///< their weights sum to 1, if there is one
   std::vector<DisturbancePrior> disturbances;
 };
 
-/// | `priors` | faults                                | sizes                    | noise                         |
+/// | `priors` | faults                                | sizes                    | noise |
 /// |----------|---------------------------------------|--------------------------|-------------------------------|
-/// | wide     | each CV by itself; some CV with the   | of all that a plant      | as in the benchmark, within   |
-/// |          | probability `fault_probability`       | may have (wide_priors()) | a factor of about two         |
-/// | study    | as the study draws them               | as the study draws them  | as the study has it           |
+/// | wide     | each CV by itself; some CV with the   | of all that a plant      | as in the benchmark,
+/// within   | |          | probability `fault_probability`       | may have (wide_priors()) | a factor of
+/// about two         | | study    | as the study draws them               | as the study draws them  | as the
+/// study has it           |
 struct FaultPriorSet {
   std::vector<CvPrior> cvs;  ///< ny
   bool one_fault = false;    ///< only one CV has a fault; otherwise each CV may, independently of the others

@@ -11,6 +11,7 @@ AssessmentMethodInfo likelihood_method() {
            .locates_cvs = true,
            .names_channels = true,
            .tells_sources = true,
+           .names_mismatches = true,
            .numbers = fault_posterior_numbers()},
           {},
           [](const AssessmentContext& context) {

@@ -22,8 +22,8 @@ int cells_of(double range, double cell) {
 std::vector<double> grid_of(const SizePrior& prior, double sample_time) {
   const auto [low, high] = support(prior.size);
   const bool ratio = low > 0.0 && prior.parameter != MismatchParameter::dead_time;
-  const int cells = ratio ? cells_of(std::log(high / low), kFactorCell)
-                          : cells_of((high - low) / sample_time, kShiftCell);
+  const int cells =
+      ratio ? cells_of(std::log(high / low), kFactorCell) : cells_of((high - low) / sample_time, kShiftCell);
   std::vector<double> sizes;
   for (int i = 0; i <= cells; ++i) {
     const double share = static_cast<double>(i) / cells;

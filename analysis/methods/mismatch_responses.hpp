@@ -11,8 +11,8 @@ namespace mpm {
 
 /// The response of one channel to `u` (N samples), from the steady state of `initial_u`, or from zero for an
 /// integrating channel: as LinearPlant, for one channel alone.
-Eigen::RowVectorXd channel_response(const DiscreteChannel& channel, const Eigen::Ref<const Eigen::RowVectorXd>& u,
-                                    double initial_u);
+Eigen::RowVectorXd channel_response(const DiscreteChannel& channel,
+                                    const Eigen::Ref<const Eigen::RowVectorXd>& u, double initial_u);
 
 /// The part of the simulation error that a mismatch of one parameter of one channel explains,
 ///
@@ -35,7 +35,8 @@ class MismatchResponses {
   /// m at this size.
   Eigen::RowVectorXd at(double size, const Eigen::Ref<const Eigen::RowVectorXd>& u, double initial_u) const;
   /// dm / dtheta at this size, by a difference.
-  Eigen::RowVectorXd slope(double size, const Eigen::Ref<const Eigen::RowVectorXd>& u, double initial_u) const;
+  Eigen::RowVectorXd slope(double size, const Eigen::Ref<const Eigen::RowVectorXd>& u,
+                           double initial_u) const;
 
  private:
   DiscreteChannel channel_at(double size) const;

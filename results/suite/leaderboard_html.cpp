@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,15 @@ namespace {
 
 using AllScores = std::vector<std::vector<PooledScores>>;  // [method][column]
 
+/// The share of what the ceiling reached; nothing where it was not asked.
+std::string share_html(const PooledScores& scores, const LeaderboardScore& score) {
+  const std::vector<LeaderboardScore> known = leaderboard_scores();
+  for (std::size_t i = 0; i < scores.shares_of_ceiling.size(); ++i)
+    if (known[i].rate == score.rate && !std::isnan(scores.shares_of_ceiling[i]))
+      return fmt::format("<br><small>{:.0f} % of ceiling</small>", 100 * scores.shares_of_ceiling[i]);
+  return "";
+}
+
 /// A number on a ground that is deeper the better it is; one where low is good in another colour, deeper the
 /// worse it is.
 std::string score_html(const PooledScores& scores, const LeaderboardScore& score) {
@@ -26,9 +36,10 @@ std::string score_html(const PooledScores& scores, const LeaderboardScore& score
   constexpr double kDeepest = 0.55;  // black text stays readable
   return fmt::format(
       "<div style=\"background:rgba({},{:.3f});padding:0.2rem 0.4rem\" title=\"{} of {} loops\">{:.0f}{}"
-      "<br><small>{:.0f} to {:.0f}</small></div>",
+      "<br><small>{:.0f} to {:.0f}</small>{}</div>",
       score.low_is_good ? "213,94,0" : "0,114,178", kDeepest * rate->value, rate->hits, rate->total,
-      100 * rate->value, marks_of(scores), 100 * rate->interval.lower, 100 * rate->interval.upper);
+      100 * rate->value, marks_of(scores), 100 * rate->interval.lower, 100 * rate->interval.upper,
+      share_html(scores, score));
 }
 
 std::vector<HtmlTable::Column> columns_for(const std::vector<SuiteAxis>& axis) {
@@ -83,7 +94,7 @@ std::string passed_section(const Leaderboard& board) {
                                        : fmt::format("nobody passes {}", fmt::join(nobody, ", ")));
   }
   html += "</ul>\n";
-  for (const std::string& sentence : legend_sentences())
+  for (const std::string& sentence : legend_sentences(board))
     html += fmt::format("<p>{}</p>\n", html_text(sentence));
   return fmt::format("{}</section>\n", html);
 }

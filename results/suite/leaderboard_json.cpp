@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "analysis/findings/method_rates.hpp"
@@ -30,12 +32,18 @@ SuiteJson scores_json(const PooledScores& scores) {
   }
   for (const LeaderboardTask task : kLeaderboardTasks)
     passed[std::string(to_string(task))] = passes(scores, task);
+  SuiteJson shares = SuiteJson::object();
+  const std::vector<LeaderboardScore> known = leaderboard_scores();
+  for (std::size_t i = 0; i < scores.shares_of_ceiling.size(); ++i)
+    if (!std::isnan(scores.shares_of_ceiling[i]))
+      shares[std::string(known[i].rate)] = scores.shares_of_ceiling[i];
   return {{"cells", scores.cells},
           {"answering_cells", scores.answering_cells},
           {"reason", proper_utf8(scores.reason)},
           {"too_many_false_alarms", scores.too_many_false_alarms()},
           {"answers_in_part", scores.answers_in_part()},
           {"passes", passed},
+          {"shares_of_ceiling", shares},
           {"rates", rates}};
 }
 

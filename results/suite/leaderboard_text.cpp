@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -45,9 +46,9 @@ std::string item_text(const std::string& name, const std::string& sentence) {
   return wrapped(fmt::format("- {}: {}", name, sentence), "  ");
 }
 
-std::string legend_text() {
+std::string legend_text(const Leaderboard& board) {
   std::string text;
-  for (const std::string& sentence : legend_sentences())
+  for (const std::string& sentence : legend_sentences(board))
     text += wrapped(sentence, "");
   return text;
 }
@@ -91,6 +92,23 @@ std::string passed_text(const PooledScores& scores) {
   std::string text;
   for (const LeaderboardTask task : kLeaderboardTasks)
     text += passes(scores, task) ? letter_of(task) : '.';
+  return text;
+}
+
+/// The tables of shares of the ceiling; nothing where it was not asked.
+std::string ceiling_text(const Leaderboard& board) {
+  std::string text;
+  const std::vector<LeaderboardScore> known = leaderboard_scores();
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (known[i].low_is_good || std::none_of(board.overall.begin(), board.overall.end(),
+                                             [](const PooledScores& all) { return all.has_ceiling(); }))
+      continue;
+    text += blocks_text(board, fmt::format("{}, % of the ceiling", known[i].title),
+                        [&](const PooledScores& scores) -> std::string {
+                          const double share = scores.shares_of_ceiling[i];
+                          return std::isnan(share) ? "-" : fmt::format("{:.0f}", 100 * share);
+                        });
+  }
   return text;
 }
 
@@ -138,7 +156,8 @@ std::string leaderboard_text(const Leaderboard& board) {
   for (const LeaderboardScore& score : leaderboard_scores())
     text += blocks_text(board, std::string(score.title),
                         [&](const PooledScores& scores) { return score_text(scores, score); });
-  return fmt::format("{}\n{}\n{}{}{}", text, legend_text(), nobody_text(board), silences_text(board),
+  text += ceiling_text(board);
+  return fmt::format("{}\n{}\n{}{}{}", text, legend_text(board), nobody_text(board), silences_text(board),
                      troubles_text(board));
 }
 

@@ -10,8 +10,8 @@ std::string marks_of(const PooledScores& scores) {
   return fmt::format("{}{}", scores.too_many_false_alarms() ? "*" : "", scores.answers_in_part() ? "~" : "");
 }
 
-std::vector<std::string> legend_sentences() {
-  return {
+std::vector<std::string> legend_sentences(const Leaderboard& board) {
+  std::vector<std::string> sentences{
       fmt::format("* The interval of its own false alarms on healthy loops lies above {:g} %.",
                   100 * kMostFalseAlarms),
       fmt::format(
@@ -23,6 +23,13 @@ std::vector<std::string> legend_sentences() {
                   "flagged loops "
                   "the affected CV named; S, in {2:g} % of all loops with a fault the right source named.",
                   100 * kFewestAnswers, 100 * kPassingFalseAlarms, 100 * kPassingShare)};
+  if (std::any_of(board.overall.begin(), board.overall.end(),
+                  [](const PooledScores& scores) { return scores.has_ceiling(); }))
+    sentences.push_back(fmt::format(
+        "The ceiling is what the method `{}` reaches, which knows what the study draws. Above 100 % "
+        "of it is where a study draws what it does not know of, or where chance was kinder.",
+        kCeilingMethod));
+  return sentences;
 }
 
 char letter_of(LeaderboardTask task) {

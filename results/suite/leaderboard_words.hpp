@@ -12,7 +12,7 @@ namespace mpm {
 /// '*' for too many false alarms, '~' for verdicts on a part of the loops; empty for neither.
 std::string marks_of(const PooledScores& scores);
 /// What the marks mean, and what is passed: a sentence each.
-std::vector<std::string> legend_sentences();
+std::vector<std::string> legend_sentences(const Leaderboard& board);
 
 /// 'D', 'L', 'S'
 char letter_of(LeaderboardTask task);

@@ -1,6 +1,9 @@
+#include <cmath>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -77,6 +80,32 @@ TEST_CASE("loops of the cells are added up, by family, by plant and over all", "
   CHECK(board.by_plant[0][1].of("detected_impact")->total == 16);
   CHECK(board.overall[0].of("detected_impact")->total == 20);
   CHECK(board.overall[0].of("no_such_rate") == nullptr);
+}
+
+TEST_CASE("every score is held against that of the ceiling on the same cells", "[leaderboard]") {
+  const auto cell = [](std::size_t family, const HitsOf& of_method, const HitsOf& of_ceiling) {
+    return CellScores{
+        .plant = 0, .family = family, .methods = {scores_with(of_method), scores_with(of_ceiling)}};
+  };
+  const std::vector<CellScores> cells{cell(0, {{"located", {6, 10}}, {"false_alarm_healthy", {1, 9}}},
+                                           {{"located", {15, 20}}, {"false_alarm_healthy", {1, 9}}}),
+                                      cell(1, {{"located", {3, 10}}}, {{"located", {0, 20}}})};
+  const Leaderboard board = make_leaderboard(two_families(), {"m", "ceiling"}, "1.0", cells);
+  const std::vector<LeaderboardScore> known = leaderboard_scores();
+  const auto share = [&](const PooledScores& scores, std::string_view rate) {
+    for (std::size_t i = 0; i < known.size(); ++i)
+      if (known[i].rate == rate)
+        return scores.shares_of_ceiling[i];
+    return 0.0;
+  };
+  CHECK(share(board.by_family[0][0], "located") == Approx(0.6 / 0.75));
+  CHECK(share(board.by_family[1][0], "located") == 1.0);
+  CHECK(share(board.overall[0], "located") == Approx(0.45 / 0.375));
+  CHECK(std::isnan(share(board.by_family[0][1], "located")));              // of nothing
+  CHECK(std::isnan(share(board.by_family[0][0], "source")));               // not counted
+  CHECK(std::isnan(share(board.by_family[0][0], "false_alarm_healthy")));  // low is good
+  CHECK(board.overall[0].has_ceiling());
+  CHECK_FALSE(make_leaderboard(two_families(), {"m", "n"}, "1.0", cells).overall[0].has_ceiling());
 }
 
 TEST_CASE("a cell that was not run counts nowhere, and keeps its place", "[leaderboard]") {
