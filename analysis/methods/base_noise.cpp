@@ -19,7 +19,8 @@ constexpr double kSmallestRatio = 0.02, kLargestRatio = 50.0;  // of b to the wh
 constexpr double kFastest = 1.0;                               // time constant, samples
 constexpr double kOutlier = 6.0;                               // standard deviations
 constexpr double kDeviationOfMedian = 1.4826;                  // of absolute deviations of a normal variable
-constexpr std::array<Eigen::Index, 5> kNeighbours{-2, -1, 0, 1, 2};
+constexpr double kSpreads = 2.0;                               // ranges of the neighbours
+constexpr std::array<Eigen::Index, 4> kNeighbours{-2, -1, 1, 2};
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -90,7 +91,7 @@ BaseNoise fitted_base_noise(const Eigen::Ref<const Eigen::RowVectorXd>& e, doubl
 }
 
 Eigen::RowVectorXd without_outliers(const Eigen::Ref<const Eigen::RowVectorXd>& e) {
-  Eigen::RowVectorXd off = Eigen::RowVectorXd::Constant(e.size(), kNaN);
+  Eigen::RowVectorXd off = Eigen::RowVectorXd::Constant(e.size(), kNaN), spread = off;
   std::vector<double> distances;
   for (Eigen::Index k = 0; k < e.size(); ++k) {
     std::vector<double> around;
@@ -99,6 +100,8 @@ Eigen::RowVectorXd without_outliers(const Eigen::Ref<const Eigen::RowVectorXd>& 
         around.push_back(e(k + step));
     if (std::isnan(e(k)) || around.size() < 3)
       continue;
+    const auto [least, largest] = std::minmax_element(around.begin(), around.end());
+    spread(k) = *largest - *least;
     off(k) = std::abs(e(k) - median(std::move(around)));
     distances.push_back(off(k));
   }
@@ -107,7 +110,7 @@ Eigen::RowVectorXd without_outliers(const Eigen::Ref<const Eigen::RowVectorXd>& 
   const double limit = kOutlier * kDeviationOfMedian * median(std::move(distances));
   Eigen::RowVectorXd kept = e;
   for (Eigen::Index k = 0; k < e.size(); ++k)
-    if (limit > 0.0 && off(k) > limit)
+    if (limit > 0.0 && off(k) > limit && off(k) > kSpreads * spread(k))
       kept(k) = kNaN;
   return kept;
 }

@@ -12,8 +12,10 @@ namespace mpm {
 /// is `least` or more. Throws InputError for fewer than 10 samples.
 BaseNoise fitted_base_noise(const Eigen::Ref<const Eigen::RowVectorXd>& e, double least);
 
-/// The record without samples that lie more than six standard deviations of their neighbourhood off the
-/// median of themselves and two neighbours on each side: outliers. NaN there, as where there is no sample.
+/// The record without outliers: samples that are off the median of two neighbours on each side by more than
+/// six standard deviations of that distance over the record (from its median), and by more than twice the
+/// range of these neighbours, so that a signal which rises steeply for a while keeps its samples. NaN there,
+/// as where there is no sample.
 Eigen::RowVectorXd without_outliers(const Eigen::Ref<const Eigen::RowVectorXd>& e);
 
 }  // namespace mpm

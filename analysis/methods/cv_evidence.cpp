@@ -85,13 +85,6 @@ double sum_of(const std::vector<MismatchEvidence>& all) {
   return sum;
 }
 
-double best_of(const std::vector<MismatchEvidence>& all) {
-  double best = -kInfinity;
-  for (const MismatchEvidence& each : all)
-    best = std::max(best, each.best_log_likelihood);
-  return best;
-}
-
 /// The work on one record.
 class RecordLikelihood {
  public:
@@ -114,9 +107,10 @@ class RecordLikelihood {
     const WeighedModels base = base_models(base_, rest_);
     CvEvidence evidence{};
     evidence.mismatch_alone = on_grids(base, &evidence.healthy);
-    const double best = best_of(evidence.mismatch_alone);
+    // All of them, however far behind the best: between two sizes of a grid a likelihood may lose more than
+    // any margin when e is large against the noise.
     for (std::size_t i = 0; i < responses_.size(); ++i)
-      if (evidence.mismatch_alone[i].best_log_likelihood > std::max(best - kLost, evidence.healthy + kFaint))
+      if (evidence.mismatch_alone[i].best_log_likelihood > evidence.healthy + kFaint)
         look_again(i, false, evidence.mismatch_alone[i]);
     const WeighedModels disturbances = scan(e_);
     evidence.ud = disturbances.log_evidence();
@@ -270,6 +264,11 @@ class RecordLikelihood {
           all[i] = std::move(other);
       }
     }
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (const MismatchEvidence& alone = so_far.mismatch_alone[i]; alone.best_log_likelihood > fits[i]) {
+        fits[i] = alone.best_log_likelihood;
+        all[i].best_size = alone.best_size;
+      }
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return fits[a] > fits[b]; });

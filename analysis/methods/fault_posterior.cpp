@@ -7,6 +7,7 @@
 
 #include "analysis/methods/base_noise.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
+#include "plants/error.hpp"
 #include "plants/non_finite.hpp"
 
 namespace mpm {
@@ -129,6 +130,13 @@ const std::vector<MismatchEvidence>& mismatches_of_source(const CvEvidence& evid
   return source == FaultSource::mpm ? evidence.mismatch_alone : evidence.mismatch_with_disturbance;
 }
 
+/// Samples may be missing, but what is there must be a number.
+void require_numbers(const AssessedLoop& loop) {
+  const Eigen::MatrixXd& u = loop.from_start().u;
+  if (!u.allFinite() || !loop.y_sim.allFinite() || loop.y.array().isInf().any())
+    throw InputError("record of the loop", "a value that is not finite", "finite values, or missing CVs");
+}
+
 class FaultPosterior final : public AssessmentMethod {
  public:
   FaultPosterior(const AssessmentContext& context, FaultPriors priors)
@@ -145,13 +153,17 @@ class FaultPosterior final : public AssessmentMethod {
   }
 
   Assessment assess(const AssessedLoop& loop) override {
+    require_numbers(loop);
     std::vector<CvEvidence> evidence;
     for (std::size_t i = 0; i < likelihoods_.size(); ++i) {
       const auto cv = static_cast<Eigen::Index>(i);
-      const Eigen::RowVectorXd e = without_outliers(loop.y.row(cv) - loop.y_sim.row(cv));
+      // A window is the record up to its end in which nothing is observed before it: what the inputs did
+      // before is known, and a disturbance may have been there.
+      Eigen::RowVectorXd e = Eigen::RowVectorXd::Constant(loop.first + loop.samples(), kNaN);
+      e.tail(loop.samples()) = without_outliers(loop.y.row(cv) - loop.y_sim.row(cv));
       if (e.array().isNaN().all())
         return Assessment::failed("a CV has no sample");
-      evidence.push_back(likelihoods_[i]->of(e, loop.u, initial_u_));
+      evidence.push_back(likelihoods_[i]->of(e, loop.from_start().u.leftCols(e.size()), initial_u_));
     }
     return answer(fault_probabilities(priors_, evidence), evidence);
   }

@@ -8,29 +8,43 @@
 namespace mpm {
 namespace {
 
-// Widths of the cells of a grid: of the logarithm of a factor, and of a shift in samples. Within a cell m is
-// taken as a straight line; the best cells are looked at again with the exact m.
-constexpr double kFactorCell = 0.15, kShiftCell = 0.5;
-constexpr int kMostCells = 16;
+// Within a cell of a grid m is taken as a straight line; the best sizes are looked at again with the exact m.
+constexpr double kFactorCell = 0.15;  // of the logarithm of a factor
+constexpr double kFinestShift = 0.25,
+                 kGrowth = 1.5;  // first shift from 0 in samples, and ratio of the next ones
+constexpr int kFewestCells = 2, kMostCells = 31;
 constexpr double kSlopeStep = 1e-3;  // relative, or in samples
 
-int cells_of(double range, double cell) {
-  return std::clamp(static_cast<int>(std::ceil(range / cell)), 2, kMostCells);
+/// Sizes at the same ratio.
+std::vector<double> factor_grid(double low, double high) {
+  const int cells =
+      std::clamp(static_cast<int>(std::ceil(std::log(high / low) / kFactorCell)), kFewestCells, kMostCells);
+  std::vector<double> sizes;
+  for (int i = 0; i < cells; ++i)
+    sizes.push_back(low * std::pow(high / low, static_cast<double>(i) / cells));
+  sizes.push_back(high);
+  return sizes;
 }
 
-/// Sizes at the same distance, or at the same ratio where the size is a factor.
+/// Shifts that grow on both sides of 0, where small ones stand close together.
+std::vector<double> shift_grid(double low, double high, double sample_time) {
+  std::vector<double> sizes{low, high};
+  if (low < 0.0 && high > 0.0)
+    sizes.push_back(0.0);
+  double step = kFinestShift * sample_time;
+  for (double shift = step; shift < std::max(high, -low); step *= kGrowth, shift += step)
+    for (const double size : {-shift, shift})
+      if (low < size && size < high)
+        sizes.push_back(size);
+  std::sort(sizes.begin(), sizes.end());
+  return sizes;
+}
+
 std::vector<double> grid_of(const SizePrior& prior, double sample_time) {
   const auto [low, high] = support(prior.size);
-  const bool ratio = low > 0.0 && prior.parameter != MismatchParameter::dead_time;
-  const int cells =
-      ratio ? cells_of(std::log(high / low), kFactorCell) : cells_of((high - low) / sample_time, kShiftCell);
-  std::vector<double> sizes;
-  for (int i = 0; i <= cells; ++i) {
-    const double share = static_cast<double>(i) / cells;
-    sizes.push_back(ratio ? low * std::pow(high / low, share) : low + share * (high - low));
-  }
-  sizes.back() = high;
-  return sizes;
+  if (prior.parameter == MismatchParameter::dead_time)
+    return shift_grid(low, high, sample_time);
+  return low > 0.0 ? factor_grid(low, high) : std::vector<double>{low, 0.5 * (low + high), high};
 }
 
 }  // namespace

@@ -279,6 +279,9 @@ TEST_CASE("base noise: white, autoregressive, and a slow state under white noise
 TEST_CASE("outliers are left out, steps and gaps are not") {
   Eigen::RowVectorXd e = testing::white_noise(400, 5).transpose();
   e.tail(200).array() += 30.0;
+  // A steep rise and fall of 40 standard deviations within ten samples.
+  for (Eigen::Index k = 90; k < 110; ++k)
+    e(k) += 4.0 * static_cast<double>(10 - std::abs(k - 100));
   e(70) = kNaN;
   const Eigen::RowVectorXd kept = without_outliers(e);
   CHECK(kept.array().isNaN().count() == 1);
