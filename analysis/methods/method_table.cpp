@@ -19,7 +19,9 @@ namespace mpm {
   method(badwe2010) /* designed outputs, section 3.1 */                        \
   method(yu_qin)    /* variability against a benchmark, section 2.2.2, A1.3 */ \
   method(sse)       /* simulation errors against a benchmark (4.17), (6.21) */ \
-  method(counterfactual) /* the simulated nominal loop, (3.24), (4.14) */
+  method(counterfactual) /* the simulated nominal loop, (3.24), (4.14) */      \
+  method(order)     /* do the MVs help to predict the simulation errors? */    \
+  method(excitation) /* do signals from outside of the loop? */
 // clang-format on
 
 #define MPM_DECLARE(name) AssessmentMethodInfo name##_method();
