@@ -116,6 +116,13 @@ struct ExcitationOptions {
   bool operator==(const ExcitationOptions&) const = default;
 };
 
+/// Of the method `candidates`, analysis/methods/candidates_method.
+struct CandidatesOptions {
+  ErrorRegressionOptions regression;
+
+  bool operator==(const CandidatesOptions&) const = default;
+};
+
 /// [assessment]
 struct AssessmentOptions {
   AssessmentSetpoints setpoints = AssessmentSetpoints::controller;
@@ -126,6 +133,7 @@ struct AssessmentOptions {
   SseOptions sse;
   OrderOptions order;
   ExcitationOptions excitation;
+  CandidatesOptions candidates;
 
   bool operator==(const AssessmentOptions&) const = default;
 };

@@ -191,6 +191,8 @@ AssessmentOptions read_assessment(const TomlTable& document) {
   options.sse = read_sse(table);
   options.order = read_order(table);
   options.excitation = read_excitation(table);
+  options.candidates.regression =
+      read_error_regression(table.table_or_empty("candidates", study_file_keys("assessment.candidates")));
   return options;
 }
 

@@ -21,7 +21,8 @@ namespace mpm {
   method(sse)       /* simulation errors against a benchmark (4.17), (6.21) */ \
   method(counterfactual) /* the simulated nominal loop, (3.24), (4.14) */      \
   method(order)     /* do the MVs help to predict the simulation errors? */    \
-  method(excitation) /* do signals from outside of the loop? */
+  method(excitation) /* do signals from outside of the loop? */                \
+  method(candidates) /* do logged signals that the model does not know? */
 // clang-format on
 
 #define MPM_DECLARE(name) AssessmentMethodInfo name##_method();

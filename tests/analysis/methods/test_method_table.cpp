@@ -13,7 +13,7 @@ using Catch::Contains;
 
 using Names = std::vector<std::string>;
 
-const std::string kKnown = "botelho, sun, badwe2009, badwe2010, yu-qin, sse, counterfactual, order, excitation";
+const std::string kKnown = "botelho, sun, badwe2009, badwe2010, yu-qin, sse, counterfactual, order, excitation, candidates";
 
 }  // namespace
 
