@@ -83,6 +83,46 @@ struct SseOptions {
   bool operator==(const SseOptions&) const = default;
 };
 
+/// Of the methods that regress the simulation errors on other signals (analysis/methods/error_regression).
+struct ErrorRegressionOptions {
+  double alpha = 0.01;     ///< share of loops in which nothing is to be found that are flagged at most
+  int filters = 4;         ///< Laguerre filters a signal
+  double pole = 0.8;       ///< of these filters
+  int largest_order = 12;  ///< of the autoregression of an error
+
+  bool operator==(const ErrorRegressionOptions&) const = default;
+};
+
+/// Of the method `order`, analysis/methods/order_method.
+struct OrderOptions {
+  ErrorRegressionOptions regression;
+  bool disturbances = true;  ///< an error that is coloured in another way than in the benchmark is flagged
+
+  bool operator==(const OrderOptions&) const = default;
+};
+
+/// How the method `excitation` measures that two signals depend on each other.
+enum class DependenceMeasure : std::int8_t {
+  f = 0,                   ///< F test of a linear regression
+  mutual_information = 1,  ///< mutual information of binned signals
+};
+
+/// Of the method `excitation`, analysis/methods/excitation_method.
+struct ExcitationOptions {
+  ErrorRegressionOptions regression;
+  DependenceMeasure measure = DependenceMeasure::f;
+  int bins = 4;  ///< a signal, of the mutual information
+
+  bool operator==(const ExcitationOptions&) const = default;
+};
+
+/// Of the method `candidates`, analysis/methods/candidates_method.
+struct CandidatesOptions {
+  ErrorRegressionOptions regression;
+
+  bool operator==(const CandidatesOptions&) const = default;
+};
+
 /// What the method `likelihood` takes for possible before it sees a record (analysis/methods/fault_priors).
 enum class FaultPriors : std::int8_t {
   wide = 0,   ///< whatever a plant may have: one fault or several, of any size
@@ -108,6 +148,9 @@ struct AssessmentOptions {
   Badwe2010Options badwe2010;
   YuQinOptions yu_qin;
   SseOptions sse;
+  OrderOptions order;
+  ExcitationOptions excitation;
+  CandidatesOptions candidates;
   LikelihoodOptions likelihood;
 
   bool operator==(const AssessmentOptions&) const = default;

@@ -141,6 +141,35 @@ SseOptions read_sse(const TomlTable& assessment) {
   return options;
 }
 
+ErrorRegressionOptions read_error_regression(const TomlTable& table) {
+  ErrorRegressionOptions options;
+  options.alpha = read_number_or(table, "alpha", NumberRule::inside(0, 1), options.alpha);
+  options.filters = read_int_or(table, "filters", 1, kMaxOrder, options.filters);
+  options.pole = read_number_or(table, "pole", {.low = 0, .high = 1, .low_included = true}, options.pole);
+  options.largest_order = read_int_or(table, "largest_order", 0, kMaxOrder, options.largest_order);
+  return options;
+}
+
+OrderOptions read_order(const TomlTable& assessment) {
+  const TomlTable table = assessment.table_or_empty("order", study_file_keys("assessment.order"));
+  OrderOptions options;
+  options.regression = read_error_regression(table);
+  options.disturbances = read_flag_or(table, "disturbances", options.disturbances);
+  return options;
+}
+
+ExcitationOptions read_excitation(const TomlTable& assessment) {
+  const TomlTable table = assessment.table_or_empty("excitation", study_file_keys("assessment.excitation"));
+  ExcitationOptions options;
+  options.regression = read_error_regression(table);
+  options.measure = read_choice_or<DependenceMeasure>(
+      table, "measure",
+      {{"f", DependenceMeasure::f}, {"mutual-information", DependenceMeasure::mutual_information}},
+      options.measure);
+  options.bins = read_int_or(table, "bins", 2, kMaxOrder, options.bins);
+  return options;
+}
+
 LikelihoodOptions read_likelihood(const TomlTable& assessment) {
   const TomlTable table = assessment.table_or_empty("likelihood", study_file_keys("assessment.likelihood"));
   LikelihoodOptions options;
@@ -174,6 +203,10 @@ AssessmentOptions read_assessment(const TomlTable& document) {
   options.badwe2010 = read_badwe2010(table);
   options.yu_qin = read_yu_qin(table);
   options.sse = read_sse(table);
+  options.order = read_order(table);
+  options.excitation = read_excitation(table);
+  options.candidates.regression =
+      read_error_regression(table.table_or_empty("candidates", study_file_keys("assessment.candidates")));
   options.likelihood = read_likelihood(table);
   return options;
 }

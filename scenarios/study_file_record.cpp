@@ -1,3 +1,5 @@
+#include <cstdint>
+
 #include <fmt/format.h>
 
 #include "scenarios/study_file_keys.hpp"
@@ -7,7 +9,8 @@
 namespace mpm {
 namespace {
 
-constexpr double kMostOutliers = 0.5;  // beyond it the others are the outliers
+constexpr double kMostOutliers = 0.5;        // beyond it the others are the outliers
+constexpr std::int64_t kMostCandidates = 9;  // each has a stream of its own
 
 /// A gap begins with a probability of at most 1 after each sample that is there.
 double largest_missing_share(double length) {
@@ -34,6 +37,14 @@ void read_missing(const TomlTable& record, RecordOptions& options) {
       options.fill);
 }
 
+void read_candidates(const TomlTable& record, RecordOptions& options) {
+  const TomlTable table = record.table("candidates", study_file_keys("record.candidates"));
+  options.candidates = static_cast<int>(read_whole(table, "count", 1, kMostCandidates));
+  options.candidate_share =
+      read_number_or(table, "share", {.low = 0, .high = 1, .low_included = true, .high_included = true},
+                     options.candidate_share);
+}
+
 /// Sizes are in standard deviations of the noise: without noise they would all be 0.
 void refuse_without_noise(const TomlTable& record, const Study& study) {
   const Eigen::VectorXd& noise = study.simulation.noise_standard_deviation;
@@ -57,6 +68,8 @@ RecordOptions read_record(const TomlTable& document, const Study& study) {
     read_outliers(table, options);
   if (table.has("missing"))
     read_missing(table, options);
+  if (table.has("candidates"))
+    read_candidates(table, options);
   options.quantisation = read_number_or(table, "quantisation", NumberRule::at_least(0), options.quantisation);
   options.compression = read_number_or(table, "compression", NumberRule::at_least(0), options.compression);
   refuse_without_noise(table, study);

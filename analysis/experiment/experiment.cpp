@@ -7,6 +7,7 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "scenarios/candidates.hpp"
 #include "scenarios/historian.hpp"
 
 namespace mpm {
@@ -87,6 +88,7 @@ ExperimentRunner::FinishedLoop ExperimentRunner::finished(const ExperimentDraw& 
         assessed_loop(loop.own->study, loop.own->basis.point, recorded(study_, draw.index, loop.trajectory));
   else
     loop.assessed = assessed_loop(study_, basis_.point, recorded(study_, draw.index, loop.trajectory));
+  loop.assessed.candidates = logged_candidates(study_, draw);
   return loop;
 }
 

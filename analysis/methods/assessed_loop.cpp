@@ -48,6 +48,7 @@ AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::In
           .d = cut(record.d),
           .y_sim = cut(record.y_sim),
           .y_set = cut(record.y_set),
+          .candidates = cut(record.candidates),
           .whole = &record,
           .first = first};
 }

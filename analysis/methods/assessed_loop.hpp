@@ -29,6 +29,8 @@ namespace mpm {
 /// its operating point, and judges the samples of the window.
 struct AssessedLoop {
   Eigen::MatrixXd y, u, u_target, d, y_sim, y_set;
+  /// Further signals that the historian keeps and the model does not know, a row each; 0 x 0 without any.
+  Eigen::MatrixXd candidates = {};
   const AssessedLoop* whole = nullptr;  ///< the record that this is a window of; null: it is whole
   Eigen::Index first = 0;               ///< sample of it at which the window begins
 

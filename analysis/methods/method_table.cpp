@@ -20,6 +20,9 @@ namespace mpm {
   method(yu_qin)    /* variability against a benchmark, section 2.2.2, A1.3 */ \
   method(sse)       /* simulation errors against a benchmark (4.17), (6.21) */ \
   method(counterfactual) /* the simulated nominal loop, (3.24), (4.14) */      \
+  method(order)     /* do the MVs help to predict the simulation errors? */    \
+  method(excitation) /* do signals from outside of the loop? */                \
+  method(candidates) /* do logged signals that the model does not know? */      \
   method(likelihood) /* the posterior of all faults, of any size */            \
   method(ceiling)    /* the same with the distributions of the study */
 // clang-format on

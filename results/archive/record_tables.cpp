@@ -11,6 +11,7 @@
 #include "plants/non_finite.hpp"
 #include "plants/row_major.hpp"
 #include "results/archive/columns.hpp"
+#include "scenarios/candidates.hpp"
 
 namespace mpm {
 namespace {
@@ -284,6 +285,12 @@ RecordTable drawn(const Study& study) {
          "against those of the study, which the basis case has"},
         [](const Record& r) { return r.draw.noise_factor; },
         [](Record& r, double value) { r.draw.noise_factor = value; }));
+  if (study.record.candidates > 0)
+    table.variables.push_back(scalar<std::int32_t>(
+        {"true_candidate", "position of the logged candidate that drives the disturbance", "1",
+         "-1: none of them does"},
+        [study](const Record& r) { return static_cast<std::int32_t>(true_candidate(study, r.draw)); },
+        [](Record&, std::int32_t) {}));  // it follows from the draw
   if (study.experiments.tuning == 0)
     return table;
   table.variables.push_back(of_tuning<std::int8_t>(

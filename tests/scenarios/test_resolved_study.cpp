@@ -281,6 +281,9 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
                            "assessment.badwe2010",
                            "assessment.yu-qin",
                            "assessment.sse",
+                           "assessment.order",
+                           "assessment.excitation",
+                           "assessment.candidates",
                            "aggregate"})
     for (const std::string& key : study_file_keys(name)) {
       INFO("[" << name << "] " << key);

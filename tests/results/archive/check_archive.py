@@ -199,8 +199,8 @@ def check_scenarios(path, variables, attributes):
 
 
 def is_faultless(name):
-    """A variable that only studies with bad tunings, or with noise of several sizes, have."""
-    return re.fullmatch(r"tuning_\w+|noise_factor", name) is not None
+    """A variable that only studies with bad tunings, with noise of several sizes, or with logged candidates have."""
+    return re.fullmatch(r"tuning_\w+|noise_factor|true_candidate", name) is not None
 
 
 def is_further(name):

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/identification/autoregression.hpp"
+
+namespace mpm {
+
+/// An F test of one or several groups of regressors.
+struct FTest {
+  double f = 0.0;
+  Eigen::Index freedom = 0;  ///< of the numerator: independent regressors of the group, given the others
+  double log_p = 0.0;        ///< ln of the p-value; 0 where the group has no regressor of its own
+};
+
+/// What groups of regressors say of a signal.
+struct PrewhitenedTest {
+  FTest all;                  ///< of all groups together
+  std::vector<FTest> groups;  ///< of each group, given all others (partial F)
+  Eigen::Index order = 0;     ///< p of the autoregression
+};
+
+/// Do signals X help to predict e, when what e says of itself is known? With A(q) = 1 - a_1 q^-1 - ... the
+/// autoregression of e alone (`whiteness`), the F tests of b = 0 in
+///
+///   A(q) e(k) = c + b' A(q) x(k) + w(k)
+///
+/// | symbol | name    | shape     | meaning                                                              |
+/// |--------|---------|-----------|----------------------------------------------------------------------|
+/// | e      | e       | N         | signal to be explained; NaN where a sample is missing                |
+/// | x      | groups  | N x m_g each | regressors, of which x(k) must be known before e(k) is            |
+///
+/// Both sides go through the same filter, and A is not fitted again beside b. With e(k-1), e(k-2), ... among
+/// the regressors instead (an ARX model, Granger's test) the test is wrong for smooth x: least squares with x
+/// takes the slow part out of e, what is left is correlated with its own past in another way, and the lags
+/// find it. The F ratio then grows by about p m/N of itself in white noise, and by far more when e is as
+/// slow as x; docs/methods.md has the figures. If x depends on the past of e, as an MV of a closed loop does,
+/// the coefficients a that e alone was fitted with take a part of what x could explain: the test then has
+/// fewer false alarms than it states, not more (Durbin 1970, Econometrica 38, 410-421, has the same of tests
+/// of regression residuals).
+///
+/// Regressors that depend on others, or stand still, add nothing: the degrees of freedom are ranks, with
+/// columns of unit norm and the tolerance `kRegressorTolerance`.
+///
+/// @throws InputError for groups of other lengths, regressors that are not finite, and when n - p - 1 - the
+///   regressors leave fewer than `kLeastFreedom` degrees of freedom
+PrewhitenedTest prewhitened_test(const Eigen::Ref<const Eigen::VectorXd>& e,
+                                 const std::vector<Eigen::MatrixXd>& groups, const Autoregression& whiteness);
+
+/// Columns of unit norm that are this near to dependent count as dependent: filters of signals that hardly
+/// move are so for a part.
+inline constexpr double kRegressorTolerance = 1e-7;
+
+/// Fewest degrees of freedom from which the variance of w is taken.
+inline constexpr Eigen::Index kLeastFreedom = 20;
+
+}  // namespace mpm

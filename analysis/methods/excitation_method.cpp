@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "analysis/methods/assessment_method.hpp"
+#include "analysis/methods/error_regression.hpp"
+#include "analysis/methods/noise_filter.hpp"
+#include "analysis/statistics/mutual_information.hpp"
+#include "scenarios/signals.hpp"
+
+namespace mpm {
+namespace {
+
+/// The soft limits of the study, lower ones above upper ones, 2 ny x N; zero where there is none.
+Eigen::MatrixXd limit_signals(const Study& study, Eigen::Index samples) {
+  Eigen::MatrixXd limits(2 * study.cv_count(), samples);
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    const Limits at = soft_limits(study, k);
+    limits.col(k) << at.lower, at.upper;
+  }
+  return limits.array().isFinite().select(limits, 0.0);
+}
+
+/// Signals that act on the loop and upon which nothing in the loop acts: no unmeasured disturbance can know
+/// them, so that a simulation error that follows them shows a wrong model, in closed loop, too, and whatever
+/// disturbs it. Relatives are the cross-correlations of Webber and Gupta (2008) and the mutual information of
+/// Gao et al. (2012), of which only the abstracts were to be had: the test is a reconstruction of the idea.
+///
+///   measure f:                   prewhitened_test() of e_i on the filtered signals together
+///   measure mutual_information:  binned_information() of the whitened e_i and each filtered signal, as it
+///                                is and whitened as e_i; the least of their p-values, times their number
+///
+/// Each p-value is that of one of ny tests.
+class Excitation final : public AssessmentMethod {
+ public:
+  explicit Excitation(const AssessmentContext& context)
+      : study_(context.study), options_(context.study.assessment.excitation) {
+    // The operator's limits and the test signals are those of the study in every loop.
+    const Eigen::Index samples = study_.simulation.samples;
+    const Eigen::MatrixXd limits = moving_rows(limit_signals(study_, samples));
+    const Eigen::MatrixXd test_signals = dither(study_);
+    planned_.resize(limits.rows() + test_signals.rows(), samples);
+    planned_.topRows(limits.rows()) = limits;
+    if (test_signals.rows() > 0)
+      planned_.bottomRows(test_signals.rows()) = test_signals;
+  }
+
+  Assessment assess(const AssessedLoop& loop) override {
+    const Eigen::MatrixXd signals = moving_rows(signals_from_outside(loop.from_start()));
+    if (moving_rows(signals.middleCols(loop.first, loop.samples())).rows() == 0)
+      return Assessment::not_applicable(
+          "no measured disturbance, setpoint, limit or test signal moves the loop");
+    const std::vector<Eigen::MatrixXd> filtered = filtered_in_window(loop, signals, options_.regression);
+    const Eigen::MatrixXd e = model_errors(loop);
+    const auto regressions = error_regressions(e, filtered, options_.regression);
+    Assessment assessment;
+    for (Eigen::Index cv = 0; cv < e.rows(); ++cv) {
+      const std::optional<ErrorRegression>& found = regressions[static_cast<std::size_t>(cv)];
+      if (found)
+        add_cv(cv, *found, e, filtered, assessment);
+      else
+        assessment.cvs.emplace_back();
+    }
+    if (!assessment.worst_cv())
+      return Assessment::not_applicable(
+          fmt::format("its regressions need {} samples of a CV without a gap",
+                      error_regression_samples(options_.regression, signals.rows())));
+    return assessment;
+  }
+
+ private:
+  /// Setpoints of an optimizer follow from the measurements: they come from within the loop.
+  Eigen::MatrixXd signals_from_outside(const AssessedLoop& loop) const {
+    std::vector<Eigen::Index> cvs;
+    for (const Eigen::Index cv : loop.setpoint_cvs())
+      if (study_.controller.has_setpoint(cv))
+        cvs.push_back(cv);
+    const auto setpoint_count = static_cast<Eigen::Index>(cvs.size());
+    const Eigen::Index planned = planned_.cols() == loop.samples() ? planned_.rows() : 0;
+    Eigen::MatrixXd signals(loop.d.rows() + setpoint_count + planned, loop.samples());
+    signals.topRows(loop.d.rows()) = loop.d;
+    if (setpoint_count > 0)
+      signals.middleRows(loop.d.rows(), setpoint_count) = loop.y_set(cvs, Eigen::all);
+    if (planned > 0)
+      signals.bottomRows(planned) = planned_;
+    return signals;
+  }
+
+  void add_cv(Eigen::Index cv, const ErrorRegression& found, const Eigen::MatrixXd& e,
+              const std::vector<Eigen::MatrixXd>& filtered, Assessment& assessment) const {
+    const double log_p = options_.measure == DependenceMeasure::f
+                             ? found.test.all.log_p
+                             : log_p_of_information(e.row(cv).transpose(), found.whiteness, filtered);
+    const double score = significance_score(log_p, static_cast<double>(e.rows()));
+    const bool flagged = score > -std::log10(options_.regression.alpha);
+    assessment.cvs.push_back({flagged, score, flagged ? FaultSource::mpm : FaultSource::none});
+    assessment.flagged = assessment.flagged || flagged;
+    assessment.score = std::isnan(assessment.score) ? score : std::max(assessment.score, score);
+    assessment.numbers.push_back({"log10_p", log_p / std::numbers::ln10, cv});
+    assessment.numbers.push_back({"autoregression", static_cast<double>(found.test.order), cv});
+  }
+
+  double log_p_of_information(const Eigen::VectorXd& e, const Autoregression& whiteness,
+                              const std::vector<Eigen::MatrixXd>& filtered) const {
+    const Eigen::VectorXd w = whiteness.whitened(e);
+    double least = 0.0;
+    Eigen::Index looks = 0;
+    for (const Eigen::MatrixXd& group : filtered) {
+      const Eigen::MatrixXd white = whiteness.whitened(group);
+      for (Eigen::Index j = 0; j < group.cols(); ++j) {
+        const Eigen::VectorXd as_it_is = group(whiteness.rows, j);
+        least = std::min({least, binned_information(w, as_it_is, options_.bins).log_p,
+                          binned_information(w, white.col(j), options_.bins).log_p});
+        looks += 2;
+      }
+    }
+    return std::min(0.0, least + std::log(static_cast<double>(looks)));
+  }
+
+  const Study& study_;
+  const ExcitationOptions& options_;
+  Eigen::MatrixXd planned_;  ///< moving limits and test signals, a row each
+};
+
+}  // namespace
+
+AssessmentMethodInfo excitation_method() {
+  return {{.name = "excitation",
+           .title = "simulation errors that follow the excitation",
+           .verdict = "signals from outside of the loop help to predict the simulation error of some CV: the "
+                      "model is wrong, whatever disturbs the loop",
+           .requirements = {.complete_record = false},
+           .locates_cvs = true,
+           .names_channels = false,
+           .tells_sources = true,
+           .numbers = {{"log10_p", NumberScope::cv,
+                        "log10 p of no signal from outside helping to predict the error of the CV"},
+                       {"autoregression", NumberScope::cv, "order of the autoregression of the error"}}},
+          {},
+          [](const AssessmentContext& context) { return std::make_unique<Excitation>(context); },
+          [](const AssessmentOptions& options) { return options.excitation.regression.alpha; }};
+}
+
+}  // namespace mpm
