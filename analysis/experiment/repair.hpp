@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/experiment/experiment.hpp"
+#include "analysis/methods/channel_fit.hpp"
+
+// What an engineer does with a named channel: identify it again, and put it into the controller.
+
+namespace mpm {
+
+/// The variances of the CVs of a loop whose controller has a model that was repaired in one channel, ny each:
+/// about the setpoint of a CV that has one, about the mean otherwise. All loops have the noise, the
+/// excitation and the faults of the experiment, from the first sample on.
+///
+/// | member    | controller                                  | plant |
+/// |-----------|---------------------------------------------|------------------------------------------------|
+/// | now       | that of the study                           | that of the experiment | | predicted | with
+/// the repaired model                     | its model, and what it leaves of the errors of the record: all
+/// that is known in a plant | | repaired  | with the repaired model                     | that of the
+/// experiment                         | | perfect   | with the plant itself as its model; of a nonlinear
+/// plant that of the study | that of the experiment; of a nonlinear plant without its mismatches |
+///
+/// A vector is empty when its loop did not run to its end.
+struct RepairedLoop {
+  Channel channel;
+  ChannelFit fit;
+  Eigen::VectorXd now, predicted, repaired, perfect;
+
+  /// All loops of the comparison ran to their end.
+  bool compares() const { return now.size() > 0 && repaired.size() > 0 && perfect.size() > 0; }
+  /// Mean over the CVs of a variance over that of the perfect controller: 1 is as good as can be.
+  double loss_now() const { return (now.array() / perfect.array()).mean(); }
+  double loss_repaired() const { return (repaired.array() / perfect.array()).mean(); }
+};
+
+/// Repairs the channel of the model of `study` by the record `loop` of the experiment `draw`
+/// (assessed_loop()), and runs the loops. Throws InputError as fit_channel().
+RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, const ExperimentDraw& draw,
+                           const AssessedLoop& loop, const Channel& channel, const QpSolverFactory& factory);
+
+/// The channel that the method would have repaired: that of the mismatch it names, or of a method that names
+/// none the first channel that it flags. None of a loop that it does not flag.
+std::optional<Channel> channel_to_repair(const AssessmentRecord& said);
+
+}  // namespace mpm

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "analysis/experiment/repair.hpp"
+#include "analysis/statistics/estimate.hpp"
+#include "analysis/statistics/interval.hpp"
+
+namespace mpm {
+
+/// Which channel was repaired.
+enum class RepairTarget : std::int8_t {
+  mismatched,   ///< one with a mismatch
+  another,      ///< one without, of a plant that has a mismatch
+  no_mismatch,  ///< one of a plant that has none: it is a disturbance, or nothing
+};
+
+/// "a mismatched channel", "another channel", "no mismatch"
+const char* to_string(RepairTarget target);
+
+/// What the repair of one experiment came to; the loops must compare.
+struct RepairOutcome {
+  std::int64_t index;
+  RepairTarget target;
+  double loss_now, loss_repaired;  ///< RepairedLoop
+};
+
+RepairTarget target_of(const ExperimentDraw& draw, const Channel& channel);
+
+/// A loop is better or worse where its loss changes by more than this factor.
+inline constexpr double kNoticeableChange = 1.05;
+
+/// The outcomes of one sort together.
+struct RepairFindings {
+  RepairTarget target;
+  Rate better, worse;
+  Estimate loss_now, loss_repaired;  ///< medians
+};
+
+/// One entry for each target, in their order.
+std::vector<RepairFindings> repair_findings(std::span<const RepairOutcome> outcomes, double confidence);
+
+}  // namespace mpm

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plants/transfer_function.hpp"
+
+namespace mpm {
+
+/// A number that was fitted, with its interval.
+struct FittedNumber {
+  double value, lower, upper;
+};
+
+/// A channel of the model that was identified again from the record of a loop, all other channels as they
+/// are.
+struct ChannelFit {
+  FittedNumber gain_factor;      ///< of the gain of the model
+  FittedNumber time_factor;      ///< of its time constants
+  FittedNumber dead_time_shift;  ///< added to its dead time, time unit of the plant
+  Eigen::Index noise_order;      ///< of the autoregression of what the channel does not explain
+  double explained;              ///< share of the whitened error of the model that the fit takes away, 0 to 1
+  TransferFunction channel;      ///< with the values above
+};
+
+/// Identifies the channel G of one CV again. With G0 its model, e the simulation error of the CV and u the
+/// MV,
+///
+///   e(k) + (G0 u)(k) = g (G(f, s) u)(k) + c + n(k),   A(q) n(k) = w(k)
+///
+/// G(f, s) is G0 with its time constants times f and its dead time longer by s, g the factor of its gain, and
+/// A the autoregression of n whose order has the least BIC: an output-error model of one channel with
+/// coloured noise, which an unmeasured disturbance is. g and c are the least-squares values for each (f, s),
+/// f and s are found by a grid and a pattern search, A and the rest in turn. The interval of a parameter is
+/// that of its profile likelihood: the values with n ln(V / V_min) <= chi^2_1, V the least sum of squares
+/// over all others.
+///
+/// | symbol | name    | shape | unit        |
+/// |--------|---------|-------|-------------|
+/// | e      | e       | N     | CV; NaN where a sample is missing |
+/// | u      | u       | N     | MV, u(k) acts from sample k on    |
+/// |        | u_start | 1     | MV, at rest before the record     |
+///
+/// f is looked for in 1/8 ... 8, and s from -dead time to the dead time and residence time of G0 together, or
+/// a quarter of the record; an interval ends there. Throws InputError for a channel that is zero, an MV that
+/// does not move, and a record with too few samples for the fit.
+ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
+                       const Eigen::Ref<const Eigen::VectorXd>& e, const Eigen::Ref<const Eigen::VectorXd>& u,
+                       double u_start, double confidence);
+
+}  // namespace mpm

@@ -1,0 +1,286 @@
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "analysis/findings/repair_findings.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/console/progress.hpp"
+#include "bench/files/archive_input.hpp"
+#include "plants/error.hpp"
+#include "results/text/experiment_text.hpp"
+#include "results/text/text_table.hpp"
+#include "scenarios/historian.hpp"
+
+namespace mpm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct RepairArguments {
+  std::string archive, method, channel;
+  std::optional<std::int64_t> index;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// The repair of one experiment.
+struct Repair {
+  const ExperimentRecord* record;
+  RepairedLoop loop;
+};
+
+std::string channel_name(const Study& study, const Channel& channel) {
+  return fmt::format("{}/{}", study.plant.cvs[static_cast<std::size_t>(channel.cv)].name,
+                     study.plant.mvs[static_cast<std::size_t>(channel.mv)].name);
+}
+
+/// "y2/u1"
+Channel channel_of(const Study& study, const std::string& name) {
+  std::vector<std::string> known;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv) {
+      if (study.plant.G(cv, mv).is_zero())
+        continue;
+      known.push_back(channel_name(study, {cv, mv}));
+      if (known.back() == name)
+        return {cv, mv};
+    }
+  throw InputError("--channel", fmt::format("'{}'", name), fmt::format("{}", fmt::join(known, ", ")));
+}
+
+/// Whose word is taken for the channel: the method asked for, or the first of the archive that names
+/// mismatches or, where none does, channels.
+std::size_t method_of(const Campaign& campaign, const std::string& name) {
+  std::vector<std::string> naming;
+  std::optional<std::size_t> first_mismatch, first_channel;
+  for (std::size_t m = 0; m < campaign.methods.size(); ++m) {
+    const MethodDescription& method = campaign.methods[m].form->method();
+    if (!method.names_mismatches && !method.names_channels)
+      continue;
+    if (method.name == name)
+      return m;
+    naming.push_back(method.name);
+    std::optional<std::size_t>& first = method.names_mismatches ? first_mismatch : first_channel;
+    if (!first)
+      first = m;
+  }
+  if (name.empty() && (first_mismatch || first_channel))
+    return first_mismatch ? *first_mismatch : *first_channel;
+  throw InputError(
+      "--method", name.empty() ? "no method in the archive that names channels" : fmt::format("'{}'", name),
+      naming.empty() ? "an archive that such a method has assessed (mpmbench compare --methods), or --channel"
+                     : fmt::format("{}", fmt::join(naming, ", ")));
+}
+
+Repair repaired(const Campaign& campaign, const ExperimentRecord& record, const Channel& channel,
+                const QpSolverFactory& factory) {
+  const Study& study = campaign.study;
+  const Trajectory trajectory =
+      record.loop ? record.loop->trajectory : simulate_experiment(study, record.draw, factory);
+  const AssessedLoop loop =
+      assessed_loop(study, campaign.basis.point, recorded(study, record.draw.index, trajectory));
+  return {&record, repaired_loop(study, campaign.basis.point, record.draw, loop, channel, factory)};
+}
+
+Json json_of(const FittedNumber& number) {
+  return {{"value", number.value}, {"lower", number.lower}, {"upper", number.upper}};
+}
+
+Json json_of(const Eigen::VectorXd& variances) {
+  return std::vector<double>(variances.begin(), variances.end());
+}
+
+Json json_of(const Study& study, const Repair& repair) {
+  const ChannelFit& fit = repair.loop.fit;
+  return {{"index", repair.record->draw.index},
+          {"kind", to_string(repair.record->draw.kind)},
+          {"channel", channel_name(study, repair.loop.channel)},
+          {"gain_factor", json_of(fit.gain_factor)},
+          {"time_factor", json_of(fit.time_factor)},
+          {"dead_time_shift", json_of(fit.dead_time_shift)},
+          {"explained", fit.explained},
+          {"variance",
+           {{"now", json_of(repair.loop.now)},
+            {"predicted", json_of(repair.loop.predicted)},
+            {"repaired", json_of(repair.loop.repaired)},
+            {"perfect", json_of(repair.loop.perfect)}}}};
+}
+
+std::string text_of(const FittedNumber& number) {
+  return fmt::format("{:.3g} ({:.3g} to {:.3g})", number.value, number.lower, number.upper);
+}
+
+/// One repair in full.
+std::string text_of(const Study& study, const Repair& repair) {
+  const RepairedLoop& loop = repair.loop;
+  std::string text = fmt::format(
+      "{}\nchannel {}, identified again: gain x {}, time constants x {}, dead time + {} {}\n"
+      "{:.0f} % of the error of its CV is explained by it\n\n",
+      experiment_title(study, repair.record->draw), channel_name(study, loop.channel),
+      text_of(loop.fit.gain_factor), text_of(loop.fit.time_factor), text_of(loop.fit.dead_time_shift),
+      study.plant.time_unit, 100.0 * loop.fit.explained);
+  TextTable table;
+  table.add({"variance", "now", "predicted", "repaired", "perfect"});
+  const auto cell = [](const Eigen::VectorXd& variances, Eigen::Index cv) {
+    return variances.size() == 0 ? std::string("-") : fmt::format("{:.3g}", variances(cv));
+  };
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    table.add({study.plant.cvs[static_cast<std::size_t>(cv)].name, cell(loop.now, cv),
+               cell(loop.predicted, cv), cell(loop.repaired, cv), cell(loop.perfect, cv)});
+  return fmt::format(
+      "{}{}\nnow: the controller as it is; predicted: what the repaired model promises, from the record "
+      "alone;\n"
+      "repaired: with the repaired model on the plant; perfect: with the plant itself as its model\n",
+      text, table.text());
+}
+
+/// The outcomes of all repairs that compare.
+std::vector<RepairOutcome> outcomes_of(const std::vector<Repair>& repairs) {
+  std::vector<RepairOutcome> outcomes;
+  for (const Repair& repair : repairs)
+    if (repair.loop.compares())
+      outcomes.push_back({repair.record->draw.index, target_of(repair.record->draw, repair.loop.channel),
+                          repair.loop.loss_now(), repair.loop.loss_repaired()});
+  return outcomes;
+}
+
+Json json_of(const Rate& rate) {
+  return {{"hits", rate.hits},
+          {"total", rate.total},
+          {"value", rate.value},
+          {"lower", rate.interval.lower},
+          {"upper", rate.interval.upper}};
+}
+
+Json json_of(const Estimate& estimate) {
+  return {{"value", estimate.value},
+          {"lower", estimate.interval.lower},
+          {"upper", estimate.interval.upper},
+          {"count", estimate.count}};
+}
+
+Json json_of(const std::vector<RepairFindings>& findings) {
+  Json json = Json::array();
+  for (const RepairFindings& found : findings)
+    json.push_back({{"repaired", to_string(found.target)},
+                    {"better", json_of(found.better)},
+                    {"worse", json_of(found.worse)},
+                    {"loss_now", json_of(found.loss_now)},
+                    {"loss_repaired", json_of(found.loss_repaired)}});
+  return json;
+}
+
+std::string text_of(const std::vector<RepairFindings>& findings) {
+  TextTable table;
+  table.add({"repaired", "loops", "better, %", "worse, %", "loss now", "loss repaired"});
+  const auto share = [](const Rate& rate) {
+    return rate.total == 0 ? std::string("-")
+                           : fmt::format("{:.1f} [{:.1f}, {:.1f}]", 100 * rate.value,
+                                         100 * rate.interval.lower, 100 * rate.interval.upper);
+  };
+  const auto median = [](const Estimate& estimate) {
+    return estimate.count == 0 ? std::string("-")
+           : std::isnan(estimate.interval.lower)
+               ? fmt::format("{:.3f}", estimate.value)
+               : fmt::format("{:.3f} [{:.3f}, {:.3f}]", estimate.value, estimate.interval.lower,
+                             estimate.interval.upper);
+  };
+  for (const RepairFindings& found : findings)
+    table.add({to_string(found.target), fmt::format("{}", found.better.total), share(found.better),
+               share(found.worse), median(found.loss_now), median(found.loss_repaired)});
+  return fmt::format(
+      "{}\nloss: variance over that of a controller whose model is the plant, mean over the CVs, median of "
+      "the "
+      "loops;\nbetter, worse: it changes by more than {:.0f} %\n",
+      table.text(), 100.0 * (kNoticeableChange - 1.0));
+}
+
+ExitCode repair(const RepairArguments& options) {
+  const Campaign campaign = read_input(options.archive);
+  const Study& study = campaign.study;
+  const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
+  std::optional<Channel> asked;
+  if (!options.channel.empty())
+    asked = channel_of(study, options.channel);
+  const std::size_t method = asked ? 0 : method_of(campaign, options.method);
+  if (asked && !options.index)
+    throw InputError("--channel", "no --index", "one channel of one experiment");
+  const auto channel_in = [&](const ExperimentRecord& record) {
+    return asked ? asked : channel_to_repair(record.assessments[method]);
+  };
+  if (options.index) {
+    const ExperimentRecord& record = experiment_of(campaign, *options.index);
+    if (record.status != ExperimentStatus::ok)
+      throw InputError("--index", fmt::format("{}, which did not run to its end", *options.index),
+                       "an experiment that did");
+    const std::optional<Channel> channel = channel_in(record);
+    if (!channel)
+      throw InputError("--index",
+                       fmt::format("{}, in which {} names no channel", *options.index,
+                                   campaign.methods[method].form->method().name),
+                       "another experiment, or --channel");
+    const Repair done = repaired(campaign, record, *channel, factory);
+    fmt::print("{}", options.json ? json_of(study, done).dump(2) + "\n" : text_of(study, done));
+    return ExitCode::done;
+  }
+  std::vector<const ExperimentRecord*> named;
+  for (const ExperimentRecord& record : campaign.records)
+    if (record.status == ExperimentStatus::ok && record.draw.kind != ExperimentKind::tuning &&
+        channel_in(record))
+      named.push_back(&record);
+  Progress progress(options.quiet);
+  progress.begin(static_cast<std::int64_t>(named.size()));
+  std::vector<Repair> repairs;
+  for (const ExperimentRecord* record : named) {
+    progress.end_when_requested();
+    try {
+      repairs.push_back(repaired(campaign, *record, *channel_in(*record), factory));
+      progress.advance();
+    } catch (const InputError& error) {  // one channel that cannot be identified does not cost the others
+      progress.warn(fmt::format("experiment {}: {}", record->draw.index, error.what()));
+      progress.advance(true);
+    }
+  }
+  const std::vector<RepairFindings> findings =
+      repair_findings(outcomes_of(repairs), study.aggregate.confidence);
+  const std::string& by = campaign.methods[method].form->method().name;
+  if (options.json) {
+    Json json{
+        {"study", study.name}, {"method", by}, {"findings", json_of(findings)}, {"repairs", Json::array()}};
+    for (const Repair& each : repairs)
+      json["repairs"].push_back(json_of(study, each));
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    fmt::print("{}: {} of {} experiments with a channel named by {}\n\n{}", study.name, named.size(),
+               campaign.records.size(), by, text_of(findings));
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_repair(CommandSet& commands) {
+  const auto options = std::make_shared<RepairArguments>();
+  CLI::App& app = commands.add(
+      "repair", "Identify the channel that a method names again, and say what the repaired controller brings",
+      [options] { return repair(*options); });
+  add_archive(app, options->archive);
+  app.add_option("--index", options->index,
+                 "One experiment in full; without it all in which a channel is named");
+  app.add_option("--method", options->method,
+                 "Whose word is taken for the channel; by default the first method "
+                 "of the archive that names mismatches, or else channels");
+  app.add_option("--channel", options->channel, "The channel instead, as CV/MV; with --index");
+  add_json(app, options->json);
+  add_quiet(app, options->quiet);
+}
+
+}  // namespace mpm

@@ -1,0 +1,45 @@
+"""The repair of a named channel as a user sees it: one experiment, all of them, JSON, and what is refused.
+
+usage: check_repair.py MPMBENCH
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+
+def main(program):
+    def run(*words, code=0):
+        result = subprocess.run([program, *map(str, words)], capture_output=True, text=True, timeout=600)
+        assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
+        return result
+
+    with tempfile.TemporaryDirectory() as name:
+        archive = pathlib.Path(name) / "a.h5"
+        run("run", "chapter6", "--experiments", 12, "-o", archive, "--methods", "botelho,badwe2009", "--quiet")
+        # Experiment 0 has a gain of y2/u1 that is too small (seed 20150401).
+        truth = json.loads(run("repair", archive, "--index", 0, "--channel", "y2/u1", "--json").stdout)
+        assert truth["kind"] == "mpm" and len(truth["variance"]["now"]) == 7, truth
+        assert truth["gain_factor"]["lower"] <= truth["gain_factor"]["value"] <= truth["gain_factor"]["upper"], truth
+        text = run("repair", archive, "--index", 0, "--channel", "y2/u1").stdout
+        assert "experiment 0 (MPM)" in text and "predicted" in text and "\ny7 " in text, text
+
+        every = json.loads(run("repair", archive, "--json", "--quiet").stdout)
+        assert every["method"] == "badwe2009" and len(every["findings"]) == 3, every
+        named = sum(found["better"]["total"] for found in every["findings"])
+        assert 0 < named <= len(every["repairs"]) <= 12, every
+        text = run("repair", archive, "--method", "badwe2009", "--quiet").stdout
+        assert "a mismatched channel" in text and "loss repaired" in text, text
+
+        refused = run("repair", archive, "--index", 0, "--channel", "y2/x", code=2).stderr
+        assert "--channel: found 'y2/x'; allowed: y1/u1" in refused, refused
+        refused = run("repair", archive, "--method", "botelho", code=2).stderr
+        assert "--method: found 'botelho'; allowed: badwe2009" in refused, refused
+        run("repair", archive, "--channel", "y2/u1", code=2)
+        run("repair", archive, "--index", 99, code=2)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
