@@ -21,7 +21,7 @@ struct RecordOptions {
   double missing_share = 0.0;                              ///< of the samples of each CV, in the long run
   double missing_length = 1.0;                             ///< mean length of a gap, samples
   GapFill fill = GapFill::none;
-  double compression = 0.0;  ///< deviation that the historian allows itself; 0: it keeps every sample
+  double compression = 0.0;      ///< deviation that the historian allows itself; 0: it keeps every sample
   int candidates = 0;            ///< further signals that it keeps (logged_candidates)
   double candidate_share = 0.5;  ///< of the disturbed loops in which one of them drives the disturbance
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "analysis/methods/decorrelation.hpp"
+#include "plants/error.hpp"
 
 namespace mpm {
 namespace {
@@ -16,6 +17,9 @@ constexpr double kErrorResolution = 1e-10;
 
 Eigen::MatrixXd model_errors(const AssessedLoop& loop) {
   Eigen::MatrixXd e = loop.y - loop.y_sim;
+  if (e.array().isInf().any())
+    throw InputError("simulation errors", "an infinite value",
+                     "finite values, and NaN where a sample is missing");
   for (Eigen::Index cv = 0; cv < e.rows(); ++cv) {
     double largest_error = 0.0;
     for (const double value : e.row(cv))

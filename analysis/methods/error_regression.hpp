@@ -15,6 +15,7 @@
 namespace mpm {
 
 /// e = y - y_sim of each CV, ny x N; NaN where a sample is missing, 0 where y and y_sim differ by rounding.
+/// @throws InputError for an infinite value
 Eigen::MatrixXd model_errors(const AssessedLoop& loop);
 
 /// The responses of the Laguerre filters L_1 ... L_n, which have a delay of a sample and more, to each row of

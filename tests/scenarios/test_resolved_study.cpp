@@ -85,6 +85,7 @@ std::string random_study_text() {
       "healthy = 4\ntuning = 5\nother = 6\n"
       "[other]\nimpact = {constant = 1.5}\nweights = {stiction = 1, limit = 2}\n"
       "[record]\nquantisation = 0.5\ncompression = 2\noutliers = {share = 0.01, size = {constant = 7}}\n"
+      "candidates = {count = 3, share = 0.4}\n"
       "missing = {share = 0.1, length = 4, fill = 'hold'}\n"
       "[disturbance]\nimpact = {uniform = [0.5, 2]}\nsignal_weights = {sine = 1}\n"
       "[mismatch]\nimpact = {log_uniform = [0.5, 2]}\nparameter_weights = {gain = 1, time_constant = 0, "

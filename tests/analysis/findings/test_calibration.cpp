@@ -153,6 +153,8 @@ noise_standard_deviation = 0.05
 step = [{cv = "y", sample = 20, level = 1}, {cv = "y", sample = 45, level = -0.5},
         {cv = "y", sample = 70, level = 0.5}, {cv = "y", sample = 95, level = -1}]
 random_steps = {interval = {uniform = [10, 20]}, level = {uniform = [-0.4, 0.4]}}
+[record.candidates]
+count = 2
 [experiments]
 mpm = 0
 ud = 0

@@ -70,7 +70,8 @@ TEST_CASE("every method sees every family of records, and one that needs every s
   };
   for (const Family& family : families) {
     INFO(family.simulation << family.tables);
-    const Study study = changed_study("setpoint-methods", family.simulation, family.tables);
+    const Study study = changed_study("setpoint-methods", family.simulation,
+                                      family.tables + "[record.candidates]\ncount = 2\n");
     const BasisCase basis = run_basis_case(study, testing::kFactory);
     const ExperimentRecord record = experiment(study, basis, 0, StorePolicy::all);
     REQUIRE(record.status == ExperimentStatus::ok);
