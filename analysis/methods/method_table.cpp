@@ -24,7 +24,11 @@ namespace mpm {
   method(excitation) /* do signals from outside of the loop? */                \
   method(candidates) /* do logged signals that the model does not know? */      \
   method(likelihood) /* the posterior of all faults, of any size */            \
-  method(ceiling)    /* the same with the distributions of the study */
+  method(ceiling)    /* the same with the distributions of the study */       \
+  method(lasso)     /* L1 regression of the simulation errors, Kono 2023 */    \
+  method(local)     /* local approach to model divergence, Jiang 2009 */       \
+  method(mqi_channels) /* model quality without each submodel, Li 2017 */      \
+  method(arx_oe)    /* plant and noise models against a benchmark, Lu 2020 */
 // clang-format on
 
 #define MPM_DECLARE(name) AssessmentMethodInfo name##_method();

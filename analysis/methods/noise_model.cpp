@@ -46,6 +46,14 @@ NoiseModel autoregressive_noise(const Eigen::Ref<const Eigen::VectorXd>& v, Eige
   return model;
 }
 
+double innovation_variance(const Eigen::Ref<const Eigen::VectorXd>& v, Eigen::Index highest_order) {
+  const Eigen::VectorXd about_mean = v.array() - v.mean();
+  const NoiseModel model = autoregressive_noise(about_mean, highest_order);
+  const Eigen::Index n = v.size() - highest_order;
+  return filter(model.D, model.C, about_mean).tail(n).squaredNorm() /
+         static_cast<double>(n - model.order() - 1);
+}
+
 Eigen::VectorXd one_step_errors(const NoiseModel& model, const Eigen::Ref<const Eigen::VectorXd>& y,
                                 const Eigen::Ref<const Eigen::VectorXd>& y_sim) {
   require_same_length("y", y, "y_sim", y_sim);

@@ -26,6 +26,11 @@ NoiseModel integrated_noise(double c);
 /// order
 NoiseModel autoregressive_noise(const Eigen::Ref<const Eigen::VectorXd>& v, Eigen::Index highest_order);
 
+/// The variance of the innovations of a record about its mean, of the same autoregression: their squares from
+/// sample `highest_order` on over the degrees of freedom that are left.
+/// @throws InputError as `autoregressive_noise`
+double innovation_variance(const Eigen::Ref<const Eigen::VectorXd>& v, Eigen::Index highest_order);
+
 /// One-step prediction errors with the disturbance model (2.2), (2.3), (A1.2), (A1.3) (Ljung 1999, eq. 3.20),
 ///
 ///   y_hat = G_d0^-1 G_0 u + (1 - G_d0^-1) y,    e^p = y_hat - y = G_d0^-1 (y_sim - y)

@@ -15,7 +15,7 @@ using Names = std::vector<std::string>;
 
 const std::string kKnown =
     "botelho, sun, badwe2009, badwe2010, yu-qin, sse, counterfactual, order, excitation, candidates, "
-    "likelihood, ceiling";
+    "likelihood, ceiling, lasso, local, mqi-channels, arx-oe";
 
 }  // namespace
 

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+/// One period of one CV: its simulation error e (N) and regressors X (N x m) of the inputs, the same filters
+/// in the same order in each period.
+struct PlantAndNoise {
+  Eigen::VectorXd e;
+  Eigen::MatrixXd X;
+};
+
+/// What is known of a CV from a period in which nothing was wrong: e = X b_0 + v.
+///
+/// | symbol    | member      | shape | meaning                                    |
+/// |-----------|-------------|-------|--------------------------------------------|
+/// | b_0       | b           | m     | by `refined_groups`                        |
+/// | C_0       | covariance  | m x m | of b_0; large along what the period does not determine |
+/// | v         | v           | N     | noise                                      |
+/// | p_0       | order       |       | of its autoregression, by BIC              |
+/// | sigma_0^2 | variance    |       | of its innovations                         |
+struct HealthyModel {
+  Eigen::VectorXd b;
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd v;
+  Eigen::Index order = 0;
+  double variance = 0.0;
+  Eigen::Index freedom = 0;
+};
+
+/// The model of a period. @throws InputError as `refined_groups`
+HealthyModel healthy_model(const PlantAndNoise& period);
+
+/// How far the plant and the noise of a period are from those of a healthy one, each distance over the one
+/// that chance exceeds with the probability asked for: above 1 something has changed.
+///
+/// | member         | distance                                                                              |
+/// |----------------|---------------------------------------------------------------------------------------|
+/// | plant          | s' (sigma^2 I + M C_0 M')^-1 s / rank, s = Q'r of e - X b_0 and M = Q'(A X): the
+/// regression of `prewhitened_groups` | | noise_model    | (a - a_0)' (C_a + C_a0)^-1 (a - a_0) / p of the
+/// autoregressions of v, both of the larger order | | noise_variance | the larger of sigma^2 / sigma_0^2 and
+/// its inverse, of the innovations                 |
+struct ModelComparison {
+  double plant = 0.0, noise_model = 0.0, noise_variance = 0.0;
+};
+
+/// Holds a period against a healthy model. The plant is tested at b_0, with the noise model of e - X b_0,
+/// rather than by the distance of two estimates: with noise that wanders the covariance of an estimate is too
+/// small. v is e - X b_0 as long as the plant is the same, and e - X b of `refined_groups` when it is not. A
+/// v of less than 1 % of the variance of X b then says nothing of the noise, for it may be what the filters
+/// do not follow of the mismatch. The limits are quantiles of F(rank, freedom), F(p, least freedom of the
+/// two) and F(freedom, freedom_0), the last with half of the probability on each side. All are 0 when one of
+/// the errors is 0.
+/// @throws InputError as `refined_groups`, and for other numbers of regressors
+ModelComparison compare_models(const PlantAndNoise& now, const HealthyModel& before, double probability);
+
+}  // namespace mpm
