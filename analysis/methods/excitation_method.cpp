@@ -29,7 +29,7 @@ Eigen::MatrixXd limit_signals(const Study& study, Eigen::Index samples) {
 /// Signals that act on the loop and upon which nothing in the loop acts: no unmeasured disturbance can know
 /// them, so that a simulation error that follows them shows a wrong model, in closed loop, too, and whatever
 /// disturbs it. Relatives are the cross-correlations of Webber and Gupta (2008) and the mutual information of
-/// Gao et al. (2012), of which only the abstracts were to be had: the test is a reconstruction of the idea.
+/// Gao et al. (2012), neither of which was to be had: the tests are our own.
 ///
 ///   measure f:                   prewhitened_test() of e_i on the filtered signals together
 ///   measure mutual_information:  binned_information() of the whitened e_i and each filtered signal, as it

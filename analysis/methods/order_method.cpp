@@ -16,9 +16,9 @@ namespace {
 
 /// The order from the MVs to the simulation errors: do past moves of the MVs help to predict e_i = y_i -
 /// y_sim,i once its own past is known? Where they do not (order 0) the model is right, and what e has of
-/// colour is a disturbance's; where they do, the model is wrong (Pannocchia, De Luca and Bottai 2014,
-/// Harrison and Qin 2009, of which only the abstracts were to be had: the test is a reconstruction of the
-/// idea).
+/// colour is a disturbance's; where they do, the model is wrong. Pannocchia, De Luca and Bottai (2014,
+/// Asian J. Control 16, 995-1005) prove this of the order of a minimal realisation, which they find by
+/// closed-loop subspace identification. Of their paper the abstract was read; the tests here are our own.
 ///
 ///   mismatch:     prewhitened_test() of e_i on the filtered MVs; a channel by the partial F of its MV
 ///   disturbance:  log_p_same_autoregression() of e_i and of the e_i of the benchmark: another colour than
