@@ -83,6 +83,21 @@ struct SseOptions {
   bool operator==(const SseOptions&) const = default;
 };
 
+/// What noise adds to the variance of a CV, of the method `counterfactual`: v of Ivar = var y / (var y0 + v).
+/// With var y_b that of the benchmark and var y0_b that of the same loop simulated without noise,
+enum class NoiseVariance : std::int8_t {
+  difference = 0,  ///< v = var y_b - var y0_b, which may be negative: noise also keeps CVs off their limits
+  positive = 1,    ///< v = max(0, var y_b - var y0_b): noise that adds to the variance or does nothing
+  none = 2,        ///< v = 0
+};
+
+/// Of the method `counterfactual`, analysis/methods/counterfactual_method.
+struct CounterfactualOptions {
+  NoiseVariance noise = NoiseVariance::difference;
+
+  bool operator==(const CounterfactualOptions&) const = default;
+};
+
 /// Of the methods that regress the simulation errors on other signals (analysis/methods/error_regression).
 struct ErrorRegressionOptions {
   double alpha = 0.01;     ///< share of loops in which nothing is to be found that are flagged at most
@@ -148,6 +163,7 @@ struct AssessmentOptions {
   Badwe2010Options badwe2010;
   YuQinOptions yu_qin;
   SseOptions sse;
+  CounterfactualOptions counterfactual;
   OrderOptions order;
   ExcitationOptions excitation;
   CandidatesOptions candidates;

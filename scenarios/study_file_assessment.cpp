@@ -141,6 +141,18 @@ SseOptions read_sse(const TomlTable& assessment) {
   return options;
 }
 
+CounterfactualOptions read_counterfactual(const TomlTable& assessment) {
+  const TomlTable table =
+      assessment.table_or_empty("counterfactual", study_file_keys("assessment.counterfactual"));
+  CounterfactualOptions options;
+  options.noise = read_choice_or<NoiseVariance>(table, "noise",
+                                                {{"difference", NoiseVariance::difference},
+                                                 {"positive", NoiseVariance::positive},
+                                                 {"none", NoiseVariance::none}},
+                                                options.noise);
+  return options;
+}
+
 ErrorRegressionOptions read_error_regression(const TomlTable& table) {
   ErrorRegressionOptions options;
   options.alpha = read_number_or(table, "alpha", NumberRule::inside(0, 1), options.alpha);
@@ -203,6 +215,7 @@ AssessmentOptions read_assessment(const TomlTable& document) {
   options.badwe2010 = read_badwe2010(table);
   options.yu_qin = read_yu_qin(table);
   options.sse = read_sse(table);
+  options.counterfactual = read_counterfactual(table);
   options.order = read_order(table);
   options.excitation = read_excitation(table);
   options.candidates.regression =

@@ -14,6 +14,8 @@
 namespace mpm {
 namespace {
 
+constexpr double kLeastNominalShare = 0.1;
+
 /// Who can simulate the controller to find S0 can simulate the nominal loop itself. With G0 the model and
 /// e = y - y_sim the simulation errors of the record,
 ///
@@ -23,9 +25,10 @@ namespace {
 ///
 /// as (3.24) and (4.14) have them, but exact where limits are left and reached again, where no linear S0 is:
 /// with the errors of all CVs added the loop gives y back. y holds noise and y0 none; v, what noise adds to
-/// the variance, is that of the basis case y_b of the same controller, so that only the size of the noise is
-/// known of it. A loop is simulated for y0, and where some Ivar lies outside the band of impact one for each
-/// CV. Of a window the record is simulated from its start, once for all windows.
+/// the variance, is that of the basis case y_b of the same controller, so that only the variance of the
+/// benchmark is known of it (NoiseVariance has other choices). A loop is simulated for y0, and where some
+/// Ivar lies outside the band of impact one for each CV. Of a window the record is simulated from its start,
+/// once for all windows.
 class Counterfactual final : public AssessmentMethod {
  public:
   explicit Counterfactual(const AssessmentContext& context)
@@ -39,7 +42,7 @@ class Counterfactual final : public AssessmentMethod {
     const Trajectory& nominal =
         simulated(0, context.basis.trajectory.d, Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols()));
     if (nominal.status == ControlStatus::ok)
-      noise_ = (variances(y_basis, centres) - variances(nominal.y, centres)).cwiseMax(0.0);
+      noise_ = noise_variance(variances(y_basis, centres), variances(nominal.y, centres));
   }
 
   Assessment assess(const AssessedLoop& loop) override {
@@ -70,6 +73,19 @@ class Counterfactual final : public AssessmentMethod {
   }
 
  private:
+  /// v of each CV from the variances of the benchmark and of the same loop without noise.
+  Eigen::VectorXd noise_variance(const Eigen::VectorXd& noisy, const Eigen::VectorXd& quiet) const {
+    switch (study_.assessment.counterfactual.noise) {
+      case NoiseVariance::difference:
+        return noisy - quiet;
+      case NoiseVariance::positive:
+        return (noisy - quiet).cwiseMax(0.0);
+      case NoiseVariance::none:
+        break;
+    }
+    return Eigen::VectorXd::Zero(noisy.size());
+  }
+
   /// A loop that was simulated, with what it was simulated under.
   struct Simulated {
     Eigen::MatrixXd d, errors;
@@ -96,7 +112,10 @@ class Counterfactual final : public AssessmentMethod {
   Eigen::VectorXd indices(const AssessedLoop& loop, const Trajectory& nominal) const {
     const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
     const Eigen::ArrayXd of_nominal = variance_indices(loop.y, loop.in_window(nominal.y), centres);
-    return (of_nominal.inverse() + noise_.array() / variances(loop.y, centres).array()).inverse();
+    // A v below 0 can outweigh a y0 that hardly moves: the nominal variance is not taken for less than a
+    // tenth of its own.
+    const Eigen::ArrayXd inverse = of_nominal.inverse() + noise_.array() / variances(loop.y, centres).array();
+    return inverse.max(kLeastNominalShare * of_nominal.inverse()).inverse();
   }
 
   /// Ivar_diag of one CV; NaN when its loop does not run to its end.

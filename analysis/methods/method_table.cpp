@@ -20,6 +20,7 @@ namespace mpm {
   method(yu_qin)    /* variability against a benchmark, section 2.2.2, A1.3 */ \
   method(sse)       /* simulation errors against a benchmark (4.17), (6.21) */ \
   method(counterfactual) /* the simulated nominal loop, (3.24), (4.14) */      \
+  method(mpmbench)  /* impact, CV, source, channel, parameter and size together */ \
   method(order)     /* do the MVs help to predict the simulation errors? */    \
   method(excitation) /* do signals from outside of the loop? */                \
   method(candidates) /* do logged signals that the model does not know? */      \

@@ -17,7 +17,7 @@ from archives import check_same, contents, seal
 
 EXPERIMENTS = 8
 TIMES = {"seconds", "milliseconds"}  # all that two comparisons of one archive may differ in
-ALL = ["botelho", "sun", "badwe2009", "badwe2010", "yu-qin", "sse", "counterfactual", "order", "excitation", "candidates",
+ALL = ["botelho", "sun", "badwe2009", "badwe2010", "yu-qin", "sse", "counterfactual", "mpmbench", "order", "excitation", "candidates",
        "likelihood", "ceiling", "lasso", "local", "mqi-channels", "arx-oe"]
 
 

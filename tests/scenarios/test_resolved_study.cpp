@@ -282,6 +282,7 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
                            "assessment.badwe2010",
                            "assessment.yu-qin",
                            "assessment.sse",
+                           "assessment.counterfactual",
                            "assessment.order",
                            "assessment.excitation",
                            "assessment.candidates",

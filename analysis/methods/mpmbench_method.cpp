@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include "analysis/methods/assessment_method.hpp"
+#include "analysis/methods/method_table.hpp"
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+/// The simulation error of each CV with its gaps closed along straight lines, so that the loop can be
+/// simulated with it; held where the record begins or ends with a gap.
+Eigen::MatrixXd without_error_gaps(Eigen::MatrixXd e) {
+  for (auto row : e.rowwise()) {
+    Eigen::Index last = -1;
+    for (Eigen::Index k = 0; k < row.size(); ++k) {
+      if (std::isnan(row(k)))
+        continue;
+      for (Eigen::Index gap = last + 1; gap < k; ++gap)
+        row(gap) = last < 0 ? row(k)
+                            : row(last) + (row(k) - row(last)) * static_cast<double>(gap - last) /
+                                              static_cast<double>(k - last);
+      last = k;
+    }
+    for (Eigen::Index gap = last + 1; last >= 0 && gap < row.size(); ++gap)
+      row(gap) = row(last);
+  }
+  return e;
+}
+
+AssessedLoop with_gaps_closed(const AssessedLoop& loop) {
+  AssessedLoop filled = loop;
+  filled.y = loop.y_sim + without_error_gaps(loop.y - loop.y_sim);
+  return filled;
+}
+
+/// The best methods together, in the order in which an engineer asks:
+///
+/// 1. Does it cost anything? `counterfactual`: the loop is flagged when the variance of a CV is not that of
+/// the
+///    simulated nominal loop (band of impact). Gaps of the record are closed for it along straight lines.
+/// 2. Which CV, and what is it? Of a flagged loop: `likelihood`, the posterior of mismatch, disturbance and
+/// both,
+///    and `order`, the test whether the MVs help to predict the error, which knows nothing of the shape of a
+///    disturbance. Where they contradict each other, one naming a mismatch alone and the other a disturbance
+///    alone, no source is named: the data cannot tell.
+/// 3. Which channel, which parameter, how large? `likelihood`, where the source is a mismatch.
+///
+/// It needs no excitation by setpoints, and works in ranges as well; docs/methods.md has the figures from
+/// which the choice was made.
+class Mpmbench final : public AssessmentMethod {
+ public:
+  explicit Mpmbench(const AssessmentContext& context)
+      : impact_(assessment_method("counterfactual"), context),
+        posterior_(assessment_method("likelihood"), context),
+        order_(assessment_method("order"), context) {}
+
+  Assessment assess(const AssessedLoop& loop) override {
+    const Assessment impact = impact_on(loop);
+    if (impact.status != AssessmentStatus::ok)
+      return impact;
+    Assessment assessment;
+    assessment.flagged = impact.flagged;
+    assessment.score = impact.score;
+    for (std::size_t cv = 0; cv < impact.cvs.size(); ++cv)
+      assessment.numbers.push_back(
+          {"ivar", impact.number("ivar", static_cast<Eigen::Index>(cv)), static_cast<Eigen::Index>(cv)});
+    if (impact.flagged)
+      add_diagnosis(loop, impact, assessment);
+    else
+      assessment.cvs.assign(impact.cvs.size(), CvAssessment{.flagged = false, .score = 0.0});
+    return assessment;
+  }
+
+ private:
+  Assessment impact_on(const AssessedLoop& loop) {
+    if (!loop.from_start().y.hasNaN())
+      return impact_.assess(loop);
+    const AssessedLoop whole = with_gaps_closed(loop.from_start());
+    return impact_.assess(loop.whole ? window_of(whole, loop.first, loop.samples()) : whole);
+  }
+
+  void add_diagnosis(const AssessedLoop& loop, const Assessment& impact, Assessment& assessment) {
+    const Assessment posterior = posterior_.assess(loop);
+    const Assessment order = order_.assess(loop);
+    // A method that has no answer for this loop leaves the others theirs.
+    const Assessment& of_cvs = posterior.status == AssessmentStatus::ok ? posterior
+                               : order.status == AssessmentStatus::ok   ? order
+                                                                        : impact;
+    assessment.cvs = of_cvs.cvs;
+    const std::optional<Eigen::Index> worst = assessment.worst_cv();
+    if (!worst)
+      return;
+    const FaultSource source = agreed_source(posterior, order, *worst);
+    assessment.cvs[static_cast<std::size_t>(*worst)].source = source;
+    if (posterior.status != AssessmentStatus::ok ||
+        (source != FaultSource::mpm && source != FaultSource::mpm_ud))
+      return;
+    assessment.flagged_channels = posterior.flagged_channels;
+    assessment.named_mismatch = posterior.named_mismatch;
+  }
+
+  /// What both say of the CV, or the one that has an answer.
+  static FaultSource agreed_source(const Assessment& posterior, const Assessment& order, Eigen::Index cv) {
+    const auto of = [cv](const Assessment& said) {
+      return said.status == AssessmentStatus::ok ? said.cvs[static_cast<std::size_t>(cv)].source
+                                                 : FaultSource::none;
+    };
+    const FaultSource probable = of(posterior), tested = of(order);
+    if (posterior.status != AssessmentStatus::ok)
+      return tested;
+    const bool contradiction = (probable == FaultSource::mpm && tested == FaultSource::ud) ||
+                               (probable == FaultSource::ud && tested == FaultSource::mpm);
+    return contradiction ? FaultSource::none : probable;
+  }
+
+  Assessor impact_, posterior_, order_;
+};
+
+}  // namespace
+
+AssessmentMethodInfo mpmbench_method() {
+  return {
+      {.name = "mpmbench",
+       .title = "impact, source, channel and size together",
+       .verdict = "a modelling error has an impact: Ivar of some CV against the simulated nominal loop lies "
+                  "outside the band of impact",
+       .requirements = {.benchmark = true, .complete_record = false},
+       .locates_cvs = true,
+       .names_channels = true,
+       .tells_sources = true,
+       .names_mismatches = true,
+       .numbers = {{.name = "ivar",
+                    .meaning = "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise",
+                    .estimates_ivar_basis = true}}},
+      {},
+      [](const AssessmentContext& context) { return std::make_unique<Mpmbench>(context); }};
+}
+
+}  // namespace mpm
