@@ -14,7 +14,8 @@ namespace {
 /// How far the columns of a group may be from orthonormal: rounding of the products of some thousand samples.
 constexpr double kOrthonormal = 1e-8;
 
-void require_groups(const Eigen::Ref<const Eigen::MatrixXd>& gram, const std::vector<Eigen::Index>& sizes) {
+void require_orthonormal(const Eigen::Ref<const Eigen::MatrixXd>& gram,
+                         const std::vector<Eigen::Index>& sizes) {
   Eigen::Index first = 0;
   for (const Eigen::Index size : sizes) {
     const Eigen::MatrixXd block = gram.block(first, first, size, size);
@@ -25,9 +26,9 @@ void require_groups(const Eigen::Ref<const Eigen::MatrixXd>& gram, const std::ve
   }
 }
 
-void require_problem(const Eigen::Ref<const Eigen::MatrixXd>& gram,
-                     const Eigen::Ref<const Eigen::VectorXd>& product, const std::vector<Eigen::Index>& sizes,
-                     const Eigen::Ref<const Eigen::VectorXd>& penalty) {
+void require_lasso(const Eigen::Ref<const Eigen::MatrixXd>& gram,
+                   const Eigen::Ref<const Eigen::VectorXd>& product, const std::vector<Eigen::Index>& sizes,
+                   const Eigen::Ref<const Eigen::VectorXd>& penalty) {
   const Eigen::Index columns = std::accumulate(sizes.begin(), sizes.end(), Eigen::Index{0});
   if (gram.rows() != columns || gram.cols() != columns || product.size() != columns)
     throw InputError("products of the lasso",
@@ -38,7 +39,7 @@ void require_problem(const Eigen::Ref<const Eigen::MatrixXd>& gram,
                      fmt::format("{}, one a group", sizes.size()));
   if (!(penalty.array() >= 0.0).all())
     throw InputError("penalties of the lasso", "one below 0 or not a number", "0 or more");
-  require_groups(gram, sizes);
+  require_orthonormal(gram, sizes);
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ Eigen::VectorXd group_lasso(const Eigen::Ref<const Eigen::MatrixXd>& gram,
                             const std::vector<Eigen::Index>& sizes,
                             const Eigen::Ref<const Eigen::VectorXd>& penalty,
                             const GroupLassoOptions& options) {
-  require_problem(gram, product, sizes, penalty);
+  require_lasso(gram, product, sizes, penalty);
   const double small = options.tolerance * product.norm();
   Eigen::VectorXd b = Eigen::VectorXd::Zero(product.size());
   for (int sweep = 0; sweep < options.most_sweeps; ++sweep) {

@@ -28,7 +28,7 @@ struct SearchGrid {
 };
 
 constexpr int kGoldenSteps = 16;        ///< to 1/2000 of two intervals of the grid
-constexpr int kBisections = 12;         ///< of the ends of an interval
+constexpr int kHalvings = 12;           ///< of the ends of an interval
 constexpr double kLargestShift = 10.0;  ///< samples
 
 /// V(v) of what is left of e: the last Cholesky pivot of the products of the constant, its past and itself is
@@ -93,7 +93,7 @@ double crossing(const Objective& objective, double inside, double end, double st
       outside = end;
     step *= 2.0;
   } while (objective(outside) <= level);
-  for (int i = 0; i < kBisections; ++i) {
+  for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (inside + outside);
     (objective(middle) <= level ? inside : outside) = middle;
   }

@@ -16,9 +16,9 @@ namespace {
 /// Of the largest information of a coefficient: what is known along a direction that a period leaves open.
 constexpr double kLeastInformation = 1e-9;
 /// Share of the variance of what the plant explains below which the rest is not judged as noise.
-constexpr double kLeastNoise = 0.01;
+constexpr double kLeastNoiseShare = 0.01;
 
-double critical(double freedom_1, double freedom_2, double probability) {
+double critical_quantile(double freedom_1, double freedom_2, double probability) {
   return boost::math::quantile(
       boost::math::complement(boost::math::fisher_f_distribution<>(freedom_1, freedom_2), probability));
 }
@@ -69,7 +69,7 @@ double noise_distance(const Eigen::VectorXd& v, const Eigen::VectorXd& v_before,
   const Eigen::VectorXd weighted =
       now.information * (now.information + before.information).ldlt().solve(before.information * difference);
   return difference.dot(weighted) / static_cast<double>(p) /
-         critical(static_cast<double>(p), std::min(now.freedom, before.freedom), probability);
+         critical_quantile(static_cast<double>(p), std::min(now.freedom, before.freedom), probability);
 }
 
 }  // namespace
@@ -106,14 +106,14 @@ ModelComparison compare_models(const PlantAndNoise& now, const HealthyModel& bef
     groups = refined_groups(now.e, {now.X});
     const Eigen::VectorXd explained = now.X * groups.coefficients();
     v = now.e - explained;
-    if (sample_variance(v) < kLeastNoise * sample_variance(explained))
+    if (sample_variance(v) < kLeastNoiseShare * sample_variance(explained))
       return result;
   }
   result.noise_model = noise_distance(v, before.v, probability);
   const auto f = static_cast<double>(groups.freedom), f_before = static_cast<double>(before.freedom);
   const double ratio = groups.variance / before.variance;
-  result.noise_variance = std::max(ratio / critical(f, f_before, 0.5 * probability),
-                                   1.0 / ratio / critical(f_before, f, 0.5 * probability));
+  result.noise_variance = std::max(ratio / critical_quantile(f, f_before, 0.5 * probability),
+                                   1.0 / ratio / critical_quantile(f_before, f, 0.5 * probability));
   return result;
 }
 

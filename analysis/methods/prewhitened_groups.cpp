@@ -25,7 +25,7 @@ constexpr int kTurns = 3;
 using Matrices = std::vector<Eigen::MatrixXd>;
 
 /// Orthonormal columns that span those of X, scaled to unit norm first.
-Eigen::MatrixXd orthonormal(Eigen::MatrixXd X) {
+Eigen::MatrixXd orthonormal_columns(Eigen::MatrixXd X) {
   if (X.cols() == 0)
     return X;
   for (Eigen::Index column = 0; column < X.cols(); ++column)
@@ -37,7 +37,7 @@ Eigen::MatrixXd orthonormal(Eigen::MatrixXd X) {
   return qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), qr.rank());
 }
 
-Eigen::MatrixXd side_by_side(const Matrices& matrices, Eigen::Index rows, std::size_t but_for) {
+Eigen::MatrixXd joined_groups(const Matrices& matrices, Eigen::Index rows, std::size_t but_for) {
   Eigen::Index columns = 0;
   for (std::size_t j = 0; j < matrices.size(); ++j)
     columns += j == but_for ? 0 : matrices[j].cols();
@@ -55,7 +55,7 @@ Eigen::MatrixXd side_by_side(const Matrices& matrices, Eigen::Index rows, std::s
 constexpr auto kAll = static_cast<std::size_t>(-1);
 
 /// A constant and the last p samples of v, for the samples after the first kHighestNoiseOrder.
-Eigen::MatrixXd past_of(const Eigen::VectorXd& v, Eigen::Index p) {
+Eigen::MatrixXd constant_and_past(const Eigen::VectorXd& v, Eigen::Index p) {
   const Eigen::Index n = v.size() - kHighestNoiseOrder;
   Eigen::MatrixXd past(n, p + 1);
   past.col(0).setOnes();
@@ -65,14 +65,14 @@ Eigen::MatrixXd past_of(const Eigen::VectorXd& v, Eigen::Index p) {
 }
 
 /// A X of each column; the filter has forgotten its start after kHighestNoiseOrder samples, which are cut.
-Eigen::MatrixXd whitened(const NoiseModel& noise, const Eigen::MatrixXd& X) {
+Eigen::MatrixXd prewhitened_columns(const NoiseModel& noise, const Eigen::MatrixXd& X) {
   Eigen::MatrixXd result(X.rows() - kHighestNoiseOrder, X.cols());
   for (Eigen::Index column = 0; column < X.cols(); ++column)
     result.col(column) = filter(noise.D, noise.C, X.col(column)).tail(result.rows());
   return result;
 }
 
-void require_groups(const Eigen::Ref<const Eigen::VectorXd>& e, const Matrices& groups) {
+void require_regressors(const Eigen::Ref<const Eigen::VectorXd>& e, const Matrices& groups) {
   Eigen::Index columns = 0;
   for (const Eigen::MatrixXd& X : groups) {
     if (X.rows() != e.size() || !X.allFinite())
@@ -92,22 +92,22 @@ PrewhitenedGroups groups_about(const Eigen::VectorXd& v, const Eigen::Ref<const 
                                const Matrices& groups) {
   PrewhitenedGroups result;
   result.noise = noise_model_of(v);
-  const Eigen::MatrixXd past = orthonormal(past_of(v, result.noise.order()));
+  const Eigen::MatrixXd past = orthonormal_columns(constant_and_past(v, result.noise.order()));
   const auto without_past = [&past](const Eigen::MatrixXd& x) -> Eigen::MatrixXd {
     return x - past * (past.transpose() * x);
   };
-  result.r = without_past(whitened(result.noise, e));
+  result.r = without_past(prewhitened_columns(result.noise, e));
   for (const Eigen::MatrixXd& X : groups) {
-    const Eigen::MatrixXd filtered = whitened(result.noise, X);
+    const Eigen::MatrixXd filtered = prewhitened_columns(result.noise, X);
     Eigen::MatrixXd own = without_past(filtered);
     // What rounding leaves of a column that the past explains is not a regressor.
     for (Eigen::Index column = 0; column < own.cols(); ++column)
       if (!(own.col(column).norm() > kOwnShare * filtered.col(column).norm()))
         own.col(column).setZero();
-    result.Q.push_back(orthonormal(own));
+    result.Q.push_back(orthonormal_columns(own));
     result.X.push_back(std::move(own));
   }
-  const Eigen::MatrixXd all = orthonormal(side_by_side(result.Q, past.rows(), kAll));
+  const Eigen::MatrixXd all = orthonormal_columns(joined_groups(result.Q, past.rows(), kAll));
   result.rank = all.cols();
   result.freedom = past.rows() - past.cols() - result.rank;
   const double left = result.r.squaredNorm() - (all.transpose() * result.r).squaredNorm();
@@ -133,7 +133,7 @@ double PrewhitenedGroups::partial_ratio(std::size_t group) const {
   const auto columns = static_cast<double>(Q[group].cols());
   if (columns == 0.0 || !(variance > 0.0))
     return 0.0;
-  const Eigen::MatrixXd others = orthonormal(side_by_side(Q, r.size(), group));
+  const Eigen::MatrixXd others = orthonormal_columns(joined_groups(Q, r.size(), group));
   const double without = r.squaredNorm() - (others.transpose() * r).squaredNorm();
   return std::max(0.0, without - static_cast<double>(freedom) * variance) / (columns * variance);
 }
@@ -157,17 +157,17 @@ double PrewhitenedGroups::critical_ratio_of(Eigen::Index columns, double probabi
 }
 
 Eigen::VectorXd PrewhitenedGroups::coefficients() const {
-  return side_by_side(X, r.size(), kAll).completeOrthogonalDecomposition().solve(r);
+  return joined_groups(X, r.size(), kAll).completeOrthogonalDecomposition().solve(r);
 }
 
 PrewhitenedGroups prewhitened_groups(const Eigen::Ref<const Eigen::VectorXd>& e, const Matrices& groups) {
-  require_groups(e, groups);
+  require_regressors(e, groups);
   return groups_about(e, e, groups);
 }
 
 PrewhitenedGroups refined_groups(const Eigen::Ref<const Eigen::VectorXd>& e, const Matrices& groups) {
-  require_groups(e, groups);
-  const Eigen::MatrixXd X = side_by_side(groups, e.size(), kAll);
+  require_regressors(e, groups);
+  const Eigen::MatrixXd X = joined_groups(groups, e.size(), kAll);
   if (X.cols() == 0)
     return groups_about(e, e, groups);
   const Eigen::MatrixXd centred = X.rowwise() - X.colwise().mean();
