@@ -130,6 +130,33 @@ const std::vector<MismatchEvidence>& mismatches_of_source(const CvEvidence& evid
   return source == FaultSource::mpm ? evidence.mismatch_alone : evidence.mismatch_with_disturbance;
 }
 
+/// The same priors with every kind of fault as frequent as the others, and loops with one as those without.
+/// Scores are taken from them: they are held against those of loops of a calibration, whose study is the same
+/// but for its kinds.
+FaultPriorSet of_equal_kinds(const Study& study, FaultPriorSet priors) {
+  const auto channels_of = [&study](Eigen::Index cv) {
+    double count = 0.0;
+    for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
+      count += study.plant.G(cv, mv).is_zero() ? 0.0 : 1.0;
+    return count;
+  };
+  double channels = 0.0;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    channels += channels_of(cv);
+  constexpr double kThird = 1.0 / 3.0;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
+    CvPrior& prior = priors.cvs[static_cast<std::size_t>(cv)];
+    prior.mpm = prior.both = channels > 0.0 ? kThird * channels_of(cv) / channels : 0.0;
+    prior.ud = kThird / static_cast<double>(study.cv_count());
+  }
+  return priors;
+}
+
+/// Does the study draw faults of the kinds that the likelihood knows?
+bool draws_known_faults(const Study& study) {
+  return study.experiments.mpm + study.experiments.ud + study.experiments.mpm_ud > 0;
+}
+
 /// Samples may be missing, but what is there must be a number.
 void require_numbers(const AssessedLoop& loop) {
   const Eigen::MatrixXd& u = loop.from_start().u;
@@ -147,6 +174,9 @@ class FaultPosterior final : public AssessmentMethod {
                              deviations(noises_))) {
     if (priors == FaultPriors::study && !noise_is_known(study_))
       priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
+    for_scores_ = priors == FaultPriors::study ? of_equal_kinds(study_, priors_) : priors_;
+    if (priors == FaultPriors::study && !draws_known_faults(study_))
+      priors_ = for_scores_;
     for (std::size_t cv = 0; cv < noises_.size(); ++cv)
       likelihoods_.push_back(std::make_unique<CvLikelihood>(study_, priors_.cvs[cv], noises_[cv],
                                                             priors_.noise_freedom, priors_.starts_from_rest));
@@ -165,20 +195,23 @@ class FaultPosterior final : public AssessmentMethod {
         return Assessment::failed("a CV has no sample");
       evidence.push_back(likelihoods_[i]->of(e, loop.from_start().u.leftCols(e.size()), initial_u_));
     }
-    return answer(fault_probabilities(priors_, evidence), evidence);
+    return answer(fault_probabilities(priors_, evidence), fault_probabilities(for_scores_, evidence),
+                  evidence);
   }
 
  private:
   /// Degrees of freedom of the variance of a noise that is taken from the benchmark.
   static constexpr double kUnknownNoise = 4.0;
 
-  Assessment answer(const FaultProbabilities& probabilities, const std::vector<CvEvidence>& evidence) const {
+  Assessment answer(const FaultProbabilities& probabilities, const FaultProbabilities& scores,
+                    const std::vector<CvEvidence>& evidence) const {
     const LikelihoodOptions& options = study_.assessment.likelihood;
     Assessment assessment;
     assessment.flagged = 1.0 - probabilities.healthy > options.flag_probability;
-    assessment.score = probabilities.log_odds;
-    for (const FaultProbabilities::OfCv& cv : probabilities.cvs)
-      assessment.cvs.push_back({cv.fault() > options.flag_probability, cv.log_odds, FaultSource::none});
+    assessment.score = scores.log_odds;
+    for (std::size_t i = 0; i < scores.cvs.size(); ++i)
+      assessment.cvs.push_back({probabilities.cvs[i].fault() > options.flag_probability,
+                                scores.cvs[i].log_odds, FaultSource::none});
     const std::optional<Eigen::Index> worst = assessment.worst_cv();
     for (std::size_t i = 0; i < assessment.cvs.size(); ++i) {
       CvAssessment& cv = assessment.cvs[i];
@@ -235,7 +268,7 @@ class FaultPosterior final : public AssessmentMethod {
   const Study& study_;
   Eigen::VectorXd initial_u_;
   std::vector<BaseNoise> noises_;
-  FaultPriorSet priors_;
+  FaultPriorSet priors_, for_scores_;
   std::vector<std::unique_ptr<CvLikelihood>> likelihoods_;
 };
 

@@ -219,6 +219,15 @@ TEST_CASE("ceiling: on faults that the study draws, its probabilities are those 
       }
     }
   }
+  // Loops of a calibration are healthy: their scores are those that the loops of the study would have.
+  Study healthy = study;
+  healthy.experiments = {.healthy = 40};
+  const AssessmentContext of_healthy{healthy, basis, testing::kFactory, context.benchmark};
+  const AssessedLoop loop = loop_with(study, measurement_noise(study, 0), moves(3, 200, 0.05, 0));
+  const Assessment one = method->assess(loop);
+  const Assessment other = make_fault_posterior(of_healthy, FaultPriors::study)->assess(loop);
+  CHECK(one.score == other.score);
+  CHECK(one.cvs[1].score == other.cvs[1].score);
   // Sums of independent differences of mean zero: four standard deviations, which 1 of 16000 leaves.
   CHECK(mpm_variance > 3.0);  // they are not all sure
   CHECK(std::abs(mpm) < 4.0 * std::sqrt(mpm_variance));
