@@ -15,8 +15,8 @@
 namespace mpm {
 namespace {
 
-/// The probability that is shared out to the tests of all CVs, one of the plant and two of the noise. It is not
-/// stated as that of a false alarm: one benchmark serves for all loops of a study, and more are flagged.
+/// The probability that is shared out to the tests of all CVs, one of the plant and two of the noise. It is
+/// not stated as that of a false alarm: one benchmark serves for all loops of a study, and more are flagged.
 constexpr double kArxOeFalseAlarms = 0.01;
 constexpr double kTestsOfCv = 3.0;
 

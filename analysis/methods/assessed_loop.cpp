@@ -53,6 +53,24 @@ AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::In
           .first = first};
 }
 
+Eigen::MatrixXd gaps_closed(Eigen::MatrixXd signals) {
+  for (auto row : signals.rowwise()) {
+    Eigen::Index last = -1;
+    for (Eigen::Index k = 0; k < row.size(); ++k) {
+      if (std::isnan(row(k)))
+        continue;
+      for (Eigen::Index gap = last + 1; gap < k; ++gap)
+        row(gap) = last < 0 ? row(k)
+                            : row(last) + (row(k) - row(last)) * static_cast<double>(gap - last) /
+                                              static_cast<double>(k - last);
+      last = k;
+    }
+    for (Eigen::Index gap = last + 1; last >= 0 && gap < row.size(); ++gap)
+      row(gap) = row(last);
+  }
+  return signals;
+}
+
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context) {
   return recorded(context.study, kBasisIndex, context.basis.trajectory).y;
 }

@@ -52,6 +52,10 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
 /// The window of `samples` samples of a record from sample `first` on. `record` must outlive it.
 AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::Index samples);
 
+/// Each row of `signals` with its gaps (NaN) closed along straight lines, held where it begins or ends with
+/// one; a row without any value stays as it is.
+Eigen::MatrixXd gaps_closed(Eigen::MatrixXd signals);
+
 /// What a method may know besides the records of the loop that it assesses. `study` and `basis` must outlive
 /// it.
 struct AssessmentContext {

@@ -27,8 +27,8 @@ constexpr double kLeastNominalShare = 0.1;
 /// with the errors of all CVs added the loop gives y back. y holds noise and y0 none; v, what noise adds to
 /// the variance, is that of the basis case y_b of the same controller, so that only the variance of the
 /// benchmark is known of it (NoiseVariance has other choices). A loop is simulated for y0, and where some
-/// Ivar lies outside the band of impact one for each CV. Of a window the record is simulated from its start,
-/// once for all windows.
+/// Ivar lies outside the band of impact one for each CV. Gaps of e are closed along straight lines. Of a
+/// window the record is simulated from its start, once for all windows.
 class Counterfactual final : public AssessmentMethod {
  public:
   explicit Counterfactual(const AssessmentContext& context)
@@ -37,7 +37,7 @@ class Counterfactual final : public AssessmentMethod {
         y_set_(setpoints(context.study)),
         dither_(dither(context.study)),
         loops_(static_cast<std::size_t>(context.study.cv_count()) + 1) {
-    const Eigen::MatrixXd y_basis = recorded_basis(context);
+    const Eigen::MatrixXd y_basis = gaps_closed(recorded_basis(context));
     const SetpointTrajectories centres = variance_centres(study_, 0, y_basis.cols());
     const Trajectory& nominal =
         simulated(0, context.basis.trajectory.d, Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols()));
@@ -49,11 +49,12 @@ class Counterfactual final : public AssessmentMethod {
     if (noise_.size() == 0)
       return Assessment::failed("the controller does not run on its own model without noise");
     const AssessedLoop& whole = loop.from_start();
-    const Eigen::MatrixXd e = whole.y - whole.y_sim;
+    const Eigen::MatrixXd e = gaps_closed(whole.y - whole.y_sim);
+    const Eigen::MatrixXd y = loop.y_sim + loop.in_window(e);
     const Trajectory& nominal = simulated(0, whole.d, Eigen::MatrixXd::Zero(e.rows(), e.cols()));
     if (nominal.status != ControlStatus::ok)
       return Assessment::failed("the controller does not run on its own model under these disturbances");
-    const Eigen::VectorXd ivar = indices(loop, nominal);
+    const Eigen::VectorXd ivar = indices(loop, y, nominal);
     Assessment assessment;
     assessment.score = 0.0;
     for (const double index : ivar) {
@@ -61,7 +62,7 @@ class Counterfactual final : public AssessmentMethod {
       assessment.flagged = assessment.flagged || study_.diagnosis.has_impact(index);
     }
     for (Eigen::Index cv = 0; cv < ivar.size(); ++cv) {
-      const double ivar_diag = assessment.flagged ? diagonal_index(loop, e, cv) : kNaN;
+      const double ivar_diag = assessment.flagged ? diagonal_index(loop, y, e, cv) : kNaN;
       CvAssessment said;
       if (!std::isnan(ivar_diag))
         said = {study_.diagnosis.has_impact(ivar_diag), distance(ivar_diag)};
@@ -109,21 +110,23 @@ class Counterfactual final : public AssessmentMethod {
   }
 
   /// var y / (var y0 + v) of each CV, ny.
-  Eigen::VectorXd indices(const AssessedLoop& loop, const Trajectory& nominal) const {
+  Eigen::VectorXd indices(const AssessedLoop& loop, const Eigen::MatrixXd& y,
+                          const Trajectory& nominal) const {
     const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
-    const Eigen::ArrayXd of_nominal = variance_indices(loop.y, loop.in_window(nominal.y), centres);
+    const Eigen::ArrayXd of_nominal = variance_indices(y, loop.in_window(nominal.y), centres);
     // A v below 0 can outweigh a y0 that hardly moves: the nominal variance is not taken for less than a
     // tenth of its own.
-    const Eigen::ArrayXd inverse = of_nominal.inverse() + noise_.array() / variances(loop.y, centres).array();
+    const Eigen::ArrayXd inverse = of_nominal.inverse() + noise_.array() / variances(y, centres).array();
     return inverse.max(kLeastNominalShare * of_nominal.inverse()).inverse();
   }
 
   /// Ivar_diag of one CV; NaN when its loop does not run to its end.
-  double diagonal_index(const AssessedLoop& loop, const Eigen::MatrixXd& e, Eigen::Index cv) {
+  double diagonal_index(const AssessedLoop& loop, const Eigen::MatrixXd& y, const Eigen::MatrixXd& e,
+                        Eigen::Index cv) {
     Eigen::MatrixXd others = e;
     others.row(cv).setZero();
     const Trajectory& nominal = simulated(static_cast<std::size_t>(cv) + 1, loop.from_start().d, others);
-    return nominal.status == ControlStatus::ok ? indices(loop, nominal)(cv) : kNaN;
+    return nominal.status == ControlStatus::ok ? indices(loop, y, nominal)(cv) : kNaN;
   }
 
   /// Of a variance index from 1, as the study measures it to locate a CV.
@@ -144,7 +147,7 @@ AssessmentMethodInfo counterfactual_method() {
        .title = "counterfactual nominal output",
        .verdict = "a modelling error has an impact: Ivar of some CV against the simulated nominal loop lies "
                   "outside the band of impact",
-       .requirements = {},
+       .requirements = {.complete_record = false},
        .locates_cvs = true,
        .numbers = {{.name = "ivar",
                     .meaning = "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise",

@@ -136,7 +136,7 @@ class RecordLikelihood {
     Eigen::Index rows = 1;
     for (std::size_t i = 0; i < responses_.size(); ++i) {
       first_row_.push_back(rows);
-      grids.push_back(responses_[i].on_grid(input(i), initial(i)) / base_.deviation);
+      grids.emplace_back(responses_[i].on_grid(input(i), initial(i)) / base_.deviation);
       rows += grids.back().rows();
     }
     series_.resize(rows, e_.size());

@@ -1,47 +1,18 @@
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <optional>
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
-
-/// The simulation error of each CV with its gaps closed along straight lines, so that the loop can be
-/// simulated with it; held where the record begins or ends with a gap.
-Eigen::MatrixXd without_error_gaps(Eigen::MatrixXd e) {
-  for (auto row : e.rowwise()) {
-    Eigen::Index last = -1;
-    for (Eigen::Index k = 0; k < row.size(); ++k) {
-      if (std::isnan(row(k)))
-        continue;
-      for (Eigen::Index gap = last + 1; gap < k; ++gap)
-        row(gap) = last < 0 ? row(k)
-                            : row(last) + (row(k) - row(last)) * static_cast<double>(gap - last) /
-                                              static_cast<double>(k - last);
-      last = k;
-    }
-    for (Eigen::Index gap = last + 1; last >= 0 && gap < row.size(); ++gap)
-      row(gap) = row(last);
-  }
-  return e;
-}
-
-AssessedLoop with_gaps_closed(const AssessedLoop& loop) {
-  AssessedLoop filled = loop;
-  filled.y = loop.y_sim + without_error_gaps(loop.y - loop.y_sim);
-  return filled;
-}
 
 /// The best methods together, in the order in which an engineer asks:
 ///
 /// 1. Does it cost anything? `counterfactual`: the loop is flagged when the variance of a CV is not that of
 /// the
-///    simulated nominal loop (band of impact). Gaps of the record are closed for it along straight lines.
+///    simulated nominal loop (band of impact).
 /// 2. Which CV, and what is it? Of a flagged loop: `likelihood`, the posterior of mismatch, disturbance and
 /// both,
 ///    and `order`, the test whether the MVs help to predict the error, which knows nothing of the shape of a
@@ -59,7 +30,7 @@ class Mpmbench final : public AssessmentMethod {
         order_(assessment_method("order"), context) {}
 
   Assessment assess(const AssessedLoop& loop) override {
-    const Assessment impact = impact_on(loop);
+    const Assessment impact = impact_.assess(loop);
     if (impact.status != AssessmentStatus::ok)
       return impact;
     Assessment assessment;
@@ -76,13 +47,6 @@ class Mpmbench final : public AssessmentMethod {
   }
 
  private:
-  Assessment impact_on(const AssessedLoop& loop) {
-    if (!loop.from_start().y.hasNaN())
-      return impact_.assess(loop);
-    const AssessedLoop whole = with_gaps_closed(loop.from_start());
-    return impact_.assess(loop.whole ? window_of(whole, loop.first, loop.samples()) : whole);
-  }
-
   void add_diagnosis(const AssessedLoop& loop, const Assessment& impact, Assessment& assessment) {
     const Assessment posterior = posterior_.assess(loop);
     const Assessment order = order_.assess(loop);
