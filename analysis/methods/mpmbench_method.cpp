@@ -12,7 +12,7 @@ namespace {
 ///
 /// 1. Does it cost anything? `counterfactual`: the loop is flagged when the variance of a CV is not that of
 /// the
-///    simulated nominal loop (band of impact).
+///    simulated nominal loop (band of impact), unless both methods of step 2 see no fault: then it is noise.
 /// 2. Which CV, and what is it? Of a flagged loop: `likelihood`, the posterior of mismatch, disturbance and
 /// both,
 ///    and `order`, the test whether the MVs help to predict the error, which knows nothing of the shape of a
@@ -39,17 +39,23 @@ class Mpmbench final : public AssessmentMethod {
     for (std::size_t cv = 0; cv < impact.cvs.size(); ++cv)
       assessment.numbers.push_back(
           {"ivar", impact.number("ivar", static_cast<Eigen::Index>(cv)), static_cast<Eigen::Index>(cv)});
-    if (impact.flagged)
-      add_diagnosis(loop, impact, assessment);
-    else
+    if (assessment.flagged)
+      diagnose(loop, impact, assessment);
+    if (!assessment.flagged)
       assessment.cvs.assign(impact.cvs.size(), CvAssessment{.flagged = false, .score = 0.0});
     return assessment;
   }
 
  private:
-  void add_diagnosis(const AssessedLoop& loop, const Assessment& impact, Assessment& assessment) {
+  void diagnose(const AssessedLoop& loop, const Assessment& impact, Assessment& assessment) {
     const Assessment posterior = posterior_.assess(loop);
     const Assessment order = order_.assess(loop);
+    const auto denies = [](const Assessment& said) {
+      return said.status == AssessmentStatus::ok && !said.flagged;
+    };
+    assessment.flagged = !(denies(posterior) && denies(order));
+    if (!assessment.flagged)
+      return;
     // A method that has no answer for this loop leaves the others theirs.
     const Assessment& of_cvs = posterior.status == AssessmentStatus::ok ? posterior
                                : order.status == AssessmentStatus::ok   ? order
