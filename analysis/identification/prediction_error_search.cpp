@@ -7,11 +7,10 @@
 #include <ceres/ceres.h>
 
 #include "analysis/identification/prediction_error.hpp"
+#include "plants/row_major.hpp"
 
 namespace mpm {
 namespace {
-
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The power of two nearest to the root mean square of a signal, 1 for a signal that is 0: a unit in which
 /// its size is about 1, and to which it is brought without rounding.

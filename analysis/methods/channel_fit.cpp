@@ -88,7 +88,7 @@ class ChannelSearch {
     double least = squares(point, gain);
     for (double share = 1.0; share >= kFinestStep;) {
       bool better = false;
-      for (const std::size_t number : {0, 1})
+      for (std::size_t number = 0; number < point.size(); ++number)
         for (const double direction : {-1.0, 1.0}) {
           if (!is_free[number])
             continue;

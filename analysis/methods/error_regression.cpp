@@ -36,7 +36,7 @@ std::vector<Eigen::MatrixXd> filtered_signals(const Eigen::Ref<const Eigen::Matr
   std::vector<Eigen::MatrixXd> filtered;
   for (Eigen::Index row = 0; row < signals.rows(); ++row) {
     const Eigen::RowVectorXd moves = signals.row(row).array() - signals(row, 0);
-    filtered.push_back(
+    filtered.emplace_back(
         laguerre_responses(moves, options.filters + 1, options.pole).rightCols(options.filters));
   }
   return filtered;

@@ -79,7 +79,7 @@ class Local final : public AssessmentMethod {
                 Assessment& assessment) const {
     std::vector<Eigen::MatrixXd> gradients;
     for (Eigen::Index j = 0; j < inputs.rows(); ++j)
-      gradients.push_back(
+      gradients.emplace_back(
           channel_gradients(study_.plant.G(cv, j), study_.controller.sample_time, inputs.row(j).transpose())
               .bottomRows(e.size()));
     const PrewhitenedGroups groups = prewhitened_groups(e, gradients);

@@ -30,7 +30,7 @@ class Mpmbench final : public AssessmentMethod {
         order_(assessment_method("order"), context) {}
 
   Assessment assess(const AssessedLoop& loop) override {
-    const Assessment impact = impact_.assess(loop);
+    Assessment impact = impact_.assess(loop);
     if (impact.status != AssessmentStatus::ok)
       return impact;
     Assessment assessment;
