@@ -39,17 +39,18 @@ std::string_view to_string(OtherFaultKind kind);
 enum class VariableSort { cv, mv, md };
 VariableSort sort_of(OtherFaultKind kind);
 
-/// | kind         | variable | size                                                        | begins |
-/// |--------------|----------|-------------------------------------------------------------|--------|
-/// | sensor_bias  | CV       | added to its measurement, CV unit                           | with the onset |
-/// | sensor_drift | CV       | added at the end of the record, on a line from the onset on | with the onset |
-/// | stiction     | MV       | S of the valve, MV unit (StickyValve); its J is `jump`      | at Onset::sample
-/// | | deadband     | MV       | S of the valve, J = 0                                       | at
-/// Onset::sample | | md_gain      | MD       | factor of its measurement                                   |
-/// with the onset | | md_noise     | MD       | standard deviation of white noise on it, MD unit            |
-/// with the onset | | limit        | CV       | added to both soft limits in the controller, CV unit        |
-/// at Onset::sample | | held_mv      | MV       | none: it stays where it is, and nobody tells the controller
-/// | at Onset::sample |
+/// | kind         | variable | size                                                        |
+/// |--------------|----------|-------------------------------------------------------------|
+/// | sensor_bias  | CV       | added to its measurement, CV unit                           |
+/// | sensor_drift | CV       | added at the end of the record, on a line from the onset on |
+/// | stiction     | MV       | S of the valve, MV unit (StickyValve); its J is `jump`      |
+/// | deadband     | MV       | S of the valve, J = 0                                       |
+/// | md_gain      | MD       | factor of its measurement                                   |
+/// | md_noise     | MD       | standard deviation of white noise on it, MD unit            |
+/// | limit        | CV       | added to both soft limits in the controller, CV unit        |
+/// | held_mv      | MV       | none: it stays where it is, nobody tells the controller     |
+///
+/// Those of a measurement begin with the onset, those of an MV or a limit at Onset::sample.
 ///
 /// A method sees the measurements, what the controller asks of a valve, and the value of an MV that is held.
 /// It does not see the new limit.

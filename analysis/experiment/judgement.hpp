@@ -37,15 +37,16 @@ struct CvJudgement {
 
 /// The answer of a method on one experiment against the truth.
 ///
-/// | member           | question                                  | of experiments with a verdict |
-/// |------------------|-------------------------------------------|------------------------------------------|
-/// | predicted_cv     | is the worst CV the affected one          | flagged, a fault that affects one CV | |
-/// predicted_source | is its source the right one               | with a single fault, in_source_population()
-/// | | channel          | is the mismatched channel among the named | with one mismatch, of an MV; that of a
-/// loop that is not flagged is not named | | parameter        | are its channel and parameter those of the
-/// mismatch that is named | as channel       | | size             | does the interval of its size hold the
-/// true one | those whose parameter is right     | | cvs              | is every CV of a named scenario
-/// judged rightly | named scenarios                     |
+/// | member           | question                                  | of experiments with a verdict    |
+/// |------------------|-------------------------------------------|----------------------------------|
+/// | predicted_cv     | is the worst CV the affected one          | flagged, a fault of one CV       |
+/// | predicted_source | is its source the right one               | in_source_population(), one fault |
+/// | channel          | is the mismatched channel among the named | with one mismatch, of an MV      |
+/// | parameter        | are channel and parameter the named ones  | as channel                       |
+/// | size             | is the true size in its interval          | parameter is right               |
+/// | cvs              | is every CV judged rightly                | named scenarios                  |
+///
+/// Of a loop that is not flagged no channel and no mismatch is named.
 struct Judgement {
   Correctness predicted_cv = Correctness::not_judged;
   Correctness predicted_source = Correctness::not_judged;

@@ -17,14 +17,15 @@ namespace mpm {
 /// about the setpoint of a CV that has one, about the mean otherwise. All loops have the noise, the
 /// excitation and the faults of the experiment, from the first sample on.
 ///
-/// | member    | controller                                  | plant |
-/// |-----------|---------------------------------------------|------------------------------------------------|
-/// | now       | that of the study                           | that of the experiment | | predicted | with
-/// the repaired model                     | its model, and what it leaves of the errors of the record: all
-/// that is known in a plant | | repaired  | with the repaired model                     | that of the
-/// experiment                         | | perfect   | with the plant itself as its model; of a nonlinear
-/// plant that of the study | that of the experiment; of a nonlinear plant without its mismatches |
+/// | member    | model of the controller  | plant                                            |
+/// |-----------|--------------------------|--------------------------------------------------|
+/// | now       | that of the study        | that of the experiment                           |
+/// | predicted | the repaired one         | the repaired model, errors of the record added   |
+/// | repaired  | the repaired one         | that of the experiment                           |
+/// | perfect   | the plant                | that of the experiment                           |
 ///
+/// `predicted` is all that is known in a plant: its errors are what the repaired model leaves of the record.
+/// Of a nonlinear plant `perfect` is the controller of the study on the plant without its mismatches.
 /// A vector is empty when its loop did not run to its end.
 struct RepairedLoop {
   Channel channel;

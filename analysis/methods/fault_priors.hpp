@@ -44,12 +44,13 @@ struct CvPrior {
   std::vector<DisturbancePrior> disturbances;
 };
 
-/// | `priors` | faults                                | sizes                    | noise |
-/// |----------|---------------------------------------|--------------------------|-------------------------------|
-/// | wide     | each CV by itself; some CV with the   | of all that a plant      | as in the benchmark,
-/// within   | |          | probability `fault_probability`       | may have (wide_priors()) | a factor of
-/// about two         | | study    | as the study draws them               | as the study draws them  | as the
-/// study has it           |
+/// | `priors` | faults                                 | sizes                       | noise           |
+/// |----------|----------------------------------------|-----------------------------|-----------------|
+/// | wide     | each CV by itself, `fault_probability` | what a plant may have       | the benchmark's |
+/// | study    | as the study draws them                | as the study draws them     | the study's     |
+///
+/// `fault_probability` is that of some CV having one; the wide sizes are wide_priors(), and the noise of the
+/// benchmark is known within a factor of about two.
 struct FaultPriorSet {
   std::vector<CvPrior> cvs;  ///< ny
   bool one_fault = false;    ///< only one CV has a fault; otherwise each CV may, independently of the others

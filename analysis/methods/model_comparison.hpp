@@ -35,12 +35,14 @@ HealthyModel healthy_model(const PlantAndNoise& period);
 /// How far the plant and the noise of a period are from those of a healthy one, each distance over the one
 /// that chance exceeds with the probability asked for: above 1 something has changed.
 ///
-/// | member         | distance                                                                              |
-/// |----------------|---------------------------------------------------------------------------------------|
-/// | plant          | s' (sigma^2 I + M C_0 M')^-1 s / rank, s = Q'r of e - X b_0 and M = Q'(A X): the
-/// regression of `prewhitened_groups` | | noise_model    | (a - a_0)' (C_a + C_a0)^-1 (a - a_0) / p of the
-/// autoregressions of v, both of the larger order | | noise_variance | the larger of sigma^2 / sigma_0^2 and
-/// its inverse, of the innovations                 |
+/// | member         | distance                                                                         |
+/// |----------------|----------------------------------------------------------------------------------|
+/// | plant          | s' (sigma^2 I + M C_0 M')^-1 s / rank                                            |
+/// | noise_model    | (a - a_0)' (C_a + C_a0)^-1 (a - a_0) / p of the autoregressions of v             |
+/// | noise_variance | the larger of sigma^2 / sigma_0^2 and its inverse, of the innovations            |
+///
+/// with s = Q'r of e - X b_0 and M = Q'(A X), the regression of `prewhitened_groups`, and both
+/// autoregressions of the larger order.
 struct ModelComparison {
   double plant = 0.0, noise_model = 0.0, noise_variance = 0.0;
 };

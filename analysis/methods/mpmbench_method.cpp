@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -9,26 +10,25 @@ namespace mpm {
 namespace {
 
 // Chosen on the suite under seed 5150, looked at under its own.
-constexpr double kNoHelp = -1.301;  ///< log10 of 0.05: the MVs do not help to predict the error
+constexpr double kNoHelp = 0.05;  ///< p above which the MVs do not help to predict the error
 /// The MVs explain so much of the error that a mismatch alone does: log p of their test over that of its
 /// colour.
 constexpr double kMostlyMismatch = 0.2;
 
-/// The best methods together, in the order in which an engineer asks:
+/// The best methods together, in the order in which an engineer asks.
 ///
-/// 1. Does it cost anything? `counterfactual`: the loop is flagged when the variance of a CV is not that of
-/// the
-///    simulated nominal loop (band of impact), unless both methods of step 2 see no fault: then it is noise.
-/// 2. Which CV, and what is it? Of a flagged loop: `likelihood`, the posterior of mismatch, disturbance and
-/// both,
-///    and `order`, the test whether the MVs help to predict the error, which knows nothing of the shape of a
-///    disturbance. Where the likelihood sees both, `order` says whether one of them alone is enough; where
-///    they contradict each other, one naming a mismatch alone and the other a disturbance alone, no source is
-///    named: the data cannot tell.
-/// 3. Which channel, which parameter, how large? `likelihood`, where the source is a mismatch.
+/// Does it cost anything? `counterfactual`: the loop is flagged when the variance of a CV is not that of the
+/// simulated nominal loop (band of impact), unless both methods below see no fault: then it is noise.
 ///
-/// It needs no excitation by setpoints, and works in ranges as well; docs/methods.md has the figures from
-/// which the choice was made.
+/// Which CV, and what is it? Of a flagged loop: `likelihood`, the posterior of mismatch, disturbance and
+/// both, and `order`, the test whether the MVs help to predict the error, which knows nothing of the shape of
+/// a disturbance. Where the likelihood sees both, `order` says whether one of them alone is enough. Where
+/// they contradict each other, one naming a mismatch alone and the other a disturbance alone, no source is
+/// named: the data cannot tell.
+///
+/// Which channel, which parameter, how large? `likelihood`, where the source is a mismatch.
+///
+/// docs/choosing_a_method.md has the figures from which the choice was made.
 class Mpmbench final : public AssessmentMethod {
  public:
   explicit Mpmbench(const AssessmentContext& context)
@@ -103,7 +103,7 @@ class Mpmbench final : public AssessmentMethod {
   static FaultSource both_or_one(FaultSource tested, double log10_p, double log10_p_noise) {
     if (tested == FaultSource::mpm)
       return log10_p < kMostlyMismatch * log10_p_noise ? FaultSource::mpm : FaultSource::mpm_ud;
-    return log10_p > kNoHelp ? FaultSource::ud : FaultSource::mpm_ud;
+    return log10_p > std::log10(kNoHelp) ? FaultSource::ud : FaultSource::mpm_ud;
   }
 
   Assessor impact_, posterior_, order_;

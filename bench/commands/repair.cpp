@@ -16,6 +16,7 @@
 #include "bench/files/archive_input.hpp"
 #include "plants/error.hpp"
 #include "results/text/experiment_text.hpp"
+#include "results/text/number_json.hpp"
 #include "results/text/text_table.hpp"
 #include "scenarios/historian.hpp"
 
@@ -152,29 +153,14 @@ std::vector<RepairOutcome> outcomes_of(const std::vector<Repair>& repairs) {
   return outcomes;
 }
 
-Json json_of(const Rate& rate) {
-  return {{"hits", rate.hits},
-          {"total", rate.total},
-          {"value", rate.value},
-          {"lower", rate.interval.lower},
-          {"upper", rate.interval.upper}};
-}
-
-Json json_of(const Estimate& estimate) {
-  return {{"value", estimate.value},
-          {"lower", estimate.interval.lower},
-          {"upper", estimate.interval.upper},
-          {"count", estimate.count}};
-}
-
 Json json_of(const std::vector<RepairFindings>& findings) {
   Json json = Json::array();
   for (const RepairFindings& found : findings)
     json.push_back({{"repaired", to_string(found.target)},
-                    {"better", json_of(found.better)},
-                    {"worse", json_of(found.worse)},
-                    {"loss_now", json_of(found.loss_now)},
-                    {"loss_repaired", json_of(found.loss_repaired)}});
+                    {"better", rate_json(found.better)},
+                    {"worse", rate_json(found.worse)},
+                    {"loss_now", estimate_json(found.loss_now)},
+                    {"loss_repaired", estimate_json(found.loss_repaired)}});
   return json;
 }
 
@@ -203,65 +189,90 @@ std::string text_of(const std::vector<RepairFindings>& findings) {
       table.text(), 100.0 * (kNoticeableChange - 1.0));
 }
 
-ExitCode repair(const RepairArguments& options) {
-  const Campaign campaign = read_input(options.archive);
-  const Study& study = campaign.study;
-  const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
+/// The channel of an experiment that is to be repaired: the one that the user asks for, or that the method
+/// names.
+struct ChannelChoice {
   std::optional<Channel> asked;
-  if (!options.channel.empty())
-    asked = channel_of(study, options.channel);
-  const std::size_t method = asked ? 0 : method_of(campaign, options.method);
-  if (asked && !options.index)
-    throw InputError("--channel", "no --index", "one channel of one experiment");
-  const auto channel_in = [&](const ExperimentRecord& record) {
+  std::size_t method = 0;  ///< place in the assessments of a record; when no channel is asked for
+
+  std::optional<Channel> in(const ExperimentRecord& record) const {
     return asked ? asked : channel_to_repair(record.assessments[method]);
-  };
-  if (options.index) {
-    const ExperimentRecord& record = experiment_of(campaign, *options.index);
-    if (record.status != ExperimentStatus::ok)
-      throw InputError("--index", fmt::format("{}, which did not run to its end", *options.index),
-                       "an experiment that did");
-    const std::optional<Channel> channel = channel_in(record);
-    if (!channel)
-      throw InputError("--index",
-                       fmt::format("{}, in which {} names no channel", *options.index,
-                                   campaign.methods[method].form->method().name),
-                       "another experiment, or --channel");
-    const Repair done = repaired(campaign, record, *channel, factory);
-    fmt::print("{}", options.json ? json_of(study, done).dump(2) + "\n" : text_of(study, done));
-    return ExitCode::done;
   }
+};
+
+ChannelChoice chosen(const Campaign& campaign, const RepairArguments& options) {
+  if (options.channel.empty())
+    return {.asked = {}, .method = method_of(campaign, options.method)};
+  if (!options.index)
+    throw InputError("--channel", "no --index", "one channel of one experiment");
+  return {.asked = channel_of(campaign.study, options.channel)};
+}
+
+void repair_one(const Campaign& campaign, std::int64_t index, const ChannelChoice& choice, bool json) {
+  const ExperimentRecord& record = experiment_of(campaign, index);
+  if (record.status != ExperimentStatus::ok)
+    throw InputError("--index", fmt::format("{}, which did not run to its end", index),
+                     "an experiment that did");
+  const std::optional<Channel> channel = choice.in(record);
+  if (!channel)
+    throw InputError("--index",
+                     fmt::format("{}, in which {} names no channel", index,
+                                 campaign.methods[choice.method].form->method().name),
+                     "another experiment, or --channel");
+  const Repair done = repaired(campaign, record, *channel, qp_solver_factory(campaign.info.solver));
+  fmt::print("{}", json ? json_of(campaign.study, done).dump(2) + "\n" : text_of(campaign.study, done));
+}
+
+/// The repairs of all experiments in which a channel is named; of a changed tuning the model is not to be.
+std::vector<Repair> all_repaired(const Campaign& campaign, const ChannelChoice& choice, bool quiet) {
   std::vector<const ExperimentRecord*> named;
   for (const ExperimentRecord& record : campaign.records)
     if (record.status == ExperimentStatus::ok && record.draw.kind != ExperimentKind::tuning &&
-        channel_in(record))
+        choice.in(record))
       named.push_back(&record);
-  Progress progress(options.quiet);
+  const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
+  Progress progress(quiet);
   progress.begin(static_cast<std::int64_t>(named.size()));
   std::vector<Repair> repairs;
   for (const ExperimentRecord* record : named) {
     progress.end_when_requested();
     try {
-      repairs.push_back(repaired(campaign, *record, *channel_in(*record), factory));
+      repairs.push_back(repaired(campaign, *record, *choice.in(*record), factory));
       progress.advance();
     } catch (const InputError& error) {  // one channel that cannot be identified does not cost the others
       progress.warn(fmt::format("experiment {}: {}", record->draw.index, error.what()));
       progress.advance(true);
     }
   }
+  return repairs;
+}
+
+void repair_all(const Campaign& campaign, const ChannelChoice& choice, const RepairArguments& options) {
+  const std::vector<Repair> repairs = all_repaired(campaign, choice, options.quiet);
   const std::vector<RepairFindings> findings =
-      repair_findings(outcomes_of(repairs), study.aggregate.confidence);
-  const std::string& by = campaign.methods[method].form->method().name;
-  if (options.json) {
-    Json json{
-        {"study", study.name}, {"method", by}, {"findings", json_of(findings)}, {"repairs", Json::array()}};
-    for (const Repair& each : repairs)
-      json["repairs"].push_back(json_of(study, each));
-    fmt::print("{}\n", json.dump(2));
-  } else {
-    fmt::print("{}: {} of {} experiments with a channel named by {}\n\n{}", study.name, named.size(),
-               campaign.records.size(), by, text_of(findings));
+      repair_findings(outcomes_of(repairs), campaign.study.aggregate.confidence);
+  const std::string& method = campaign.methods[choice.method].form->method().name;
+  if (!options.json) {
+    fmt::print("{}: {} of {} experiments with a channel that {} names\n\n{}", campaign.study.name,
+               repairs.size(), campaign.records.size(), method, text_of(findings));
+    return;
   }
+  Json json{{"study", campaign.study.name},
+            {"method", method},
+            {"findings", json_of(findings)},
+            {"repairs", Json::array()}};
+  for (const Repair& each : repairs)
+    json["repairs"].push_back(json_of(campaign.study, each));
+  fmt::print("{}\n", json.dump(2));
+}
+
+ExitCode repair(const RepairArguments& options) {
+  const Campaign campaign = read_input(options.archive);
+  const ChannelChoice choice = chosen(campaign, options);
+  if (options.index)
+    repair_one(campaign, *options.index, choice, options.json);
+  else
+    repair_all(campaign, choice, options);
   return ExitCode::done;
 }
 

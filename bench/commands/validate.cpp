@@ -14,6 +14,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/progress.hpp"
+#include "results/text/number_json.hpp"
 #include "scenarios/study_library.hpp"
 
 namespace mpm {
@@ -82,14 +83,6 @@ Validation validated(const ValidateArguments& arguments, Progress& progress) {
   return found;
 }
 
-Json json_of(const Rate& rate) {
-  return {{"hits", rate.hits},
-          {"total", rate.total},
-          {"value", rate.value},
-          {"lower", rate.interval.lower},
-          {"upper", rate.interval.upper}};
-}
-
 double megabytes(const StudyForecast& forecast, double share) {
   return 1e-6 * share * static_cast<double>(forecast.experiments) *
          static_cast<double>(forecast.bytes_of_a_loop);
@@ -103,8 +96,8 @@ std::string json_text(const Validation& found, int jobs) {
       {"basis", {{"healthy", found.pilot.basis.healthy}, {"explanation", found.pilot.basis.explanation}}},
       {"experiments", forecast.experiments},
       {"pilot", found.pilot.records.size()},
-      {"feasible", json_of(forecast.feasible)},
-      {"impact", json_of(forecast.impact)},
+      {"feasible", rate_json(forecast.feasible)},
+      {"impact", rate_json(forecast.impact)},
       {"loops_with_impact", forecast.loops_with_impact},
       {"loops_without_fault", forecast.loops_without_fault},
       {"detection_width", forecast.detection_width},

@@ -6,6 +6,7 @@
 #include "results/files/utf8.hpp"
 #include "results/suite/leaderboard_output.hpp"
 #include "results/suite/leaderboard_words.hpp"
+#include "results/text/number_json.hpp"
 
 namespace mpm {
 namespace {
@@ -22,14 +23,8 @@ SuiteJson axis_json(const std::vector<SuiteAxis>& axis) {
 SuiteJson scores_json(const PooledScores& scores) {
   SuiteJson rates = SuiteJson::object(), passed = SuiteJson::object();
   std::size_t place = 0;
-  for (const MethodRateInfo& info : method_rate_infos()) {
-    const Rate& rate = scores.rates[place++];
-    rates[info.name] = {{"value", rate.value},
-                        {"lower", rate.interval.lower},
-                        {"upper", rate.interval.upper},
-                        {"hits", rate.hits},
-                        {"total", rate.total}};
-  }
+  for (const MethodRateInfo& info : method_rate_infos())
+    rates[info.name] = rate_json(scores.rates[place++]);
   for (const LeaderboardTask task : kLeaderboardTasks)
     passed[std::string(to_string(task))] = passes(scores, task);
   SuiteJson shares = SuiteJson::object();

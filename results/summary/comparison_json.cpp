@@ -3,6 +3,7 @@
 #include "results/archive/method_json.hpp"
 #include "results/files/utf8.hpp"
 #include "results/summary/comparison.hpp"
+#include "results/text/number_json.hpp"
 
 namespace mpm {
 namespace {
@@ -11,14 +12,8 @@ using Json = nlohmann::ordered_json;
 
 Json rates_json(const Study& study, const MethodRates& method) {
   Json rates = Json::object();
-  for (const MethodRateInfo& info : method_rate_infos(study)) {
-    const Rate& rate = method.*info.rate;
-    rates[info.name] = {{"hits", rate.hits},
-                        {"total", rate.total},
-                        {"value", rate.value},
-                        {"lower", rate.interval.lower},
-                        {"upper", rate.interval.upper}};
-  }
+  for (const MethodRateInfo& info : method_rate_infos(study))
+    rates[info.name] = rate_json(method.*info.rate);
   return rates;
 }
 
@@ -53,13 +48,8 @@ Json thresholds_json(const CalibratedThresholds& thresholds) {
 
 Json estimates_json(const Study& study, const MethodRates& rates) {
   Json json = Json::object();
-  for (const MethodEstimateInfo& info : method_estimate_infos(study)) {
-    const Estimate& found = rates.*info.estimate;
-    json[info.name] = {{"value", found.value},
-                       {"lower", found.interval.lower},
-                       {"upper", found.interval.upper},
-                       {"count", found.count}};
-  }
+  for (const MethodEstimateInfo& info : method_estimate_infos(study))
+    json[info.name] = estimate_json(rates.*info.estimate);
   return json;
 }
 
