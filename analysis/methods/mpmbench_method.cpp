@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "analysis/methods/assessment_method.hpp"
+#include "analysis/methods/counterfactual_loop.hpp"
 #include "analysis/methods/method_table.hpp"
 
 namespace mpm {
@@ -32,29 +33,21 @@ constexpr double kMostlyMismatch = 0.2;
 class Mpmbench final : public AssessmentMethod {
  public:
   explicit Mpmbench(const AssessmentContext& context)
-      : impact_(assessment_method("counterfactual"), context),
+      : nominal_(context),
         posterior_(assessment_method("likelihood"), context),
         order_(assessment_method("order"), context) {}
 
   Assessment assess(const AssessedLoop& loop) override {
-    Assessment impact = impact_.assess(loop);
-    if (impact.status != AssessmentStatus::ok)
-      return impact;
-    Assessment assessment;
-    assessment.flagged = impact.flagged;
-    assessment.score = impact.score;
-    for (std::size_t cv = 0; cv < impact.cvs.size(); ++cv)
-      assessment.numbers.push_back(
-          {"ivar", impact.number("ivar", static_cast<Eigen::Index>(cv)), static_cast<Eigen::Index>(cv)});
-    if (assessment.flagged)
-      diagnose(loop, impact, assessment);
-    if (!assessment.flagged)
-      assessment.cvs.assign(impact.cvs.size(), CvAssessment{.flagged = false, .score = 0.0});
+    Assessment assessment = nominal_.impact(loop);
+    if (assessment.status == AssessmentStatus::ok && assessment.flagged)
+      diagnose(loop, assessment);
+    if (assessment.status == AssessmentStatus::ok && !assessment.flagged)
+      assessment.cvs.assign(static_cast<std::size_t>(loop.y.rows()), {.flagged = false, .score = 0.0});
     return assessment;
   }
 
  private:
-  void diagnose(const AssessedLoop& loop, const Assessment& impact, Assessment& assessment) {
+  void diagnose(const AssessedLoop& loop, Assessment& assessment) {
     const Assessment posterior = posterior_.assess(loop);
     const Assessment order = order_.assess(loop);
     const auto denies = [](const Assessment& said) {
@@ -64,10 +57,13 @@ class Mpmbench final : public AssessmentMethod {
     if (!assessment.flagged)
       return;
     // A method that has no answer for this loop leaves the others theirs.
-    const Assessment& of_cvs = posterior.status == AssessmentStatus::ok ? posterior
-                               : order.status == AssessmentStatus::ok   ? order
-                                                                        : impact;
-    assessment.cvs = of_cvs.cvs;
+    if (posterior.status == AssessmentStatus::ok)
+      assessment.cvs = posterior.cvs;
+    else if (order.status == AssessmentStatus::ok)
+      assessment.cvs = order.cvs;
+    else
+      for (const double ivar_diag : nominal_.ivar_diag(loop))
+        assessment.cvs.push_back(nominal_.located(ivar_diag));
     const std::optional<Eigen::Index> worst = assessment.worst_cv();
     if (!worst)
       return;
@@ -106,7 +102,8 @@ class Mpmbench final : public AssessmentMethod {
     return log10_p > std::log10(kNoHelp) ? FaultSource::ud : FaultSource::mpm_ud;
   }
 
-  Assessor impact_, posterior_, order_;
+  CounterfactualLoop nominal_;
+  Assessor posterior_, order_;
 };
 
 }  // namespace

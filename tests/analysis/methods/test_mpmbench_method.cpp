@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -53,6 +54,31 @@ TEST_CASE("mpmbench: a mismatch is named by channel, parameter and size, a distu
   CHECK(ud.cvs[0].source == FaultSource::ud);
   CHECK_FALSE(ud.named_mismatch);
   CHECK(ud.flagged_channels.empty());
+}
+
+TEST_CASE("mpmbench: where the likelihood sees both faults, the order test says whether one is enough") {
+  const MpmbenchCase chapter6;
+  Assessor together(assessment_method("mpmbench"), chapter6.context);
+  Assessor alone(assessment_method("likelihood"), chapter6.context);
+  const Mismatch mismatch{4, 0, MismatchParameter::gain, 0.5};
+  const Disturbance filtered_noise{4, 1.2, 60.0};
+  Disturbance oscillation = filtered_noise;
+  oscillation.signal = Sine{.amplitude = 0.4, .period = 200.0};
+  ExperimentDraw later = draw_with({mismatch}, {});
+  later.onset = {.sample = 200};
+
+  const auto source = [&](Assessor& assessor, const ExperimentDraw& draw) {
+    const Assessment said = assessor.assess(chapter6.loop_of(draw));
+    CHECK(said.flagged);
+    CHECK(said.worst_cv() == 4);
+    return said.cvs[4].source;
+  };
+  for (const auto& [draw, truth] :
+       {std::pair{draw_with({mismatch}, {filtered_noise}), FaultSource::mpm_ud},
+        std::pair{draw_with({}, {oscillation}), FaultSource::ud}, std::pair{later, FaultSource::mpm}}) {
+    CHECK(source(alone, draw) == FaultSource::mpm_ud);
+    CHECK(source(together, draw) == truth);
+  }
 }
 
 TEST_CASE("mpmbench: what costs nothing is not flagged, and no source is named") {

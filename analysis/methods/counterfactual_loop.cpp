@@ -1,0 +1,121 @@
+#include "analysis/methods/counterfactual_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/indicators/diagnosis.hpp"
+#include "analysis/statistics/variance.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/signals.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kLeastNominalShare = 0.1;
+
+/// e = y - y_sim of the whole record, its gaps closed.
+Eigen::MatrixXd errors_of(const AssessedLoop& whole) {
+  return gaps_closed(whole.y - whole.y_sim);
+}
+
+}  // namespace
+
+CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
+    : study_(context.study),
+      factory_(context.factory),
+      y_set_(setpoints(context.study)),
+      dither_(dither(context.study)),
+      loops_(static_cast<std::size_t>(context.study.cv_count()) + 1) {
+  const Eigen::MatrixXd y_basis = gaps_closed(recorded_basis(context));
+  const SetpointTrajectories centres = variance_centres(study_, 0, y_basis.cols());
+  const Trajectory& nominal =
+      simulated(0, context.basis.trajectory.d, Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols()));
+  if (nominal.status == ControlStatus::ok)
+    noise_ = noise_variance(variances(y_basis, centres), variances(nominal.y, centres));
+}
+
+Assessment CounterfactualLoop::impact(const AssessedLoop& loop) {
+  if (noise_.size() == 0)
+    return Assessment::failed("the controller does not run on its own model without noise");
+  const AssessedLoop& whole = loop.from_start();
+  const Trajectory& nominal = simulated(0, whole.d, Eigen::MatrixXd::Zero(whole.y.rows(), whole.y.cols()));
+  if (nominal.status != ControlStatus::ok)
+    return Assessment::failed("the controller does not run on its own model under these disturbances");
+  const Eigen::VectorXd ivar = indices(loop, nominal);
+  Assessment assessment;
+  assessment.score = 0.0;
+  for (Eigen::Index cv = 0; cv < ivar.size(); ++cv) {
+    assessment.score = std::max(assessment.score, distance(ivar(cv)));
+    assessment.flagged = assessment.flagged || study_.diagnosis.has_impact(ivar(cv));
+    assessment.numbers.push_back({"ivar", ivar(cv), cv});
+  }
+  return assessment;
+}
+
+Eigen::VectorXd CounterfactualLoop::ivar_diag(const AssessedLoop& loop) {
+  const AssessedLoop& whole = loop.from_start();
+  const Eigen::MatrixXd e = errors_of(whole);
+  Eigen::VectorXd found(e.rows());
+  for (Eigen::Index cv = 0; cv < e.rows(); ++cv) {
+    Eigen::MatrixXd others = e;
+    others.row(cv).setZero();
+    const Trajectory& nominal = simulated(static_cast<std::size_t>(cv) + 1, whole.d, others);
+    found(cv) = nominal.status == ControlStatus::ok ? indices(loop, nominal)(cv) : kNaN;
+  }
+  return found;
+}
+
+CvAssessment CounterfactualLoop::located(double ivar_diag) const {
+  if (std::isnan(ivar_diag))
+    return {};
+  return {study_.diagnosis.has_impact(ivar_diag), distance(ivar_diag)};
+}
+
+/// Of a variance index from 1, as the study measures it to locate a CV.
+double CounterfactualLoop::distance(double ivar) const {
+  return distance_from_one(ivar, study_.diagnosis.location_distance);
+}
+
+/// v of each CV from the variances of the benchmark and of the same loop without noise.
+Eigen::VectorXd CounterfactualLoop::noise_variance(const Eigen::VectorXd& noisy,
+                                                   const Eigen::VectorXd& quiet) const {
+  switch (study_.assessment.counterfactual.noise) {
+    case NoiseVariance::difference:
+      return noisy - quiet;
+    case NoiseVariance::positive:
+      return (noisy - quiet).cwiseMax(0.0);
+    case NoiseVariance::none:
+      break;
+  }
+  return Eigen::VectorXd::Zero(noisy.size());
+}
+
+/// The loop of the controller on its model under the disturbances `d`, with `errors` added to the outputs.
+/// Each place keeps its last one: windows of a record ask for the same, and so do all records whose
+/// disturbances are those of the study.
+const Trajectory& CounterfactualLoop::simulated(std::size_t place, const Eigen::MatrixXd& d,
+                                                const Eigen::MatrixXd& errors) {
+  Simulated& kept = loops_[place];
+  if (kept.loop.y.size() == 0 || kept.d != d || kept.errors != errors) {
+    const LoopSignals signals{.d = d,
+                              .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
+                              .y_d = errors,
+                              .y_set = y_set_,
+                              .dither = dither_};
+    kept = {d, errors, run_closed_loop(study_, study_.plant.G, signals, factory_)};
+  }
+  return kept.loop;
+}
+
+/// var y / (var y0 + v) of each CV, ny.
+Eigen::VectorXd CounterfactualLoop::indices(const AssessedLoop& loop, const Trajectory& nominal) const {
+  const Eigen::MatrixXd y = loop.y_sim + loop.in_window(errors_of(loop.from_start()));
+  const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
+  const Eigen::ArrayXd of_nominal = variance_indices(y, loop.in_window(nominal.y), centres);
+  // A v below 0 can outweigh a y0 that hardly moves: the nominal variance is not taken for less than a
+  // tenth of its own.
+  const Eigen::ArrayXd inverse = of_nominal.inverse() + noise_.array() / variances(y, centres).array();
+  return inverse.max(kLeastNominalShare * of_nominal.inverse()).inverse();
+}
+
+}  // namespace mpm
