@@ -155,6 +155,37 @@ struct LikelihoodOptions {
   bool operator==(const LikelihoodOptions&) const = default;
 };
 
+/// From which signals the method `pmr` takes what is made of a loop from outside.
+enum class RatioInstruments : std::int8_t {
+  outside = 0,    ///< measured disturbances, setpoints, moving limits and test signals
+  setpoints = 1,  ///< setpoints alone, as the paper has them
+};
+
+/// Of the plant-model ratio, analysis/methods/pmr_method.
+struct PmrOptions {
+  double alpha = 0.01;  ///< share of loops without mismatch that are flagged at most
+  RatioInstruments instruments = RatioInstruments::outside;
+  int filters = 10;   ///< a signal, of the regression of the MVs on the signals from outside; one is direct
+  double pole = 0.9;  ///< of these Laguerre filters
+
+  bool operator==(const PmrOptions&) const = default;
+};
+
+/// What the method `autocovariance` makes of a loop that no mismatch of one number explains.
+enum class UnexplainedLoop : std::int8_t {
+  disturbance = 0,  ///< a disturbance: mismatches are what it looks for, and none of them is it
+  mismatch = 1,     ///< a mismatch, as the paper has it, in which nothing else can be wrong
+};
+
+/// Of the autocovariances of a linear loop, analysis/methods/autocovariance_method.
+struct AutocovarianceOptions {
+  double alpha = 0.01;   ///< of the tests, over all CVs
+  int largest_lag = 32;  ///< samples; the lags are 0, 1, 2, 4, ... up to it
+  UnexplainedLoop unexplained = UnexplainedLoop::disturbance;
+
+  bool operator==(const AutocovarianceOptions&) const = default;
+};
+
 /// [assessment]
 struct AssessmentOptions {
   AssessmentSetpoints setpoints = AssessmentSetpoints::controller;
@@ -168,6 +199,8 @@ struct AssessmentOptions {
   ExcitationOptions excitation;
   CandidatesOptions candidates;
   LikelihoodOptions likelihood;
+  PmrOptions pmr;
+  AutocovarianceOptions autocovariance;
 
   bool operator==(const AssessmentOptions&) const = default;
 };

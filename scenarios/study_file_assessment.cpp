@@ -196,6 +196,32 @@ LikelihoodOptions read_likelihood(const TomlTable& assessment) {
   return options;
 }
 
+PmrOptions read_pmr(const TomlTable& assessment) {
+  const TomlTable table = assessment.table_or_empty("pmr", study_file_keys("assessment.pmr"));
+  PmrOptions options;
+  options.alpha = read_number_or(table, "alpha", NumberRule::inside(0, 1), options.alpha);
+  options.instruments = read_choice_or<RatioInstruments>(
+      table, "instruments",
+      {{"outside", RatioInstruments::outside}, {"setpoints", RatioInstruments::setpoints}},
+      options.instruments);
+  options.filters = read_int_or(table, "filters", 1, kMaxOrder, options.filters);
+  options.pole = read_number_or(table, "pole", {.low = 0, .high = 1, .low_included = true}, options.pole);
+  return options;
+}
+
+AutocovarianceOptions read_autocovariance(const TomlTable& assessment) {
+  const TomlTable table =
+      assessment.table_or_empty("autocovariance", study_file_keys("assessment.autocovariance"));
+  AutocovarianceOptions options;
+  options.alpha = read_number_or(table, "alpha", NumberRule::inside(0, 1), options.alpha);
+  options.largest_lag = read_int_or(table, "largest_lag", 0, kMaxLength, options.largest_lag);
+  options.unexplained = read_choice_or<UnexplainedLoop>(
+      table, "unexplained",
+      {{"disturbance", UnexplainedLoop::disturbance}, {"mismatch", UnexplainedLoop::mismatch}},
+      options.unexplained);
+  return options;
+}
+
 }  // namespace
 
 std::vector<std::string> read_methods(const TomlTable& document) {
@@ -221,6 +247,8 @@ AssessmentOptions read_assessment(const TomlTable& document) {
   options.candidates.regression =
       read_error_regression(table.table_or_empty("candidates", study_file_keys("assessment.candidates")));
   options.likelihood = read_likelihood(table);
+  options.pmr = read_pmr(table);
+  options.autocovariance = read_autocovariance(table);
   return options;
 }
 

@@ -41,6 +41,11 @@ struct PrewhitenedTest {
 /// fewer false alarms than it states, not more (Durbin 1970, Econometrica 38, 410-421, has the same of tests
 /// of regression residuals).
 ///
+/// PrewhitenedGroups (analysis/methods) whitens as well, to another end: it estimates coefficients in closed
+/// loop, takes the past of the noise out of both sides, may take A of what the groups leave, and needs a
+/// record without gaps. Here A stays that of e, the past stays in, and samples that are missing are left out.
+/// Where X_j follow the past of e the two give other numbers, so that neither can stand for the other.
+///
 /// Regressors that depend on others, or stand still, add nothing: the degrees of freedom are ranks, with
 /// columns of unit norm and the tolerance `kRegressorTolerance`.
 ///

@@ -10,21 +10,11 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/error_regression.hpp"
 #include "analysis/methods/noise_filter.hpp"
+#include "analysis/methods/outside_signals.hpp"
 #include "analysis/statistics/mutual_information.hpp"
-#include "scenarios/signals.hpp"
 
 namespace mpm {
 namespace {
-
-/// The soft limits of the study, lower ones above upper ones, 2 ny x N; zero where there is none.
-Eigen::MatrixXd limit_signals(const Study& study, Eigen::Index samples) {
-  Eigen::MatrixXd limits(2 * study.cv_count(), samples);
-  for (Eigen::Index k = 0; k < samples; ++k) {
-    const Limits at = soft_limits(study, k);
-    limits.col(k) << at.lower, at.upper;
-  }
-  return limits.array().isFinite().select(limits, 0.0);
-}
 
 /// Signals that act on the loop and upon which nothing in the loop acts: no unmeasured disturbance can know
 /// them, so that a simulation error that follows them shows a wrong model, in closed loop, too, and whatever
@@ -39,19 +29,10 @@ Eigen::MatrixXd limit_signals(const Study& study, Eigen::Index samples) {
 class Excitation final : public AssessmentMethod {
  public:
   explicit Excitation(const AssessmentContext& context)
-      : study_(context.study), options_(context.study.assessment.excitation) {
-    // The operator's limits and the test signals are those of the study in every loop.
-    const Eigen::Index samples = study_.simulation.samples;
-    const Eigen::MatrixXd limits = moving_rows(limit_signals(study_, samples));
-    const Eigen::MatrixXd test_signals = dither(study_);
-    planned_.resize(limits.rows() + test_signals.rows(), samples);
-    planned_.topRows(limits.rows()) = limits;
-    if (test_signals.rows() > 0)
-      planned_.bottomRows(test_signals.rows()) = test_signals;
-  }
+      : signals_(context.study), options_(context.study.assessment.excitation) {}
 
   Assessment assess(const AssessedLoop& loop) override {
-    const Eigen::MatrixXd signals = moving_rows(signals_from_outside(loop.from_start()));
+    const Eigen::MatrixXd signals = signals_.of(loop.from_start());
     if (moving_rows(signals.middleCols(loop.first, loop.samples())).rows() == 0)
       return Assessment::not_applicable(
           "no measured disturbance, setpoint, limit or test signal moves the loop");
@@ -74,23 +55,6 @@ class Excitation final : public AssessmentMethod {
   }
 
  private:
-  /// Setpoints of an optimizer follow from the measurements: they come from within the loop.
-  Eigen::MatrixXd signals_from_outside(const AssessedLoop& loop) const {
-    std::vector<Eigen::Index> cvs;
-    for (const Eigen::Index cv : loop.setpoint_cvs())
-      if (study_.controller.has_setpoint(cv))
-        cvs.push_back(cv);
-    const auto setpoint_count = static_cast<Eigen::Index>(cvs.size());
-    const Eigen::Index planned = planned_.cols() == loop.samples() ? planned_.rows() : 0;
-    Eigen::MatrixXd signals(loop.d.rows() + setpoint_count + planned, loop.samples());
-    signals.topRows(loop.d.rows()) = loop.d;
-    if (setpoint_count > 0)
-      signals.middleRows(loop.d.rows(), setpoint_count) = loop.y_set(cvs, Eigen::all);
-    if (planned > 0)
-      signals.bottomRows(planned) = planned_;
-    return signals;
-  }
-
   void add_cv(Eigen::Index cv, const ErrorRegression& found, const Eigen::MatrixXd& e,
               const std::vector<Eigen::MatrixXd>& filtered, Assessment& assessment) const {
     const double log_p = options_.measure == DependenceMeasure::f
@@ -122,9 +86,8 @@ class Excitation final : public AssessmentMethod {
     return std::min(0.0, least + std::log(static_cast<double>(looks)));
   }
 
-  const Study& study_;
+  OutsideSignals signals_;
   const ExcitationOptions& options_;
-  Eigen::MatrixXd planned_;  ///< moving limits and test signals, a row each
 };
 
 }  // namespace

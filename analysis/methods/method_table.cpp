@@ -29,7 +29,9 @@ namespace mpm {
   method(lasso)     /* L1 regression of the simulation errors, Kono 2023 */    \
   method(local)     /* local approach to model divergence, Jiang 2009 */       \
   method(mqi_channels) /* model quality without each submodel, Li 2017 */      \
-  method(arx_oe)    /* plant and noise models against a benchmark, Lu 2020 */
+  method(arx_oe)    /* plant and noise models against a benchmark, Lu 2020 */  \
+  method(pmr)       /* plant-model ratio, Selvanathan and Tangirala 2010 */        \
+  method(autocovariance) /* autocovariances of a linear loop, Wang 2018 */
 // clang-format on
 
 #define MPM_DECLARE(name) AssessmentMethodInfo name##_method();

@@ -21,6 +21,9 @@ namespace mpm {
 /// was before, and the past of v has been taken out, so that what is left of it is not correlated with w(k),
 /// errors of the noise model apart.
 ///
+/// prewhitened_test() (analysis/identification) only asks whether groups help to predict e; it leaves the
+/// past of v in, which costs power but no false alarm, and does with gaps.
+///
 /// | symbol  | member   | shape         | meaning                                                      |
 /// |---------|----------|---------------|--------------------------------------------------------------|
 /// | A       | noise    |               | 1/D of it                                                    |

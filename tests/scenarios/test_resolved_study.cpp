@@ -286,6 +286,8 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
                            "assessment.order",
                            "assessment.excitation",
                            "assessment.candidates",
+                           "assessment.pmr",
+                           "assessment.autocovariance",
                            "aggregate"})
     for (const std::string& key : study_file_keys(name)) {
       INFO("[" << name << "] " << key);

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plants/transfer_function.hpp"
+#include "scenarios/fault.hpp"
+
+// How methods look for the one parameter of a channel that is wrong.
+
+namespace mpm {
+
+using MismatchObjective = std::function<double(double)>;
+
+/// Where a parameter is searched.
+struct SearchGrid {
+  double first, last;
+  Eigen::Index points;
+
+  double at(Eigen::Index i) const {
+    return first + (last - first) * static_cast<double>(i) / static_cast<double>(points - 1);
+  }
+};
+
+/// A channel in which one parameter is searched, in a coordinate x in which steps are alike: the time
+/// constant by its logarithm.
+struct MismatchFamily {
+  MismatchParameter parameter;
+  SearchGrid grid;
+  std::function<TransferFunction(double)> channel;
+  std::function<double(double)> value;
+};
+
+/// Those of gain, time constant and dead time, where the channel has them: gains from -2 to 4 times that of
+/// the model, time constants from 1/8 to 8 times, dead times up to 10 samples to either side. `channel` must
+/// outlive them.
+std::vector<MismatchFamily> mismatch_families(const TransferFunction& channel, double sample_time);
+
+/// The least value on the grid, refined between its neighbours by golden section.
+double grid_minimiser(const MismatchObjective& objective, const SearchGrid& grid);
+
+/// Where the objective crosses `level` between `inside`, where it is below, and the end of the search.
+double level_crossing(const MismatchObjective& objective, double inside, double end, double step,
+                      double level);
+
+}  // namespace mpm

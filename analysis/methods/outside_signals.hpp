@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "analysis/methods/assessed_loop.hpp"
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// Signals that act on a loop and upon which nothing in the loop acts: measured disturbances, setpoints of
+/// the controller, soft limits that an operator moves, and test signals. Setpoints of an optimizer follow
+/// from the measurements: they come from within the loop.
+class OutsideSignals {
+ public:
+  /// `study` must outlive the object.
+  explicit OutsideSignals(const Study& study);
+
+  /// Those of this record that move, a row each; 0 rows when none does. Limits and test signals are those of
+  /// the study, which are the same in every loop of its length. `loop` is a whole record.
+  Eigen::MatrixXd of(const AssessedLoop& loop) const;
+  /// Its setpoints alone.
+  Eigen::MatrixXd setpoints_of(const AssessedLoop& loop) const;
+
+ private:
+  const Study& study_;
+  Eigen::MatrixXd planned_;  ///< moving limits and test signals, a row each
+};
+
+}  // namespace mpm
