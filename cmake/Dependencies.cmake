@@ -15,6 +15,7 @@ find_package(Threads REQUIRED)
 find_package(Ceres 2.1 REQUIRED) # analysis/prediction_error_solver.cpp
 
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
+pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip) # its CMake file asks for the programs as well
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 
 enable_language(C) # FindHDF5 compiles a C program

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <Eigen/Core>
 
 namespace mpm {
@@ -36,6 +38,9 @@ class Plant {
   /// Holds u(k) = `input` (input_count()) over [k Ts, (k+1) Ts) and goes on to sample k + 1. Errors:
   /// InputError for a wrong size.
   virtual PlantStatus advance(const Eigen::Ref<const Eigen::VectorXd>& input) = 0;
+
+  /// Why advance() failed, for people.
+  virtual std::string failure() const { return "the plant could not be integrated"; }
 
  protected:
   Plant() = default;

@@ -246,7 +246,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     if (inner > 0)
       input.tail(inner) = signals.within_plant.col(k);
     if (plant.advance(input) != PlantStatus::ok) {
-      fail(trajectory, LoopFailure::plant, "the plant could not be integrated");
+      fail(trajectory, LoopFailure::plant, plant.failure());
       break;
     }
     trajectory.u.col(k) = u;

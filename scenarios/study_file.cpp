@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 
 #include <fmt/format.h>
@@ -58,7 +59,8 @@ Study read_study(std::string_view text, const std::string& file_name, TomlDraft*
   Study study;
   read_heading(document, study);
   study.plant = read_plant(document);
-  study.nonlinear = read_nonlinear_simulation(document);
+  study.nonlinear =
+      read_nonlinear_simulation(document, study.plant, std::filesystem::path(file_name).parent_path());
   study.controller = read_controller(document, study.plant);
   study.simulation = read_simulation(document, study.plant, study.controller);
   study.record = read_record(document, study);
@@ -90,7 +92,10 @@ Study parse_study(std::string_view text, const std::string& file_name) {
 }
 
 Study load_study(const std::filesystem::path& path) {
-  return parse_study(read_toml_file(path, "a study file"), path.string());
+  Study study = parse_study(read_toml_file(path, "a study file"), path.string());
+  if (study.nonlinear && study.nonlinear->model.foreign)
+    study.nonlinear->model.foreign->load();
+  return study;
 }
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 // The keys of a study whose plant is nonlinear.
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <set>
 #include <utility>
@@ -18,7 +19,8 @@ namespace mpm {
 namespace {
 
 constexpr std::size_t kMaxParameters = 200;  // a bound on what a file can make the program do
-constexpr const char* kNonlinear = "plant.simulated = \"nonlinear\"";
+constexpr const char* kIntegrated = "plant.simulated = \"nonlinear\"";
+constexpr const char* kNonlinear = "plant.simulated = \"nonlinear\", or plant.fmu";
 
 OdeOptions read_integration(const TomlTable& plant) {
   const OdeOptions standard;
@@ -62,14 +64,18 @@ ParameterChange read_change(const TomlTable& table, const NonlinearModel& model)
 
 }  // namespace
 
-std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& document) {
+std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& document,
+                                                             const PlantModel& linear,
+                                                             const std::filesystem::path& folder) {
   const TomlTable plant = document.table("plant", study_file_keys("plant"));
+  if (plant.has("fmu"))
+    return NonlinearSimulation{read_foreign_plant(plant, linear, folder), OdeOptions{}};
   const bool nonlinear =
       read_choice_or<bool>(plant, "simulated", {{"linear", false}, {"nonlinear", true}}, false);
   if (!nonlinear) {
     for (const char* key : {"relative_tolerance", "absolute_tolerance", "step_limit"})
       if (plant.has(key))
-        plant.refuse(key, "a key of the integration of a nonlinear plant", kNonlinear);
+        plant.refuse(key, "a key of the integration of a nonlinear plant", kIntegrated);
     return std::nullopt;
   }
   if (!plant.has("catalogue"))
@@ -98,7 +104,7 @@ std::vector<ParameterChange> read_parameter_changes(const TomlTable& scenario, c
     changes.push_back(read_change(table, study.nonlinear->model));
     if (!listed.insert(changes.back().name).second)
       table.refuse("name", fmt::format("'{}' a second time", changes.back().name), "every parameter once");
-    table.located("", [&] { return study.nonlinear->model.make_system(changes); });
+    table.located("", [&] { study.nonlinear->model.check(changes); });
   }
   return changes;
 }
@@ -122,7 +128,7 @@ std::vector<PlantParameterRange> read_plant_parameters(const TomlTable& mismatch
     const Distribution factor = read_distribution(table, "factor", NumberRule::positive());
     for (const double end : {factor.minimum(), factor.maximum()})
       table.located("factor", [&] {
-        return study.nonlinear->model.make_system({{parameter.name, end * parameter.nominal}});
+        study.nonlinear->model.check({{parameter.name, end * parameter.nominal}});
       });
     PlantParameterRange range{parameter.name, factor, {}};
     for (const std::size_t cv : read_some_of(table, "affected", variable_names(study.plant.cvs)))

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,9 +24,15 @@ Study read_study(std::string_view text, const std::string& file_name, TomlDraft*
 /// [plant]: a plant of the catalogue, or one that the file defines (study_file_plant.cpp).
 PlantModel read_plant(const TomlTable& document);
 
-/// How the plant of [plant] is simulated; none: by its linear model (study_file_nonlinear.cpp, as the next
-/// two).
-std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& document);
+/// How the plant of [plant], whose model is `model`, is simulated; none: by this model
+/// (study_file_nonlinear.cpp, as the next two). `folder` is that of the study file.
+std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& document,
+                                                             const PlantModel& model,
+                                                             const std::filesystem::path& folder);
+
+/// The plant that [plant.fmu] of the table `plant` describes (study_file_foreign.cpp).
+NonlinearModel read_foreign_plant(const TomlTable& plant, const PlantModel& model,
+                                  const std::filesystem::path& folder);
 
 /// The list `parameter` of a scenario: parameters of the nonlinear plant of `study` that differ.
 std::vector<ParameterChange> read_parameter_changes(const TomlTable& scenario, const Study& study);

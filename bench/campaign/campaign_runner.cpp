@@ -34,13 +34,17 @@ void require_health(const BasisCase& basis, const RunOptions& options) {
   throw UnhealthyBasis("the basis case of the study fails its self-check: " + basis.explanation);
 }
 
-/// Throws InputError for threads that the solver does not bear.
-Execution execution_of(const RunOptions& options) {
+/// In processes also where somebody else simulates the plant: its loops wait for other processes, and these
+/// are made without other threads at work. Throws InputError for threads that the solver does not bear.
+Execution execution_of(const Study& study, const RunOptions& options) {
   const bool safe = options.solver == "auto" || options.solver == "active-set";
   if (options.parallel == Parallel::threads && !safe)
     throw InputError("parallel", fmt::format("threads for the solver {}", options.solver),
                      "processes, or one of the solvers auto and active-set");
-  return safe && options.parallel != Parallel::processes ? execute_in_threads : execute_in_processes;
+  const bool foreign = study.nonlinear && study.nonlinear->model.foreign;
+  const bool in_threads =
+      options.parallel == Parallel::by_solver ? safe && !foreign : options.parallel == Parallel::threads;
+  return in_threads ? execute_in_threads : execute_in_processes;
 }
 
 /// The basis case; with Ipopt it takes as long as an experiment, so that a stop must not wait for it.
@@ -93,7 +97,7 @@ Campaign run_campaign(Study study, const RunOptions& options, const CampaignHook
   const std::int64_t count = options.experiments.value_or(campaign.study.experiment_count());
   require_options(options, campaign.study, count);
   const QpSolverFactory factory = qp_solver_factory(options.solver);
-  const Execution execute = execution_of(options);
+  const Execution execute = execution_of(campaign.study, options);
 
   ExperimentSeries experiments(campaign.study, options, count, shard_folder, hooks.on_warning);
   std::optional<CalibrationSeries> calibration;

@@ -1,9 +1,11 @@
 #include "bench/shards/shard_identity.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -21,11 +23,23 @@ std::string digest(std::string_view content) {
   return sha256(std::as_bytes(std::span(content))).substr(0, kDigits);
 }
 
+std::string digest_of_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(file), {}};
+  return digest(content);
+}
+
 /// The version, the revision, and the digest of the program file: two builds of a revision may differ.
 std::string program() {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(file), {}};
-  return fmt::format("mpmbench {} {} (program {})", mpmbench_version(), source_revision(), digest(content));
+  return fmt::format("mpmbench {} {} (program {})", mpmbench_version(), source_revision(),
+                     digest_of_file("/proc/self/exe"));
+}
+
+/// What the file of a plant that somebody else simulates adds to a study.
+std::string plant_file(const Study& study) {
+  return study.nonlinear && study.nonlinear->model.foreign
+             ? fmt::format(", FMU {}", digest_of_file(study.nonlinear->model.foreign->file()))
+             : "";
 }
 
 std::string_view name_of(StorePolicy store) {
@@ -44,7 +58,7 @@ std::string_view name_of(StorePolicy store) {
 
 ShardIdentity shard_identity(const Study& study, const RunOptions& options) {
   return {{"program", program()},
-          {"study", fmt::format("{} (text {})", study.name, digest(study.source))},
+          {"study", fmt::format("{} (text {}{})", study.name, digest(study.source), plant_file(study))},
           {"seed", fmt::format("{}", study.seed)},
           {"methods", fmt::format("{}", fmt::join(study.methods, ", "))},
           {"solver", options.solver},

@@ -178,6 +178,20 @@ plant_parameter = [{name = "cd1", factor = {uniform = [0.8, 1.2]}, affected = ["
 [experiments])");
 }
 
+/// The same as an FMU, which need not be there.
+std::string fmu_study_text() {
+  return replaced(random_tank_text(), "simulated = \"nonlinear\"\n", R"(
+[plant.fmu]
+file = "not_here.fmu"
+settle = 3000
+input = [{name = "v1", operating = 3.2}, {name = "v2", operating = 3.15}, {name = "x1", operating = 0.43},
+         {name = "x2", variable = "valve.2", operating = 0.34}]
+output = [{name = "h1", variable = "level[1]"}]
+parameter = [{name = "cd1", value = 3.145}, {name = "k2", value = 3.29}]
+
+)");
+}
+
 /// The small study in which nothing but noise and faults moves the loop.
 std::string unexcited_study_text() {
   const std::string text = small_study();
@@ -188,8 +202,9 @@ std::string unexcited_study_text() {
 /// Studies of the tests, among them those with the keys that no shipped one has.
 std::vector<Study> of_tests() {
   std::vector<Study> studies;
-  for (const std::string& text : {small_study(), random_study_text(), scenario_study_text(),
-                                  nonlinear_study_text(), random_tank_text(), unexcited_study_text()})
+  for (const std::string& text :
+       {small_study(), random_study_text(), scenario_study_text(), nonlinear_study_text(), random_tank_text(),
+        fmu_study_text(), unexcited_study_text()})
     studies.push_back(parse_study(text, "s.toml"));
   return studies;
 }

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+
+/// What mpmbench uses of the C interface of FMI 2.0 for co-simulation: the types and the signatures of the
+/// functions as the standard gives them (FMI for Model Exchange and Co-Simulation, version 2.0, 2.1 and 4.2).
+/// A function of the name NAME is `fmi2NAME` in the library of an FMU.
+namespace mpm::fmi2 {
+
+using Component = void*;             ///< an instance
+using ComponentEnvironment = void*;  ///< what the logger gets back
+using ValueReference = unsigned int;
+using Real = double;
+using Boolean = int;
+using String = const char*;
+
+enum Status : int { ok, warning, discard, error, fatal, pending };
+enum Type : int { model_exchange, co_simulation };
+
+inline constexpr Boolean kFalse = 0;
+inline constexpr const char* kVersion = "2.0";
+inline constexpr const char* kTypesPlatform = "default";
+
+using Logger = void(ComponentEnvironment, String instance, Status, String category, String message, ...);
+
+struct CallbackFunctions {
+  Logger* logger;
+  void* (*allocate)(std::size_t count, std::size_t size);
+  void (*free)(void*);
+  void (*step_finished)(ComponentEnvironment, Status);
+  ComponentEnvironment environment;
+};
+
+using GetTypesPlatform = String();
+using GetVersion = String();
+using Instantiate = Component(String name, Type, String guid, String resources, const CallbackFunctions*,
+                              Boolean visible, Boolean logging);
+using SetupExperiment = Status(Component, Boolean has_tolerance, Real tolerance, Real start, Boolean has_stop,
+                               Real stop);
+using EnterInitializationMode = Status(Component);
+using ExitInitializationMode = Status(Component);
+using SetReal = Status(Component, const ValueReference*, std::size_t count, const Real*);
+using GetReal = Status(Component, const ValueReference*, std::size_t count, Real*);
+using DoStep = Status(Component, Real now, Real step, Boolean no_earlier_state);
+
+}  // namespace mpm::fmi2

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace mpm {
+
+/// A simulation of somebody else that gave no answer: what happened, for people.
+class ForeignFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A function at work in a process of its own, so that a crash of what it calls, a call that never comes back
+/// and what it leaves in memory end with this process.
+///
+/// The process is a copy of this one; what it prints goes nowhere, and it writes no core. It may be made in
+/// any thread and is to be used in the one that made it.
+class ForkedService {
+ public:
+  /// Numbers in, numbers out; its exceptions become those of ask().
+  using Serve = std::function<std::vector<double>(const std::vector<double>&)>;
+
+  /// An answer that takes longer than `time_limit` seconds counts as none. Errors: std::system_error when no
+  /// process can be made.
+  ForkedService(Serve serve, double time_limit);
+  ForkedService(const ForkedService&) = delete;
+  ForkedService& operator=(const ForkedService&) = delete;
+  ~ForkedService();
+
+  /// The answer. Errors: ForeignFailure with what the function threw, how its process ended, or that the time
+  /// was over; after the last two the process is gone.
+  std::vector<double> ask(const std::vector<double>& request);
+
+ private:
+  void end();
+  ForeignFailure how_it_ended();
+
+  double time_limit_;
+  pid_t pid_ = -1;
+  int socket_ = -1;
+};
+
+}  // namespace mpm
