@@ -9,6 +9,7 @@ using AddCommand = void(CommandSet& commands);
 
 AddCommand add_run;        // runs a study and writes its archive
 AddCommand add_validate;   // what is implausible in a study, what it will show and cost
+AddCommand add_identify;   // a model for the controller, from a step test on the plant
 AddCommand add_replay;     // runs one experiment of an archive again
 AddCommand add_summary;    // what a study found, as text or JSON
 AddCommand add_suite;      // plants and families of experiments, and the leaderboard of the methods
@@ -23,8 +24,8 @@ AddCommand add_export;     // a table of an archive as CSV
 AddCommand add_list;       // the shipped studies
 
 /// In the order of the help.
-inline constexpr AddCommand* kCommands[] = {add_run,    add_validate,  add_replay, add_summary, add_suite,
-                                            add_sweep,  add_check,     add_report, add_plot,    add_compare,
-                                            add_repair, add_reproduce, add_export, add_list};
+inline constexpr AddCommand* kCommands[] = {add_run,     add_validate, add_identify,  add_replay, add_summary,
+                                            add_suite,   add_sweep,    add_check,     add_report, add_plot,
+                                            add_compare, add_repair,   add_reproduce, add_export, add_list};
 
 }  // namespace mpm

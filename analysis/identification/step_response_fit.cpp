@@ -1,0 +1,185 @@
+#include "analysis/identification/step_response_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <Eigen/QR>
+#include <fmt/format.h>
+#include <unsupported/Eigen/NonLinearOptimization>
+#include <unsupported/Eigen/NumericalDiff>
+
+#include "plants/error.hpp"
+#include "plants/linear_plant.hpp"
+#include "plants/transfer_matrix.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr Eigen::Index kFewestResponseSamples = 8;
+constexpr double kNegligibleResponseShare = 1e-3;  // of the largest value: less than a plant bends
+constexpr double kFastestLag = 0.02;  // time constant, in samples: a jump within the first of them
+constexpr double kSlowestLag = 20.0;  // time constant, in records
+constexpr double kLeastDamping = 0.05, kMostDamping = 20.0;
+constexpr double kShortestDeadTime = 1e-6;  // in samples; less is none
+
+enum class StepForm { first_order, second_order, with_zero };
+
+Eigen::Index shape_count(StepForm form) {
+  return form == StepForm::first_order ? 2 : 3;
+}
+
+Eigen::Index gain_count(StepForm form) {
+  return form == StepForm::with_zero ? 2 : 1;
+}
+
+/// The misfit over (dead time in samples, log tau, log xi), in the form that Eigen's port of MINPACK asks
+/// for; time constants in samples.
+struct StepMisfit {
+  using Scalar = double;
+  using InputType = Eigen::VectorXd;
+  using ValueType = Eigen::VectorXd;
+  using JacobianType = Eigen::MatrixXd;
+  static constexpr int InputsAtCompileTime = Eigen::Dynamic;
+  static constexpr int ValuesAtCompileTime = Eigen::Dynamic;
+
+  const Eigen::VectorXd& response;
+  StepForm form;
+
+  int inputs() const { return static_cast<int>(shape_count(form)); }
+  int values() const { return static_cast<int>(response.size()); }
+
+  double dead_time(const Eigen::VectorXd& x) const {
+    return std::clamp(x(0), 0.0, static_cast<double>(response.size() - 1));
+  }
+  double time_constant(const Eigen::VectorXd& x) const {
+    return std::clamp(std::exp(x(1)), kFastestLag, kSlowestLag * static_cast<double>(response.size()));
+  }
+  double damping(const Eigen::VectorXd& x) const {
+    return std::clamp(std::exp(x(2)), kLeastDamping, kMostDamping);
+  }
+
+  Eigen::VectorXd denominator(const Eigen::VectorXd& x) const {
+    const double tau = time_constant(x);
+    return form == StepForm::first_order
+               ? Eigen::VectorXd(Eigen::Vector2d(tau, 1.0))
+               : Eigen::VectorXd(Eigen::Vector3d(tau * tau, 2.0 * tau * damping(x), 1.0));
+  }
+  /// Responses of 1 and of s over the denominator, samples x gains.
+  Eigen::MatrixXd basis(const Eigen::VectorXd& x) const {
+    TransferMatrix parts(gain_count(form), 1);
+    parts(0, 0) = TransferFunction(Eigen::VectorXd::Ones(1), denominator(x), dead_time(x));
+    if (form == StepForm::with_zero)
+      parts(1, 0) = TransferFunction(Eigen::Vector2d(1.0, 0.0), denominator(x), dead_time(x));
+    return step_response(parts, 1.0, response.size()).front().transpose();
+  }
+  Eigen::VectorXd gains(const Eigen::MatrixXd& columns) const {
+    return columns.colPivHouseholderQr().solve(response);
+  }
+  int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& misfit) const {
+    const Eigen::MatrixXd columns = basis(x);
+    misfit = columns * gains(columns) - response;
+    return 0;
+  }
+};
+
+/// Samples until the response first passes this share of its largest value.
+double rise_time(const Eigen::VectorXd& response, double share) {
+  const double level = share * response.cwiseAbs().maxCoeff();
+  Eigen::Index k = 0;
+  while (std::abs(response(k)) < level)
+    ++k;
+  return static_cast<double>(k + 1);
+}
+
+/// Where the search begins: dead times from none to that at which the response is seen, dampings from an
+/// oscillation to two lags far apart.
+std::vector<Eigen::VectorXd> step_fit_starts(const Eigen::VectorXd& response, StepForm form) {
+  const double seen = rise_time(response, 0.02) - 1.0, risen = rise_time(response, 0.6);
+  std::vector<Eigen::VectorXd> points;
+  for (const double part : {0.0, 0.7, 1.0}) {
+    const double dead_time = part * seen, rest = std::max(risen - dead_time, 0.3);
+    if (form == StepForm::first_order) {
+      points.push_back(Eigen::Vector2d(dead_time, std::log(rest)));
+      continue;
+    }
+    for (const double damping : {0.5, 1.0, 2.5})
+      points.push_back(Eigen::Vector3d(dead_time, std::log(rest / (0.6 + 1.1 * damping)), std::log(damping)));
+  }
+  return points;
+}
+
+/// A form with its best parameters; the error is the sum of squares.
+struct StepCandidate {
+  TransferFunction channel = TransferFunction::zero();
+  double error;
+  Eigen::Index parameters = 0;
+};
+
+/// In the time unit of the study.
+TransferFunction channel_of(const StepMisfit& misfit, const Eigen::VectorXd& x, double sample_time) {
+  const Eigen::VectorXd gains = misfit.gains(misfit.basis(x));
+  Eigen::VectorXd numerator(gains.size());
+  for (Eigen::Index power = 0; power < gains.size(); ++power)
+    numerator(gains.size() - 1 - power) = gains(power) * (power == 0 ? 1.0 : sample_time);
+  Eigen::VectorXd denominator = misfit.denominator(x);
+  for (Eigen::Index power = 1; power < denominator.size(); ++power)
+    denominator(denominator.size() - 1 - power) *= std::pow(sample_time, static_cast<double>(power));
+  const double dead_time = misfit.dead_time(x);
+  return {numerator, denominator, dead_time < kShortestDeadTime ? 0.0 : dead_time * sample_time};
+}
+
+StepCandidate best_of_form(const Eigen::VectorXd& response, StepForm form, double sample_time) {
+  const StepMisfit misfit{response, form};
+  Eigen::NumericalDiff<StepMisfit, Eigen::Central> derivative(misfit);
+  std::optional<Eigen::VectorXd> best;
+  double least = kInfinity;
+  for (Eigen::VectorXd x : step_fit_starts(response, form)) {
+    Eigen::LevenbergMarquardt<Eigen::NumericalDiff<StepMisfit, Eigen::Central>> method(derivative);
+    method.parameters.xtol = method.parameters.ftol = 1e-12;
+    method.parameters.maxfev = 200;
+    method.minimize(x);
+    if (!(method.fnorm < least))
+      continue;
+    least = method.fnorm;
+    best = x;
+  }
+  StepCandidate candidate{.error = kInfinity, .parameters = shape_count(form) + gain_count(form)};
+  if (best) {
+    candidate.channel = channel_of(misfit, *best, sample_time);
+    candidate.error = least * least;
+  }
+  return candidate;
+}
+
+}  // namespace
+
+StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& response, double sample_time,
+                                  double negligible) {
+  if (response.size() < kFewestResponseSamples)
+    throw InputError("step response", fmt::format("{} samples", response.size()),
+                     fmt::format("at least {}", kFewestResponseSamples));
+  if (!response.allFinite())
+    throw InputError("step response", "a number that is not finite", "finite numbers");
+  if (!(sample_time > 0 && std::isfinite(sample_time)))
+    throw InputError("sample time", fmt::to_string(sample_time), "> 0");
+  const Eigen::VectorXd values = response;
+  const auto n = static_cast<double>(values.size());
+  const double floor = std::max(negligible, 1e-300) * std::max(negligible, 1e-300) +
+                       std::pow(kNegligibleResponseShare * values.cwiseAbs().maxCoeff(), 2);
+  const auto score = [&](const StepCandidate& candidate) {
+    return n * std::log(candidate.error / n + floor) +
+           static_cast<double>(candidate.parameters) * std::log(n);
+  };
+  StepCandidate best{.error = values.squaredNorm()};
+  if (values.cwiseAbs().maxCoeff() > negligible)
+    for (const StepForm form : {StepForm::first_order, StepForm::second_order, StepForm::with_zero})
+      if (StepCandidate candidate = best_of_form(values, form, sample_time); score(candidate) < score(best))
+        best = std::move(candidate);
+  const double power = values.squaredNorm();
+  return {best.channel, std::sqrt(best.error / n), power > 0.0 ? 1.0 - best.error / power : 1.0};
+}
+
+}  // namespace mpm

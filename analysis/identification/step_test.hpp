@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// How the plant of a study is tried out.
+struct StepTestOptions {
+  Eigen::VectorXd sizes;  ///< of the step of each MV and then each MD, > 0
+  int samples = 0;        ///< of each response, > 0
+  bool noise = false;     ///< with the measurement noise of the study
+};
+
+/// What a step of one input did to the CVs.
+///
+/// | name      | shape       | meaning                                                               |
+/// |-----------|-------------|-----------------------------------------------------------------------|
+/// | response  | ny x samples | (y_up - y_down)/(2 size), 1, 2, ... samples after the step           |
+/// | asymmetry | ny          | rms of y_up + y_down over that of y_up - y_down: 0 for a linear plant |
+struct StepResponse {
+  Eigen::MatrixXd response;
+  Eigen::VectorXd asymmetry;
+};
+
+/// Steps every input of the plant of the study up and, from rest again, down: in open loop, about the
+/// operating point, without faults. The mean of the two is free of what bends the plant the same way for
+/// either. The noise is of a stream of its own. Errors: InputError for sizes that do not fit, a number of
+/// samples < 1, a plant that fails under a step, and as Plant::reset().
+std::vector<StepResponse> step_test(const Study& study, const StepTestOptions& options);
+
+}  // namespace mpm

@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/identification/step_response_fit.hpp"
+#include "analysis/identification/step_test.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/console/progress.hpp"
+#include "plants/error.hpp"
+#include "scenarios/study_library.hpp"
+#include "scenarios/toml_literal.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kShareOfRange = 0.02;    // of the hard limits of an MV: a step where nothing is said
+constexpr double kNegligibleMove = 1e-8;  // of a CV, in its unit: what an integrator leaves
+constexpr double kUnfinished = 0.05;      // of the gain: a response that is not over
+constexpr double kPoorFit = 0.99;         // explained share below which a fit is warned of
+
+struct IdentifyArguments {
+  std::string study;
+  std::vector<std::string> steps;  ///< "NAME=SIZE"
+  int samples = 0;                 ///< 0: those of the step responses of T0
+  bool noise = false;
+  bool quiet = false;
+};
+
+std::vector<PlantModel::Variable> all_inputs(const Study& study) {
+  std::vector<PlantModel::Variable> inputs = study.plant.mvs;
+  inputs.insert(inputs.end(), study.plant.mds.begin(), study.plant.mds.end());
+  return inputs;
+}
+
+/// The step of an input where the command line does not say it; NaN where nothing else does.
+double usual_step(const Study& study, Eigen::Index input) {
+  if (input < study.mv_count()) {
+    const double range = study.controller.mv_hard.upper(input) - study.controller.mv_hard.lower(input);
+    return std::isfinite(range) && range > 0.0 ? kShareOfRange * range : kNaN;
+  }
+  const Distribution& random = study.simulation.step_level;
+  double largest =
+      study.simulation.random_steps ? std::max(std::abs(random.minimum()), std::abs(random.maximum())) : 0.0;
+  for (const SignalStep& step : study.simulation.steps)
+    if (step.variable == input - study.mv_count())
+      largest = std::max(largest, std::abs(step.level));
+  return largest > 0.0 ? largest : kNaN;
+}
+
+/// The steps of all inputs, from "NAME=SIZE" where it is said.
+Eigen::VectorXd step_sizes(const Study& study, const std::vector<std::string>& said) {
+  const std::vector<PlantModel::Variable> inputs = all_inputs(study);
+  std::vector<std::string> names;
+  for (const PlantModel::Variable& input : inputs)
+    names.push_back(input.name);
+  Eigen::VectorXd sizes(static_cast<Eigen::Index>(inputs.size()));
+  for (Eigen::Index input = 0; input < sizes.size(); ++input)
+    sizes(input) = usual_step(study, input);
+  for (const std::string& text : said) {
+    const std::size_t equals = text.find('=');
+    const auto named = std::find(names.begin(), names.end(), text.substr(0, equals));
+    double size = kNaN;
+    if (equals != std::string::npos && named != names.end() &&
+        CLI::detail::lexical_cast(text.substr(equals + 1), size) && size > 0.0 && std::isfinite(size))
+      sizes(named - names.begin()) = size;
+    else
+      throw InputError("--step", fmt::format("'{}'", text),
+                       fmt::format("NAME=SIZE with a size > 0, of {}", fmt::join(names, ", ")));
+  }
+  for (Eigen::Index input = 0; input < sizes.size(); ++input)
+    if (std::isnan(sizes(input)))
+      throw InputError("--step", fmt::format("no size for '{}'", names[static_cast<std::size_t>(input)]),
+                       "NAME=SIZE for an MV without hard limits and for an MD that the study does not step");
+  return sizes;
+}
+
+std::string variables_text(const char* list, const std::vector<PlantModel::Variable>& variables) {
+  std::string text;
+  for (const PlantModel::Variable& variable : variables) {
+    text += fmt::format("[[plant.{}]]\nname = {}\nunit = {}\n", list, toml_literal(variable.name),
+                        toml_literal(variable.unit));
+    if (!variable.description.empty())
+      text += fmt::format("description = {}\n", toml_literal(variable.description));
+    text += "\n";
+  }
+  return text;
+}
+
+/// Six digits: more than a step test gives.
+std::string coefficients_text(const Eigen::VectorXd& coefficients) {
+  std::vector<std::string> texts;
+  for (const double coefficient : coefficients)
+    texts.push_back(fmt::format("{:.6g}", coefficient));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+std::string channel_text(const TransferFunction& channel) {
+  std::string text =
+      channel.order() == 1 && channel.numerator().size() == 1
+          ? fmt::format("gain = {:.6g}\ntime_constant = {:.6g}\n", channel.static_gain(),
+                        channel.residence_time())
+          : fmt::format("numerator = {}\ndenominator = {}\n", coefficients_text(channel.numerator()),
+                        coefficients_text(channel.denominator()));
+  if (channel.dead_time() > 0.0)
+    text += fmt::format("dead_time = {:.6g}\n", channel.dead_time());
+  return text;
+}
+
+/// What speaks against a model whose response ends at `last`; empty: nothing.
+std::string doubt_of(const StepResponseFit& fit, double last) {
+  if (fit.explained < kPoorFit)
+    return fmt::format("only {:.1f} % of the step response is explained", 100.0 * fit.explained);
+  const double gain = fit.channel.static_gain();
+  if (std::abs(last - gain) > kUnfinished * std::abs(gain))
+    return fmt::format("the response ends at {:.3g} where the model goes on to {:.3g}: more --samples", last,
+                       gain);
+  return "";
+}
+
+std::string heading_text(const Study& study, const Eigen::VectorXd& sizes, const IdentifyArguments& arguments,
+                         int samples) {
+  const std::vector<PlantModel::Variable> inputs = all_inputs(study);
+  std::vector<std::string> steps;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    steps.push_back(
+        fmt::format("{} {:.4g} {}", inputs[i].name, sizes(static_cast<Eigen::Index>(i)), inputs[i].unit));
+  return fmt::format(
+      "# Identified from steps up and down ({}), {} samples of {} {}, {} noise.\n"
+      "[plant]\nname = {}\ntitle = {}\ntime_unit = {}\n\n",
+      fmt::join(steps, "; "), samples, study.controller.sample_time, study.plant.time_unit,
+      arguments.noise ? "with" : "without", toml_literal(study.plant.name), toml_literal(study.plant.title),
+      toml_literal(study.plant.time_unit));
+}
+
+ExitCode identify(const IdentifyArguments& arguments) {
+  Progress progress(arguments.quiet);
+  const Study study = find_study(arguments.study);
+  const Eigen::VectorXd sizes = step_sizes(study, arguments.steps);
+  const int samples = arguments.samples > 0 ? arguments.samples : study.sensitivity.samples;
+  const std::vector<StepResponse> responses =
+      step_test(study, {.sizes = sizes, .samples = samples, .noise = arguments.noise});
+  std::string text = heading_text(study, sizes, arguments, samples) + variables_text("cv", study.plant.cvs) +
+                     variables_text("mv", study.plant.mvs) + variables_text("md", study.plant.mds);
+  const std::vector<PlantModel::Variable> inputs = all_inputs(study);
+  for (std::size_t cv = 0; cv < study.plant.cvs.size(); ++cv)
+    for (std::size_t input = 0; input < inputs.size(); ++input) {
+      const auto row = static_cast<Eigen::Index>(cv);
+      const double size = sizes(static_cast<Eigen::Index>(input));
+      const StepResponseFit fit = fit_step_response(responses[input].response.row(row).transpose(),
+                                                    study.controller.sample_time, kNegligibleMove / size);
+      if (fit.channel.is_zero())
+        continue;
+      text += fmt::format(
+          "# {:.3f} % explained, error {:.2g} {} rms under this step; asymmetry of up and down {:.2g}\n"
+          "[[plant.channel]]\ncv = {}\ninput = {}\n{}\n",
+          100.0 * fit.explained, fit.rms_error * size, study.plant.cvs[cv].unit,
+          responses[input].asymmetry(row), toml_literal(study.plant.cvs[cv].name),
+          toml_literal(inputs[input].name), channel_text(fit.channel));
+      if (const std::string doubt = doubt_of(fit, responses[input].response(row, samples - 1));
+          !doubt.empty())
+        progress.note(
+            fmt::format("warning: {} to {}: {}", inputs[input].name, study.plant.cvs[cv].name, doubt));
+    }
+  fmt::print("{}", text);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_identify(CommandSet& commands) {
+  const auto options = std::make_shared<IdentifyArguments>();
+  CLI::App& app =
+      commands.add("identify", "Identify a model for the controller by steps of the plant of a study",
+                   [options] { return identify(*options); });
+  app.add_option("STUDY", options->study, "Study file, or name of a shipped study")->required();
+  app.add_option(
+      "--step", options->steps,
+      "NAME=SIZE: the step of an input, up and down; by default 2 % of the range of an MV, and the "
+      "largest step of an MD in the study");
+  app.add_option("--samples", options->samples,
+                 "Samples of a step response; by default sensitivity.samples of the study")
+      ->check(CLI::Range(8, 1000000));
+  app.add_flag("--noise", options->noise, "With the measurement noise of the study");
+  add_quiet(app, options->quiet, "No warnings");
+}
+
+}  // namespace mpm
