@@ -11,6 +11,7 @@
 #include "plants/nonlinear_model.hpp"
 #include "plants/plant_model.hpp"
 #include "scenarios/assessment_options.hpp"
+#include "scenarios/data_options.hpp"
 #include "scenarios/distribution.hpp"
 #include "scenarios/fault.hpp"
 #include "scenarios/fault_ranges.hpp"
@@ -211,6 +212,7 @@ struct Study {
   std::optional<MonitoringOptions> monitoring;    ///< none: methods see whole records only
   std::optional<CalibrationOptions> calibration;  ///< none: every method has its own threshold only
   AggregateOptions aggregate;
+  DataOptions data;                     ///< how a file of records of its loop is read
   std::vector<ReportedValue> reported;  ///< shown beside the results, never used to make them
   std::string source;                   ///< the full text of the file
 

@@ -81,6 +81,7 @@ Study read_study(std::string_view text, const std::string& file_name, TomlDraft*
   study.monitoring = read_monitoring(document, study);
   study.calibration = read_calibration(document, study);
   study.aggregate = read_aggregate(document);
+  study.data = read_data(document, study);
   study.reported = read_reported(document);
   refuse_unusable_windows(document, study);
   study.source = text;

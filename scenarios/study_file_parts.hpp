@@ -129,6 +129,9 @@ std::optional<CalibrationOptions> read_calibration(const TomlTable& document, co
 
 /// [aggregate]
 AggregateOptions read_aggregate(const TomlTable& document);
+/// [data] (study_file_data.cpp); `study` has its plant.
+DataOptions read_data(const TomlTable& document, const Study& study);
+
 /// [reference]
 std::vector<ReportedValue> read_reported(const TomlTable& document);
 

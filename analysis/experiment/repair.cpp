@@ -37,19 +37,34 @@ Trajectory promised(const Study& repaired, const OperatingPoint& point, const As
   return run_closed_loop(repaired, repaired.plant.G, signals, factory);
 }
 
+ChannelFit fit_of(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
+                  const Channel& channel) {
+  const Eigen::VectorXd e = (loop.y.row(channel.cv) - loop.y_sim.row(channel.cv)).transpose();
+  return fit_channel(study.plant.G(channel.cv, channel.mv), study.controller.sample_time, e,
+                     loop.u.row(channel.mv).transpose(), point.u(channel.mv), study.aggregate.confidence);
+}
+
 }  // namespace
+
+PromisedRepair promised_repair(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
+                               const Channel& channel, const QpSolverFactory& factory) {
+  PromisedRepair result{
+      .channel = channel, .fit = fit_of(study, point, loop, channel), .now = {}, .predicted = {}};
+  Study repaired = study;
+  repaired.plant.G(channel.cv, channel.mv) = result.fit.channel;
+  result.now = variances_of(study, promised(study, point, loop, factory));
+  result.predicted = variances_of(study, promised(repaired, point, loop, factory));
+  return result;
+}
 
 RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, const ExperimentDraw& draw,
                            const AssessedLoop& loop, const Channel& channel, const QpSolverFactory& factory) {
-  const Eigen::VectorXd e = (loop.y.row(channel.cv) - loop.y_sim.row(channel.cv)).transpose();
-  RepairedLoop result{
-      .channel = channel,
-      .fit = fit_channel(study.plant.G(channel.cv, channel.mv), study.controller.sample_time, e,
-                         loop.u.row(channel.mv).transpose(), point.u(channel.mv), study.aggregate.confidence),
-      .now = {},
-      .predicted = {},
-      .repaired = {},
-      .perfect = {}};
+  RepairedLoop result{.channel = channel,
+                      .fit = fit_of(study, point, loop, channel),
+                      .now = {},
+                      .predicted = {},
+                      .repaired = {},
+                      .perfect = {}};
   ExperimentDraw from_the_start = draw;
   from_the_start.onset = {};
   Study repaired = study;

@@ -44,6 +44,19 @@ struct RepairedLoop {
 RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, const ExperimentDraw& draw,
                            const AssessedLoop& loop, const Channel& channel, const QpSolverFactory& factory);
 
+/// What a repaired channel promises from a record alone, all that is known in a plant: variances of the CVs
+/// as RepairedLoop has them, with the errors of the record under the model of the study (`now`) and under the
+/// repaired one (`predicted`).
+struct PromisedRepair {
+  Channel channel;
+  ChannelFit fit;
+  Eigen::VectorXd now, predicted;
+};
+
+/// Throws InputError as fit_channel().
+PromisedRepair promised_repair(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
+                               const Channel& channel, const QpSolverFactory& factory);
+
 /// The channel that the method would have repaired: that of the mismatch it names, or of a method that names
 /// none the first channel that it flags. None of a loop that it does not flag.
 std::optional<Channel> channel_to_repair(const AssessmentRecord& said);

@@ -1,15 +1,52 @@
 #include "analysis/methods/assessed_loop.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/non_finite.hpp"
+#include "plants/settling_time.hpp"
 #include "scenarios/draw.hpp"
 #include "scenarios/historian.hpp"
+#include "scenarios/signals.hpp"
 
 namespace mpm {
+namespace {
+
+constexpr double kAtRest = 0.5;  // of a standard deviation
+
+/// Settling time of the slowest channel, samples.
+Eigen::Index slowest_settling(const Study& study) {
+  double slowest = 0.0;
+  for (Eigen::Index cv = 0; cv < study.plant.G.rows(); ++cv)
+    for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input)
+      slowest = std::max(slowest, settling_time(study.plant.G(cv, input)));
+  return static_cast<Eigen::Index>(std::ceil(slowest / study.controller.sample_time));
+}
+
+/// Each row begins near `rest`, as it moves.
+bool begins_at(const Eigen::VectorXd& rest, const Eigen::MatrixXd& signals) {
+  const Eigen::VectorXd deviation = ((signals.colwise() - signals.rowwise().mean()).rowwise().squaredNorm() /
+                                     static_cast<double>(signals.cols()))
+                                        .cwiseSqrt();
+  return ((signals.col(0) - rest).cwiseAbs().array() <= kAtRest * deviation.array()).all();
+}
+
+/// The rows of `recorded` that were recorded, and `otherwise` in place of the others.
+Eigen::MatrixXd where_recorded(const Eigen::MatrixXd& recorded, const Eigen::MatrixXd& otherwise) {
+  return recorded.array().isNaN().select(otherwise, recorded);
+}
+
+/// The signal after `samples` samples at its first value.
+Eigen::MatrixXd after_rest(const Eigen::MatrixXd& signal, Eigen::Index samples) {
+  Eigen::MatrixXd longer(signal.rows(), samples + signal.cols());
+  longer << signal.col(0).replicate(1, samples), signal;
+  return longer;
+}
+
+}  // namespace
 
 bool AssessedLoop::has_setpoint(Eigen::Index cv) const {
   return y_set.cols() > 0 && !std::isnan(y_set(cv, 0));
@@ -36,6 +73,34 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
     if (study.controller.has_setpoint(cv))
       assessed.y_set.row(cv) = loop.y_set.row(cv);
   return assessed;
+}
+
+Eigen::Index samples_to_settle(const Study& study, const OperatingPoint& point, const PlantRecord& record,
+                               RecordStart start) {
+  const bool at_rest =
+      start == RecordStart::rest || (start == RecordStart::automatic && begins_at(point.u, record.u) &&
+                                     begins_at(Eigen::VectorXd::Zero(record.d.rows()), record.d));
+  return at_rest ? 0 : slowest_settling(study);
+}
+
+AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const PlantRecord& record,
+                           Eigen::Index unjudged) {
+  const Eigen::Index before = 3 * unjudged;  // a system of higher order needs more than its settling time
+  const Eigen::MatrixXd y_sim = simulated_output(study.plant.G, study.controller.sample_time, point.u,
+                                                 after_rest(record.u, before), after_rest(record.d, before))
+                                    .rightCols(record.samples());
+  AssessedLoop loop{.y = record.y,
+                    .u = record.u,
+                    .u_target = where_recorded(record.u_target, point.u.replicate(1, record.samples())),
+                    .d = record.d,
+                    .y_sim = where_recorded(record.y_sim, y_sim),
+                    .y_set = Eigen::MatrixXd::Constant(record.y.rows(), record.samples(), kNaN)};
+  loop.y.leftCols(std::min(unjudged, record.samples())).setConstant(kNaN);
+  const Eigen::MatrixXd of_study = setpoints(study);
+  for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
+    if (study.controller.has_setpoint(cv))
+      loop.y_set.row(cv) = of_study.row(cv);
+  return loop;
 }
 
 AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::Index samples) {

@@ -7,6 +7,7 @@
 
 #include "analysis/basis/basis_case.hpp"
 #include "scenarios/closed_loop.hpp"
+#include "scenarios/plant_record.hpp"
 #include "scenarios/study.hpp"
 #include "solvers/qp_solver.hpp"
 
@@ -48,6 +49,19 @@ struct AssessedLoop {
 /// `point`. The setpoint of a CV in a range is, where `study.assessment.setpoints` wants that of the
 /// optimizer, optimizer_steady_state(); NaN when it does not, or when the controller has no targets.
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop);
+
+/// The samples of a record of the plant that only fill the memory of the model: none of one that begins at
+/// rest at the operating point, otherwise the settling time of the slowest channel. With
+/// RecordStart::automatic the record begins at rest when each MV and MD does within half of its standard
+/// deviation.
+Eigen::Index samples_to_settle(const Study& study, const OperatingPoint& point, const PlantRecord& record,
+                               RecordStart start);
+
+/// A record of the plant, of recorded_study(), as the methods see it. The first `unjudged` samples of the CVs
+/// are missing; with some, the model rests at the first values of MVs and MDs before the record, without any
+/// at the operating point. y_sim and targets are those of the record where it has them.
+AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const PlantRecord& record,
+                           Eigen::Index unjudged);
 
 /// The window of `samples` samples of a record from sample `first` on. `record` must outlive it.
 AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::Index samples);

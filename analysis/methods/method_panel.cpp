@@ -8,10 +8,12 @@
 
 namespace mpm {
 MethodPanel::MethodPanel(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,
-                         QpSolverFactory factory)
+                         QpSolverFactory factory, std::optional<AssessedLoop> benchmark)
     : factory_(std::move(factory)),
       context_(assessment_context(study, basis, factory_)),
       forms_(assessment_forms(study, methods)) {
+  if (benchmark)
+    context_.benchmark = std::move(benchmark);
   for (const auto& form : forms_)
     assessors_.emplace_back(assessment_method(form->method().name), context_);
 }

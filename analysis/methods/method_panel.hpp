@@ -17,10 +17,10 @@ namespace mpm {
 /// own; an answer depends on the loop only.
 class MethodPanel {
  public:
-  /// `study` and `basis` must outlive the panel; the basis case must have status ok and is the benchmark.
-  /// Throws InputError for an unknown method.
+  /// `study` and `basis` must outlive the panel; the basis case must have status ok, and is the benchmark
+  /// unless there is another one. Throws InputError for an unknown method.
   MethodPanel(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,
-              QpSolverFactory factory);
+              QpSolverFactory factory, std::optional<AssessedLoop> benchmark = {});
   MethodPanel(const MethodPanel&) = delete;
   MethodPanel& operator=(const MethodPanel&) = delete;
 

@@ -10,6 +10,7 @@
 
 #include "analysis/sensitivity/active_limit.hpp"
 #include "plants/non_finite.hpp"
+#include "plants/settling_time.hpp"
 
 namespace mpm {
 namespace {
@@ -36,12 +37,6 @@ std::string_view cv_unit(const Study& study, Eigen::Index cv) {
 
 // --- Time ---
 
-/// -sum 1/p over the poles p: (a_n + a_(n-1) s + ...)/a_n begins 1 + T s.
-double sum_of_time_constants(const TransferFunction& channel) {
-  const Eigen::VectorXd& a = channel.denominator();
-  return channel.order() == 0 ? 0.0 : a(a.size() - 2) / a(a.size() - 1);
-}
-
 /// A time of some channel from an MV, and which channel.
 struct ChannelTime {
   double time;
@@ -66,10 +61,6 @@ std::pair<ChannelTime, ChannelTime> range_of(const Study& study, Time time) {
         largest = {of_channel, name};
     }
   return {smallest, largest};
-}
-
-double settling_time(const TransferFunction& channel) {
-  return channel.dead_time() + 3.0 * sum_of_time_constants(channel);
 }
 
 void check_times(const Study& study, Warnings& warnings) {

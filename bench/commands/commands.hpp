@@ -18,14 +18,15 @@ AddCommand add_check;      // holds an archive against limits
 AddCommand add_report;     // what a study found, as a page and figures
 AddCommand add_plot;       // draws the loop of one experiment
 AddCommand add_compare;    // several methods of assessment on the loops of an archive
+AddCommand add_assess;     // records of a plant: what the methods say of them, and how far to trust it
 AddCommand add_repair;     // identifies a named channel again, and says what the repaired controller brings
 AddCommand add_reproduce;  // the tables of the thesis
 AddCommand add_export;     // a table of an archive as CSV
 AddCommand add_list;       // the shipped studies
 
 /// In the order of the help.
-inline constexpr AddCommand* kCommands[] = {add_run,     add_validate, add_identify,  add_replay, add_summary,
-                                            add_suite,   add_sweep,    add_check,     add_report, add_plot,
-                                            add_compare, add_repair,   add_reproduce, add_export, add_list};
+inline constexpr AddCommand* kCommands[] = {
+    add_run,    add_validate, add_identify, add_replay, add_summary, add_suite,     add_sweep,  add_check,
+    add_report, add_plot,     add_compare,  add_assess, add_repair,  add_reproduce, add_export, add_list};
 
 }  // namespace mpm

@@ -1,4 +1,6 @@
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +10,7 @@
 #include "bench/commands/common_options.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
+#include "plants/error.hpp"
 #include "results/archive/csv_table.hpp"
 
 namespace mpm {
@@ -16,13 +19,19 @@ namespace {
 struct ExportArguments {
   std::string archive;
   std::string table = "experiments";
-  std::string output;  ///< stdout when empty
+  std::optional<std::int64_t> index;  ///< of the experiment; all without
+  std::string output;                 ///< stdout when empty
 };
 
 ExitCode export_table(const ExportArguments& options) {
   if (!options.output.empty())
     require_output_folder(options.output, "table");
-  const std::string table = csv_table(read_input(options.archive), options.table);
+  if (options.index && options.table == "findings")
+    throw InputError("--index", "the table findings", "a table with a row or more for each experiment");
+  Campaign campaign = read_input(options.archive);
+  if (options.index)
+    campaign.records = {experiment_of(campaign, *options.index)};
+  const std::string table = csv_table(campaign, options.table);
   if (options.output.empty())
     fmt::print("{}", table);
   else
@@ -40,6 +49,8 @@ void add_export(CommandSet& commands) {
   app.add_option("--table", options->table,
                  "experiments, findings, loops (those that were kept), or a method")
       ->capture_default_str();
+  app.add_option("--index", options->index, "One experiment only; not of the findings")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("-o,--output", options->output, "File to write; stdout without one");
 }
 

@@ -1,0 +1,279 @@
+#include "analysis/validation/record_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/sensitivity/nominal_output.hpp"
+#include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kFarFromZero = 20.0;  // standard deviations
+constexpr double kOftenBeyond = 0.05;  // of the samples
+constexpr double kFrozenShare = 0.1;
+constexpr Eigen::Index kFrozenSamples = 20;
+constexpr double kFarMore = 0.8;   // explained, in the sum over the CVs
+constexpr double kNothing = 0.05;  // explained
+
+/// One variable of the record.
+struct RecordedVariable {
+  std::string name;
+  Eigen::RowVectorXd values;
+  double lower, upper;  ///< hard limits; infinite without
+  bool is_cv;
+
+  Eigen::ArrayXd present() const {
+    Eigen::ArrayXd kept(values.size());
+    Eigen::Index count = 0;
+    for (const double value : values)
+      if (!std::isnan(value))
+        kept(count++) = value;
+    return kept.head(count);
+  }
+  bool is_limited() const { return std::isfinite(lower) && std::isfinite(upper) && upper > lower; }
+};
+
+std::vector<RecordedVariable> variables_of(const Study& study, const PlantRecord& record) {
+  std::vector<RecordedVariable> all;
+  const auto add = [&](const std::vector<PlantModel::Variable>& variables, const Eigen::MatrixXd& values,
+                       const Limits& limits, bool is_cv) {
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      all.push_back({variables[i].name, values.row(row), limits.lower(row), limits.upper(row), is_cv});
+    }
+  };
+  add(study.plant.cvs, record.y, study.controller.cv_hard, true);
+  add(study.plant.mvs, record.u, study.controller.mv_hard, false);
+  add(study.plant.mds, record.d, Limits::none(study.md_count()), false);
+  return all;
+}
+
+double deviation_of(const Eigen::ArrayXd& values) {
+  return std::sqrt((values - values.mean()).square().mean());
+}
+
+bool is_constant(const Eigen::ArrayXd& values) {
+  return values.size() > 0 && (values == values(0)).all();
+}
+
+/// Does it look like an absolute value?
+bool is_far_off(const RecordedVariable& variable) {
+  const Eigen::ArrayXd values = variable.present();
+  const double mean = values.mean();
+  if (!variable.is_limited())
+    return !is_constant(values) && std::abs(mean) > kFarFromZero * deviation_of(values);
+  const double width = variable.upper - variable.lower;
+  return mean < variable.lower - width || mean > variable.upper + width;
+}
+
+/// The mean as the file has it.
+double recorded_mean(const Study& study, const RecordedVariable& variable) {
+  const auto of = [&](const DataOptions::Numbers& numbers, double fallback) {
+    const auto found = numbers.find(variable.name);
+    return found == numbers.end() ? fallback : found->second;
+  };
+  return variable.present().mean() / of(study.data.scale, 1.0) + of(study.data.operating_point, 0.0);
+}
+
+void check_absolute(const Study& study, const std::vector<RecordedVariable>& variables,
+                    std::vector<std::string>& warnings) {
+  std::vector<std::string> means, found;
+  for (const RecordedVariable& variable : variables) {
+    if (!is_far_off(variable))
+      continue;
+    const double mean = recorded_mean(study, variable);
+    const std::string range =
+        variable.is_limited() ? fmt::format("hard limits [{:g}, {:g}]", variable.lower, variable.upper)
+                              : fmt::format("standard deviation {:.3g}", deviation_of(variable.present()));
+    if (study.data.operating_point.contains(variable.name)) {
+      warnings.push_back(
+          fmt::format("{} is {:.4g} from its operating point on average ({}): look at data.operating_point "
+                      "and data.scale",
+                      variable.name, variable.present().mean(), range));
+      continue;
+    }
+    found.push_back(fmt::format("{} with mean {:.6g} ({})", variable.name, mean, range));
+    means.push_back(fmt::format("{} = {:.6g}", variable.name, mean));
+  }
+  if (!found.empty())
+    throw InputError(
+        "record", fmt::format("what looks like absolute values: {}", fmt::join(found, ", ")),
+        fmt::format("deviations from the operating point of the study, which [data] of the study file makes "
+                    "of absolute values; the means of the record are\n"
+                    "  operating_point = {{{}}}\n"
+                    "(a unit that differs belongs to data.scale)",
+                    fmt::join(means, ", ")));
+}
+
+void check_movement(const std::vector<RecordedVariable>& variables, std::vector<std::string>& warnings) {
+  for (const RecordedVariable& variable : variables) {
+    const Eigen::ArrayXd values = variable.present();
+    if (!is_constant(values))
+      continue;
+    if (variable.is_cv)
+      throw InputError(variable.name, fmt::format("{:g} in every sample", values(0)),
+                       "a measurement that changes: a wrong tag, a frozen instrument, or a historian that "
+                       "keeps changes only (data.tags)");
+    warnings.push_back(fmt::format(
+        "{} never moves: a wrong tag (data.tags), or it was held; nothing can be said of its channels",
+        variable.name));
+  }
+}
+
+void refuse_twins(const std::vector<RecordedVariable>& variables) {
+  for (std::size_t a = 0; a < variables.size(); ++a)
+    for (std::size_t b = a + 1; b < variables.size(); ++b) {
+      const Eigen::RowVectorXd &x = variables[a].values, &z = variables[b].values;
+      const bool same = ((x.array() == z.array()) || (x.array().isNaN() && z.array().isNaN())).all();
+      if (same && !is_constant(variables[a].present()))
+        throw InputError(fmt::format("{} and {}", variables[a].name, variables[b].name),
+                         "the same values in both", "a column of its own each: one of their tags is wrong");
+    }
+}
+
+Eigen::Index longest_standstill(const Eigen::RowVectorXd& values) {
+  Eigen::Index longest = 0, run = 1;
+  for (Eigen::Index k = 1; k < values.size(); ++k) {
+    run = values(k) == values(k - 1) ? run + 1 : 1;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
+
+void check_values(const RecordedVariable& variable, std::vector<std::string>& warnings) {
+  const Eigen::ArrayXd values = variable.present();
+  if (variable.is_limited()) {
+    const double tolerance = 1e-6 * (variable.upper - variable.lower);
+    const double beyond =
+        (values < variable.lower - tolerance || values > variable.upper + tolerance).cast<double>().mean();
+    if (beyond > kOftenBeyond)
+      warnings.push_back(
+          fmt::format("{} is beyond its hard limits [{:g}, {:g}] in {:.0f} % of the samples: "
+                      "another unit (data.scale), operating point, or limits than the study's",
+                      variable.name, variable.lower, variable.upper, 100.0 * beyond));
+  }
+  const Eigen::Index longest = longest_standstill(variable.values);
+  if (variable.is_cv && longest > kFrozenSamples &&
+      static_cast<double>(longest) > kFrozenShare * static_cast<double>(variable.values.size()))
+    warnings.push_back(
+        fmt::format("{} stays at one value for {} samples: a frozen instrument, or a historian "
+                    "that keeps changes only; give its quality, or leave the period out",
+                    variable.name, longest));
+}
+
+// --- Exchanged columns ---
+
+Eigen::MatrixXd simulated(const Study& study, const Eigen::MatrixXd& u, const Eigen::MatrixXd& d) {
+  const Eigen::MatrixXd moves = u.colwise() - u.col(0), disturbances = d.colwise() - d.col(0);
+  return simulated_output(study.plant.G, study.controller.sample_time, Eigen::VectorXd::Zero(u.rows()), moves,
+                          disturbances);
+}
+
+/// What y_sim explains of a CV, -1 to 1; 0 of one that it leaves alone.
+double explained(const Eigen::RowVectorXd& y, const Eigen::RowVectorXd& y_sim) {
+  const auto there = !y.array().isNaN();
+  const double count = std::max(1.0, there.cast<double>().sum());
+  const auto variance = [&](const Eigen::RowVectorXd& signal) {
+    const Eigen::ArrayXXd kept = there.select(signal.array(), 0.0);
+    const double mean = kept.sum() / count;
+    return there.select((signal.array() - mean).square(), 0.0).sum() / count;
+  };
+  const double of_y = variance(y);
+  return of_y == 0.0 ? 0.0 : std::max(-1.0, 1.0 - variance(y - y_sim) / of_y);
+}
+
+double explained(const Eigen::MatrixXd& y, const Eigen::MatrixXd& y_sim) {
+  double sum = 0.0;
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv)
+    sum += explained(Eigen::RowVectorXd(y.row(cv)), Eigen::RowVectorXd(y_sim.row(cv)));
+  return sum;
+}
+
+/// Tries what people confuse, and says what makes the model explain far more.
+class ExchangeSearch {
+ public:
+  ExchangeSearch(const Study& study, const PlantRecord& record)
+      : study_(study),
+        record_(record),
+        y_sim_(simulated(study, record.u, record.d)),
+        explained_(explained(record.y, y_sim_)) {}
+
+  std::vector<std::string> findings() {
+    pairs(study_.plant.cvs, [&](Eigen::Index a, Eigen::Index b) {
+      Eigen::MatrixXd y = record_.y;
+      y.row(a).swap(y.row(b));
+      return explained(y, y_sim_);
+    });
+    pairs(study_.plant.mvs, [&](Eigen::Index a, Eigen::Index b) {
+      Eigen::MatrixXd u = record_.u;
+      u.row(a).swap(u.row(b));
+      return explained(record_.y, simulated(study_, u, record_.d));
+    });
+    pairs(study_.plant.mds, [&](Eigen::Index a, Eigen::Index b) {
+      Eigen::MatrixXd d = record_.d;
+      d.row(a).swap(d.row(b));
+      return explained(record_.y, simulated(study_, record_.u, d));
+    });
+    for (Eigen::Index mv = 0; mv < record_.u.rows(); ++mv) {
+      Eigen::MatrixXd u = record_.u;
+      u.row(mv) *= -1.0;
+      if (explained(record_.y, simulated(study_, u, record_.d)) > explained_ + kFarMore)
+        found_.push_back(fmt::format(
+            "the model explains far more of the CVs with the sign of {} turned round: data.scale of it, or a "
+            "valve that closes where the model has it open",
+            study_.plant.mvs[static_cast<std::size_t>(mv)].name));
+    }
+    for (Eigen::Index cv = 0; cv < record_.y.rows() && found_.empty(); ++cv)
+      if (const double share =
+              explained(Eigen::RowVectorXd(record_.y.row(cv)), Eigen::RowVectorXd(y_sim_.row(cv)));
+          share < kNothing)
+        none_.push_back(study_.plant.cvs[static_cast<std::size_t>(cv)].name);
+    if (!none_.empty())
+      found_.push_back(
+          fmt::format("the model explains nothing of {}: a large fault, or a wrong tag, unit or time stamp",
+                      fmt::join(none_, ", ")));
+    return std::move(found_);
+  }
+
+ private:
+  template <class Swapped>
+  void pairs(const std::vector<PlantModel::Variable>& variables, Swapped swapped) {
+    for (std::size_t a = 0; a < variables.size(); ++a)
+      for (std::size_t b = a + 1; b < variables.size(); ++b)
+        if (swapped(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) > explained_ + kFarMore)
+          found_.push_back(
+              fmt::format("the model explains far more of the CVs with {} and {} exchanged: look at their "
+                          "tags (data.tags)",
+                          variables[a].name, variables[b].name));
+  }
+
+  const Study& study_;
+  const PlantRecord& record_;
+  Eigen::MatrixXd y_sim_;
+  double explained_;
+  std::vector<std::string> found_, none_;
+};
+
+}  // namespace
+
+std::vector<std::string> check_record(const Study& study, const PlantRecord& record) {
+  const std::vector<RecordedVariable> variables = variables_of(study, record);
+  std::vector<std::string> warnings;
+  check_movement(variables, warnings);
+  check_absolute(study, variables, warnings);
+  refuse_twins(variables);
+  for (const RecordedVariable& variable : variables)
+    check_values(variable, warnings);
+  for (std::string& finding : ExchangeSearch(study, record).findings())
+    warnings.push_back(std::move(finding));
+  return warnings;
+}
+
+}  // namespace mpm

@@ -1,0 +1,68 @@
+#include "bench/campaign/kept_campaign.hpp"
+
+#include <cstdint>
+#include <system_error>
+#include <utility>
+
+#include "bench/shards/shard_folder.hpp"
+#include "bench/version.hpp"
+#include "results/archive/archive.hpp"
+#include "results/files/archive_error.hpp"
+#include "results/files/atomic_file.hpp"
+
+namespace mpm {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_of(const Campaign& campaign, const Study& of, const RunOptions& options) {
+  const Study study = study_to_run(of, options);
+  const std::int64_t count = options.experiments.value_or(study.experiment_count());
+  return campaign.study.source == study.source && campaign.study.seed == study.seed &&
+         method_names(campaign) == study.methods && campaign.info.solver == options.solver &&
+         campaign.info.mpmbench_version == mpmbench_version() && campaign.info.git_sha == source_revision() &&
+         static_cast<std::int64_t>(campaign.records.size()) == count;
+}
+
+Campaign resumed(const fs::path& archive, const Study& study, RunOptions options,
+                 const CampaignHooks& hooks) {
+  options.leftovers = Leftovers::resume;
+  const auto once = [&] { return run_campaign(study, options, hooks, shard_folder_of(archive)); };
+  if (!has_shards(archive))
+    return once();
+  try {
+    return once();
+  } catch (const UnhealthyBasis&) {
+    throw;
+  } catch (const InputError&) {
+    options.leftovers = Leftovers::discard;
+    return once();
+  }
+}
+
+}  // namespace
+
+std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& study,
+                                      const RunOptions& options) {
+  std::error_code no_status;
+  if (!fs::is_regular_file(archive, no_status))
+    return std::nullopt;
+  try {
+    Campaign campaign = read_archive(archive);
+    return is_of(campaign, study, options) ? std::optional(std::move(campaign)) : std::nullopt;
+  } catch (const ArchiveError&) {
+    return std::nullopt;  // it is replaced
+  }
+}
+
+Campaign run_and_keep(const fs::path& archive, const Study& study, RunOptions options,
+                      const CampaignHooks& hooks, const std::string& command) {
+  Campaign campaign = resumed(archive, study, std::move(options), hooks);
+  note_command(campaign, command);
+  write_archive(archive, campaign, findings_of(campaign));
+  remove_shards(archive);
+  remove_abandoned_files(archive);
+  return campaign;
+}
+
+}  // namespace mpm

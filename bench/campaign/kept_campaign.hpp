@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "bench/campaign/campaign_runner.hpp"
+
+// Campaigns whose archive is kept for the next time.
+
+namespace mpm {
+
+/// The campaign in this archive, when it is there and whole and what this run would make of the study: the
+/// same text, seed, methods, solver, number of experiments and program.
+std::optional<Campaign> kept_campaign(const std::filesystem::path& archive, const Study& study,
+                                      const RunOptions& options);
+
+/// Runs the study, going on with the shards that an interrupted run has left unless they are of another study
+/// or program, and writes the archive. Errors: as run_campaign() and write_archive().
+Campaign run_and_keep(const std::filesystem::path& archive, const Study& study, RunOptions options,
+                      const CampaignHooks& hooks, const std::string& command);
+
+}  // namespace mpm

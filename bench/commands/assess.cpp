@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "analysis/findings/trial_findings.hpp"
+#include "analysis/methods/method_panel.hpp"
+#include "analysis/methods/method_table.hpp"
+#include "analysis/validation/record_check.hpp"
+#include "bench/campaign/kept_campaign.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/console/progress.hpp"
+#include "bench/files/output_file.hpp"
+#include "bench/version.hpp"
+#include "plants/error.hpp"
+#include "results/assess/record_assessment.hpp"
+#include "results/records/plant_record_file.hpp"
+#include "scenarios/recorded_study.hpp"
+#include "scenarios/signals.hpp"
+#include "scenarios/study_library.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int kFewestWindowSamples = 24;
+
+struct AssessArguments {
+  std::string study, data;
+  std::vector<std::string> methods{"mpmbench"};
+  std::string page;         ///< none when empty
+  std::string calibration;  ///< archive; beside the data when empty
+  int trials = 200;
+  std::optional<int> window, stride;
+  RunOptions run;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// The window of the command line, or that of the study where it fits into the record.
+std::optional<MonitoringOptions> monitoring_of(const AssessArguments& options, const Study& study,
+                                               PlantRecord& record) {
+  std::optional<MonitoringOptions> monitoring = study.monitoring;
+  const auto samples = static_cast<int>(record.samples());
+  if (options.window) {
+    if (*options.window < kFewestWindowSamples || *options.window > samples)
+      throw InputError("--window", fmt::format("{}", *options.window),
+                       fmt::format("{} to {}, the samples of the record", kFewestWindowSamples, samples));
+    monitoring = {.window = *options.window, .stride = std::max(1, *options.window / 4)};
+  }
+  if (options.stride && monitoring)
+    monitoring->stride = std::min(*options.stride, samples);
+  if (monitoring && monitoring->window > samples) {
+    record.warnings.push_back(
+        fmt::format("the record is shorter than the window of {} samples of the study", monitoring->window));
+    return std::nullopt;
+  }
+  return monitoring;
+}
+
+/// y0: the controller on its own model under the recorded disturbances, without noise; what is not reached is
+/// zero.
+Eigen::MatrixXd nominal_loop(const Study& study, const AssessedLoop& loop, const QpSolverFactory& factory) {
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(loop.y.rows(), loop.samples());
+  return run_closed_loop(study, study.plant.G,
+                         {.d = loop.d, .noise = none, .y_d = none, .y_set = setpoints(study)}, factory)
+      .y;
+}
+
+/// The basis case of the record. Throws InputError when the controller does not run through it.
+BasisCase basis_of(const Study& study, const QpSolverFactory& factory) {
+  BasisCase basis = run_basis_case(study, factory);
+  if (basis.trajectory.status != ControlStatus::ok)
+    throw InputError(
+        "record",
+        fmt::format("measured disturbances, setpoints or limits under which the controller of the "
+                    "study does not run on its own model: {}",
+                    basis.explanation),
+        "those that the study's limits bear: look at units, operating point (data.scale, "
+        "data.operating_point) and the limits at the time (data.lower, data.upper)");
+  return basis;
+}
+
+/// Puts what the identified channel promises into the assessment, when the verdict names one.
+void add_repair_to(RecordAssessment& assessment, const BasisCase& basis, const QpSolverFactory& factory) {
+  const std::optional<Channel> channel = channel_to_repair(assessment.verdict());
+  if (!channel)
+    return;
+  try {
+    assessment.repair = promised_repair(assessment.study, basis.point, assessment.loop, *channel, factory);
+  } catch (const InputError& error) {
+    assessment.no_repair = error.what();
+  }
+}
+
+std::filesystem::path calibration_archive(const AssessArguments& options) {
+  return options.calibration.empty() ? options.data + ".calibration.h5" : options.calibration;
+}
+
+/// Runs the loops like the record, or takes those that are kept, and puts what they say into the assessment.
+void add_trial(RecordAssessment& assessment, const AssessArguments& options, Progress& progress,
+               const std::string& command) {
+  if (options.trials == 0) {
+    assessment.no_trial = "no calibration run was asked for (--trials)";
+    return;
+  }
+  const std::filesystem::path archive = calibration_archive(options);
+  RunOptions run = options.run;
+  run.methods = options.methods;
+  run.store = StorePolicy::none;
+  run.audit_share = 0.0;
+  run.allow_unhealthy_basis = true;
+  const int faulty = options.trials / 2;
+  try {
+    const Study study = trial_study(assessment.study, options.trials - faulty, faulty);
+    std::optional<Campaign> campaign = kept_campaign(archive, study, run);
+    if (!campaign) {
+      require_output_folder(archive, "calibration run");
+      campaign = run_and_keep(archive, study, run, hooks_of(progress), command);
+    }
+    RecordTrial trial{archive.filename().string(), std::ssize(campaign->records), {}};
+    for (std::size_t method = 0; method < assessment.said.size(); ++method)
+      trial.methods.push_back(
+          trial_findings(campaign->study, method, campaign->records, assessment.said[method]));
+    assessment.trial = std::move(trial);
+  } catch (const InputError& error) {
+    assessment.no_trial = fmt::format("no loop like this one can be simulated: {}", error.what());
+  }
+}
+
+RecordAssessment assessed(const AssessArguments& options, const Study& study) {
+  RecordAssessment assessment;
+  assessment.file = std::filesystem::path(options.data).filename().string();
+  assessment.version = mpmbench_version();
+  assessment.record = load_plant_record(study, options.data);
+  assessment.warnings = check_record(study, assessment.record);
+  const auto monitoring = monitoring_of(options, study, assessment.record);
+  assessment.study = recorded_study(study, assessment.record, options.methods, monitoring);
+  const QpSolverFactory factory = qp_solver_factory(options.run.solver);
+  const BasisCase basis = basis_of(assessment.study, factory);
+  assessment.unjudged = samples_to_settle(assessment.study, basis.point, assessment.record, study.data.start);
+  if (2 * assessment.unjudged > assessment.record.samples())
+    throw InputError(
+        "record",
+        fmt::format("{} samples, and {} for the model to settle, since it does not begin at rest",
+                    assessment.record.samples(), assessment.unjudged),
+        "at least twice as many, or one that begins at rest at the operating point (data.start)");
+  if (assessment.unjudged > 0)
+    assessment.warnings.push_back(
+        fmt::format("the record does not begin at rest at the operating point: its first {} samples are not "
+                    "judged, until the slowest channel has settled (data.start)",
+                    assessment.unjudged));
+  assessment.loop = assessed_loop(assessment.study, basis.point, assessment.record, assessment.unjudged);
+  const auto [first, end] = assessment.record.benchmark;
+  std::optional<AssessedLoop> benchmark;
+  if (end > first)
+    benchmark = window_of(assessment.loop, first, end - first);
+  MethodPanel panel(assessment.study, basis, options.methods, factory, benchmark);
+  assessment.said = panel.assess(assessment.loop);
+  assessment.y0 = nominal_loop(assessment.study, assessment.loop, factory);
+  add_repair_to(assessment, basis, factory);
+  assessment.warnings.insert(assessment.warnings.begin(), assessment.record.warnings.begin(),
+                             assessment.record.warnings.end());
+  return assessment;
+}
+
+ExitCode assess(AssessArguments options, const std::string& command) {
+  const Study study = find_study(options.study);
+  options.methods = known_methods(options.methods, "--methods");
+  if (!options.page.empty())
+    require_output_folder(options.page, "page");
+  Progress progress(options.quiet);
+  RecordAssessment assessment = assessed(options, study);
+  try {
+    add_trial(assessment, options, progress, command);
+  } catch (const Interrupted& error) {
+    throw std::runtime_error(progress.explain(error) + "; the same command goes on with the calibration run");
+  }
+  if (!options.page.empty())
+    write_text(options.page, assessment_html(assessment));
+  fmt::print("{}", options.json ? assessment_json(assessment) : assessment_text(assessment));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_assess(CommandSet& commands) {
+  const auto options = std::make_shared<AssessArguments>();
+  CLI::App& app =
+      commands.add("assess", "Assess records of a plant: which CVs lose how much, why, and how sure that is",
+                   [options, &commands] { return assess(*options, commands.command_line()); });
+  app.add_option("STUDY", options->study, "Study file, or name of a shipped study")->required();
+  app.add_option("DATA", options->data, "Records of the loop (CSV)")->required();
+  add_methods_option(app, options->methods, "Methods, separated by commas; the first one gives the verdict");
+  app.add_option("-o,--output", options->page, "Page to write (HTML)");
+  app.add_option("--window", options->window, "Samples of a window that moves over the record");
+  app.add_option("--stride", options->stride, "Samples from one window to the next")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--trials", options->trials,
+                 "Simulated loops like the record that show how far to trust the verdict; 0: none")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+  app.add_option("--calibration", options->calibration,
+                 "Archive of these loops, made when it is not there; by default DATA.calibration.h5");
+  add_jobs(app, options->run.jobs, "How many loops run at once");
+  add_solver(app, options->run.solver);
+  add_json(app, options->json);
+  add_quiet(app, options->quiet);
+}
+
+}  // namespace mpm

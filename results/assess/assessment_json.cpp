@@ -1,0 +1,111 @@
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/experiment/judgement.hpp"
+#include "results/assess/record_assessment.hpp"
+#include "results/text/experiment_text.hpp"
+#include "results/text/number_json.hpp"
+
+namespace mpm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string mv_name(const Study& study, Eigen::Index mv) {
+  return study.plant.mvs[static_cast<std::size_t>(mv)].name;
+}
+
+Json cvs_json(const RecordAssessment& of, const AssessmentRecord& said) {
+  Json cvs = Json::array();
+  for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv) {
+    const double flagged = number_of_cv(said, "cv_flagged", cv);
+    cvs.push_back({{"cv", cv_name(of.study, cv)},
+                   {"flagged", std::isnan(flagged) ? Json() : Json(flagged == 1.0)},
+                   {"score", number_of_cv(said, "cv_score", cv)},
+                   {"ivar", number_of_cv(said, "ivar", cv)}});
+  }
+  return cvs;
+}
+
+Json windows_json(const RecordAssessment& of, const AssessmentRecord& said) {
+  Json windows = Json::array();
+  const Eigen::MatrixXd flags = said.values("window_flagged"), scores = said.values("window_score");
+  for (int window = 0; window < flags.cols(); ++window) {
+    const MonitoringOptions& monitoring = *of.study.monitoring;
+    const auto stamp = [&](int sample) { return of.record.stamps[static_cast<std::size_t>(sample)]; };
+    windows.push_back({{"from", stamp(monitoring.begin(window))},
+                       {"to", stamp(monitoring.end(window) - 1)},
+                       {"flagged", std::isnan(flags(0, window)) ? Json() : Json(flags(0, window) == 1.0)},
+                       {"score", scores(0, window)}});
+  }
+  return windows;
+}
+
+Json named_json(const Study& study, const NamedMismatch& named) {
+  return {{"cv", cv_name(study, named.channel.cv)},
+          {"mv", mv_name(study, named.channel.mv)},
+          {"parameter", to_string(named.parameter)},
+          {"size", named.size},
+          {"lower", named.lower},
+          {"upper", named.upper}};
+}
+
+Json trust_json(const TrialFindings& found) {
+  Json rates;
+  for (const MethodRateInfo& info : method_rate_infos())
+    if (info.of == StudyFeature::any)
+      rates[info.name] = rate_json(found.rates.*info.rate);
+  return {
+      {"rates", rates}, {"as_high", rate_json(found.as_high)}, {"same_source", rate_json(found.same_source)}};
+}
+
+Json method_json(const RecordAssessment& of, std::size_t m) {
+  const AssessmentRecord& said = of.said[m];
+  Json json{{"name", said.form->method().name}, {"status", to_string(said.status)}, {"reason", said.reason}};
+  if (!said.answered())
+    return json;
+  json["flagged"] = said.flagged;
+  json["score"] = said.score;
+  json["cv"] = said.flagged && said.predicted_cv >= 0 ? Json(cv_name(of.study, said.predicted_cv)) : Json();
+  json["source"] = to_string(named_source(said));
+  const auto named = said.named_mismatch();
+  json["mismatch"] = named ? named_json(of.study, *named) : Json();
+  json["cvs"] = cvs_json(of, said);
+  json["windows"] = windows_json(of, said);
+  json["trust"] = of.trial ? trust_json(of.trial->methods[m]) : Json();
+  return json;
+}
+
+Json fitted_json(const FittedNumber& number) {
+  return {{"value", number.value}, {"lower", number.lower}, {"upper", number.upper}};
+}
+
+Json repair_json(const Study& study, const PromisedRepair& repair) {
+  const auto variances = [](const Eigen::VectorXd& of) { return std::vector<double>(of.begin(), of.end()); };
+  return {{"cv", cv_name(study, repair.channel.cv)},
+          {"mv", mv_name(study, repair.channel.mv)},
+          {"gain_factor", fitted_json(repair.fit.gain_factor)},
+          {"time_factor", fitted_json(repair.fit.time_factor)},
+          {"dead_time_shift", fitted_json(repair.fit.dead_time_shift)},
+          {"variance", {{"now", variances(repair.now)}, {"predicted", variances(repair.predicted)}}}};
+}
+
+}  // namespace
+
+std::string assessment_json(const RecordAssessment& assessment) {
+  Json json{{"study", assessment.study.name},           {"file", assessment.file},
+            {"from", assessment.record.stamps.front()}, {"to", assessment.record.stamps.back()},
+            {"samples", assessment.record.samples()},   {"unjudged", assessment.unjudged},
+            {"verdict", verdict_sentences(assessment)}, {"methods", Json::array()}};
+  for (std::size_t m = 0; m < assessment.said.size(); ++m)
+    json["methods"].push_back(method_json(assessment, m));
+  json["repair"] = assessment.repair ? repair_json(assessment.study, *assessment.repair) : Json();
+  json["trial"] = assessment.trial
+                      ? Json{{"loops", assessment.trial->loops}, {"archive", assessment.trial->archive}}
+                      : Json{{"loops", 0}, {"why", assessment.no_trial}};
+  json["warnings"] = assessment.warnings;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace mpm

@@ -1,0 +1,170 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/experiment/judgement.hpp"
+#include "results/assess/record_assessment.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+using Sentences = std::vector<std::string>;
+
+std::string share(const Rate& rate) {
+  return fmt::format("{:.0f} % [{:.0f}, {:.0f}]", 100.0 * rate.value, 100.0 * rate.interval.lower,
+                     100.0 * rate.interval.upper);
+}
+
+/// "xD 2.31, xB 1.02" times the nominal loop, of methods that say so.
+std::string costs_text(const RecordAssessment& of) {
+  Sentences parts;
+  for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
+    if (const double ivar = number_of_cv(of.verdict(), "ivar", cv); !std::isnan(ivar))
+      parts.push_back(fmt::format("{} x {:.2f}", cv_name(of.study, cv), ivar));
+  return parts.empty() ? "" : fmt::format(" (variance against the nominal loop: {})", fmt::join(parts, ", "));
+}
+
+std::string flag_sentence(const RecordAssessment& of) {
+  const std::string& name = of.verdict().form->method().name;
+  if (!of.verdict().answered())
+    return fmt::format("No verdict: {} says nothing of this record: {}.", name, of.verdict().reason);
+  return of.verdict().flagged
+             ? fmt::format("Something is wrong with this loop, says {}{}.", name, costs_text(of))
+             : fmt::format("{} finds nothing in this record that is worth a repair{}.", name, costs_text(of));
+}
+
+void add_source(const RecordAssessment& of, Sentences& sentences) {
+  const AssessmentRecord& said = of.verdict();
+  if (said.predicted_cv < 0)
+    return;
+  const std::string cv = cv_name(of.study, said.predicted_cv);
+  switch (named_source(said)) {
+    case FaultSource::mpm:
+      sentences.push_back(fmt::format("It is at {}, and it is the model: a model-plant mismatch.", cv));
+      break;
+    case FaultSource::ud:
+      sentences.push_back(fmt::format(
+          "It is at {}, and it is not the model: an unmeasured disturbance, which no repair of the model "
+          "takes away.",
+          cv));
+      break;
+    case FaultSource::mpm_ud:
+      sentences.push_back(
+          fmt::format("It is at {}: a model-plant mismatch and an unmeasured disturbance.", cv));
+      break;
+    case FaultSource::none:
+      sentences.push_back(fmt::format(
+          "It is at {}; whether it is the model or a disturbance this record does not tell.", cv));
+      break;
+  }
+  if (const auto named = said.named_mismatch())
+    sentences.push_back(fmt::format("Most likely: {}.", mismatch_sentence(of.study, *named)));
+}
+
+void add_repair(const RecordAssessment& of, Sentences& sentences) {
+  if (!of.no_repair.empty())
+    sentences.push_back(fmt::format("What a repair would bring is not known: {}.", of.no_repair));
+  if (!of.repair)
+    return;
+  const PromisedRepair& repair = *of.repair;
+  const ChannelFit& fit = repair.fit;
+  std::string text = fmt::format(
+      "Identified again from this record, {}/{} has {:.3g} times the gain ({:.3g} to {:.3g}), {:.3g} times "
+      "the "
+      "time constants ({:.3g} to {:.3g}) and a dead time longer by {:.3g} {} ({:.3g} to {:.3g})",
+      cv_name(of.study, repair.channel.cv),
+      of.study.plant.mvs[static_cast<std::size_t>(repair.channel.mv)].name, fit.gain_factor.value,
+      fit.gain_factor.lower, fit.gain_factor.upper, fit.time_factor.value, fit.time_factor.lower,
+      fit.time_factor.upper, fit.dead_time_shift.value, of.study.plant.time_unit, fit.dead_time_shift.lower,
+      fit.dead_time_shift.upper);
+  Sentences changes;
+  if (repair.now.size() > 0 && repair.predicted.size() > 0)
+    for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
+      changes.push_back(fmt::format("{} {:+.0f} %", cv_name(of.study, cv),
+                                    100.0 * (repair.predicted(cv) / repair.now(cv) - 1.0)));
+  sentences.push_back(changes.empty()
+                          ? text + "; the loop with it does not run to its end."
+                          : fmt::format("{}. With it in the controller the variances would change: {}.", text,
+                                        fmt::join(changes, ", ")));
+}
+
+void add_trust(const RecordAssessment& of, Sentences& sentences) {
+  if (!of.trial) {
+    sentences.push_back(fmt::format("How far to trust this is not known: {}.", of.no_trial));
+    return;
+  }
+  const TrialFindings& found = of.trial->methods.front();
+  const MethodRates& rates = found.rates;
+  std::string text = fmt::format(
+      "On {} simulated loops of this controller, excitation and length, {} flagged {} of those without a "
+      "fault "
+      "and {} of those with one ({} where it had an impact)",
+      of.trial->loops, of.verdict().form->method().name, share(rates.false_alarm_healthy),
+      share(rates.detected), share(rates.detected_impact));
+  if (rates.source.total > 0)
+    text += fmt::format("; it named the right source in {}", share(rates.source));
+  if (rates.located.total > 0)
+    text += fmt::format(", the right CV in {}", share(rates.located));
+  sentences.push_back(text + ".");
+  if (of.verdict().answered() && of.verdict().flagged) {
+    std::string record =
+        fmt::format("A score as high as that of this record had {} of the {} loops without a fault",
+                    found.as_high.hits, found.as_high.total);
+    if (found.same_source.total > 0)
+      record += fmt::format("; of the loops of which it said the same of the source, it was right in {}",
+                            share(found.same_source));
+    sentences.push_back(record + ".");
+  }
+}
+
+}  // namespace
+
+double number_of_cv(const AssessmentRecord& said, std::string_view name, Eigen::Index row) {
+  const Eigen::MatrixXd values = said.values(name);
+  return row < values.rows() && values.cols() == 1 ? values(row, 0) : kNaN;
+}
+
+std::string mismatch_sentence(const Study& study, const NamedMismatch& named) {
+  const std::string channel = fmt::format("{}/{}", cv_name(study, named.channel.cv),
+                                          study.plant.mvs[static_cast<std::size_t>(named.channel.mv)].name);
+  const std::string interval =
+      std::isnan(named.lower) ? "" : fmt::format(" ({:.3g} to {:.3g})", named.lower, named.upper);
+  const std::string size = std::isnan(named.size) ? "another" : fmt::format("{:.3g}{}", named.size, interval);
+  const std::string& unit = study.plant.time_unit;
+  switch (named.parameter) {
+    case MismatchParameter::gain:
+      return fmt::format("the gain of {} in the plant is {} times that of the model", channel, size);
+    case MismatchParameter::time_constant:
+      return fmt::format("the time constant of {} in the plant is {} times that of the model", channel, size);
+    case MismatchParameter::dead_time:
+      return fmt::format("the dead time of {} in the plant is longer by {} {}", channel, size, unit);
+    case MismatchParameter::second_order:
+      return fmt::format("{} has a further lag of {} {}", channel, size, unit);
+    case MismatchParameter::inverse_response:
+      return fmt::format("{} has an inverse response of {} {}", channel, size, unit);
+    case MismatchParameter::sign:
+      return fmt::format("the gain of {} has the other sign in the plant", channel);
+    case MismatchParameter::channel:
+      break;
+  }
+  return fmt::format("{} differs from the model", channel);
+}
+
+std::string window_text(const RecordAssessment& assessment, int window) {
+  const MonitoringOptions& monitoring = *assessment.study.monitoring;
+  const auto stamp = [&](int sample) { return assessment.record.stamps[static_cast<std::size_t>(sample)]; };
+  return fmt::format("{} to {}", stamp(monitoring.begin(window)), stamp(monitoring.end(window) - 1));
+}
+
+std::vector<std::string> verdict_sentences(const RecordAssessment& assessment) {
+  Sentences sentences{flag_sentence(assessment)};
+  if (assessment.verdict().answered() && assessment.verdict().flagged)
+    add_source(assessment, sentences);
+  add_repair(assessment, sentences);
+  add_trust(assessment, sentences);
+  return sentences;
+}
+
+}  // namespace mpm

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/experiment/repair.hpp"
+#include "analysis/findings/trial_findings.hpp"
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/assessment_record.hpp"
+#include "scenarios/plant_record.hpp"
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// The calibration run behind the answers on a record.
+struct RecordTrial {
+  std::string archive;  ///< where it is kept
+  std::int64_t loops = 0;
+  std::vector<TrialFindings> methods;  ///< in the order of the answers
+};
+
+/// What the methods say of a record of a plant, and what a person needs to judge it.
+struct RecordAssessment {
+  std::string file;     ///< of the record, its name only
+  std::string version;  ///< of the program
+  Study study;          ///< recorded_study()
+  PlantRecord record;
+  AssessedLoop loop;
+  Eigen::MatrixXd y0;                  ///< ny x N, the nominal loop under the recorded disturbances
+  Eigen::Index unjudged = 0;           ///< samples at the start that only fill the memory of the model
+  std::vector<AssessmentRecord> said;  ///< by each method; the first one is the verdict
+  std::optional<PromisedRepair> repair;
+  std::string no_repair;  ///< why there is none, of a verdict that names a channel; otherwise empty
+  std::optional<RecordTrial> trial;
+  std::string no_trial;  ///< why there is none
+  std::vector<std::string> warnings;
+
+  const AssessmentRecord& verdict() const { return said.front(); }
+};
+
+/// The verdict in sentences: what it costs and where, what it is, which channel and parameter, what a repair
+/// brings, and how far to trust it.
+std::vector<std::string> verdict_sentences(const RecordAssessment& assessment);
+
+std::string assessment_text(const RecordAssessment& assessment);
+std::string assessment_json(const RecordAssessment& assessment);
+/// One page that needs nothing else. Errors: GnuplotError.
+std::string assessment_html(const RecordAssessment& assessment);
+
+/// Number `row` of the answer under this name; NaN when the method has no such number.
+double number_of_cv(const AssessmentRecord& said, std::string_view name, Eigen::Index row);
+/// "gain of y2/u1 x 0.62 (0.55 to 0.7)"
+std::string mismatch_sentence(const Study& study, const NamedMismatch& named);
+/// First and last stamp of a window of the study.
+std::string window_text(const RecordAssessment& assessment, int window);
+
+}  // namespace mpm

@@ -1,0 +1,539 @@
+#include "results/records/plant_record_file.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/findings/monitored_loop.hpp"
+#include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+#include "results/records/csv_columns.hpp"
+#include "results/records/time_stamps.hpp"
+#include "scenarios/nearest_name.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kMostSamples = 1e6;
+constexpr double kWorthSaying = 0.05;  // share of missing samples
+constexpr double kSecondsOfHour = 3600.0;
+constexpr std::size_t kColumnsShown = 20;
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool is_one_of(const std::string& cell, const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), [cell = in_lower_case(cell)](const std::string& word) {
+    return in_lower_case(word) == cell;
+  });
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.3g} %", 100.0 * share);
+}
+
+/// What the names of a DataOptions group say of a variable; none: nothing.
+template <class Value>
+std::optional<Value> named(const std::map<std::string, Value>& group, const std::string& variable) {
+  const auto found = group.find(variable);
+  return found == group.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// A signal of the file on its own time stamps.
+using Signal = std::vector<double>;
+
+class RecordReader {
+ public:
+  RecordReader(const Study& study, std::string_view text, const std::string& file)
+      : study_(study), data_(study.data), csv_(parse_csv(text, file, data_.separator)), decimal_(decimal()) {
+    read_times();
+    choose_samples();
+  }
+
+  PlantRecord record() {
+    const auto& [cvs, mvs, mds] = std::tie(study_.plant.cvs, study_.plant.mvs, study_.plant.mds);
+    record_.y = group(cvs, [&](const std::string& name) { return cv(name); });
+    record_.u = group(mvs, [&](const std::string& name) { return input(name, "u"); });
+    record_.d = group(mds, [&](const std::string& name) { return input(name, "d"); });
+    record_.u_target = group(
+        mvs, [&](const std::string& name) { return companion(name, data_.target, "target", "u_target"); });
+    record_.y_set = group(
+        cvs, [&](const std::string& name) { return companion(name, data_.setpoint, "setpoint", "y_set"); });
+    record_.lower =
+        group(cvs, [&](const std::string& name) { return companion(name, data_.lower, "lower"); });
+    record_.upper =
+        group(cvs, [&](const std::string& name) { return companion(name, data_.upper, "upper"); });
+    record_.y_sim =
+        group(cvs, [&](const std::string& name) { return companion(name, data_.y_sim, "y_sim"); });
+    leave_out_without_controller();
+    refuse_missing();
+    if (!data_.benchmark.empty())
+      record_.benchmark = samples_between("benchmark", data_.benchmark);
+    return std::move(record_);
+  }
+
+ private:
+  // --- Cells ---
+
+  std::string where(const std::string& key, const std::string& variable) const {
+    return fmt::format("{}: data.{}.{}", csv_.file, key, variable);
+  }
+
+  /// "," where numbers are written so: known of the separators ; and tab when a cell has one and no point.
+  char decimal() const {
+    if (!data_.decimal.empty())
+      return data_.decimal.front();
+    std::size_t commas = 0, points = 0;
+    for (const auto& column : csv_.columns)
+      for (const std::string& cell : column) {
+        const bool digits = cell.find_first_not_of("+-0123456789.,eE") == std::string::npos;
+        commas += digits && std::count(cell.begin(), cell.end(), ',') == 1 ? 1 : 0;
+        points += digits && std::count(cell.begin(), cell.end(), '.') == 1 ? 1 : 0;
+      }
+    return commas > points ? ',' : '.';
+  }
+
+  std::optional<double> number(std::string cell) const {
+    if (decimal_ == ',')
+      std::replace(cell.begin(), cell.end(), ',', '.');
+    const std::size_t sign = cell.starts_with('+') ? 1 : 0;
+    double value = 0.0;
+    const char* const end = cell.data() + cell.size();
+    const auto [last, error] = std::from_chars(cell.data() + sign, end, value);
+    return error == std::errc() && last == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
+
+  std::optional<std::size_t> column_of(const std::string& name) const {
+    std::optional<std::size_t> found;
+    for (std::size_t column = 0; column < csv_.names.size(); ++column)
+      if (csv_.names[column] == name) {
+        if (found)
+          throw InputError(fmt::format("{}: column '{}'", csv_.file, name), "two columns of this name",
+                           "one: rename the other");
+        found = column;
+      }
+    for (std::size_t column = 0; column < csv_.names.size() && !found; ++column)
+      if (in_lower_case(csv_.names[column]) == in_lower_case(name))
+        found = column;
+    return found;
+  }
+
+  std::string columns_text() const {
+    std::vector<std::string> shown(
+        csv_.names.begin(),
+        csv_.names.begin() + static_cast<std::ptrdiff_t>(std::min(csv_.names.size(), kColumnsShown)));
+    if (shown.size() < csv_.names.size())
+      shown.push_back(fmt::format("{} more", csv_.names.size() - shown.size()));
+    return fmt::format("one of the columns {}", fmt::join(shown, ", "));
+  }
+
+  /// The column of this tag, which must be there.
+  std::size_t tagged_column(const std::string& place, const std::string& tag) const {
+    if (const auto column = column_of(tag))
+      return *column;
+    const std::string nearest = nearest_name(tag, csv_.names);
+    throw InputError(
+        place,
+        fmt::format("no column '{}'{}", tag, nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)),
+        columns_text());
+  }
+
+  /// Columns that the export of this program or a person may have: "xD", "y.xD".
+  std::size_t variable_column(const std::string& variable, const char* prefix) const {
+    if (const auto tag = named(data_.tags, variable))
+      return tagged_column(where("tags", variable), *tag);
+    if (const auto exported = column_of(fmt::format("{}.{}", prefix, variable)))
+      return *exported;
+    if (const auto column = column_of(variable))
+      return *column;
+    return tagged_column(where("tags", variable), variable);
+  }
+
+  /// The numbers of a column in the study's unit; NaN where there is none.
+  Signal numbers(std::size_t column, const std::string& variable) {
+    const double zero = named(data_.operating_point, variable).value_or(0.0);
+    const double scale = named(data_.scale, variable).value_or(1.0);
+    Signal signal(csv_.rows(), kNaN);
+    std::size_t texts = 0, first_text = 0, filled = 0;
+    for (std::size_t row = 0; row < csv_.rows(); ++row) {
+      const std::string& cell = csv_.columns[column][row];
+      if (const auto value = number(cell))
+        signal[row] = scale * (*value - zero);
+      else if (!cell.empty() && texts++ == 0)
+        first_text = row;
+      filled += cell.empty() ? 0 : 1;
+    }
+    const std::string name = csv_.names[column];
+    const std::string text = texts == 0 ? "" : csv_.columns[column][first_text].substr(0, 40);
+    if (texts == filled)
+      throw InputError(fmt::format("{}: column '{}', for {}", csv_.file, name, variable),
+                       texts == 0 ? std::string("no value") : fmt::format("no number, but '{}'", text),
+                       decimal_ == '.' ? "numbers with a decimal point; data.decimal = \",\" for commas"
+                                       : "numbers with a decimal comma; data.decimal = \".\" for points");
+    if (texts > 0)
+      record_.warnings.push_back(fmt::format(
+          "column '{}': {} cells are no numbers and count as missing, the first is '{}' in line {}", name,
+          texts, text, csv_.lines[first_text]));
+    return signal;
+  }
+
+  void drop_bad_quality(const std::string& variable, Signal& signal) {
+    const auto tag = named(data_.quality, variable);
+    if (!tag)
+      return;
+    const std::size_t column = tagged_column(where("quality", variable), *tag);
+    std::size_t bad = 0;
+    for (std::size_t row = 0; row < signal.size(); ++row)
+      if (!is_one_of(csv_.columns[column][row], data_.good_quality)) {
+        signal[row] = kNaN;
+        ++bad;
+      }
+    if (bad == signal.size())
+      throw InputError(
+          where("quality", variable),
+          fmt::format("no row of good quality, but '{}'", csv_.columns[column].front().substr(0, 40)),
+          fmt::format("one of data.good_quality: {}", fmt::join(data_.good_quality, ", ")));
+  }
+
+  // --- Time ---
+
+  std::optional<std::size_t> time_column() const {
+    if (!data_.time.empty())
+      return tagged_column(csv_.file + ": data.time", data_.time);
+    for (const char* usual : {"time", "timestamp", "datetime", "date", "t"})
+      if (const auto column = column_of(usual))
+        return column;
+    return std::nullopt;
+  }
+
+  /// Time units of the plant in one unit of the stamps.
+  double unit_of_stamps(bool calendar) const {
+    const std::string& of_plant = study_.plant.time_unit;
+    const std::string of_stamps = calendar ? "s" : data_.time_unit.empty() ? of_plant : data_.time_unit;
+    if (of_stamps == of_plant)
+      return 1.0;
+    const std::optional<double> plant_days = days_in(of_plant);
+    if (!plant_days)
+      throw InputError(fmt::format("{}: time stamps", csv_.file),
+                       fmt::format("dates, or data.time_unit, and the time unit '{}' of the plant", of_plant),
+                       "plant.time_unit s, min, h or d, or stamps that are numbers in its unit");
+    return *days_in(of_stamps) / *plant_days;
+  }
+
+  void read_times() {
+    const auto column = time_column();
+    if (!column) {
+      unit_ = 1.0;
+      for (std::size_t row = 0; row < csv_.rows(); ++row)
+        times_.push_back(static_cast<double>(row) * study_.controller.sample_time);
+      record_.warnings.push_back(
+          fmt::format("no column of time stamps (data.time): each row is taken as one sample of {:g} {}",
+                      study_.controller.sample_time, study_.plant.time_unit));
+      return;
+    }
+    const std::string place = fmt::format("{}: column '{}'", csv_.file, csv_.names[*column]);
+    TimeStamps stamps =
+        parse_time_stamps({place, csv_.columns[*column], csv_.lines}, data_.date_order, decimal_);
+    calendar_ = stamps.calendar;
+    unit_ = unit_of_stamps(calendar_);
+    times_ = std::move(stamps.times);
+    drop_rows_without_stamp();
+    require_order(place);
+  }
+
+  void keep_rows(const std::vector<std::size_t>& rows) {
+    const auto kept = [&](const auto& values) {
+      std::remove_cvref_t<decltype(values)> picked;
+      for (const std::size_t row : rows)
+        picked.push_back(values[row]);
+      return picked;
+    };
+    for (auto& column : csv_.columns)
+      column = kept(column);
+    csv_.lines = kept(csv_.lines);
+    times_ = kept(times_);
+  }
+
+  void drop_rows_without_stamp() {
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < times_.size(); ++row)
+      if (!std::isnan(times_[row]))
+        rows.push_back(row);
+    if (rows.empty())
+      throw InputError(csv_.file + ": time stamps", "none", "a stamp in each row");
+    if (rows.size() < times_.size()) {
+      record_.warnings.push_back(
+          fmt::format("{} rows without a time stamp are left out", times_.size() - rows.size()));
+      keep_rows(rows);
+    }
+  }
+
+  std::string stamp_text(double time) const {
+    return calendar_ ? date_text(time) : fmt::format("{:g}", time);
+  }
+
+  void require_order(const std::string& place) {
+    if (times_.size() > 1 && std::is_sorted(times_.rbegin(), times_.rend()) &&
+        times_.front() > times_.back()) {
+      std::vector<std::size_t> rows(times_.size());
+      for (std::size_t row = 0; row < rows.size(); ++row)
+        rows[row] = rows.size() - 1 - row;
+      keep_rows(rows);
+      record_.warnings.push_back("the newest row stands first: the rows are turned round");
+    }
+    std::size_t doubles = 0;
+    for (std::size_t row = 1; row < times_.size(); ++row) {
+      const double step = times_[row] - times_[row - 1];
+      doubles += step == 0.0 ? 1 : 0;
+      if (step < 0.0)
+        refuse_step_back(place, row);
+      if (calendar_ && is_spring_forward(row))
+        record_.warnings.push_back(fmt::format(
+            "an hour is missing from {} to {}: if the stamps are local time and the clock was put forward "
+            "there, nothing is missing in truth: export them in UTC or with their offset (+01:00)",
+            stamp_text(times_[row - 1]), stamp_text(times_[row])));
+    }
+    if (doubles > 0)
+      record_.warnings.push_back(
+          fmt::format("{} rows have the time stamp of the row before them; a CV is their mean, everything "
+                      "else the last one",
+                      doubles));
+  }
+
+  [[noreturn]] void refuse_step_back(const std::string& place, std::size_t row) const {
+    const double usual = row > 1 ? times_[row - 1] - times_[row - 2] : 0.0;
+    const double back = times_[row - 1] - times_[row];
+    const bool clock = calendar_ && back <= kSecondsOfHour && back + usual >= kSecondsOfHour * 0.99;
+    throw InputError(
+        fmt::format("{}, line {}", place, csv_.lines[row]),
+        fmt::format("{} after {}", stamp_text(times_[row]), stamp_text(times_[row - 1])),
+        clock ? "stamps that do not go back by an hour, as local time does when the clock is put back: "
+                "export them in UTC, or with their offset (2024-10-27T02:30:00+02:00)"
+              : "stamps in ascending order: sort the rows, and leave out what was recorded twice");
+  }
+
+  /// Is exactly one hour missing in the night, as when the clock is put forward?
+  bool is_spring_forward(std::size_t row) const {
+    const double step = times_[row] - times_[row - 1];
+    const double usual = row > 1 ? times_[row - 1] - times_[row - 2] : 0.0;
+    const double hour = std::fmod(times_[row], 86400.0) / kSecondsOfHour;
+    return usual > 0.0 && usual < kSecondsOfHour && std::abs(step - usual - kSecondsOfHour) < 1.0 &&
+           hour >= 2.0 && hour < 4.0;
+  }
+
+  /// Rows of a period of data.NAME, in stamps as the file has them.
+  std::pair<double, double> between(const char* key, const std::vector<std::string>& period) const {
+    const std::string place = fmt::format("data.{}", key);
+    const std::vector<std::size_t> no_lines{0, 0};
+    DateOrder order = data_.date_order;
+    const TimeStamps stamps = parse_time_stamps({place, period, no_lines}, order, decimal_);
+    if (stamps.calendar != calendar_ || !(stamps.times[0] < stamps.times[1]))
+      throw InputError(place, fmt::format("[{}, {}]", period[0], period[1]),
+                       fmt::format("two stamps of the form of the file, ascending, between {} and {}",
+                                   stamp_text(times_.front()), stamp_text(times_.back())));
+    return {stamps.times[0], stamps.times[1]};
+  }
+
+  /// The grid: sample k at first_ + k Ts.
+  void choose_samples() {
+    double last = times_.back();
+    first_ = times_.front();
+    if (!data_.period.empty()) {
+      const auto [from, to] = between("period", data_.period);
+      first_ = std::max(first_, from);
+      last = std::min(last, to);
+    }
+    sample_ = study_.controller.sample_time / unit_;
+    const double count = std::floor((last - first_) / sample_ + 1e-6) + 1.0;
+    if (!(count >= 2.0 && count <= kMostSamples))
+      throw InputError(
+          fmt::format("{}: time stamps", csv_.file),
+          fmt::format("{} to {}, {:.0f} samples of {:g} {}", stamp_text(first_), stamp_text(last),
+                      std::max(count, 0.0), study_.controller.sample_time, study_.plant.time_unit),
+          "2 to 1000000 samples of the controller: look at the stamps, data.time_unit, data.period");
+    samples_ = static_cast<Eigen::Index>(count);
+    for (Eigen::Index k = 0; k < samples_; ++k)
+      record_.stamps.push_back(stamp_text(at(k)));
+  }
+
+  double at(Eigen::Index k) const { return first_ + static_cast<double>(k) * sample_; }
+
+  /// The sample to which a time belongs.
+  Eigen::Index nearest_sample(double time) const {
+    return static_cast<Eigen::Index>(std::floor((time - first_) / sample_ + 0.5));
+  }
+
+  std::pair<Eigen::Index, Eigen::Index> samples_between(const char* key,
+                                                        const std::vector<std::string>& period) const {
+    const auto [from, to] = between(key, period);
+    const Eigen::Index first = std::clamp<Eigen::Index>(nearest_sample(from), 0, samples_);
+    const Eigen::Index end = std::clamp<Eigen::Index>(nearest_sample(to) + 1, 0, samples_);
+    if (first >= end)
+      throw InputError(
+          fmt::format("data.{}", key), fmt::format("[{}, {}]", period[0], period[1]),
+          fmt::format("a period between {} and {}", record_.stamps.front(), record_.stamps.back()));
+    return {first, end};
+  }
+
+  // --- Samples ---
+
+  /// One row a variable: of(name) of each.
+  template <class Of>
+  Eigen::MatrixXd group(const std::vector<PlantModel::Variable>& variables, Of of) const {
+    Eigen::MatrixXd signals(static_cast<Eigen::Index>(variables.size()), samples_);
+    for (std::size_t i = 0; i < variables.size(); ++i)
+      signals.row(static_cast<Eigen::Index>(i)) = of(variables[i].name);
+    return signals;
+  }
+
+  Eigen::RowVectorXd measured(const Signal& signal) const {
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(samples_), count = sum;
+    Eigen::RowVectorXd distance = Eigen::RowVectorXd::Constant(samples_, kInfinity);
+    const bool mean = data_.cv_resampling == CvResampling::mean;
+    for (std::size_t row = 0; row < signal.size(); ++row) {
+      const Eigen::Index k = nearest_sample(times_[row]);
+      if (k < 0 || k >= samples_ || std::isnan(signal[row]))
+        continue;
+      const double off = std::abs(times_[row] - at(k));
+      if (!mean && off >= distance(k))
+        continue;
+      sum(k) = mean ? sum(k) + signal[row] : signal[row];
+      count(k) = mean ? count(k) + 1.0 : 1.0;
+      distance(k) = off;
+    }
+    return (count.array() > 0.0).select(sum.array() / count.array(), kNaN);
+  }
+
+  /// The last value up to half a sample time after each sample; what is missing at the start is the first
+  /// value.
+  Eigen::RowVectorXd held(const Signal& signal) const {
+    Eigen::RowVectorXd values = Eigen::RowVectorXd::Constant(samples_, kNaN);
+    double last = kNaN;
+    std::size_t row = 0;
+    for (Eigen::Index k = 0; k < samples_; ++k) {
+      for (; row < signal.size() && times_[row] < at(k) + 0.5 * sample_; ++row)
+        last = std::isnan(signal[row]) ? last : signal[row];
+      values(k) = last;
+    }
+    for (Eigen::Index k = samples_ - 2; k >= 0; --k)
+      if (std::isnan(values(k)))
+        values(k) = values(k + 1);
+    return values;
+  }
+
+  Eigen::RowVectorXd cv(const std::string& name) {
+    Signal signal = numbers(variable_column(name, "y"), name);
+    drop_bad_quality(name, signal);
+    return measured(signal);
+  }
+
+  Eigen::RowVectorXd input(const std::string& name, const char* prefix) {
+    Signal signal = numbers(variable_column(name, prefix), name);
+    drop_bad_quality(name, signal);
+    const double missing = measured(signal).array().isNaN().cast<double>().mean();
+    refuse_missing(name, missing);
+    if (missing > kWorthSaying)
+      record_.warnings.push_back(fmt::format(
+          "{} is missing in {} of the samples and held there: check that it was recorded only on change",
+          name, percent(missing)));
+    return held(signal);
+  }
+
+  /// A signal that belongs to a variable and may be left out.
+  Eigen::RowVectorXd companion(const std::string& variable, const DataOptions::Names& tags, const char* key,
+                               const char* exported = "") {
+    const auto tag = named(tags, variable);
+    const auto column =
+        tag ? tagged_column(where(key, variable), *tag) : column_of(fmt::format("{}.{}", exported, variable));
+    return column ? held(numbers(*column, variable)) : Eigen::RowVectorXd::Constant(samples_, kNaN);
+  }
+
+  void leave_out_without_controller() {
+    if (data_.controller_on.empty())
+      return;
+    const std::size_t column = tagged_column(csv_.file + ": data.controller_on", data_.controller_on);
+    Signal on;
+    for (const std::string& cell : csv_.columns[column]) {
+      const auto value = number(cell);
+      const bool numeric = value && is_one_of(fmt::format("{:g}", *value), data_.on_values);
+      on.push_back(cell.empty() ? kNaN : numeric || is_one_of(cell, data_.on_values) ? 1.0 : 0.0);
+    }
+    const Eigen::RowVectorXd is_on = held(on);
+    const double off = (is_on.array() != 1.0).cast<double>().mean();
+    if (off == 1.0)
+      throw InputError(
+          csv_.file + ": data.controller_on",
+          fmt::format("'{}' throughout", csv_.columns[column].front().substr(0, 40)),
+          fmt::format("a period with one of data.on_values: {}", fmt::join(data_.on_values, ", ")));
+    if (off > 0.0)
+      record_.warnings.push_back(
+          fmt::format("the controller is off in {} of the samples: they are not judged", percent(off)));
+    for (Eigen::Index k = 0; k < samples_; ++k)
+      if (is_on(k) != 1.0)
+        record_.y.col(k).setConstant(kNaN);
+  }
+
+  void refuse_missing(const std::string& name, double missing) const {
+    if (missing > data_.most_missing)
+      throw InputError(
+          fmt::format("{}: {}", csv_.file, name), fmt::format("{} of its samples missing", percent(missing)),
+          fmt::format("at most {} (data.most_missing): choose another period (data.period), export a value "
+                      "at least every {:g} {}, or raise data.most_missing",
+                      percent(data_.most_missing), study_.controller.sample_time, study_.plant.time_unit));
+  }
+
+  void refuse_missing() {
+    for (Eigen::Index cv = 0; cv < record_.y.rows(); ++cv) {
+      const std::string& name = study_.plant.cvs[static_cast<std::size_t>(cv)].name;
+      const double missing = record_.y.row(cv).array().isNaN().cast<double>().mean();
+      refuse_missing(name, missing);
+      if (missing > kWorthSaying)
+        record_.warnings.push_back(
+            fmt::format("{} is missing in {} of the samples: methods that need every sample do not apply",
+                        name, percent(missing)));
+    }
+  }
+
+  const Study& study_;
+  const DataOptions& data_;
+  CsvColumns csv_;
+  char decimal_;
+  bool calendar_ = false;
+  double unit_ = 1.0;          ///< time units of the plant in one of the stamps
+  std::vector<double> times_;  ///< of the rows, unit of the stamps
+  double first_ = 0.0;         ///< of the samples, unit of the stamps
+  double sample_ = 1.0;        ///< sample time, unit of the stamps
+  Eigen::Index samples_ = 0;
+  PlantRecord record_;
+};
+
+}  // namespace
+
+PlantRecord read_plant_record(const Study& study, std::string_view text, const std::string& file) {
+  return RecordReader(study, text, file).record();
+}
+
+PlantRecord load_plant_record(const Study& study, const std::filesystem::path& path) {
+  std::error_code no_status;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(path, no_status))
+    throw InputError(path.string(), "no file that can be read",
+                     "a CSV file of records (docs/own_records.md)");
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return read_plant_record(study, text, path.filename().string());
+}
+
+}  // namespace mpm

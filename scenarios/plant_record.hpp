@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+/// The records of a plant on the samples of the controller of a study, in the study's units and as deviations
+/// from the operating point: what a file of records says under the [data] of the study.
+///
+/// | symbol   | member       | shape  | meaning                                                         |
+/// |----------|--------------|--------|-----------------------------------------------------------------|
+/// | y        | y            | ny x N | CVs; NaN where missing, of bad quality, or without the controller |
+/// | u, d     | u, d         | nu x N, nd x N | MVs and MDs, gaps held; no NaN                          |
+/// | u_target | u_target     | nu x N | targets of MVs; NaN in a row without a column                   |
+/// | y_set    | y_set        | ny x N | setpoints; NaN in a row without a column                        |
+/// |          | lower, upper | ny x N | soft limits; NaN in a row without a column                      |
+/// | y_sim    | y_sim        | ny x N | output of the model; NaN in a row without a column              |
+struct PlantRecord {
+  Eigen::MatrixXd y, u, d, u_target, y_set, lower, upper, y_sim;
+  std::vector<std::string> stamps;  ///< of the samples, for people
+  /// First sample of the benchmark period and the one after its last; equal: there is none.
+  std::pair<Eigen::Index, Eigen::Index> benchmark{0, 0};
+  std::vector<std::string> warnings;  ///< a sentence each
+
+  Eigen::Index samples() const { return y.cols(); }
+};
+
+}  // namespace mpm
