@@ -129,7 +129,7 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
   refuse_short_record(study, record);
   const std::string name = fmt::format("{} under the record", study.name);
   toml::table text = parse_toml(study.source, name);
-  for (const char* key : {"data", "s0_perturbation", "calibration", "reference", "monitoring", "record"})
+  for (const char* key : {"data", "s0_perturbation", "calibration", "reference", "monitoring"})
     text.erase(key);
   if (study.names_scenarios()) {
     text.erase("scenario");
@@ -153,8 +153,11 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
   if (!limits.empty())
     simulation.insert_or_assign("limit_step", std::move(limits));
 
+  toml::table& historian = table_in(text, "record");
+  historian.erase("missing");
+  historian.erase("candidates");
   if (record.y.array().isNaN().cast<double>().mean() > kFewestMissing)
-    table_in(text, "record").insert_or_assign("missing", missing_of(record.y));
+    historian.insert_or_assign("missing", missing_of(record.y));
   table_in(text, "diagnosis").insert_or_assign("self_check", "none");
   if (monitoring)
     text.insert_or_assign("monitoring",

@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-constexpr double kFarFromZero = 20.0;  // standard deviations
+constexpr double kFarFromZero = 8.0;   // standard deviations
 constexpr double kOftenBeyond = 0.05;  // of the samples
 constexpr double kFrozenShare = 0.1;
 constexpr Eigen::Index kFrozenSamples = 20;
@@ -84,32 +84,34 @@ double recorded_mean(const Study& study, const RecordedVariable& variable) {
 
 void check_absolute(const Study& study, const std::vector<RecordedVariable>& variables,
                     std::vector<std::string>& warnings) {
-  std::vector<std::string> means, found;
+  std::vector<std::string> found;
   for (const RecordedVariable& variable : variables) {
     if (!is_far_off(variable))
       continue;
-    const double mean = recorded_mean(study, variable);
     const std::string range =
         variable.is_limited() ? fmt::format("hard limits [{:g}, {:g}]", variable.lower, variable.upper)
                               : fmt::format("standard deviation {:.3g}", deviation_of(variable.present()));
-    if (study.data.operating_point.contains(variable.name)) {
+    if (study.data.operating_point.contains(variable.name))
       warnings.push_back(
           fmt::format("{} is {:.4g} from its operating point on average ({}): look at data.operating_point "
                       "and data.scale",
                       variable.name, variable.present().mean(), range));
-      continue;
-    }
-    found.push_back(fmt::format("{} with mean {:.6g} ({})", variable.name, mean, range));
-    means.push_back(fmt::format("{} = {:.6g}", variable.name, mean));
+    else
+      found.push_back(
+          fmt::format("{} with mean {:.6g} ({})", variable.name, recorded_mean(study, variable), range));
   }
-  if (!found.empty())
-    throw InputError(
-        "record", fmt::format("what looks like absolute values: {}", fmt::join(found, ", ")),
-        fmt::format("deviations from the operating point of the study, which [data] of the study file makes "
-                    "of absolute values; the means of the record are\n"
-                    "  operating_point = {{{}}}\n"
-                    "(a unit that differs belongs to data.scale)",
-                    fmt::join(means, ", ")));
+  if (found.empty())
+    return;
+  std::vector<std::string> means;
+  for (const RecordedVariable& variable : variables)
+    means.push_back(fmt::format("{} = {:.6g}", variable.name, recorded_mean(study, variable)));
+  throw InputError(
+      "record", fmt::format("what looks like absolute values: {}", fmt::join(found, ", ")),
+      fmt::format("deviations from the operating point of the study, which [data] of the study file makes of "
+                  "absolute values. If the plant was there on average, with the means of the record:\n"
+                  "  [data]\n  operating_point = {{{}}}\n"
+                  "Of a variable that is recorded as a deviation it is 0; another unit belongs to data.scale",
+                  fmt::join(means, ", ")));
 }
 
 void check_movement(const std::vector<RecordedVariable>& variables, std::vector<std::string>& warnings) {

@@ -19,7 +19,7 @@ namespace mpm {
 ///
 /// Errors: InputError for what makes every verdict nonsense: a CV that never changes, two variables with the
 /// same values, and absolute values where the study has deviations: a mean beyond the range of the hard
-/// limits by more than its width, or, without limits, above 20 standard deviations. Its text has the means,
+/// limits by more than its width, or, without limits, above 8 standard deviations. Its text has the means,
 /// to be pasted as data.operating_point; a variable that has one there is warned of only.
 std::vector<std::string> check_record(const Study& study, const PlantRecord& record);
 

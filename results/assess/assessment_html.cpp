@@ -90,7 +90,7 @@ std::string trust_html(const RecordAssessment& of) {
        {"source"},
        {"false alarms"},
        {"power"},
-       {"power, with impact"},
+
        {"right CV"},
        {"right source"}});
   for (std::size_t m = 0; m < of.said.size(); ++m) {
@@ -101,8 +101,8 @@ std::string trust_html(const RecordAssessment& of) {
                said.answered() ? word(said.flagged ? 1.0 : 0.0) : html_text(to_string(said.status)),
                flagged ? html_text(cv_name(of.study, said.predicted_cv)) : "&ndash;",
                flagged ? html_text(source_name(named_source(said))) : "&ndash;",
-               rate_html(rates.false_alarm_healthy), rate_html(rates.detected),
-               rate_html(rates.detected_impact), rate_html(rates.located), rate_html(rates.source)});
+               rate_html(rates.false_alarm_healthy), rate_html(rates.detected), rate_html(rates.located),
+               rate_html(rates.source)});
   }
   return table.html() +
          fmt::format(
@@ -127,9 +127,9 @@ Figure record_figure(const RecordAssessment& of) {
 }  // namespace
 
 std::string assessment_html(const RecordAssessment& assessment) {
-  const std::string body = section("verdict", "The verdict", list_html(verdict_sentences(assessment))) +
-                           section("warnings", "Look at these first",
+  const std::string body = section("warnings", "Look at these first",
                                    assessment.warnings.empty() ? "" : list_html(assessment.warnings)) +
+                           section("verdict", "The verdict", list_html(verdict_sentences(assessment))) +
                            section("cvs", "What it costs", cvs_html(assessment)) +
                            section("repair", "What a repair would bring", repair_html(assessment)) +
                            section("windows", "Over time", windows_html(assessment)) +

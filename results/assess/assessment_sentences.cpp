@@ -104,7 +104,7 @@ void add_trust(const RecordAssessment& of, Sentences& sentences) {
       of.trial->loops, of.verdict().form->method().name, share(rates.false_alarm_healthy),
       share(rates.detected), share(rates.detected_impact));
   if (rates.source.total > 0)
-    text += fmt::format("; it named the right source in {}", share(rates.source));
+    text += fmt::format("; of one fault alone it named the right source in {}", share(rates.source));
   if (rates.located.total > 0)
     text += fmt::format(", the right CV in {}", share(rates.located));
   sentences.push_back(text + ".");

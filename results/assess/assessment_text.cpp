@@ -55,14 +55,16 @@ std::string assessment_text(const RecordAssessment& assessment) {
       fmt::format("{}: {} samples of {:g} {}, {} to {}\n\n", assessment.file, assessment.record.samples(),
                   assessment.study.controller.sample_time, assessment.study.plant.time_unit,
                   assessment.record.stamps.front(), assessment.record.stamps.back());
+  for (const std::string& warning : assessment.warnings)
+    text += fmt::format("warning: {}\n", warning);
+  if (!assessment.warnings.empty())
+    text += "\n";
   for (const std::string& sentence : verdict_sentences(assessment))
     text += fmt::format("{}\n", sentence);
   text += fmt::format("\n{}{}", methods_table(assessment), windows_table(assessment));
   for (const AssessmentRecord& said : assessment.said)
     if (!said.answered())
       text += fmt::format("{}: {}\n", said.form->method().name, said.reason);
-  for (const std::string& warning : assessment.warnings)
-    text += fmt::format("warning: {}\n", warning);
   return text;
 }
 

@@ -248,6 +248,7 @@ class RecordReader {
     TimeStamps stamps =
         parse_time_stamps({place, csv_.columns[*column], csv_.lines}, data_.date_order, decimal_);
     calendar_ = stamps.calendar;
+    local_ = stamps.calendar && !stamps.offsets;
     unit_ = unit_of_stamps(calendar_);
     times_ = std::move(stamps.times);
     drop_rows_without_stamp();
@@ -300,11 +301,13 @@ class RecordReader {
       doubles += step == 0.0 ? 1 : 0;
       if (step < 0.0)
         refuse_step_back(place, row);
-      if (calendar_ && is_spring_forward(row))
-        record_.warnings.push_back(fmt::format(
-            "an hour is missing from {} to {}: if the stamps are local time and the clock was put forward "
-            "there, nothing is missing in truth: export them in UTC or with their offset (+01:00)",
-            stamp_text(times_[row - 1]), stamp_text(times_[row])));
+      if (local_ && is_spring_forward(row))
+        throw InputError(
+            fmt::format("{}, line {}", place, csv_.lines[row]),
+            fmt::format("{} after {}, an hour too late at night", stamp_text(times_[row]),
+                        stamp_text(times_[row - 1])),
+            "stamps that no clock is put forward in: export them in UTC (with Z, also where the hour is "
+            "missing in truth), or with their offset (2024-03-31T03:00:00+02:00)");
     }
     if (doubles > 0)
       record_.warnings.push_back(
@@ -512,6 +515,7 @@ class RecordReader {
   CsvColumns csv_;
   char decimal_;
   bool calendar_ = false;
+  bool local_ = false;         ///< dates without an offset
   double unit_ = 1.0;          ///< time units of the plant in one of the stamps
   std::vector<double> times_;  ///< of the rows, unit of the stamps
   double first_ = 0.0;         ///< of the samples, unit of the stamps

@@ -25,6 +25,7 @@ constexpr const char* kForms =
 struct WrittenDate {
   int first = 0, second = 0, third = 0;
   double seconds = 0.0;  ///< since midnight, the offset taken off
+  bool offset = false;   ///< it had one
 };
 
 std::optional<double> number_in(std::string cell, char decimal) {
@@ -63,6 +64,7 @@ std::optional<WrittenDate> date_in(const std::string& cell) {
                         (part[7].matched ? std::stod(fmt::format("0.{}", part[7].str())) : 0.0);
   if (hour > 24 || minute > 59 || second > 60.0)
     return std::nullopt;
+  date.offset = part[9].matched;
   date.seconds = 3600.0 * hour + 60.0 * minute + second - offset_of(part[9]);
   return date;
 }
@@ -133,9 +135,11 @@ TimeStamps parse_time_stamps(const StampSource& source, DateOrder order, char de
   if (!stamps.calendar)
     return stamps;
   const DateOrder of_all = order == DateOrder::automatic ? shown_order(source, dates) : order;
+  stamps.offsets = true;
   for (std::size_t row = 0; row < dates.size(); ++row) {
     if (!dates[row])
       continue;
+    stamps.offsets = stamps.offsets && dates[row]->offset;
     const std::optional<double> days = days_of(*dates[row], of_all);
     if (!days)
       refuse_stamp(source, row, "a day that there is, in the order data.date_order");

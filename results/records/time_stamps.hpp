@@ -11,6 +11,7 @@ namespace mpm {
 /// The time stamps of a file of records.
 struct TimeStamps {
   bool calendar = false;      ///< dates; otherwise numbers
+  bool offsets = false;       ///< dates of which each has its offset from UTC
   std::vector<double> times;  ///< in s since 1970 of dates, as they stand of numbers; NaN: no stamp
 };
 
