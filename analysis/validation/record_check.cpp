@@ -232,19 +232,22 @@ class ExchangeSearch {
             "valve that closes where the model has it open",
             study_.plant.mvs[static_cast<std::size_t>(mv)].name));
     }
-    for (Eigen::Index cv = 0; cv < record_.y.rows() && found_.empty(); ++cv)
-      if (const double share =
-              explained(Eigen::RowVectorXd(record_.y.row(cv)), Eigen::RowVectorXd(y_sim_.row(cv)));
-          share < kNothing)
-        none_.push_back(study_.plant.cvs[static_cast<std::size_t>(cv)].name);
-    if (!none_.empty())
+    if (found_.empty() && explains_nothing())
       found_.push_back(
-          fmt::format("the model explains nothing of {}: a large fault, or a wrong tag, unit or time stamp",
-                      fmt::join(none_, ", ")));
+          "the model explains nothing of any CV: wrong tags, units, operating point or time stamps, or "
+          "faults "
+          "larger than all that is right");
     return std::move(found_);
   }
 
  private:
+  bool explains_nothing() const {
+    for (Eigen::Index cv = 0; cv < record_.y.rows(); ++cv)
+      if (explained(Eigen::RowVectorXd(record_.y.row(cv)), Eigen::RowVectorXd(y_sim_.row(cv))) >= kNothing)
+        return false;
+    return true;
+  }
+
   template <class Swapped>
   void pairs(const std::vector<PlantModel::Variable>& variables, Swapped swapped) {
     for (std::size_t a = 0; a < variables.size(); ++a)
@@ -260,7 +263,7 @@ class ExchangeSearch {
   const PlantRecord& record_;
   Eigen::MatrixXd y_sim_;
   double explained_;
-  std::vector<std::string> found_, none_;
+  std::vector<std::string> found_;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace mpm {
 ///
 /// - a CV, MV or MD beyond its hard limits for more than 5 % of the samples: a unit, or another limit
 /// - a CV that stays at one value for more than a tenth of the record: a frozen instrument
-/// - an MV or MD that never moves, a CV against a model that explains nothing of it
+/// - an MV or MD that never moves, a model that explains nothing of any CV
 /// - two columns that are exchanged, or an MV with the wrong sign: y_sim = G0 (u, d) explains far more of the
 ///   CVs when they are turned round. Explained is 1 - var(y - y_sim) / var(y), not below -1, and far more is
 ///   0.8 in the sum over the CVs

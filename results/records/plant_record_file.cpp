@@ -64,7 +64,7 @@ class RecordReader {
   }
 
   PlantRecord record() {
-    const auto& [cvs, mvs, mds] = std::tie(study_.plant.cvs, study_.plant.mvs, study_.plant.mds);
+    const auto &cvs = study_.plant.cvs, &mvs = study_.plant.mvs, &mds = study_.plant.mds;
     record_.y = group(cvs, [&](const std::string& name) { return cv(name); });
     record_.u = group(mvs, [&](const std::string& name) { return input(name, "u"); });
     record_.d = group(mds, [&](const std::string& name) { return input(name, "d"); });

@@ -98,7 +98,15 @@ std::string random_study_text() {
       "multipliers = [0.25";
   for (int i = 1; i < 80; ++i)
     text += ", " + std::to_string(0.25 + 0.1 * i) + (i % 30 == 0 ? "\n" : "");
-  text += "]\n[monitoring]\nwindow = 30\nstride = 7\n[calibration]\nhealthy = 50\nseed = 8\n[reference]\n";
+  text +=
+      "]\n[monitoring]\nwindow = 30\nstride = 7\n[calibration]\nhealthy = 50\nseed = 8\n"
+      "[data]\ntime = 'stamp'\ntime_unit = 'h'\ndate_order = 'day-month-year'\nseparator = ';'\ndecimal = "
+      "','\n"
+      "tags = {level = 'LI 1', drain = 'FI 3'}\noperating_point = {heat = 80.5}\nscale = {hot = -2}\n"
+      "setpoint = {level = 'LC 1'}\nlower = {level = 'lo'}\nupper = {heat = 'hi'}\ny_sim = {heat = 'model'}\n"
+      "target = {hot = 'best'}\nquality = {level = 'q'}\ngood_quality = ['ok']\ncontroller_on = 'on'\n"
+      "on_values = ['yes']\ncv_resampling = 'nearest'\nstart = 'rest'\nmost_missing = 0.5\n"
+      "period = ['0', '9']\nbenchmark = ['1', '4']\n[reference]\n";
   for (const std::string& key : study_file_keys("reference"))
     text += "\"" + key + "\" = 0.123\n";
   return text;
@@ -224,7 +232,7 @@ void collect(const toml::table& table, const std::string& name, Keys& keys) {
       for (const toml::node& entry : *list)
         collect(*entry.as_table(), below + "[]", keys);
     const toml::table* const inner = node.as_table();
-    if (inner == nullptr || below == "simulation.noise_standard_deviation")
+    if (inner == nullptr || below == "simulation.noise_standard_deviation" || name == "data")
       continue;
     if (is_known(below + ".NAME"))
       for (const auto& [variable, of_variable] : *inner)

@@ -46,7 +46,8 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
        "top level: found unknown key 'experiment' (nearest: 'experiments'); allowed: study, plant, "
        "controller, "
        "simulation, record, experiments, scenario, mismatch, disturbance, tuning, other, onset, sensitivity, "
-       "s0_perturbation, diagnosis, methods, assessment, monitoring, calibration, aggregate, reference"},
+       "s0_perturbation, diagnosis, methods, assessment, monitoring, calibration, aggregate, data, "
+       "reference"},
       {"seed = 7", "seed = 7\nsed = 8", "sed = 8",
        "study: found unknown key 'sed' (nearest: 'seed'); allowed: name, title, seed"},
       {"sample_time = 1", "sampletime = 1", "sampletime",

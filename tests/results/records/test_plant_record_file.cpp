@@ -1,0 +1,111 @@
+#include <cmath>
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "results/records/csv_columns.hpp"
+#include "results/records/plant_record_file.hpp"
+#include "results/records/time_stamps.hpp"
+#include "scenarios/study_file.hpp"
+#include "tests/scenarios/study_texts.hpp"
+
+// Files of records: their text, their time stamps, and the samples that come of them.
+
+namespace mpm {
+namespace {
+
+using namespace testing;
+
+Study study_with(const std::string& data) {
+  return parse_study(small_study() + "[data]\n" + data, "s.toml");
+}
+
+std::vector<double> times_of(const std::vector<std::string>& cells, DateOrder order = DateOrder::automatic) {
+  const std::vector<std::size_t> lines(cells.size(), 2);
+  return parse_time_stamps({"t", cells, lines}, order, '.').times;
+}
+
+/// A record of the small study in which each variable has a value of its own.
+std::string record_text(const std::vector<std::string>& rows) {
+  std::string text = "time,level,heat,hot,cold,drain\n";
+  for (const std::string& row : rows)
+    text += row + "\n";
+  return text;
+}
+
+TEST_CASE("a CSV text is read as RFC 4180 and spreadsheets have it", "[records]") {
+  const CsvColumns csv = parse_csv(
+      "\xEF\xBB\xBF# made by a historian\r\n\"a;1\" ; b\r\n\r\n1,5;\"say \"\"x\"\"\"\r\n2;\r\n", "f", "");
+  CHECK(csv.separator == ';');
+  CHECK(csv.names == std::vector<std::string>{"a;1", "b"});
+  CHECK(csv.columns == std::vector<std::vector<std::string>>{{"1,5", "2"}, {"say \"x\"", ""}});
+  CHECK(csv.lines == std::vector<std::size_t>{4, 5});
+  CHECK(parse_csv("a|b\n1|2\n", "f", "").separator == '|');
+  CHECK_THROWS_WITH(parse_csv("a,b\n1,2\n3\n", "f", ""),
+                    "f:3: found 1 fields; allowed: 2, as the heading has them");
+  CHECK_THROWS_WITH(parse_csv("1,2\n3,4\n", "f", ""), Catch::Contains("f:1: found numbers"));
+}
+
+TEST_CASE("time stamps are those of the calendar", "[records]") {
+  const double noon = 1709294400.0;  // date -u -d "2024-03-01 12:00" +%s
+  CHECK(times_of({"2024-03-01 12:00", "2024-03-01T12:00:00Z", "2024-03-01T13:00:00+01:00",
+                  "2024-03-01 12:00:00.25"}) == std::vector<double>{noon, noon, noon, noon + 0.25});
+  CHECK(times_of({"01.03.2024 12:00"}) == std::vector<double>{noon});
+  CHECK(times_of({"3/1/2024 12:00 PM", "3/13/2024 12:00 am"}) ==
+        std::vector<double>{noon, noon + 11.5 * 86400.0});
+  CHECK(times_of({"1/3/2024 12:00"}, DateOrder::day_month_year) == std::vector<double>{noon});
+  CHECK(std::isnan(times_of({"1", "", "3"})[1]));
+  CHECK(date_text(noon + 59.9) == "2024-03-01 12:00:59");
+  CHECK_THROWS_WITH(times_of({"2024-02-30"}), Catch::Contains("a day that there is"));
+  CHECK_THROWS_WITH(times_of({"2024-02-28", "5"}), Catch::Contains("stamps of one form"));
+}
+
+TEST_CASE("rows become samples of the controller", "[records]") {
+  const std::string text = record_text({"10,1,5,9,1,7", "10.25,3,5,9,1,7", "11,4,,8,1,7", "13.25,5,6,7,1,7"});
+  const PlantRecord record = read_plant_record(study_with("most_missing = 0.6"), text, "r.csv");
+  REQUIRE(record.samples() == 4);
+  CHECK(record.y(0, 0) == 2.0);  // the mean of both rows within half a second
+  CHECK(record.y(0, 1) == 4.0);
+  CHECK(std::isnan(record.y(0, 2)));
+  CHECK(record.y(0, 3) == 5.0);
+  CHECK(std::isnan(record.y(1, 1)));
+  CHECK(record.u.row(0) == Eigen::RowVector4d(9, 8, 8, 7));  // held
+  CHECK(record.y_set.array().isNaN().all());
+  CHECK(record.stamps == std::vector<std::string>{"10", "11", "12", "13"});
+  const PlantRecord nearest =
+      read_plant_record(study_with("most_missing = 0.6\ncv_resampling = 'nearest'"), text, "r.csv");
+  CHECK(nearest.y(0, 0) == 1.0);
+}
+
+TEST_CASE("values are deviations in the unit of the study", "[records]") {
+  const std::string text = record_text({"0,81,5,9,1,7", "1,82,5,9,1,7", "2,83,5,9,1,7"});
+  const PlantRecord record = read_plant_record(
+      study_with("operating_point = {level = 80}\nscale = {level = 0.5}\nsetpoint = {level = 'heat'}\n"
+                 "period = ['1', '2']\nbenchmark = ['2', '9']"),
+      text, "r.csv");
+  CHECK(record.y.row(0) == Eigen::RowVector2d(1.0, 1.5));
+  CHECK(record.y_set.row(0) == Eigen::RowVector2d::Constant(-37.5));  // recorded as the CV is
+  CHECK(record.benchmark == std::pair<Eigen::Index, Eigen::Index>{1, 2});
+}
+
+TEST_CASE("what a record lacks is said by name", "[records]") {
+  const std::string text = record_text({"0,1,5,9,1,7", "1,,5,9,1,7", "2,,5,9,1,7"});
+  CHECK_THROWS_WITH(read_plant_record(study_with(""), text, "r.csv"),
+                    Catch::Contains("r.csv: level: found 66.7 % of its samples missing") &&
+                        Catch::Contains("data.most_missing"));
+  CHECK_THROWS_WITH(read_plant_record(study_with("quality = {heat = 'q'}"), text, "r.csv"),
+                    Catch::Contains("data.quality.heat: found no column 'q'"));
+  CHECK_THROWS_WITH(read_plant_record(study_with("period = ['5', '9']"), text, "r.csv"),
+                    Catch::Contains("data.period") || Catch::Contains("data.time_unit"));
+  CHECK_THROWS_WITH(
+      read_plant_record(study_with(""),
+                        "time,level,level,heat,hot,cold,drain\n0,1,1,1,1,1,1\n1,1,1,1,1,1,1\n", "r.csv"),
+      Catch::Contains("column 'level': found two columns of this name"));
+  CHECK_THROWS_WITH(read_plant_record(study_with(""), record_text({"0,a,5,9,1,7", "1,b,5,9,1,7"}), "r.csv"),
+                    Catch::Contains("column 'level', for level: found no number, but 'a'"));
+}
+
+}  // namespace
+}  // namespace mpm
