@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace mpm {
+
+/// A program that was asked gave no answer: it could not be started, ended, took too long, or sent a line
+/// without end. The text says which, with the end of what it wrote to stderr.
+class ChildFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A program that runs beside this one and answers lines of text by lines of text: messages go to its stdin,
+/// answers come from its stdout, and of what it writes to stderr the end is kept for messages about it.
+///
+/// Each object belongs to one thread. Objects may be made in any thread, also while others run: the program
+/// is spawned, not forked, and inherits no other file. It has a process group of its own, so that Ctrl-C
+/// reaches this program alone; the destructor kills the group. When this process dies without one, the
+/// program sees the end of its stdin.
+///
+/// After a ChildFailure the program is dead: make another one.
+class ChildProcess {
+ public:
+  using Deadline = std::chrono::steady_clock::time_point;
+
+  static constexpr std::size_t kLongestLine = std::size_t{64} << 20;  ///< bytes of an answer
+
+  /// Starts the program `command[0]`, which is looked for in PATH, with the arguments after it, in the
+  /// working folder of this process. Throws ChildFailure when there is no such program.
+  explicit ChildProcess(std::vector<std::string> command);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Sends a line, and an empty one behind it: GNU Octave hands out a line only when another one follows.
+  /// Throws ChildFailure.
+  void send(std::string_view line, Deadline deadline);
+
+  /// The next line of the program that is not empty, without its end. Throws ChildFailure.
+  std::string receive(Deadline deadline);
+
+  /// Processor time that the program has used, in seconds.
+  double processor_seconds() const;
+
+  /// A deadline this many seconds from now; a century for longer ones.
+  static Deadline in_seconds(double seconds);
+
+ private:
+  void pump(Deadline deadline);
+  void read_errors();
+  void kill_and_reap();
+  std::string how_it_ended();
+  [[noreturn]] void fail(const std::string& what);
+
+  std::string name_;             ///< the command, for messages
+  pid_t pid_ = -1;               ///< -1: reaped
+  std::array<int, 3> ends_;      ///< ours of its stdin, stdout and stderr; -1: closed
+  std::string unsent_, unread_;  ///< bytes for its stdin, and from its stdout
+  std::size_t searched_ = 0;     ///< bytes of unread_ without an end of line
+  std::string last_errors_;      ///< the end of its stderr
+  bool output_is_closed_ = false;
+};
+
+}  // namespace mpm
