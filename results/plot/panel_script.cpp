@@ -9,6 +9,21 @@
 #include "results/plot/plot_text.hpp"
 
 namespace mpm {
+namespace {
+
+/// What the tics of the y axis and its label take beside a panel, in gnuplot's widths of a character, which
+/// are wider than letters are in the mean.
+int left_margin(const Axis& y) {
+  if (y.words.empty())
+    return 8;
+  std::size_t longest = 0;
+  for (const std::string& word : y.words)
+    longest = std::max(longest, plain_label(word).size());
+  const double letters = 0.8 * static_cast<double>(longest) + (y.label.empty() ? 2.0 : 4.0);
+  return static_cast<int>(std::min(letters, 30.0));
+}
+
+}  // namespace
 
 std::string line_words(const Pen& pen) {
   const char* dash = pen.dash == Dash::dashed ? "(8,5)" : pen.dash == Dash::dotted ? "(2,3)" : "solid";
@@ -168,7 +183,7 @@ Panel PanelScript::finish(std::string description, double height) {
   panel_.title = title_;
   panel_.description = std::move(description);
   panel_.height = height;
-  panel_.commands = fmt::format("set lmargin {}\n", left_margin_);
+  panel_.commands = fmt::format("set lmargin {}\n", left_margin(y_));
   if (title_.empty())
     panel_.commands += "set tmargin 0.7\n";
   else

@@ -48,8 +48,6 @@ class PanelScript {
   void upright_band(double lower, double upper);
   /// The field of a heat map around (x, y), one wide and high, with a label; `depth` from 0 (white) to 1.
   void field(double x, double y, std::string_view colour, double depth, const std::string& label);
-  /// Columns that the labels of the y axis take, in widths of a character.
-  void left_margin(int characters) { left_margin_ = characters; }
 
   Panel finish(std::string description, double height = 300);
 
@@ -72,7 +70,6 @@ class PanelScript {
   Axis x_, y_;
   Extent x_extent_, y_extent_;
   int blocks_ = 0;
-  int left_margin_ = 8;
   std::string settings_;
   std::vector<std::string> items_;
   Panel panel_;

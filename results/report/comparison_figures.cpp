@@ -57,7 +57,6 @@ Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
   PanelScript panel(
       info.name, info.title,
       {.label = "share of loops (%)", .lower = -2, .upper = 102, .ticks = {0, 20, 40, 60, 80, 100}}, y);
-  panel.left_margin(13);
   double at = rows;
   for (const std::size_t place : places) {
     const Rate& rate = methods[place].rates.*info.rate;
@@ -104,8 +103,8 @@ RocWords roc_words(FlagTruth truth) {
         "ones."};
   return {"comparison-roc-impact",
           "comparison_roc_impact",
-          "loops flagged that are healthy or whose fault has no impact (%)",
-          "loops flagged whose fault has an impact (%)",
+          "loops without an impact flagged (%)",
+          "loops with an impact flagged (%)",
           "The same for the truth of impact: only loops whose fault has an impact are to be flagged.",
           "Receiver operating characteristics of the scores of the methods, loops whose fault has an impact "
           "against healthy ones and those whose fault has none."};

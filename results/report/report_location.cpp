@@ -73,14 +73,10 @@ Panel matrix_panel(const Study& study, const KindFindings& kind) {
     located.words.push_back(as_label(cv_name(study, cv)));
     truth.words.push_back(as_label(cv_name(study, classes - 1 - cv)));
   }
-  std::size_t longest = 0;
-  for (const PlantModel::Variable& cv : study.plant.cvs)
-    longest = std::max(longest, cv.name.size());
   const Rate all = confusion.accuracy(study.aggregate.confidence);
   PanelScript panel(fmt::format("confusion_{}", to_string(kind.kind)),
                     fmt::format("{}: {} of {} located", kind_name(kind.kind), all.hits, all.total), located,
                     truth);
-  panel.left_margin(static_cast<int>(std::min<std::size_t>(longest + 5, 24)));
   for (Eigen::Index row = 0; row < classes; ++row) {
     const auto of_row = static_cast<double>(confusion.counts().row(row).sum());
     for (Eigen::Index column = 0; column < classes; ++column)

@@ -118,7 +118,6 @@ Figure headline_figure(const ReportInput& input) {
           {100.0 * value.reported, at, fmt::format("{}: reported {:.1f} %", name, 100.0 * value.reported)});
   }
   PanelScript panel("headline", "", {.label = "share of experiments (%)", .lower = -2, .upper = 102}, y);
-  panel.left_margin(23);
   panel.points(reported, kReported);
   panel.level_whiskers(measured, kMeasured);
   Figure figure;

@@ -41,13 +41,6 @@ Axis rows_axis(std::vector<std::string> words) {
   return {.label = "", .lower = -0.5, .upper = last + 0.5, .words = std::move(words)};
 }
 
-int margin_of(const std::vector<std::string>& words) {
-  std::size_t longest = 0;
-  for (const std::string& word : words)
-    longest = std::max(longest, plain_label(word).size());
-  return static_cast<int>(std::min<std::size_t>(longest + 3, 30));
-}
-
 std::vector<std::string> scenario_words(const Campaign& campaign) {
   std::vector<std::string> words;
   for (const ExperimentRecord& record : campaign.records)
@@ -71,7 +64,6 @@ Panel index_panel(const Campaign& campaign, const char* name, const char* title,
   for (const PlantModel::Variable& cv : study.plant.cvs)
     cvs.words.push_back(as_label(cv.name));
   PanelScript panel(name, title, cvs, rows_axis(words));
-  panel.left_margin(margin_of(words));
   for (std::size_t row = 0; row < campaign.records.size(); ++row) {
     const ExperimentRecord& record = campaign.records[row];
     const Diagnosis chain = record.chain();
@@ -144,7 +136,6 @@ struct IndicatorRows {
 Panel indicator_panel(const Study& study, const IndicatorRows& rows) {
   PanelScript panel("co", "source of the affected and flagged CVs",
                     {.label = "correlation (-)", .lower = 0.0}, rows_axis(rows.words));
-  panel.left_margin(margin_of(rows.words));
   panel.upright(study.diagnosis.mpm_threshold, kThreshold);
   panel.points(rows.skewness, kSkewness);
   panel.points(rows.kurtosis, kKurtosis);
@@ -162,7 +153,6 @@ Panel error_panel(const Campaign& campaign) {
          fmt::format("{}: TSSE {:.3g}", scenario_name(campaign.study, campaign.records[row]), tsse)});
   }
   PanelScript panel("tsse", "model error", {.label = "TSSE (CV units)", .lower = 0.0}, rows_axis(words));
-  panel.left_margin(margin_of(words));
   panel.points(errors, kError);
   return panel.finish("TSSE of each scenario.", 80.0 + kRowHeight * static_cast<double>(words.size()));
 }
