@@ -3,7 +3,10 @@
 namespace mpm {
 
 /// Processor time of this thread in seconds. On an idle machine it runs as a steady clock does; on a busy one
-/// it does not count the others' turns.
+/// it does not count the others' turns. What programs have worked for this thread counts as its own.
 double thread_seconds();
+
+/// Adds processor time that another process has spent for this thread while it waited.
+void count_for_thread(double seconds);
 
 }  // namespace mpm

@@ -32,6 +32,7 @@ enum class StreamId : std::uint32_t {
   dither = 24,             ///< test signals that are added to MVs
   candidate = 50,          ///< which logged candidate drives a disturbance, if one does
   candidate_signals = 51,  ///< the first logged candidate; the numbers up to 59 are those of the others
+  blind_order = 70,        ///< order of the loops of a blind export
   /// Of the second disturbance of a named scenario; the following numbers are those of the third and so on.
   further_disturbance_signals = 0x1000,
 };

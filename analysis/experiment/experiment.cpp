@@ -152,10 +152,17 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
   return record;
 }
 
+ExperimentRunner::FinishedLoop ExperimentRunner::finished_again(const ExperimentRecord& record) {
+  return finished(record.draw,
+                  record.loop ? record.loop->trajectory : simulate_experiment(study_, record.draw, factory_));
+}
+
+AssessedLoop ExperimentRunner::loop_of(const ExperimentRecord& record) {
+  return finished_again(record).assessed;
+}
+
 std::vector<AssessmentRecord> ExperimentRunner::assess(const ExperimentRecord& record) {
-  const FinishedLoop loop =
-      finished(record.draw,
-               record.loop ? record.loop->trajectory : simulate_experiment(study_, record.draw, factory_));
+  const FinishedLoop loop = finished_again(record);
   if (loop.status == ExperimentStatus::ok) {
     std::vector<AssessmentRecord> assessments = panel_.assess(loop.assessed, loop.own ? &*loop.own : nullptr);
     if (AssessmentRecord* const chain = chain_verdict(assessments); chain && has_loops_alone(record.draw))

@@ -82,6 +82,9 @@ class ExperimentRunner {
   /// What the methods say of an experiment with status ok that was run before: of its loop where it was kept,
   /// otherwise of the loop run again.
   std::vector<AssessmentRecord> assess(const ExperimentRecord& record);
+  /// The loop of such an experiment as the methods see it. An experiment whose controller has no S0 of its
+  /// own has none: only y_sim.
+  AssessedLoop loop_of(const ExperimentRecord& record);
   /// Does assess() run loops of this experiment: one that was not kept, those that give another S0, or for
   /// the chain those with one of two faults alone?
   bool runs_loops(const ExperimentRecord& record) const;
@@ -100,6 +103,7 @@ class ExperimentRunner {
 
   FinishedLoop simulate(const ExperimentDraw& draw, const StepObserver& observer);
   FinishedLoop finished(const ExperimentDraw& draw, Trajectory trajectory);
+  FinishedLoop finished_again(const ExperimentRecord& record);
   void assess_alone(ExperimentRecord& record, const StepObserver& observer);
   /// Has the chain say how much the mismatch dominates, from the loops with one fault alone.
   void add_dominance(AssessmentRecord& chain, Eigen::Index true_cv, const FinishedLoop& mpm_alone,

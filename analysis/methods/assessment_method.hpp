@@ -73,6 +73,8 @@ struct MethodDescription {
   /// The share of loops without a fault that the method says it flags; none: it says nothing of it.
   std::optional<double> stated_false_alarms = {};
   std::vector<AssessmentNumberInfo> numbers;
+  /// Where the answers come from when it is no method of this program, in a few words; empty otherwise.
+  std::string origin = {};
 };
 
 /// A method that this program has.

@@ -1,6 +1,7 @@
 #include "analysis/methods/method_table.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,11 +39,27 @@ namespace mpm {
 MPM_EACH_METHOD(MPM_DECLARE)
 #undef MPM_DECLARE
 
-const std::vector<AssessmentMethodInfo>& assessment_methods() {
+namespace {
+
+std::vector<AssessmentMethodInfo>& method_list() {
 #define MPM_CALL(name) name##_method(),
-  static const std::vector<AssessmentMethodInfo> methods{MPM_EACH_METHOD(MPM_CALL)};
+  static std::vector<AssessmentMethodInfo> methods{MPM_EACH_METHOD(MPM_CALL)};
 #undef MPM_CALL
   return methods;
+}
+
+}  // namespace
+
+const std::vector<AssessmentMethodInfo>& assessment_methods() {
+  return method_list();
+}
+
+void add_assessment_method(AssessmentMethodInfo method) {
+  const std::vector<std::string> names = assessment_method_names();
+  if (std::find(names.begin(), names.end(), method.name) != names.end())
+    throw InputError("method", fmt::format("'{}' from outside", method.name),
+                     fmt::format("a name that is not one of {}", fmt::join(names, ", ")));
+  method_list().push_back(std::move(method));
 }
 
 const AssessmentMethodInfo& assessment_method(std::string_view name) {

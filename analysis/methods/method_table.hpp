@@ -8,8 +8,12 @@
 
 namespace mpm {
 
-/// Every method of assessment, the chain of the thesis first.
+/// Every method of assessment, the chain of the thesis first, and at the end those that were added.
 const std::vector<AssessmentMethodInfo>& assessment_methods();
+
+/// Adds a method to those of this program: one from outside, by the command line and before anything is run.
+/// Throws InputError for a name that there is.
+void add_assessment_method(AssessmentMethodInfo method);
 
 /// The method of this name. Throws InputError, with the known names, when there is none.
 const AssessmentMethodInfo& assessment_method(std::string_view name);

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
+#include <type_traits>
 
 #include "analysis/methods/method_table.hpp"
 #include "bench/execution/experiment_execution.hpp"
 #include "bench/execution/thread_loop.hpp"
 #include "bench/version.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/calibration.hpp"
 #include "solvers/qp_solver.hpp"
 
@@ -97,11 +99,12 @@ class ThreadedRunners {
 
   /// What they say of an experiment that was run.
   std::vector<AssessmentRecord> assess(const ExperimentRecord& record, std::size_t thread) {
-    const bool needs_ipopt = solver_ == "ipopt" || record.solver.fallbacks > 0;
-    if (!needs_ipopt || !by_campaign_solver_->runs_loops(record))
-      return by_active_set_[thread]->assess(record);
-    const std::lock_guard alone(ipopt_);
-    return by_campaign_solver_->assess(record);
+    return with_runner(record, thread, [&](ExperimentRunner& runner) { return runner.assess(record); });
+  }
+
+  /// What they see of it.
+  AssessedLoop loop_of(const ExperimentRecord& record, std::size_t thread) {
+    return with_runner(record, thread, [&](ExperimentRunner& runner) { return runner.loop_of(record); });
   }
 
   /// An experiment, run as a campaign runs it.
@@ -117,6 +120,17 @@ class ThreadedRunners {
 
  private:
   using Runner = std::unique_ptr<ExperimentRunner>;
+
+  /// Calls `work` with the runner by which this experiment is assessed.
+  template <class Work>
+  std::invoke_result_t<Work, ExperimentRunner&> with_runner(const ExperimentRecord& record,
+                                                            std::size_t thread, Work work) {
+    const bool needs_ipopt = solver_ == "ipopt" || record.solver.fallbacks > 0;
+    if (!needs_ipopt || !by_campaign_solver_->runs_loops(record))
+      return work(*by_active_set_[thread]);
+    const std::lock_guard alone(ipopt_);
+    return work(*by_campaign_solver_);
+  }
 
   static Runner runner_of(const Campaign& campaign, const Study& study,
                           const std::vector<std::string>& methods, const std::string& solver) {
@@ -175,6 +189,27 @@ void add_methods(Campaign& campaign, const ComparisonOptions& options, const std
   append(campaign, runners.forms(), records, std::move(assessments), command);
   if (campaign.study.calibration)
     add_calibration(campaign, options, threads, done);
+}
+
+std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<std::size_t>& places, int jobs,
+                                   const std::function<void()>& on_done) {
+  const int threads = std::max(1, jobs);
+  ThreadedRunners runners(campaign, campaign.study, {}, threads);
+  std::vector<AssessedLoop> loops(places.size());
+  DoneReports done(on_done);
+  for_each_in_threads(places.size(), threads, [&](std::size_t i, std::size_t thread) {
+    loops[i] = runners.loop_of(campaign.records[places[i]], thread);
+    done.one_more();
+  });
+  return loops;
+}
+
+void add_verdicts(Campaign& campaign, const OutsideVerdicts& verdicts, const std::string& command) {
+  append(campaign, {verdicts.form}, {}, {}, command);
+  for (std::size_t i = 0; i < campaign.records.size(); ++i)
+    campaign.records[i].assessments.back() = verdicts.answers[i];
+  for (CalibrationLoop& loop : campaign.calibration.loops)
+    loop.scores.push_back(kNaN);
 }
 
 Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods,

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/methods/assessed_loop.hpp"
 #include "results/archive/campaign.hpp"
+#include "results/blind/verdict_file.hpp"
 
 namespace mpm {
 
@@ -34,6 +36,15 @@ bool has_answers(const Campaign& campaign, const std::string& method,
 /// bear two threads.
 /// @throws InputError for an unknown method, or options that do not fit the study: that of its first loop
 void add_methods(Campaign& campaign, const ComparisonOptions& options, const std::string& command);
+
+/// The loops of these records, which have status ok, as methods see them; run again where they were not kept.
+std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<std::size_t>& places, int jobs,
+                                   const std::function<void()>& on_done);
+
+/// Puts verdicts from outside behind the answers of the methods that the campaign has, in the place of those
+/// of the same name. They say nothing of calibration loops, so that such a method has no calibrated
+/// threshold.
+void add_verdicts(Campaign& campaign, const OutsideVerdicts& verdicts, const std::string& command);
 
 /// The campaign with these of its methods alone, in this order, on its first `experiments`.
 Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods,

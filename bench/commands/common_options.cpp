@@ -5,6 +5,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "analysis/methods/method_table.hpp"
+#include "analysis/methods/outside_program.hpp"
+#include "scenarios/method_file.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {
@@ -35,6 +38,30 @@ void add_solver(CLI::App& app, std::string& solver) {
 
 void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description) {
   app.add_option("--methods", methods, description)->delimiter(',');
+}
+
+void add_method_files(CLI::App& app, std::vector<std::string>& files) {
+  app.add_option(
+      "--method-file", files,
+      "File of methods that are programs, [method.NAME] command = [...]. May be given several times");
+}
+
+std::vector<std::string> take_method_files(const std::vector<std::string>& files) {
+  std::vector<std::string> names;
+  for (const std::string& file : files)
+    for (const MethodProgram& program : load_method_file(file)) {
+      add_assessment_method(program_method(program));
+      names.push_back(program.name);
+    }
+  return names;
+}
+
+std::vector<std::string> with_programs(const std::vector<std::string>& named, std::vector<std::string> own,
+                                       const std::vector<std::string>& programs) {
+  if (!named.empty() || programs.empty() || own == std::vector<std::string>{"all"})
+    return named;
+  own.insert(own.end(), programs.begin(), programs.end());
+  return own;
 }
 
 void add_json(CLI::App& app, bool& json) {

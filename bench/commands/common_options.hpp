@@ -21,6 +21,15 @@ void add_jobs(CLI::App& app, int& jobs, const std::string& description);
 void add_solver(CLI::App& app, std::string& solver);
 /// Names of methods of assessment; their check is left to the command, which knows what it can be asked for.
 void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description);
+/// Files of methods that are programs (docs/bring_your_own.md).
+void add_method_files(CLI::App& app, std::vector<std::string>& files);
+/// Starts each of them for its description, and adds them to the methods of this program; their names. Throws
+/// InputError.
+std::vector<std::string> take_method_files(const std::vector<std::string>& files);
+/// The methods that assess when programs were given: those that the user names, or those of the study or
+/// suite and the programs.
+std::vector<std::string> with_programs(const std::vector<std::string>& named, std::vector<std::string> own,
+                                       const std::vector<std::string>& programs);
 void add_json(CLI::App& app, bool& json);
 void add_quiet(CLI::App& app, bool& quiet, const std::string& description = "No progress");
 

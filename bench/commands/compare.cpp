@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -20,6 +22,7 @@
 #include "bench/version.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
+#include "results/blind/verdict_file.hpp"
 #include "results/summary/comparison.hpp"
 
 namespace mpm {
@@ -28,7 +31,9 @@ namespace {
 struct CompareArguments {
   std::string archive;
   std::vector<std::string> methods;  ///< empty: all
-  std::string output;                ///< archive with the comparison; none when empty
+  std::vector<std::string> method_files;
+  std::vector<std::string> verdicts;  ///< FILE or NAME=FILE
+  std::string output;                 ///< archive with the comparison; none when empty
   std::optional<std::int64_t> experiments;
   int jobs = 1;
   bool json = false;
@@ -71,6 +76,29 @@ std::vector<std::string> missing_methods(const Campaign& campaign, const std::ve
   return missing;
 }
 
+/// Puts the verdicts of files beside those of the campaign. Returns the names of their methods.
+std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std::string>& files,
+                                       const std::string& command_line) {
+  std::vector<std::string> names;
+  for (const std::string& file : files) {
+    const auto equals = file.find('=');
+    const std::filesystem::path path = equals == std::string::npos ? file : file.substr(equals + 1);
+    const std::string name = equals == std::string::npos ? path.stem().string() : file.substr(0, equals);
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      throw InputError("--verdicts", fmt::format("'{}' twice", name), "each name once");
+    const OutsideVerdicts verdicts = read_verdicts(path, name, campaign);
+    if (!verdicts.says_which_loops)
+      fmt::print(
+          stderr,
+          "mpmbench: {} does not say which loops it is of; that they are those of the archive is taken on "
+          "trust\n",
+          path.string());
+    add_verdicts(campaign, verdicts, command_line);
+    names.push_back(name);
+  }
+  return names;
+}
+
 /// Assesses the loops of an archive by the methods that it does not have yet, prints how often each of those
 /// that are asked for is right, and writes the archive with them when an output is asked for. Loops that the
 /// archive has not kept are run again from (study, seed, index).
@@ -81,7 +109,15 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
   const std::int64_t loops = compared_loops(campaign, options.experiments);
   if (loops == 0)
     throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
-  const std::vector<std::string> asked = asked_methods(campaign, options.methods);
+  std::vector<std::string> given = take_method_files(options.method_files);
+  for (std::string& name : take_verdicts(campaign, options.verdicts, command_line))
+    given.push_back(std::move(name));
+  std::vector<std::string> asked = given.empty() || !options.methods.empty()
+                                       ? asked_methods(campaign, options.methods)
+                                       : method_names(campaign);
+  for (const std::string& name : given)
+    if (std::find(asked.begin(), asked.end(), name) == asked.end())
+      asked.push_back(name);
   const std::vector<std::string> missing = missing_methods(campaign, asked, options.experiments);
   if (!missing.empty()) {
     Progress progress(options.quiet);
@@ -109,6 +145,11 @@ void add_compare(CommandSet& commands) {
                    [options, &commands] { return compare(*options, commands.command_line()); });
   add_archive(app, options->archive);
   add_methods_option(app, options->methods, "Methods, separated by commas, or all");
+  add_method_files(app, options->method_files);
+  app.add_option(
+      "--verdicts", options->verdicts,
+      "CSV file with verdicts on the loops of `export --blind`, FILE or NAME=FILE; a method like any "
+      "other. May be given several times");
   app.add_option("-o,--output", options->output,
                  "Archive to write with the comparison in it (HDF5); may be ARCHIVE itself");
   add_experiments(app, options->experiments, "Compare on the first N experiments only");

@@ -1,17 +1,23 @@
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "analysis/methods/assessed_loop.hpp"
+#include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 #include "plants/error.hpp"
 #include "results/archive/csv_table.hpp"
+#include "results/blind/blind_loops.hpp"
 
 namespace mpm {
 namespace {
@@ -21,9 +27,36 @@ struct ExportArguments {
   std::string table = "experiments";
   std::optional<std::int64_t> index;  ///< of the experiment; all without
   std::string output;                 ///< stdout when empty
+  bool blind = false;
+  int jobs = 1;
+  bool quiet = false;
 };
 
+/// The loops without the truth, into a folder.
+ExitCode export_blind(const ExportArguments& options) {
+  const Campaign campaign = read_input(options.archive);
+  const std::vector<std::size_t> order = blind_order(campaign);
+  if (order.empty())
+    throw InputError(options.archive, "no loop that ran to its end", "one or more to export");
+  if (options.output.empty())
+    throw InputError("--output", "none", "with --blind a folder");
+  make_output_folder(options.output, "loops");
+  Progress progress(options.quiet);
+  progress.begin(std::ssize(order));
+  const std::vector<AssessedLoop> loops = loops_of(campaign, order, options.jobs, [&] {
+    progress.advance();
+    progress.end_when_requested();
+  });
+  const AssessmentContext context =
+      assessment_context(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver));
+  write_blind_loops(options.output, campaign, context, loops);
+  fmt::print("{} loops of {} without the truth: {}\n", loops.size(), options.archive, options.output);
+  return ExitCode::done;
+}
+
 ExitCode export_table(const ExportArguments& options) {
+  if (options.blind)
+    return export_blind(options);
   if (!options.output.empty())
     require_output_folder(options.output, "table");
   if (options.index && options.table == "findings")
@@ -51,7 +84,12 @@ void add_export(CommandSet& commands) {
       ->capture_default_str();
   app.add_option("--index", options->index, "One experiment only; not of the findings")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("-o,--output", options->output, "File to write; stdout without one");
+  app.add_flag(
+      "--blind", options->blind,
+      "Write the loops without the truth into the folder OUTPUT, for somebody who is to assess them");
+  app.add_option("-o,--output", options->output, "File to write, with --blind a folder; stdout without one");
+  add_jobs(app, options->jobs, "With --blind: how many loops are run at once, those that were not kept");
+  add_quiet(app, options->quiet);
 }
 
 }  // namespace mpm

@@ -1,9 +1,15 @@
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/methods/method_table.hpp"
+#include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/files/archive_input.hpp"
@@ -18,8 +24,20 @@ struct ReplayArguments {
   std::int64_t index = 0;
 };
 
+/// Without the methods that this program does not have, such as verdicts from outside: nobody can ask them
+/// again.
+Campaign with_known_methods(Campaign campaign) {
+  const std::vector<std::string> known = assessment_method_names();
+  std::vector<std::string> kept, left_out;
+  for (const std::string& method : method_names(campaign))
+    (std::find(known.begin(), known.end(), method) == known.end() ? left_out : kept).push_back(method);
+  if (!left_out.empty())
+    fmt::print("not asked again: {}\n", fmt::join(left_out, ", "));
+  return with_methods(std::move(campaign), kept, std::nullopt);
+}
+
 ExitCode replay(const ReplayArguments& options) {
-  const Campaign campaign = read_input(options.archive);
+  const Campaign campaign = with_known_methods(read_input(options.archive));
   const ExperimentRecord& archived = experiment_of(campaign, options.index);
 
   // From (study, seed, index) alone: the basis case is made again too.

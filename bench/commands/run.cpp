@@ -30,6 +30,7 @@ struct RunArguments {
   std::string study;
   std::string output;
   RunOptions run;
+  std::vector<std::string> method_files;
   bool quiet = false;
 };
 
@@ -63,6 +64,9 @@ void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
 
 ExitCode run(const RunArguments& options, const std::string& command_line) {
   const Study study = find_study(options.study);
+  RunOptions run_options = options.run;
+  run_options.methods =
+      with_programs(options.run.methods, study.methods, take_method_files(options.method_files));
   require_output_folder(options.output, "archive");
 
   Progress progress(options.quiet);
@@ -71,7 +75,7 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
     warn_of(of_run, basis, progress);
   };
   try {
-    Campaign campaign = run_campaign(study, options.run, hooks, shard_folder_of(options.output));
+    Campaign campaign = run_campaign(study, run_options, hooks, shard_folder_of(options.output));
     note_command(campaign, command_line);
     const StudyFindings findings = findings_of(campaign);
     write_archive(options.output, campaign, findings);
@@ -141,6 +145,7 @@ void add_run(CommandSet& commands) {
   app.add_option("--seed", options->run.seed, "Master seed instead of the study's");
   add_methods_option(app, options->run.methods,
                      "Methods that assess the loops, separated by commas, or all; in place of the study's");
+  add_method_files(app, options->method_files);
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
   add_parallel(app, options->run.parallel);

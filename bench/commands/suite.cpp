@@ -28,6 +28,7 @@ struct SuiteArguments {
   std::string output;
   SuiteChoice choice;
   RunOptions run;
+  std::vector<std::string> method_files;
   bool json = false;
   bool quiet = false;
 };
@@ -47,6 +48,8 @@ void write_pictures(const std::filesystem::path& folder, const Leaderboard& boar
 ExitCode run_suite_command(const SuiteArguments& options, const std::string& command_line) {
   const Suite suite = find_suite(options.suite, options.choice);
   SuiteRun run{.run = options.run, .folder = options.output, .command = command_line};
+  run.run.methods =
+      with_programs(options.run.methods, suite.methods, take_method_files(options.method_files));
   run.run.methods = known_methods(run.run.methods.empty() ? suite.methods : run.run.methods,
                                   run.run.methods.empty() ? "suite.methods" : "--methods");
   make_output_folder(run.folder, "archives");
@@ -101,6 +104,7 @@ void add_suite(CommandSet& commands) {
   add_experiments(app, options->run.experiments, "Run the first N experiments of each cell");
   add_methods_option(app, options->run.methods,
                      "Methods that assess the loops, separated by commas, or all; in place of the suite's");
+  add_method_files(app, options->method_files);
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_json(app, options->json);
   add_quiet(app, options->quiet);

@@ -46,6 +46,12 @@ AssessmentNumberInfo number_of(const Json& json) {
 }
 
 /// Archives of earlier programs say nothing of it.
+std::string origin_in(const Json& json) {
+  const auto origin = json.find("origin");
+  return origin == json.end() || origin->is_null() ? "" : origin->get<std::string>();
+}
+
+/// Nor of this.
 std::optional<double> stated_in(const Json& json) {
   const auto stated = json.find("stated_false_alarms");
   if (stated == json.end() || stated->is_null())
@@ -57,22 +63,23 @@ std::optional<double> stated_in(const Json& json) {
 
 Json method_json(const MethodDescription& method) {
   const AssessmentRequirements& needs = method.requirements;
-  return {{"name", method.name},
-          {"title", method.title},
-          {"verdict", method.verdict},
-          {"needs",
-           {{"setpoints", needs.setpoints},
-            {"moving_setpoints", needs.moving_setpoints},
-            {"benchmark", needs.benchmark},
-            {"moving_mvs", needs.moving_mvs},
-            {"complete_record", needs.complete_record}}},
-          {"answers",
-           {{"cv", method.locates_cvs},
-            {"channel", method.names_channels},
-            {"source", method.tells_sources},
-            {"mismatch", method.names_mismatches}}},
-          {"stated_false_alarms",
-           method.stated_false_alarms ? Json(*method.stated_false_alarms) : Json(nullptr)}};
+  return {
+      {"name", method.name},
+      {"title", method.title},
+      {"verdict", method.verdict},
+      {"needs",
+       {{"setpoints", needs.setpoints},
+        {"moving_setpoints", needs.moving_setpoints},
+        {"benchmark", needs.benchmark},
+        {"moving_mvs", needs.moving_mvs},
+        {"complete_record", needs.complete_record}}},
+      {"answers",
+       {{"cv", method.locates_cvs},
+        {"channel", method.names_channels},
+        {"source", method.tells_sources},
+        {"mismatch", method.names_mismatches}}},
+      {"stated_false_alarms", method.stated_false_alarms ? Json(*method.stated_false_alarms) : Json(nullptr)},
+      {"origin", method.origin.empty() ? Json(nullptr) : Json(method.origin)}};
 }
 
 std::string method_description_json(const MethodDescription& method) {
@@ -108,7 +115,8 @@ MethodDescription method_description(const std::string& text, const std::string&
                              .tells_sources = answers.at("source"),
                              .names_mismatches = answers.value("mismatch", false),
                              .stated_false_alarms = stated_in(json),
-                             .numbers = {}};
+                             .numbers = {},
+                             .origin = origin_in(json)};
     for (const Json& number : json.at("numbers"))
       method.numbers.push_back(number_of(number));
     return method;

@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// {"name", "title", "verdict", "needs": {...}, "answers": {...}, "stated_false_alarms"}: a method for
-/// programs.
+/// {"name", "title", "verdict", "needs": {...}, "answers": {...}, "stated_false_alarms",
+/// "origin"}: a method for programs.
 nlohmann::ordered_json method_json(const MethodDescription& method);
 
 /// The same with "numbers": [{"name", "scope", "meaning", "unit", "words", "summarised", "label",

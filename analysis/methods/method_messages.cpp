@@ -1,0 +1,346 @@
+#include "analysis/methods/method_messages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "plants/error.hpp"
+#include "plants/linear_plant.hpp"
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json row_json(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& row) {
+  Json list = Json::array();
+  for (const double value : row)
+    list.push_back(value);
+  return list;
+}
+
+Json vector_json(const Eigen::VectorXd& vector) {
+  return row_json(vector.transpose());
+}
+
+Json matrix_json(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    rows.push_back(row_json(matrix.row(i)));
+  return rows;
+}
+
+Json variables_json(const std::vector<PlantModel::Variable>& variables) {
+  Json list = Json::array();
+  for (const PlantModel::Variable& variable : variables)
+    list.push_back({{"name", variable.name}, {"unit", variable.unit}});
+  return list;
+}
+
+Json limits_json(const Limits& limits) {
+  return {{"lower", vector_json(limits.lower)}, {"upper", vector_json(limits.upper)}};
+}
+
+std::vector<std::string> input_names(const PlantModel& plant) {
+  std::vector<std::string> names;
+  for (const auto* variables : {&plant.mvs, &plant.mds})
+    for (const PlantModel::Variable& variable : *variables)
+      names.push_back(variable.name);
+  return names;
+}
+
+Json model_json(const Study& study) {
+  const TransferMatrix& G = study.plant.G;
+  const std::vector<std::string> inputs = input_names(study.plant);
+  Json channels = Json::array();
+  for (Eigen::Index cv = 0; cv < G.rows(); ++cv)
+    for (Eigen::Index input = 0; input < G.cols(); ++input)
+      if (const TransferFunction& channel = G(cv, input); !channel.is_zero())
+        channels.push_back({{"cv", study.plant.cvs[static_cast<std::size_t>(cv)].name},
+                            {"input", inputs[static_cast<std::size_t>(input)]},
+                            {"numerator", vector_json(channel.numerator())},
+                            {"denominator", vector_json(channel.denominator())},
+                            {"dead_time", channel.dead_time()}});
+  Json steps = Json::array();
+  for (const Eigen::MatrixXd& response :
+       step_response(G, study.controller.sample_time, study.sensitivity.samples))
+    steps.push_back(matrix_json(response));
+  return {{"inputs", inputs}, {"transfer_functions", channels}, {"step_responses", steps}};
+}
+
+Json controller_json(const MpcOptions& controller) {
+  return {{"prediction_horizon", controller.prediction_horizon},
+          {"control_horizon", controller.control_horizon},
+          {"weight_convention", to_string(controller.weight_convention)},
+          {"move_suppression", vector_json(controller.move_suppression)},
+          {"target_weight", vector_json(controller.target_weight)},
+          {"setpoint_weight", vector_json(controller.setpoint_weight)},
+          {"slack_weight", vector_json(controller.slack_weight)},
+          {"mv_cost", vector_json(controller.mv_cost)},
+          {"mv_hard", limits_json(controller.mv_hard)},
+          {"cv_hard", limits_json(controller.cv_hard)},
+          {"cv_soft", limits_json(controller.cv_soft)}};
+}
+
+std::string found_text(const Json& value) {
+  constexpr std::size_t kLongest = 60;
+  const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  return text.size() > kLongest ? fmt::format("{}...", text.substr(0, kLongest)) : text;
+}
+
+/// Reads the parts of one answer.
+class AnswerReader {
+ public:
+  AnswerReader(const PlantModel& plant, const MethodDescription& method, const std::string& place)
+      : plant_(plant), method_(method), place_(place) {}
+
+  Assessment read(const Json& answer) const {
+    if (!answer.is_object())
+      refuse("answer", answer, "a JSON object");
+    refuse_unknown(answer, {"flagged", "score", "cv", "source", "cv_flagged", "cv_score", "cv_source",
+                            "channels", "mismatch", "numbers", "error", "not_applicable"});
+    if (const Json* const error = given(answer, "error"))
+      return Assessment::failed(text("error", *error));
+    if (const Json* const reason = given(answer, "not_applicable"))
+      return Assessment::not_applicable(text("not_applicable", *reason));
+    Assessment assessment;
+    const Json* const flagged = given(answer, "flagged");
+    if (flagged == nullptr || !flagged->is_boolean())
+      refuse("flagged", flagged ? *flagged : Json(), "true, false, or an `error` in its place");
+    assessment.flagged = flagged->get<bool>();
+    const Json* const score = given(answer, "score");
+    assessment.score = score ? number("score", *score) : assessment.flagged ? 1.0 : 0.0;
+    read_cvs(answer, assessment);
+    read_channels(answer, assessment);
+    read_mismatch(answer, assessment);
+    read_numbers(answer, assessment);
+    return assessment;
+  }
+
+ private:
+  [[noreturn]] void refuse(std::string_view key, const Json& found, const std::string& allowed) const {
+    throw InputError(fmt::format("{}: {}", place_, key), found_text(found), allowed);
+  }
+
+  void refuse_unknown(const Json& object, const std::vector<std::string>& known) const {
+    for (const auto& item : object.items())
+      if (std::find(known.begin(), known.end(), item.key()) == known.end())
+        throw InputError(place_, fmt::format("the unknown key '{}'", item.key()),
+                         fmt::format("{}", fmt::join(known, ", ")));
+  }
+
+  /// The value of a key, null when it is absent or null.
+  static const Json* given(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    return found == object.end() || found->is_null() ? nullptr : &*found;
+  }
+
+  /// The same of a key that only methods have whose description says so.
+  const Json* given_if(bool described, const Json& object, const char* key, const char* answers) const {
+    const Json* const value = given(object, key);
+    if (value != nullptr && !described)
+      refuse(key, *value, fmt::format("nothing: the method does not say that it answers '{}'", answers));
+    return value;
+  }
+
+  std::string text(const char* key, const Json& value) const {
+    if (!value.is_string())
+      refuse(key, value, "a text");
+    return value.get<std::string>();
+  }
+
+  /// JSON has no word for what is not finite: infinities are texts.
+  double number(const char* key, const Json& value) const {
+    if (value.is_null())
+      return kNaN;
+    if (value == "Infinity" || value == "-Infinity")
+      return value == "Infinity" ? kInfinity : -kInfinity;
+    if (!value.is_number())
+      refuse(key, value, "a number, null, \"Infinity\" or \"-Infinity\"");
+    return value.get<double>();
+  }
+
+  Eigen::Index place_of(const char* key, const Json& value,
+                        const std::vector<PlantModel::Variable>& variables) const {
+    std::vector<std::string> names;
+    for (const PlantModel::Variable& variable : variables)
+      names.push_back(variable.name);
+    const auto found =
+        std::find(names.begin(), names.end(), value.is_string() ? value.get<std::string>() : "");
+    if (found == names.end())
+      refuse(key, value, fmt::format("{}", fmt::join(names, ", ")));
+    return found - names.begin();
+  }
+
+  template <class Enum>
+  Enum word(const char* key, const Json& value, Enum last) const {
+    std::vector<std::string_view> words;
+    for (int each = 0; each <= static_cast<int>(last); ++each) {
+      words.push_back(to_string(static_cast<Enum>(each)));
+      if (value.is_string() && value.get<std::string>() == words.back())
+        return static_cast<Enum>(each);
+    }
+    refuse(key, value, fmt::format("{}", fmt::join(words, ", ")));
+  }
+
+  const Json& list(const char* key, const Json& value, std::size_t length) const {
+    if (!value.is_array() || value.size() != length)
+      refuse(key, value, fmt::format("a list of {}", length));
+    return value;
+  }
+
+  void read_cvs(const Json& answer, Assessment& assessment) const {
+    const Json* const cv = given_if(method_.locates_cvs, answer, "cv", "cv");
+    const Json* const flags = given_if(method_.locates_cvs, answer, "cv_flagged", "cv");
+    const Json* const scores = given_if(method_.locates_cvs, answer, "cv_score", "cv");
+    const Json* const source = given_if(method_.tells_sources, answer, "source", "source");
+    const Json* const sources = given_if(method_.tells_sources, answer, "cv_source", "source");
+    if (cv == nullptr && flags == nullptr)
+      return;
+    const std::size_t count = plant_.cvs.size();
+    assessment.cvs.resize(count);
+    for (std::size_t i = 0; i < count && flags != nullptr; ++i) {
+      CvAssessment& of_cv = assessment.cvs[i];
+      const Json& flag = list("cv_flagged", *flags, count)[i];
+      if (flag.is_null())
+        continue;
+      if (!flag.is_boolean())
+        refuse("cv_flagged", flag, "true, false or null");
+      of_cv.flagged = flag.get<bool>();
+      of_cv.score = scores           ? number("cv_score", list("cv_score", *scores, count)[i])
+                    : *of_cv.flagged ? 1.0
+                                     : 0.0;
+      if (sources != nullptr && !list("cv_source", *sources, count)[i].is_null())
+        of_cv.source = word("cv_source", (*sources)[i], FaultSource::mpm_ud);
+    }
+    if (cv == nullptr)
+      return;
+    if (flags != nullptr)
+      refuse("cv", *cv, "this or cv_flagged, not both");
+    CvAssessment& named = assessment.cvs[static_cast<std::size_t>(place_of("cv", *cv, plant_.cvs))];
+    named.flagged = assessment.flagged;
+    named.score = std::isnan(assessment.score) ? 0.0 : assessment.score;
+    if (source != nullptr)
+      named.source = word("source", *source, FaultSource::mpm_ud);
+  }
+
+  Channel channel(const char* key, const Json& value) const {
+    list(key, value, 2);
+    return {place_of(key, value[0], plant_.cvs), place_of(key, value[1], plant_.mvs)};
+  }
+
+  void read_channels(const Json& answer, Assessment& assessment) const {
+    const Json* const channels = given_if(method_.names_channels, answer, "channels", "channel");
+    if (channels == nullptr)
+      return;
+    if (!channels->is_array())
+      refuse("channels", *channels, "a list of [CV, MV]");
+    for (const Json& each : *channels)
+      assessment.flagged_channels.push_back(channel("channels", each));
+  }
+
+  void read_mismatch(const Json& answer, Assessment& assessment) const {
+    const Json* const mismatch = given_if(method_.names_mismatches, answer, "mismatch", "mismatch");
+    if (mismatch == nullptr)
+      return;
+    if (!mismatch->is_object() || !mismatch->contains("channel") || !mismatch->contains("parameter"))
+      refuse("mismatch", *mismatch, "an object with channel and parameter, and size, lower, upper or not");
+    refuse_unknown(*mismatch, {"channel", "parameter", "size", "lower", "upper"});
+    const auto size = [&](const char* key) { return number(key, mismatch->value(key, Json())); };
+    assessment.named_mismatch = {channel("mismatch", mismatch->at("channel")),
+                                 word("mismatch", mismatch->at("parameter"), MismatchParameter::sign),
+                                 size("size"), size("lower"), size("upper")};
+  }
+
+  void read_numbers(const Json& answer, Assessment& assessment) const {
+    const Json* const numbers = given(answer, "numbers");
+    if (numbers == nullptr)
+      return;
+    for (const auto& item : numbers->items()) {
+      const auto info = std::find_if(method_.numbers.begin(), method_.numbers.end(),
+                                     [&](const auto& each) { return each.name == item.key(); });
+      if (info == method_.numbers.end())
+        throw InputError(place_, fmt::format("the number '{}'", item.key()),
+                         "numbers that the description of the method has");
+      add_number(*info, item.value(), assessment.numbers);
+    }
+  }
+
+  void add_number(const AssessmentNumberInfo& info, const Json& value,
+                  std::vector<AssessmentNumber>& list_of) const {
+    const char* const key = info.name.c_str();
+    if (info.scope == NumberScope::loop) {
+      list_of.push_back({info.name, number(key, value)});
+      return;
+    }
+    list(key, value, plant_.cvs.size());
+    for (std::size_t cv = 0; cv < value.size(); ++cv) {
+      const auto row = static_cast<Eigen::Index>(cv);
+      if (info.scope == NumberScope::cv)
+        list_of.push_back({info.name, number(key, value[cv]), row});
+      else
+        for (std::size_t mv = 0; mv < list(key, value[cv], plant_.mvs.size()).size(); ++mv)
+          list_of.push_back({info.name, number(key, value[cv][mv]), row, static_cast<Eigen::Index>(mv)});
+    }
+  }
+
+  const PlantModel& plant_;
+  const MethodDescription& method_;
+  const std::string& place_;
+};
+
+}  // namespace
+
+const std::vector<LoopSignal>& loop_signals() {
+  static const std::vector<LoopSignal> signals{
+      {"y", "cv", "CVs as the historian has them", &AssessedLoop::y},
+      {"u", "mv", "MVs", &AssessedLoop::u},
+      {"u_target", "mv", "targets of the optimizer for the MVs", &AssessedLoop::u_target},
+      {"d", "md", "measured disturbances", &AssessedLoop::d},
+      {"y_sim", "cv", "output of the nominal model under the MVs and measured disturbances",
+       &AssessedLoop::y_sim},
+      {"y_set", "cv", "setpoints; NaN for a CV without one", &AssessedLoop::y_set},
+      {"candidates", "candidate", "logged signals that the model does not know", &AssessedLoop::candidates}};
+  return signals;
+}
+
+Json loop_json(const AssessedLoop& loop) {
+  Json json;
+  for (const LoopSignal& signal : loop_signals())
+    json[signal.name] = matrix_json(loop.*signal.member);
+  if (loop.whole != nullptr) {
+    json["first"] = loop.first;
+    json["whole"] = loop_json(*loop.whole);
+  }
+  return json;
+}
+
+Json context_json(const AssessmentContext& context) {
+  const Study& study = context.study;
+  return {{"plant", study.plant.name},
+          {"time_unit", study.plant.time_unit},
+          {"sample_time", study.controller.sample_time},
+          {"samples", study.simulation.samples},
+          {"cvs", variables_json(study.plant.cvs)},
+          {"mvs", variables_json(study.plant.mvs)},
+          {"mds", variables_json(study.plant.mds)},
+          {"model", model_json(study)},
+          {"controller", controller_json(study.controller)},
+          {"operating_point",
+           {{"u", vector_json(context.basis.point.u)}, {"y", vector_json(context.basis.point.y)}}},
+          {"benchmark", context.benchmark ? loop_json(*context.benchmark) : Json()}};
+}
+
+Assessment assessment_of(const Json& answer, const PlantModel& plant, const MethodDescription& method,
+                         const std::string& place) {
+  return AnswerReader(plant, method, place).read(answer);
+}
+
+}  // namespace mpm

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <nlohmann/json_fwd.hpp>
+
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/assessment.hpp"
+#include "analysis/methods/assessment_method.hpp"
+
+// What a method from outside is told, and what it answers, as JSON (docs/bring_your_own.md). A number that is
+// missing or not finite is null.
+
+namespace mpm {
+
+/// One signal of a loop as methods see it: its name in messages and files, the dimension of its rows.
+struct LoopSignal {
+  const char* name;
+  const char* rows;  ///< "cv", "mv", "md", "candidate"
+  const char* meaning;
+  Eigen::MatrixXd AssessedLoop::*member;
+};
+
+/// y, u, u_target, d, y_sim, y_set, candidates.
+const std::vector<LoopSignal>& loop_signals();
+
+/// {"y": [[...], ...], ...}: the signals of a loop, a list for each row. Of a window, with "whole" and
+/// "first".
+nlohmann::ordered_json loop_json(const AssessedLoop& loop);
+
+/// The plant's variables, sample time, nominal model (transfer functions and step responses), controller,
+/// operating point and benchmark: all that a method may know besides the loop. No draw, no seed.
+nlohmann::ordered_json context_json(const AssessmentContext& context);
+
+/// The verdict of an answer:
+///
+/// | key            | value                                                                            |
+/// |----------------|----------------------------------------------------------------------------------|
+/// | flagged        | true, false; the only one that must be there                                     |
+/// | score          | number, larger is worse; 1 or 0 by `flagged` without one                         |
+/// | cv, source     | the CV that is worst, by name; its source: "none", "mpm", "ud", "mpm_ud"         |
+/// | cv_flagged, cv_score, cv_source | lists of ny in place of these two, null: nothing is said        |
+/// | channels       | [["y1", "u2"], ...]: channels of the model that are named                        |
+/// | mismatch       | {"channel", "parameter", "size", "lower", "upper"}; the last three may be absent |
+/// | numbers        | {"name": value}: those of the description; lists by CV, lists of lists by channel |
+/// | error, not_applicable | in the place of all others: why there is no verdict                       |
+///
+/// A key that the description does not say (channels of a method that names none) and an unknown one are
+/// refused: InputError, whose text begins with `place`.
+Assessment assessment_of(const nlohmann::ordered_json& answer, const PlantModel& plant,
+                         const MethodDescription& method, const std::string& place);
+
+}  // namespace mpm

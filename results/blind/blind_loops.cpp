@@ -1,0 +1,202 @@
+#include "results/blind/blind_loops.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "analysis/methods/method_messages.hpp"
+#include "results/archive/dimensions.hpp"
+#include "results/archive/matrix_io.hpp"
+#include "results/files/atomic_file.hpp"
+#include "results/files/sha256.hpp"
+#include "scenarios/random_stream.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* kBlindFileType = "mpmbench blind loops";
+
+/// Names of the rows of a signal.
+std::vector<std::string> row_names(const Study& study, const LoopSignal& signal) {
+  const std::string rows = signal.rows;
+  std::vector<std::string> names;
+  if (rows == "candidate")
+    for (int i = 0; i < study.record.candidates; ++i)
+      names.push_back(fmt::format("{}", i + 1));
+  else
+    for (const PlantModel::Variable& variable : rows == "cv"   ? study.plant.cvs
+                                                : rows == "mv" ? study.plant.mvs
+                                                               : study.plant.mds)
+      names.push_back(variable.name);
+  return names;
+}
+
+std::string unit_of_rows(const PlantModel& plant, const LoopSignal& signal) {
+  const std::string rows = signal.rows;
+  return rows == "candidate" ? "1"
+                             : common_unit(rows == "cv"   ? plant.cvs
+                                           : rows == "mv" ? plant.mvs
+                                                          : plant.mds);
+}
+
+void append_number(std::string& text, double value) {
+  if (value != value)
+    text += ",NaN";
+  else
+    fmt::format_to(std::back_inserter(text), ",{}", value);
+}
+
+/// One row a sample; `loop` stands in front where there are several.
+void append_samples(std::string& text, const Study& study, const AssessedLoop& loop,
+                    const std::string& number) {
+  for (Eigen::Index k = 0; k < loop.samples(); ++k) {
+    fmt::format_to(std::back_inserter(text), "{}{}", number, k);
+    append_number(text, static_cast<double>(k) * study.controller.sample_time);
+    for (const LoopSignal& signal : loop_signals())
+      for (Eigen::Index row = 0; row < (loop.*signal.member).rows(); ++row)
+        append_number(text, (loop.*signal.member)(row, k));
+    text += '\n';
+  }
+}
+
+std::string heading_of_samples(const Study& study, bool with_candidates, const char* first) {
+  std::string text = fmt::format("{}sample,time", first);
+  for (const LoopSignal& signal : loop_signals())
+    if (with_candidates || std::strcmp(signal.rows, "candidate") != 0)
+      for (const std::string& name : row_names(study, signal))
+        fmt::format_to(std::back_inserter(text), ",{}.{}", signal.name, name);
+  return text + "\n";
+}
+
+std::string blind_csv(const Study& study, const std::vector<AssessedLoop>& loops, const std::string& hash) {
+  std::string text = hash_line(hash) + heading_of_samples(study, true, "loop,");
+  for (std::size_t i = 0; i < loops.size(); ++i)
+    append_samples(text, study, loops[i], fmt::format("{},", i));
+  return text;
+}
+
+std::string benchmark_csv(const Study& study, const AssessedLoop& benchmark) {
+  std::string text = heading_of_samples(study, benchmark.candidates.rows() > 0, "");
+  append_samples(text, study, benchmark, "");
+  return text;
+}
+
+/// A form to fill in, with all columns that there can be for a whole loop.
+std::string empty_verdicts(std::size_t loops, const std::string& hash) {
+  std::string text = fmt::format("{}loop,flagged,score,cv,source,channels,parameter,size,lower,upper,error\n",
+                                 hash_line(hash));
+  for (std::size_t i = 0; i < loops; ++i)
+    fmt::format_to(std::back_inserter(text), "{},,,,,,,,,,\n", i);
+  return text;
+}
+
+void write_signals(Hdf5Group& group, const Study& study, const std::vector<const AssessedLoop*>& loops,
+                   const std::vector<std::string>& first) {
+  for (const LoopSignal& signal : loop_signals()) {
+    std::vector<const Eigen::MatrixXd*> matrices;
+    for (const AssessedLoop* const loop : loops)
+      matrices.push_back(&(loop->*signal.member));
+    if (matrices.empty() || (std::strcmp(signal.rows, "candidate") == 0 && matrices.front()->rows() == 0))
+      continue;
+    std::vector<std::string> dimensions = first;
+    dimensions.insert(dimensions.end(), {signal.rows, "sample"});
+    write_matrices(group, dimensions,
+                   {signal.name, signal.meaning, unit_of_rows(study.plant, signal), "", {}, "time"}, matrices,
+                   static_cast<Eigen::Index>(row_names(study, signal).size()), study.simulation.samples);
+  }
+}
+
+void write_dimensions(Hdf5Group& group, const Study& study) {
+  write_plant_dimensions(group, study.plant);
+  write_sample_dimension(group, "sample", "sample number", "time", study, 0, study.simulation.samples);
+}
+
+Hdf5File blind_netcdf(const std::string& name, const Study& study, const AssessmentContext& context,
+                      const std::vector<AssessedLoop>& loops, const std::string& hash) {
+  Hdf5File file = Hdf5File::create(name);
+  Hdf5Group root = file.root();
+  root.write_attribute("filetype", kBlindFileType);
+  root.write_attribute("Conventions", "CF-1.8");
+  root.write_attribute("title", fmt::format("Loops of {} without the truth", study.plant.name));
+  root.write_attribute("loops_sha256", hash);
+  std::vector<std::int32_t> numbers(loops.size());
+  std::iota(numbers.begin(), numbers.end(), 0);
+  root.write_dimension("loop", numbers,
+                       attributes<std::int32_t>({"loop", "number of the loop in this export"}));
+  write_dimensions(root, study);
+  if (study.record.candidates > 0) {
+    std::vector<std::int32_t> candidates(static_cast<std::size_t>(study.record.candidates));
+    std::iota(candidates.begin(), candidates.end(), 1);
+    root.write_dimension("candidate", candidates,
+                         attributes<std::int32_t>({"candidate", "number of the logged signal"}));
+  }
+  std::vector<const AssessedLoop*> all;
+  for (const AssessedLoop& loop : loops)
+    all.push_back(&loop);
+  write_signals(root, study, all, {"loop"});
+  if (context.benchmark) {
+    Hdf5Group group = root.create_group("benchmark");
+    group.write_attribute("title", "A period in which nothing was wrong");
+    write_dimensions(group, study);
+    write_signals(group, study, {&*context.benchmark}, {});
+  }
+  return file;
+}
+
+void write_blind_text(const std::filesystem::path& path, const std::string& text) {
+  write_file_atomically(path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace
+
+std::vector<std::size_t> blind_order(const Campaign& campaign) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < campaign.records.size(); ++i)
+    if (campaign.records[i].status == ExperimentStatus::ok)
+      order.push_back(i);
+  RandomStream stream(campaign.study.seed, 0, StreamId::blind_order);
+  for (std::size_t left = order.size(); left > 1; --left)
+    std::swap(order[left - 1], order[static_cast<std::size_t>(stream.below(left))]);
+  return order;
+}
+
+std::string loops_hash(const Campaign& campaign) {
+  std::string content =
+      fmt::format("{}\n{}\n{}\n", campaign.study.source, campaign.study.seed, campaign.info.solver);
+  for (const ExperimentRecord& record : campaign.records)
+    if (record.status == ExperimentStatus::ok) {
+      fmt::format_to(std::back_inserter(content), "{}", record.draw.index);
+      for (const double value : record.ivar_basis)
+        append_number(content, value);
+      content += '\n';
+    }
+  return sha256(std::as_bytes(std::span(content)));
+}
+
+std::string hash_line(const std::string& hash) {
+  return fmt::format("# mpmbench loops sha256 {}\n", hash);
+}
+
+void write_blind_loops(const std::filesystem::path& folder, const Campaign& campaign,
+                       const AssessmentContext& context, const std::vector<AssessedLoop>& loops) {
+  const Study& study = campaign.study;
+  const std::string hash = loops_hash(campaign);
+  nlohmann::ordered_json description = context_json(context);
+  description["loops"] = loops.size();
+  description["loops_sha256"] = hash;
+  const std::filesystem::path netcdf = folder / "loops.nc";
+  write_file_atomically(netcdf, blind_netcdf(netcdf.string(), study, context, loops, hash).image());
+  write_blind_text(folder / "loops.csv", blind_csv(study, loops, hash));
+  if (context.benchmark)
+    write_blind_text(folder / "benchmark.csv", benchmark_csv(study, *context.benchmark));
+  write_blind_text(folder / "context.json", description.dump(1) + "\n");
+  write_blind_text(folder / "verdicts.csv", empty_verdicts(loops.size(), hash));
+}
+
+}  // namespace mpm

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "results/archive/campaign.hpp"
+
+namespace mpm {
+
+/// What somebody says of the loops of a blind export.
+struct OutsideVerdicts {
+  std::shared_ptr<const AssessmentForm> form;
+  std::vector<AssessmentRecord> answers;  ///< of each record of the campaign, in their order
+  bool says_which_loops = false;  ///< the file has the hash of the loops, and it is that of the campaign
+};
+
+/// Reads a file of verdicts (CSV, docs/bring_your_own.md) on the loops of blind_order(). The method is called
+/// `name`; its description says what the columns of the file answer, and that it comes from outside. A loop
+/// that the file does not name, or for which it has an error, is a failed verdict.
+///
+/// Errors: InputError "FILE:LINE: COLUMN: found ...; allowed: ..." for a file that cannot be read, other
+/// columns, another value, a loop that there is not or that stands there twice, verdicts on other loops; and
+/// for a name that is none or that a method of this program has.
+OutsideVerdicts read_verdicts(const std::filesystem::path& path, const std::string& name,
+                              const Campaign& campaign);
+
+}  // namespace mpm

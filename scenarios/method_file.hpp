@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace mpm {
+
+/// A method of assessment that is a program of its own (analysis/methods/program_method).
+struct MethodProgram {
+  std::string name;                  ///< of the method
+  std::vector<std::string> command;  ///< the program and its arguments
+  double time_limit = 60.0;          ///< seconds for an answer
+  std::string options = "{}";        ///< JSON, for the program
+};
+
+/// Reads a file of methods (docs/bring_your_own.md):
+///
+///   [method.mine]
+///   command = ["python3", "mine.py"]
+///   time_limit = 60
+///   options = {threshold = 1.5}
+///
+/// Errors: InputError "FILE:LINE: KEY: found ...; allowed: ..." as for a study file.
+std::vector<MethodProgram> load_method_file(const std::filesystem::path& path);
+
+}  // namespace mpm
