@@ -9,8 +9,10 @@
 #include <fmt/format.h>
 
 #include "plants/fmu_model.hpp"
+#include "plants/program_model.hpp"
 #include "scenarios/study_file_keys.hpp"
 #include "scenarios/study_file_parts.hpp"
+#include "scenarios/toml_text.hpp"
 #include "scenarios/toml_values.hpp"
 
 namespace mpm {
@@ -53,13 +55,15 @@ FmuSettings::Variable read_variable(const TomlTable& entry) {
   return {name, entry.where(entry.has("variable") ? "variable" : "name")};
 }
 
-/// The list `input`: that of each MV and MD, in the order of the plant, and then the inner inputs.
-FmuVariables read_inputs(const TomlTable& fmu, const PlantModel& plant, NonlinearModel& model) {
-  const std::vector<TomlTable> entries = read_entries(fmu, "input", "plant.fmu.input[]");
-  FmuVariables variables;
+/// The list `input`, each entry with its operating point: that of each MV and MD, in the order of the plant,
+/// and then the inner inputs.
+std::vector<TomlTable> read_inputs(const TomlTable& foreign, const std::string& keys, const PlantModel& plant,
+                                   NonlinearModel& model) {
+  const std::vector<TomlTable> entries = read_entries(foreign, "input", keys);
+  std::vector<TomlTable> inputs;
   std::vector<double> operating;
   const auto take = [&](const TomlTable& entry) {
-    variables.push_back(read_variable(entry));
+    inputs.push_back(entry);
     operating.push_back(read_number(entry, "operating", NumberRule::finite()));
   };
   std::set<std::string> of_plant;
@@ -67,8 +71,8 @@ FmuVariables read_inputs(const TomlTable& fmu, const PlantModel& plant, Nonlinea
     for (const PlantModel::Variable& variable : *list) {
       const TomlTable* const entry = entry_of(entries, variable.name);
       if (entry == nullptr)
-        fmu.refuse("input", fmt::format("no entry for '{}'", variable.name),
-                   "one for each MV and MD of the plant");
+        foreign.refuse("input", fmt::format("no entry for '{}'", variable.name),
+                       "one for each MV and MD of the plant");
       take(*entry);
       of_plant.insert(variable.name);
     }
@@ -79,7 +83,7 @@ FmuVariables read_inputs(const TomlTable& fmu, const PlantModel& plant, Nonlinea
     }
   model.operating_input =
       Eigen::Map<const Eigen::VectorXd>(operating.data(), static_cast<Eigen::Index>(operating.size()));
-  return variables;
+  return inputs;
 }
 
 /// The list `output`: of each CV the variable of its entry, or that of its own name.
@@ -96,27 +100,43 @@ FmuVariables read_outputs(const TomlTable& fmu, const PlantModel& plant) {
   return variables;
 }
 
-FmuVariables read_parameters(const TomlTable& fmu, NonlinearModel& model) {
-  FmuVariables variables;
-  for (const TomlTable& entry : read_entries(fmu, "parameter", "plant.fmu.parameter[]")) {
-    const std::string name = read_text(entry, "name");
-    model.parameters.push_back({name, read_number(entry, "value", NumberRule::finite())});
-    variables.push_back({name, entry.where("name")});
-  }
-  return variables;
+/// The list `parameter`, each entry with its nominal value.
+std::vector<TomlTable> read_parameters(const TomlTable& foreign, const std::string& keys,
+                                       NonlinearModel& model) {
+  std::vector<TomlTable> entries = read_entries(foreign, "parameter", keys);
+  for (const TomlTable& entry : entries)
+    model.parameters.push_back({read_text(entry, "name"), read_number(entry, "value", NumberRule::finite())});
+  return entries;
 }
 
-ForeignOptions read_options(const TomlTable& fmu) {
+ForeignOptions read_options(const TomlTable& foreign) {
   const ForeignOptions standard;
   ForeignOptions options;
-  options.settle = read_number(fmu, "settle", NumberRule::positive());
+  options.settle = read_number(foreign, "settle", NumberRule::positive());
   options.settle_tolerance =
-      read_number_or(fmu, "settle_tolerance", NumberRule::positive(), standard.settle_tolerance);
-  options.time_limit = read_number_or(fmu, "time_limit", NumberRule::positive(), standard.time_limit);
+      read_number_or(foreign, "settle_tolerance", NumberRule::positive(), standard.settle_tolerance);
+  options.time_limit = read_number_or(foreign, "time_limit", NumberRule::positive(), standard.time_limit);
   if (options.time_limit > kLongestTimeLimit)
-    fmu.refuse("time_limit", fmt::to_string(options.time_limit),
-               fmt::format("at most {} s", kLongestTimeLimit));
+    foreign.refuse("time_limit", fmt::to_string(options.time_limit),
+                   fmt::format("at most {} s", kLongestTimeLimit));
   return options;
+}
+
+/// A list of texts: a program and its arguments, of which two may be alike.
+std::vector<std::string> read_words(const TomlTable& table, const std::string& key) {
+  const std::string allowed = "a list of texts: a program and its arguments";
+  const toml::node& node = table.require(key, allowed);
+  const toml::array* const list = node.as_array();
+  if (list == nullptr || list->empty())
+    table.refuse(key, describe(node), allowed);
+  std::vector<std::string> words;
+  for (const toml::node& word : *list) {
+    if (!word.is_string())
+      table.refuse(key, describe(word), allowed);
+    words.push_back(word.as_string()->get());
+  }
+  table.record(key, words);
+  return words;
 }
 
 /// A path of the study file: from its folder or, when nothing is there, from the current one.
@@ -126,24 +146,59 @@ fs::path file_beside(const fs::path& folder, const fs::path& file) {
   return fs::exists(beside, no_status) ? beside : file;
 }
 
-}  // namespace
+FmuVariables variables_of(const std::vector<TomlTable>& entries) {
+  FmuVariables variables;
+  for (const TomlTable& entry : entries)
+    variables.push_back(read_variable(entry));
+  return variables;
+}
 
-NonlinearModel read_foreign_plant(const TomlTable& table, const PlantModel& plant, const fs::path& folder) {
-  for (const char* key : {"simulated", "relative_tolerance", "absolute_tolerance", "step_limit"})
-    if (table.has(key))
-      table.refuse(key, "a key beside plant.fmu", "plant.fmu alone: an FMU integrates itself");
-  const TomlTable fmu = table.table("fmu", study_file_keys("plant.fmu"));
+/// [plant.fmu]
+NonlinearModel read_fmu(const TomlTable& fmu, const PlantModel& plant, const fs::path& folder) {
   NonlinearModel model;
   FmuSettings settings;
   settings.file = file_beside(folder, read_text(fmu, "file"));
   settings.place = fmu.where("file");
   settings.time_factor = read_number_or(fmu, "time_factor", NumberRule::positive(), settings.time_factor);
   const ForeignOptions options = read_options(fmu);
-  settings.inputs = read_inputs(fmu, plant, model);
+  settings.inputs = variables_of(read_inputs(fmu, "plant.fmu.input[]", plant, model));
   settings.outputs = read_outputs(fmu, plant);
-  settings.parameters = read_parameters(fmu, model);
+  for (const TomlTable& entry : read_parameters(fmu, "plant.fmu.parameter[]", model))
+    settings.parameters.push_back({read_text(entry, "name"), entry.where("name")});
   model.foreign = fmu_model(std::move(settings), options);
   return model;
+}
+
+/// [plant.program]
+NonlinearModel read_program(const TomlTable& program, const PlantModel& plant) {
+  NonlinearModel model;
+  ProgramSettings settings;
+  settings.command = read_words(program, "command");
+  const ForeignOptions options = read_options(program);
+  read_inputs(program, "plant.program.input[]", plant, model);
+  read_parameters(program, "plant.program.parameter[]", model);
+  for (const NonlinearModel::Parameter& parameter : model.parameters)
+    settings.parameters.push_back(parameter.name);
+  settings.mvs = static_cast<Eigen::Index>(plant.mvs.size());
+  settings.mds = static_cast<Eigen::Index>(plant.mds.size());
+  settings.inner = static_cast<Eigen::Index>(model.inner_inputs.size());
+  settings.outputs = static_cast<Eigen::Index>(plant.cvs.size());
+  model.foreign = program_model(std::move(settings), options);
+  return model;
+}
+
+}  // namespace
+
+NonlinearModel read_foreign_plant(const TomlTable& table, const PlantModel& plant, const fs::path& folder) {
+  const std::string key = table.has("fmu") ? "fmu" : "program";
+  for (const char* other : {"simulated", "relative_tolerance", "absolute_tolerance", "step_limit"})
+    if (table.has(other))
+      table.refuse(other, fmt::format("a key beside plant.{}", key),
+                   fmt::format("plant.{} alone: it integrates itself", key));
+  if (table.has("fmu") && table.has("program"))
+    table.refuse("program", "a table beside plant.fmu", "one of the two");
+  const TomlTable foreign = table.table(key, study_file_keys("plant." + key));
+  return key == "fmu" ? read_fmu(foreign, plant, folder) : read_program(foreign, plant);
 }
 
 }  // namespace mpm

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kMaxParameters = 200;  // a bound on what a file can make the program do
 constexpr const char* kIntegrated = "plant.simulated = \"nonlinear\"";
-constexpr const char* kNonlinear = "plant.simulated = \"nonlinear\", or plant.fmu";
+constexpr const char* kNonlinear = "plant.simulated = \"nonlinear\", plant.fmu or plant.program";
 
 OdeOptions read_integration(const TomlTable& plant) {
   const OdeOptions standard;
@@ -68,7 +68,7 @@ std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& do
                                                              const PlantModel& linear,
                                                              const std::filesystem::path& folder) {
   const TomlTable plant = document.table("plant", study_file_keys("plant"));
-  if (plant.has("fmu"))
+  if (plant.has("fmu") || plant.has("program"))
     return NonlinearSimulation{read_foreign_plant(plant, linear, folder), OdeOptions{}};
   const bool nonlinear =
       read_choice_or<bool>(plant, "simulated", {{"linear", false}, {"nonlinear", true}}, false);

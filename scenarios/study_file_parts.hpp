@@ -30,7 +30,7 @@ std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& do
                                                              const PlantModel& model,
                                                              const std::filesystem::path& folder);
 
-/// The plant that [plant.fmu] of the table `plant` describes (study_file_foreign.cpp).
+/// The plant that [plant.fmu] or [plant.program] of the table `plant` describes (study_file_foreign.cpp).
 NonlinearModel read_foreign_plant(const TomlTable& plant, const PlantModel& model,
                                   const std::filesystem::path& folder);
 

@@ -37,7 +37,7 @@ std::string program() {
 
 /// What the file of a plant that somebody else simulates adds to a study.
 std::string plant_file(const Study& study) {
-  return study.nonlinear && study.nonlinear->model.foreign
+  return study.nonlinear && study.nonlinear->model.foreign && !study.nonlinear->model.foreign->file().empty()
              ? fmt::format(", FMU {}", digest_of_file(study.nonlinear->model.foreign->file()))
              : "";
 }

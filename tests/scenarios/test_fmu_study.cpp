@@ -86,6 +86,32 @@ TEST_CASE("a study with an FMU can be read without it, until a loop is simulated
       Contains("s.toml:") && Contains("plant.fmu.file: found 'not_here/tank.fmu', which is no file"));
 }
 
+TEST_CASE("the keys of a program as the plant land in their place", "[fmu]") {
+  const std::string base = project_file("tests/scenarios/data/quadruple-tank.toml");
+  const auto text = [&](const std::string& command) {
+    return replaced(base.substr(0, base.find("[experiments]")), "catalogue = \"quadruple-tank\"\n",
+                    "catalogue = \"quadruple-tank\"\n[plant.program]\ncommand = " + command + R"(
+settle = 100
+input = [{name = "x1", operating = 0.43}, {name = "v2", operating = 3.15}, {name = "v1", operating = 3.2},
+         {name = "rain", operating = 0.5}, {name = "x2", operating = 0.34}]
+parameter = [{name = "cd 1", value = 3.145}]
+)") + "[[scenario]]\nname = 'a'\naffected = ['h1']\nparameter = [{name = 'cd 1', factor = 2}]\n";
+  };
+  const Study study = parse_study(text("[\"sh\", \"-c\", \"-c\"]"), "s.toml");
+  REQUIRE(study.nonlinear.has_value());
+  const NonlinearModel& model = study.nonlinear->model;
+  CHECK(model.operating_input == (Eigen::VectorXd(5) << 3.2, 3.15, 0.43, 0.34, 0.5).finished());
+  CHECK(model.inner_inputs == std::vector<std::string>{"rain"});
+  CHECK(model.parameters == std::vector<NonlinearModel::Parameter>{{"cd 1", 3.145}});
+  CHECK(model.foreign->options().settle == 100);
+  CHECK(model.foreign->output_count() == 4);
+  CHECK_THAT(refusal(text("[]")), Contains("plant.program.command: found") && Contains("a program and its"));
+  CHECK_THAT(refusal(text("[\"sh\", 1]")), Contains("plant.program.command: found"));
+  CHECK_THAT(refusal(text("\"sh\"")), Contains("plant.program.command: found"));
+  CHECK_THAT(refusal(text("['a']\n[plant.fmu]\nfile = 'b'\n[plant.program.more]")),
+             Contains("plant.program"));
+}
+
 TEST_CASE("what a study with an FMU cannot be is refused", "[fmu]") {
   const std::string text = replaced(fmu_study_text(), "INNER", "fourth");
   const auto refused = [&](const std::string& from, const std::string& to) {
@@ -93,7 +119,7 @@ TEST_CASE("what a study with an FMU cannot be is refused", "[fmu]") {
     return message.substr(message.find(' ') + 1);
   };
   CHECK(refused("catalogue", "simulated = \"nonlinear\"\ncatalogue") ==
-        "plant.simulated: found a key beside plant.fmu; allowed: plant.fmu alone: an FMU integrates itself");
+        "plant.simulated: found a key beside plant.fmu; allowed: plant.fmu alone: it integrates itself");
   CHECK(refused("{name = \"v2\", operating = 3.15}, ", "") ==
         "plant.fmu.input: found no entry for 'v2'; allowed: one for each MV and MD of the plant");
   CHECK(refused("{name = \"v2\", operating = 3.15}", "{name = \"v1\", operating = 3.15}") ==

@@ -200,6 +200,19 @@ parameter = [{name = "cd1", value = 3.145}, {name = "k2", value = 3.29}]
 )");
 }
 
+/// The same as a program.
+std::string program_study_text() {
+  return replaced(random_tank_text(), "simulated = \"nonlinear\"\n", R"(
+[plant.program]
+command = ["tank", "--fast", "--fast"]
+settle = 3000
+input = [{name = "v1", operating = 3.2}, {name = "v2", operating = 3.15}, {name = "x1", operating = 0.43},
+         {name = "x2", operating = 0.34}]
+parameter = [{name = "cd1", value = 3.145}, {name = "k2", value = 3.29}]
+
+)");
+}
+
 /// The small study in which nothing but noise and faults moves the loop.
 std::string unexcited_study_text() {
   const std::string text = small_study();
@@ -212,7 +225,7 @@ std::vector<Study> of_tests() {
   std::vector<Study> studies;
   for (const std::string& text :
        {small_study(), random_study_text(), scenario_study_text(), nonlinear_study_text(), random_tank_text(),
-        fmu_study_text(), unexcited_study_text()})
+        fmu_study_text(), program_study_text(), unexcited_study_text()})
     studies.push_back(parse_study(text, "s.toml"));
   return studies;
 }

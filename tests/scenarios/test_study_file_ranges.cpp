@@ -239,7 +239,7 @@ TEST_CASE("faults beyond one parameter and white noise are checked", "[study_fil
       {"", "[mismatch]\nplant_parameter = [{name = \"a\"}]\n", "plant_parameter",
        "mismatch.plant_parameter: found parameters of a plant that is simulated by its linear model; "
        "allowed: "
-       "plant.simulated = \"nonlinear\", or plant.fmu"},
+       "plant.simulated = \"nonlinear\", plant.fmu or plant.program"},
       {"", "[mismatch]\nimpact = {uniform = [0, 1]}\n", "impact",
        "mismatch.impact: found draws from 0 to 1; allowed: a distribution whose every draw is a number > 0"},
       {"", "[disturbance]\nsignal_weights = {sine = 1, saw = 1}\n", "signal_weights",
