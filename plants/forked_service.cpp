@@ -132,7 +132,7 @@ std::mutex& fork_mutex() {
 
 }  // namespace
 
-ForkedService::ForkedService(Serve serve, double time_limit) : time_limit_(time_limit) {
+ForkedService::ForkedService(const Serve& serve, double time_limit) : time_limit_(time_limit) {
   const std::lock_guard lock(fork_mutex());
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)

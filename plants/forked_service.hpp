@@ -26,7 +26,7 @@ class ForkedService {
 
   /// An answer that takes longer than `time_limit` seconds counts as none. Errors: std::system_error when no
   /// process can be made.
-  ForkedService(Serve serve, double time_limit);
+  ForkedService(const Serve& serve, double time_limit);
   ForkedService(const ForkedService&) = delete;
   ForkedService& operator=(const ForkedService&) = delete;
   ~ForkedService();

@@ -68,7 +68,7 @@ class ProgramSimulation final : public ForeignSimulation {
       program_.reset();
       throw ForeignFailure(error.what());
     }
-    const PlantJson answer = PlantJson::parse(line, nullptr, false);
+    PlantJson answer = PlantJson::parse(line, nullptr, false);
     if (!answer.is_object())
       throw ForeignFailure(fmt::format("an answer that is no JSON object: {}",
                                        std::string_view(line).substr(0, kShownOfAnswer)));
