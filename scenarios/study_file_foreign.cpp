@@ -30,7 +30,7 @@ std::vector<TomlTable> read_entries(const TomlTable& table, const std::string& l
                                     const std::string& keys) {
   if (!table.has(list))
     return {};
-  const std::vector<TomlTable> entries = table.tables(list, study_file_keys(keys));
+  std::vector<TomlTable> entries = table.tables(list, study_file_keys(keys));
   if (entries.size() > kMostForeignVariables)
     table.refuse(list, fmt::format("a list of {}", entries.size()),
                  fmt::format("at most {}", kMostForeignVariables));

@@ -102,11 +102,12 @@ std::vector<Eigen::VectorXd> step_fit_starts(const Eigen::VectorXd& response, St
   for (const double part : {0.0, 0.7, 1.0}) {
     const double dead_time = part * seen, rest = std::max(risen - dead_time, 0.3);
     if (form == StepForm::first_order) {
-      points.push_back(Eigen::Vector2d(dead_time, std::log(rest)));
+      points.emplace_back(Eigen::Vector2d(dead_time, std::log(rest)));
       continue;
     }
     for (const double damping : {0.5, 1.0, 2.5})
-      points.push_back(Eigen::Vector3d(dead_time, std::log(rest / (0.6 + 1.1 * damping)), std::log(damping)));
+      points.emplace_back(
+          Eigen::Vector3d(dead_time, std::log(rest / (0.6 + 1.1 * damping)), std::log(damping)));
   }
   return points;
 }
