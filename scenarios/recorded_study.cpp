@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t kMostMoves = 10000;
 constexpr double kFirstTolerance = 0.01;  // of the standard deviation of an MD
 constexpr double kFewestMissing = 0.001;
+constexpr std::string_view kTrialTitle = "Calibration run: ";
 
 /// The table under `key`, made when it is not there.
 toml::table& table_in(toml::table& owner, std::string_view key) {
@@ -183,7 +184,12 @@ Study trial_study(const Study& recorded, int healthy, int faulty) {
   const std::uint64_t seed = (recorded.seed ^ kCalibrationBits) &
                              static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   table_in(text, "study").insert_or_assign("seed", static_cast<std::int64_t>(seed));
+  table_in(text, "study").insert_or_assign("title", fmt::format("{}{}", kTrialTitle, recorded.title));
   return study_of(text, recorded.name + ", calibration run");
+}
+
+bool is_trial_study(const Study& study) {
+  return study.title.starts_with(kTrialTitle);
 }
 
 }  // namespace mpm

@@ -33,4 +33,7 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
 /// kCalibrationBits flipped. Errors: as parse_study().
 Study trial_study(const Study& recorded, int healthy, int faulty);
 
+/// Is this the study of a calibration run? Its title says so.
+bool is_trial_study(const Study& study);
+
 }  // namespace mpm

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/progress.hpp"
+#include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
@@ -55,7 +57,10 @@ std::optional<MonitoringOptions> monitoring_of(const AssessArguments& options, c
                        fmt::format("{} to {}, the samples of the record", kFewestWindowSamples, samples));
     monitoring = {.window = *options.window, .stride = std::max(1, *options.window / 4)};
   }
-  if (options.stride && monitoring)
+  if (options.stride && !monitoring)
+    throw InputError("--stride", fmt::format("{} and no window", *options.stride),
+                     "--window as well, or a study with [monitoring]");
+  if (options.stride)
     monitoring->stride = std::min(*options.stride, samples);
   if (monitoring && monitoring->window > samples) {
     record.warnings.push_back(
@@ -104,6 +109,14 @@ std::filesystem::path calibration_archive(const AssessArguments& options) {
   return options.calibration.empty() ? options.data + ".calibration.h5" : options.calibration;
 }
 
+/// Refuses to replace what is no calibration run.
+void require_own_archive(const std::filesystem::path& archive) {
+  std::error_code no_status;
+  if (std::filesystem::exists(archive, no_status) && !is_trial_study(read_input(archive.string()).study))
+    throw InputError(archive.string(), "an archive that is no calibration run",
+                     "another name for the calibration run (--calibration)");
+}
+
 /// Runs the loops like the record, or takes those that are kept, and puts what they say into the assessment.
 void add_trial(RecordAssessment& assessment, const AssessArguments& options, Progress& progress,
                const std::string& command) {
@@ -112,6 +125,7 @@ void add_trial(RecordAssessment& assessment, const AssessArguments& options, Pro
     return;
   }
   const std::filesystem::path archive = calibration_archive(options);
+  require_own_archive(archive);
   RunOptions run = options.run;
   run.methods = options.methods;
   run.store = StorePolicy::none;

@@ -14,7 +14,7 @@ std::string number_text(double value, bool share) {
   return share ? fmt::format("{:.1f}", 100.0 * value) : fmt::format("{:.4g}", value);
 }
 
-std::string unit_text(bool share) {
+std::string percent_sign(bool share) {
   return share ? " %" : "";
 }
 
@@ -55,7 +55,7 @@ std::string outcome_sentence(const GateResult& result, double confidence) {
 std::string limit_text(const GateResult& result) {
   const Gate& gate = result.gate;
   const bool share = result.measured.is_share();
-  const std::string unit = unit_text(share);
+  const std::string unit = percent_sign(share);
   if (std::isinf(gate.maximum))
     return fmt::format(">= {}{}", number_text(gate.minimum, share), unit);
   if (std::isinf(gate.minimum))
@@ -67,7 +67,7 @@ std::string measured_text(const GateResult& result) {
   const bool share = result.measured.is_share();
   if (std::isnan(result.measured.value))
     return "-";
-  return number_text(result.measured.value, share) + unit_text(share);
+  return number_text(result.measured.value, share) + percent_sign(share);
 }
 
 std::string interval_text(const GateResult& result) {
@@ -76,7 +76,7 @@ std::string interval_text(const GateResult& result) {
   if (std::isnan(interval.lower) || std::isnan(interval.upper))
     return "-";
   return fmt::format("{} to {}{}", number_text(interval.lower, share), number_text(interval.upper, share),
-                     unit_text(share));
+                     percent_sign(share));
 }
 
 std::string margin_text(const GateResult& result) {

@@ -275,6 +275,10 @@ def check_trust(bench, study):
     named = bench.folder / "named.h5"
     bench.run(*words[:3], "--trials", 4, "--calibration", named, "--quiet")
     assert named.exists()
+    mine = (bench.folder / "clean.h5").read_bytes()
+    message = bench.run(*words[:3], "--calibration", "clean.h5", "--quiet", code=2).stderr
+    assert "no calibration run" in message and (bench.folder / "clean.h5").read_bytes() == mine, message
+    assert "--stride: found 5 and no window" in bench.run(*words[:3], "--stride", 5, "--quiet", code=2).stderr
     text = bench.run("assess", study, "plant.csv", "--trials", 0, "--quiet").stdout
     assert "It is at xB, and it is the model" in text and "dead time of xB/S" in text, text
 

@@ -88,6 +88,8 @@ TEST_CASE("a trial study draws the faults of the study under another seed", "[re
   CHECK(trial.mismatch == recorded.mismatch);
   CHECK(measured_disturbances(trial) == measured_disturbances(recorded));
   CHECK_FALSE(trial.monitoring);
+  CHECK(is_trial_study(trial));
+  CHECK_FALSE(is_trial_study(recorded));
 }
 
 TEST_CASE("a recorded study that cannot be is refused", "[recorded_study]") {

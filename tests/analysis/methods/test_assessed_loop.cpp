@@ -9,6 +9,8 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/plant_record.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
@@ -61,6 +63,64 @@ class CountingMethod final : public AssessmentMethod {
 };
 
 }  // namespace
+
+/// The records of a loop from sample `first` on, as a file of them has them.
+PlantRecord record_of(const Trajectory& loop, Eigen::Index first) {
+  const Eigen::Index samples = loop.y.cols() - first;
+  const auto none = [&](Eigen::Index rows) { return Eigen::MatrixXd::Constant(rows, samples, kNaN); };
+  return {.y = loop.y.rightCols(samples),
+          .u = loop.u.rightCols(samples),
+          .d = loop.d.rightCols(samples),
+          .u_target = loop.u_target.rightCols(samples),
+          .y_set = none(loop.y.rows()),
+          .lower = none(loop.y.rows()),
+          .upper = none(loop.y.rows()),
+          .y_sim = none(loop.y.rows())};
+}
+
+TEST_CASE("a record that begins at rest is the loop that it was made of", "[assessed_loop]") {
+  const Study study = quiet_study();
+  const OperatingPoint point = operating_point(study, testing::kFactory);
+  const Trajectory trajectory = simulate_experiment(study, {}, testing::kFactory);
+  const AssessedLoop loop = assessed_loop(study, point, trajectory);
+  const PlantRecord record = record_of(trajectory, 0);
+  CHECK(samples_to_settle(study, point, record, RecordStart::automatic) == 0);
+  const AssessedLoop recorded = assessed_loop(study, point, record, 0);
+  CHECK(recorded.y == loop.y);
+  CHECK(recorded.u_target == loop.u_target);
+  CHECK(recorded.y_sim == loop.y_sim);
+}
+
+TEST_CASE("a record that begins anywhere is judged once the model has forgotten what was before",
+          "[assessed_loop]") {
+  Study study = quiet_study();
+  study.simulation.samples = 400;
+  const OperatingPoint point = operating_point(study, testing::kFactory);
+  const Trajectory trajectory = simulate_experiment(study, {}, testing::kFactory);
+  const PlantRecord record = record_of(trajectory, 130);  // within the answer to a step of a disturbance
+  const Eigen::Index unjudged = samples_to_settle(study, point, record, RecordStart::anywhere);
+  // 28 min and three times 60 min of y7/u1, the slowest channel, in samples of 4 min
+  CHECK(unjudged == 52);
+  const AssessedLoop recorded = assessed_loop(study, point, record, unjudged);
+  CHECK(recorded.y.leftCols(unjudged).array().isNaN().all());
+  CHECK_FALSE(recorded.y.rightCols(recorded.samples() - unjudged).hasNaN());
+  const Eigen::MatrixXd off = (recorded.y_sim - trajectory.y.rightCols(recorded.samples())).cwiseAbs();
+  const double before = off.leftCols(unjudged).maxCoeff();
+  // e^-3 is left of what a first-order channel remembers at the end of its settling time, and less of most.
+  CHECK(off.rightCols(recorded.samples() - unjudged).maxCoeff() < 0.05 * before);
+}
+
+TEST_CASE("y_sim that was recorded is taken, and a setpoint is that of the study", "[assessed_loop]") {
+  const Study study = find_study("setpoint-methods");
+  const OperatingPoint point = operating_point(study, testing::kFactory);
+  const Trajectory trajectory = simulate_experiment(study, {}, testing::kFactory);
+  PlantRecord record = record_of(trajectory, 0);
+  record.y_sim.row(1).setConstant(0.25);
+  const AssessedLoop loop = assessed_loop(study, point, record, 0);
+  CHECK(loop.y_sim.row(1) == record.y_sim.row(1));
+  CHECK(loop.y_sim.row(0) == assessed_loop(study, point, trajectory).y_sim.row(0));
+  CHECK(loop.y_set == trajectory.y_set);
+}
 
 TEST_CASE("a CV in a range has the steady state of the optimizer as setpoint: the soft limit it is put at",
           "[assessed_loop]") {
