@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -97,7 +98,7 @@ class Autocovariance final : public AssessmentMethod {
       return Assessment::not_applicable(*limit);
     learn(loop);
     const Eigen::VectorXd c = loop_autocovariance(control_errors(loop, loop.y), lags_);
-    const Eigen::VectorXd left = c - theoretical_autocovariance(*linear_, moves_, lags_, nullptr);
+    const Eigen::VectorXd left = c - theoretical_autocovariance(*linear_, theory_->moves, lags_, nullptr);
     Assessment assessment;
     assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
@@ -144,7 +145,17 @@ class Autocovariance final : public AssessmentMethod {
     return std::nullopt;
   }
 
-  /// The theory of the loops that are moved as this one: kept as long as they are moved alike.
+  /// What is known of the loops, or of the windows of them, that are moved alike.
+  struct Theory {
+    Eigen::MatrixXd d, y_set;  ///< what moves them
+    OutsideMoves moves;
+    double noise_share = 2.0;
+    Eigen::MatrixXd covariance;           ///< of the autocovariances, without a mismatch
+    std::vector<GriddedFamily> families;  ///< empty until a loop is to be explained
+  };
+
+  /// The theory of the loops that are moved as this one: kept for each window as long as they are moved
+  /// alike.
   void learn(const AssessedLoop& loop) {
     const AssessedLoop& whole = loop.from_start();
     if (!linear_)
@@ -153,21 +164,22 @@ class Autocovariance final : public AssessmentMethod {
                       std::min<Eigen::Index>(study_.simulation.samples, 2 * study_.sensitivity.samples));
     const Eigen::MatrixXd y_set =
         control_errors(whole, Eigen::MatrixXd::Zero(whole.y.rows(), whole.samples()));
-    if (d_.cols() == whole.samples() && d_ == whole.d && y_set_ == y_set && moves_.first == loop.first &&
-        moves_.samples == loop.samples())
+    theory_ = &theories_[{loop.first, loop.samples()}];
+    if (theory_->d.cols() == whole.samples() && theory_->d == whole.d && theory_->y_set == y_set)
       return;
-    d_ = whole.d;
-    y_set_ = y_set;
-    moves_ = outside_moves(context_, loop);
-    noise_share_ =
+    *theory_ = Theory{};
+    theory_->d = whole.d;
+    theory_->y_set = y_set;
+    theory_->moves = outside_moves(context_, loop);
+    theory_->noise_share =
         1.0 + static_cast<double>(loop.samples()) / static_cast<double>(context_.benchmark->samples());
-    nominal_covariance_ = autocovariance_covariance(*linear_, moves_, lags_, nullptr, noise_share_);
-    families_.clear();
+    theory_->covariance =
+        autocovariance_covariance(*linear_, theory_->moves, lags_, nullptr, theory_->noise_share);
   }
 
   void judge_cv(Eigen::Index cv, const Eigen::VectorXd& left, Assessment& assessment) const {
     const auto count = static_cast<Eigen::Index>(lags_.size());
-    const SquaredDistance distance(nominal_covariance_.block(cv * count, cv * count, count, count));
+    const SquaredDistance distance(theory_->covariance.block(cv * count, cv * count, count, count));
     const double chi2 = distance(left.segment(cv * count, count));
     const double score =
         chi2 / chi_squared_limit(count, options_.alpha / static_cast<double>(study_.cv_count()));
@@ -180,7 +192,7 @@ class Autocovariance final : public AssessmentMethod {
 
   Eigen::VectorXd mean_of(const GriddedFamily& family, double x) const {
     const ChannelDifference changed = difference_of(family, x);
-    return theoretical_autocovariance(*linear_, moves_, lags_, &changed);
+    return theoretical_autocovariance(*linear_, theory_->moves, lags_, &changed);
   }
 
   ChannelDifference difference_of(const GriddedFamily& family, double x) const {
@@ -191,7 +203,8 @@ class Autocovariance final : public AssessmentMethod {
 
   SquaredDistance distance_about(const FittedFamily& fit) const {
     const ChannelDifference changed = difference_of(*fit.of, fit.x);
-    return SquaredDistance(autocovariance_covariance(*linear_, moves_, lags_, &changed, noise_share_));
+    return SquaredDistance(
+        autocovariance_covariance(*linear_, theory_->moves, lags_, &changed, theory_->noise_share));
   }
 
   static MismatchFamily finer(MismatchFamily family) {
@@ -206,10 +219,10 @@ class Autocovariance final : public AssessmentMethod {
           continue;
         for (MismatchFamily& family :
              mismatch_families(study_.plant.G(cv, mv), study_.controller.sample_time))
-          families_.push_back({{cv, mv}, finer(std::move(family)), {}});
+          theory_->families.push_back({{cv, mv}, finer(std::move(family)), {}});
       }
-    for (GriddedFamily& each : families_) {
-      each.means.resize(nominal_covariance_.rows(), each.family.grid.points);
+    for (GriddedFamily& each : theory_->families) {
+      each.means.resize(theory_->covariance.rows(), each.family.grid.points);
       for (Eigen::Index point = 0; point < each.means.cols(); ++point)
         each.means.col(point) = mean_of(each, each.family.grid.at(point));
     }
@@ -218,7 +231,7 @@ class Autocovariance final : public AssessmentMethod {
   /// The best point of the grid of each family.
   std::vector<FittedFamily> on_grid(const Eigen::VectorXd& c, const SquaredDistance& distance) const {
     std::vector<FittedFamily> fits;
-    for (const GriddedFamily& each : families_) {
+    for (const GriddedFamily& each : theory_->families) {
       FittedFamily best{&each};
       for (Eigen::Index point = 0; point < each.means.cols(); ++point)
         if (const double at = distance(c - each.means.col(point)); at < best.distance) {
@@ -249,9 +262,9 @@ class Autocovariance final : public AssessmentMethod {
   /// the distance falls from thousands to few, then of the best families with that of the best one. None when
   /// no covariance has an inverse.
   std::optional<FittedFamily> best_mismatch(const Eigen::VectorXd& c) {
-    if (families_.empty())
+    if (theory_->families.empty())
       learn_families();
-    const SquaredDistance of_model(nominal_covariance_);
+    const SquaredDistance of_model(theory_->covariance);
     if (!of_model.is_usable())
       return std::nullopt;
     std::vector<FittedFamily> fits;
@@ -304,11 +317,8 @@ class Autocovariance final : public AssessmentMethod {
   std::optional<std::string> without_model_;  ///< why the method does not apply to this study
   std::vector<Eigen::Index> lags_;
   std::optional<LinearLoop> linear_;
-  Eigen::MatrixXd d_, y_set_;  ///< what the moves below are of
-  OutsideMoves moves_;
-  double noise_share_ = 2.0;
-  Eigen::MatrixXd nominal_covariance_;
-  std::vector<GriddedFamily> families_;
+  std::map<std::pair<Eigen::Index, Eigen::Index>, Theory> theories_;  ///< by first sample and samples
+  Theory* theory_ = nullptr;                                          ///< that of the loop in hand
 };
 
 }  // namespace

@@ -77,6 +77,7 @@ class PlantModelRatio final : public AssessmentMethod {
 
   void judge_cv(Eigen::Index cv, const Eigen::VectorXd& e, const Eigen::MatrixXd& inputs,
                 Assessment& assessment) const {
+    require_signal("simulation error", e, 1);
     std::vector<Eigen::MatrixXd> filters;
     for (Eigen::Index j = 0; j < inputs.rows(); ++j)
       filters.push_back(
