@@ -183,8 +183,8 @@ LinearLoop linear_loop(const AssessmentContext& context, const AssessedLoop& ben
     loop.s.push_back(differences(step.y, study.sensitivity.step_size));
     const Eigen::VectorXd v = (benchmark.y.row(cv) - benchmark.y_sim.row(cv)).transpose();
     const NoiseModel model = autoregressive_noise((v.array() - v.mean()).matrix(), kHighestNoiseOrder);
-    loop.noise.push_back(std::sqrt(innovation_variance(v, kHighestNoiseOrder)) *
-                         filter(model.C, model.D, impulse));
+    loop.noise.emplace_back(std::sqrt(innovation_variance(v, kHighestNoiseOrder)) *
+                            filter(model.C, model.D, impulse));
   }
   return loop;
 }

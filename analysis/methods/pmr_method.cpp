@@ -80,7 +80,7 @@ class PlantModelRatio final : public AssessmentMethod {
     require_signal("simulation error", e, 1);
     std::vector<Eigen::MatrixXd> filters;
     for (Eigen::Index j = 0; j < inputs.rows(); ++j)
-      filters.push_back(
+      filters.emplace_back(
           channel_filters(study_.plant.G(cv, j), study_.controller.sample_time, inputs.row(j).transpose())
               .bottomRows(e.size()));
     const Autoregression whiteness = fit_autoregression(e, autoregression_order(e, kHighestNoiseOrder));

@@ -233,10 +233,9 @@ class ExchangeSearch {
             study_.plant.mvs[static_cast<std::size_t>(mv)].name));
     }
     if (found_.empty() && explains_nothing())
-      found_.push_back(
+      found_.emplace_back(
           "the model explains nothing of any CV: wrong tags, units, operating point or time stamps, or "
-          "faults "
-          "larger than all that is right");
+          "faults larger than all that is right");
     return std::move(found_);
   }
 

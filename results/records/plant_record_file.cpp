@@ -293,7 +293,7 @@ class RecordReader {
       for (std::size_t row = 0; row < rows.size(); ++row)
         rows[row] = rows.size() - 1 - row;
       keep_rows(rows);
-      record_.warnings.push_back("the newest row stands first: the rows are turned round");
+      record_.warnings.emplace_back("the newest row stands first: the rows are turned round");
     }
     std::size_t doubles = 0;
     for (std::size_t row = 1; row < times_.size(); ++row) {
