@@ -11,7 +11,8 @@ constexpr std::array<std::string_view, 7> kColours{colour::kBlue, colour::kOrang
                                                    colour::kBlack};
 constexpr std::array<Dash, 3> kDashes{Dash::solid, Dash::dashed, Dash::dotted};
 
-/// Of the methods, in their order; neighbours differ in dash as well.
+/// Of the methods, in their order; neighbours differ in dash as well. Each further round has the colours
+/// moved by one, so that no two methods share mark and colour.
 constexpr std::array<Pen, 7> kMethodPens{{
     {colour::kBlue, Dash::solid, Mark::dot, 2.0, 0.8},
     {colour::kVermillion, Dash::dashed, Mark::square, 2.0, 0.8},
@@ -24,7 +25,10 @@ constexpr std::array<Pen, 7> kMethodPens{{
 }  // namespace
 
 Pen method_pen(std::size_t method) {
-  return kMethodPens[method % kMethodPens.size()];
+  const std::size_t round = method / kMethodPens.size();
+  Pen pen = kMethodPens[method % kMethodPens.size()];
+  pen.colour = kMethodPens[(method + round) % kMethodPens.size()].colour;
+  return pen;
 }
 
 Pen cv_pen(Eigen::Index cv, bool thick) {
