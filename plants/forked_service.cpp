@@ -14,12 +14,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "plants/socket_bytes.hpp"
 
 namespace mpm {
 namespace {
@@ -32,49 +33,10 @@ struct ServiceHeader {
   std::int64_t size;
 };
 
-bool send_bytes(int socket, const void* data, std::size_t size) {
-  const char* next = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t sent = ::send(socket, next, size, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR)
-      continue;
-    if (sent <= 0)
-      return false;
-    next += sent;
-    size -= static_cast<std::size_t>(sent);
-  }
-  return true;
-}
-
 /// The numbers of a message, or its text.
 bool send_answer(int socket, const void* data, std::size_t size, bool failed) {
   const ServiceHeader header{failed ? 1 : 0, static_cast<std::int64_t>(size)};
   return send_bytes(socket, &header, sizeof header) && send_bytes(socket, data, size);
-}
-
-enum class Received { all, closed, late };
-
-Received receive_bytes(int socket, void* data, std::size_t size, const Clock::time_point* deadline) {
-  char* next = static_cast<char*>(data);
-  while (size > 0) {
-    if (deadline != nullptr) {
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now()).count();
-      pollfd readable{socket, POLLIN, 0};
-      const int ready = left > 0 ? ::poll(&readable, 1, static_cast<int>(left)) : 0;
-      if (ready == 0)
-        return Received::late;
-      if (ready < 0)
-        continue;  // a signal
-    }
-    const ssize_t received = ::recv(socket, next, size, 0);
-    if (received < 0 && errno == EINTR)
-      continue;
-    if (received <= 0)
-      return Received::closed;
-    next += received;
-    size -= static_cast<std::size_t>(received);
-  }
-  return Received::all;
 }
 
 Received receive(int socket, std::vector<double>& numbers, std::string& failure,

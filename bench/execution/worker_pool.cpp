@@ -18,6 +18,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "plants/socket_bytes.hpp"
+
 namespace mpm {
 namespace {
 
@@ -27,46 +29,18 @@ struct Header {
   std::int64_t size;
 };
 
-bool send_all(int socket, const void* data, std::size_t size) {
-  const char* next = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t sent = ::send(socket, next, size, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR)
-      continue;
-    if (sent <= 0)
-      return false;
-    next += sent;
-    size -= static_cast<std::size_t>(sent);
-  }
-  return true;
-}
-
-bool receive_all(int socket, void* data, std::size_t size) {
-  char* next = static_cast<char*>(data);
-  while (size > 0) {
-    const ssize_t received = ::recv(socket, next, size, 0);
-    if (received < 0 && errno == EINTR)
-      continue;
-    if (received <= 0)
-      return false;
-    next += received;
-    size -= static_cast<std::size_t>(received);
-  }
-  return true;
-}
-
 bool send_message(int socket, const std::string& bytes, bool failed) {
   const Header header{failed ? 1 : 0, static_cast<std::int64_t>(bytes.size())};
-  return send_all(socket, &header, sizeof header) && send_all(socket, bytes.data(), bytes.size());
+  return send_bytes(socket, &header, sizeof header) && send_bytes(socket, bytes.data(), bytes.size());
 }
 
 bool receive_message(int socket, std::string& bytes, bool& failed) {
   Header header{};
-  if (!receive_all(socket, &header, sizeof header))
+  if (receive_bytes(socket, &header, sizeof header) != Received::all)
     return false;
   failed = header.failed != 0;
   bytes.resize(static_cast<std::size_t>(header.size));
-  return receive_all(socket, bytes.data(), bytes.size());
+  return receive_bytes(socket, bytes.data(), bytes.size()) == Received::all;
 }
 
 [[noreturn]] void work_until_closed(int socket, const WorkerPool::Work& work) {

@@ -141,7 +141,6 @@ TEST_CASE("plant-model ratio: false alarms of 1000 records, for the documentatio
     const int flagged = flagged_by_chance(made, a, 1000);
     const Interval exact = testing::clopper_pearson_interval(flagged, 1000);
     WARN("autoregression " << a << ": " << flagged << " of 1000, " << exact.lower << " to " << exact.upper);
-    CHECK(flagged < 1000);
   }
 }
 
