@@ -53,7 +53,8 @@ CommandResult work(const CommandSet& commands) {
 CommandResult execute(int argc, const char* const* argv) {
   CLI::App program("mpmbench: a Monte Carlo robustness testbench for the assessment of MPC models",
                    "mpmbench");
-  program.set_version_flag("--version", "mpmbench " + mpmbench_version() + " (" + source_revision() + ")");
+  program.set_version_flag("--version", fmt::format("mpmbench {} ({})\n{}", mpmbench_version(),
+                                                    source_revision(), library_versions()));
   program.require_subcommand(1);
   CommandSet commands(program, joined(argc, argv));
   for (AddCommand* const add : kCommands)

@@ -11,4 +11,7 @@ std::string mpmbench_version();
 /// git.
 std::string source_revision();
 
+/// The libraries that numbers depend on, and the compiler, as the build has found them.
+std::string library_versions();
+
 }  // namespace mpm

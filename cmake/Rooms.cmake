@@ -6,14 +6,20 @@ function(mpm_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(mpm_${name} STATIC ${ROOM_SOURCES})
   add_library(mpm::${name} ALIAS mpm_${name})
-  target_include_directories(mpm_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+  target_include_directories(mpm_${name} PUBLIC
+    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>" "$<INSTALL_INTERFACE:${MPMBENCH_INSTALLED_HEADERS}>")
   target_link_libraries(mpm_${name}
     PUBLIC ${ROOM_PUBLIC}
-    PRIVATE mpm_build_flags ${ROOM_PRIVATE})
+    PRIVATE "$<BUILD_INTERFACE:mpm_build_flags>" ${ROOM_PRIVATE})
   target_compile_definitions(mpm_${name} PUBLIC EIGEN_DONT_PARALLELIZE)
+  target_compile_features(mpm_${name} PUBLIC cxx_std_20)
   # clang-tidy reads the files that CMake writes (tests/structure), and they include sources.
   set_target_properties(mpm_${name} PROPERTIES
-    UNITY_BUILD_CODE_BEFORE_INCLUDE "// NOLINTNEXTLINE(bugprone-suspicious-include)")
+    UNITY_BUILD_CODE_BEFORE_INCLUDE "// NOLINTNEXTLINE(bugprone-suspicious-include)"
+    EXPORT_NAME ${name})
+  install(TARGETS mpm_${name} EXPORT mpmbench COMPONENT development)
+  install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" DESTINATION "${MPMBENCH_INSTALLED_HEADERS}" COMPONENT development
+    FILES_MATCHING PATTERN "*.hpp" PATTERN perf EXCLUDE)
 endfunction()
 
 # mpm_test(<name> SOURCES <file>... [LINK <library>...]): one Catch2 executable, one CTest entry a test case.

@@ -54,8 +54,14 @@ bool is_file(const fs::path& path) {
 }  // namespace
 
 fs::path study_directory() {
-  const char* directory = std::getenv("MPMBENCH_STUDIES");
-  return directory != nullptr && *directory != '\0' ? directory : MPMBENCH_STUDY_DIR;
+  if (const char* const directory = std::getenv("MPMBENCH_STUDIES");
+      directory != nullptr && *directory != '\0') {
+    return directory;
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed = (program.parent_path() / MPMBENCH_STUDIES_FROM_PROGRAM).lexically_normal();
+  return fs::is_directory(installed, error) ? installed : fs::path(MPMBENCH_STUDY_DIR);
 }
 
 std::vector<StudyEntry> shipped_studies(const fs::path& directory) {

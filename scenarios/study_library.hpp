@@ -16,7 +16,8 @@ struct StudyEntry {
 };
 
 /// Where the shipped studies are: the environment variable MPMBENCH_STUDIES or, when that is unset or empty,
-/// the folder scenarios/studies of the sources that the program was built from.
+/// the folder beside an installed program, or scenarios/studies of the sources that the program was built
+/// from.
 std::filesystem::path study_directory();
 
 /// The studies in `directory`, by name. Errors: InputError when it cannot be read, or a study in it cannot.

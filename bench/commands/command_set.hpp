@@ -32,6 +32,9 @@ class CommandSet {
   /// One more command; its options are to be declared in what is returned.
   CLI::App& add(const std::string& name, const std::string& description, Work work);
 
+  /// All that the command line declares.
+  const CLI::App& program() const { return program_; }
+
   /// What the user has typed, as a shell reads it back; goes into archives.
   const std::string& command_line() const { return command_line_; }
 

@@ -7,26 +7,29 @@ namespace mpm {
 /// Adds a command to the program. A new command is a file commands/NAME.cpp and a line here.
 using AddCommand = void(CommandSet& commands);
 
-AddCommand add_run;        // runs a study and writes its archive
-AddCommand add_validate;   // what is implausible in a study, what it will show and cost
-AddCommand add_identify;   // a model for the controller, from a step test on the plant
-AddCommand add_replay;     // runs one experiment of an archive again
-AddCommand add_summary;    // what a study found, as text or JSON
-AddCommand add_suite;      // plants and families of experiments, and the leaderboard of the methods
-AddCommand add_sweep;      // runs a study once for each value of its open choices
-AddCommand add_check;      // holds an archive against limits
-AddCommand add_report;     // what a study found, as a page and figures
-AddCommand add_plot;       // draws the loop of one experiment
-AddCommand add_compare;    // several methods of assessment on the loops of an archive
-AddCommand add_assess;     // records of a plant: what the methods say of them, and how far to trust it
-AddCommand add_repair;     // identifies a named channel again, and says what the repaired controller brings
-AddCommand add_reproduce;  // the tables of the thesis
-AddCommand add_export;     // a table of an archive as CSV
-AddCommand add_list;       // the shipped studies
+AddCommand add_run;         // runs a study and writes its archive
+AddCommand add_validate;    // what is implausible in a study, what it will show and cost
+AddCommand add_identify;    // a model for the controller, from a step test on the plant
+AddCommand add_replay;      // runs one experiment of an archive again
+AddCommand add_summary;     // what a study found, as text or JSON
+AddCommand add_suite;       // plants and families of experiments, and the leaderboard of the methods
+AddCommand add_sweep;       // runs a study once for each value of its open choices
+AddCommand add_check;       // holds an archive against limits
+AddCommand add_report;      // what a study found, as a page and figures
+AddCommand add_plot;        // draws the loop of one experiment
+AddCommand add_compare;     // several methods of assessment on the loops of an archive
+AddCommand add_assess;      // records of a plant: what the methods say of them, and how far to trust it
+AddCommand add_repair;      // identifies a named channel again, and says what the repaired controller brings
+AddCommand add_reproduce;   // the tables of the thesis
+AddCommand add_export;      // a table of an archive as CSV
+AddCommand add_list;        // the shipped studies
+AddCommand add_manual;      // the manual page, from the declarations of all commands
+AddCommand add_completion;  // what completes them in a shell
 
 /// In the order of the help.
 inline constexpr AddCommand* kCommands[] = {
-    add_run,    add_validate, add_identify, add_replay, add_summary, add_suite,     add_sweep,  add_check,
-    add_report, add_plot,     add_compare,  add_assess, add_repair,  add_reproduce, add_export, add_list};
+    add_run,    add_validate,  add_identify, add_replay, add_summary, add_suite,
+    add_sweep,  add_check,     add_report,   add_plot,   add_compare, add_assess,
+    add_repair, add_reproduce, add_export,   add_list,   add_manual,  add_completion};
 
 }  // namespace mpm

@@ -30,7 +30,7 @@ def includes(path):
 
 
 def room_complaint(root, room, name, quoted):
-    """What is wrong with including `name` from `room` ("tests" or a room), or None."""
+    """What is wrong with including `name` from `room` (a room or a folder above them), or None."""
     target = name.split("/")[0]
     if target not in tree.ROOMS and not (room == "tests" and target == "tests"):
         return f'"{name}" does not start with a room' if quoted else None
@@ -38,7 +38,7 @@ def room_complaint(root, room, name, quoted):
         return f"<{name}> is ours and belongs in quotes"
     if not (root / name).is_file():
         return f'"{name}" does not exist'
-    if room != "tests" and tree.ROOMS.index(target) > tree.ROOMS.index(room):
+    if room in tree.ROOMS and tree.ROOMS.index(target) > tree.ROOMS.index(room):
         return f"{room} must not include {target}: \"{name}\""
     return None
 
@@ -72,7 +72,7 @@ def check(root):
     for path in tree.project_files(root, {".hpp", ".cpp"}):
         relative = path.relative_to(root)
         room = relative.parts[0]
-        if room not in tree.ROOMS and room != "tests":
+        if room not in tree.ROOMS + tree.ABOVE_THE_ROOMS:
             complaints.append(f"{relative}:1: C++ outside of the rooms")
             continue
         for position, (number, name, quoted) in enumerate(includes(path)):
@@ -83,7 +83,7 @@ def check(root):
             if complaint:
                 complaints.append(f"{where}: {complaint}")
             for library, pattern in CONFINED.items():
-                if not pattern.match(name) or room == "tests":
+                if not pattern.match(name) or room in tree.ABOVE_THE_ROOMS:
                     continue
                 if path.suffix == ".hpp":
                     complaints.append(f"{where}: {library} in a header: <{name}>")

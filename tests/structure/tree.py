@@ -6,6 +6,8 @@ from pathlib import Path
 
 # From left to right: a file includes only its own room and rooms to its left.
 ROOMS = ["plants", "solvers", "scenarios", "analysis", "results", "bench"]
+# Beside the rooms: may include every room, and no room includes them.
+ABOVE_THE_ROOMS = ["tests", "examples"]
 
 # The folders of a room, in the same way: a file includes only its own folder and folders to its left. A header of
 # the room itself that its folders may include stands here by its name.

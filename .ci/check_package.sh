@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Makes the Debian package, installs it in a bare Debian 12 of its own, and uses it there as a stranger would: a study
+# and its report, without the source tree. Needs root and debootstrap, and takes minutes; it is not one of the tests.
+#
+#   .ci/check_package.sh [EXPERIMENTS]    400 unless told
+set -euo pipefail
+# shellcheck source=.ci/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+mpm_install build
+mpm_build all
+
+work=$(mktemp -d)
+trap 'rm -rf --one-file-system "$work"' EXIT
+bare=$work/bare
+
+(cd "$root/build/release" && cpack -B "$work/packages")
+debootstrap --variant=minbase bookworm "$bare"
+
+# Packages come from where this machine has them from.
+cp -a /etc/apt/apt.conf.d/. "$bare/etc/apt/apt.conf.d/"
+cp /etc/resolv.conf "$bare/etc/resolv.conf"
+cp "$work"/packages/mpmbench_*.deb "$bare/tmp/mpmbench.deb"
+
+unshare --fork --pid --mount-proc="$bare/proc" chroot "$bare" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive EXPERIMENTS="${1:-400}" \
+  bash -euxc '
+    apt-get update -q
+    apt-get install -y -q --no-install-recommends /tmp/mpmbench.deb
+    cd /tmp
+    mpmbench --version
+    mpmbench run chapter6 --experiments "$EXPERIMENTS" -o chapter6.h5 --quiet
+    mpmbench report chapter6.h5 -o chapter6.html
+    mpmbench summary chapter6.h5 | head -20
+    test -s chapter6.html
+  '
+echo "the package works on a bare Debian 12"

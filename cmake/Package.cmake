@@ -1,0 +1,27 @@
+# `cpack` in the build folder makes two packages for Debian: the program with its studies, and what one needs to build on it.
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "The authors of mpmbench (CITATION.cff)")
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_COMPONENTS_ALL program development)
+
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME mpmbench)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS gnuplot-nox) # figures; not a library
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS libopenblas0-serial)
+
+# The headers and libraries that Dependencies.cmake looks for, from the one list of packages.
+file(STRINGS .ci/packages.txt packages REGEX "^[a-z].* build")
+list(TRANSFORM packages REPLACE " .*" "")
+list(JOIN packages ", " packages)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmpmbench-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${packages}")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+  "Random model-plant mismatches and unmeasured disturbances, closed loops of a range MPC, and how often methods\n that assess its model are right about them. With its studies, documents and examples.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries, headers and the CMake package mpmbench.")
+
+include(CPack)
