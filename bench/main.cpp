@@ -1,11 +1,10 @@
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include "bench/command_line.hpp"
+#include "bench/console/output.hpp"
 
 namespace {
 
@@ -22,9 +21,12 @@ void use_single_threaded_blas(char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  mpm::occupy_closed_streams();
   use_single_threaded_blas(argv);
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of its size is an error of write(), with a text
+  std::signal(SIGPIPE, SIG_IGN);  // so is a reader that is gone: it must not end a campaign
   const mpm::CommandResult result = mpm::execute(argc, argv);
-  fmt::print(result.code == mpm::ExitCode::done ? stdout : stderr, "{}", result.message);
-  return static_cast<int>(result.code);
+  const bool done = result.code == mpm::ExitCode::done;
+  (done ? mpm::print_result : mpm::print_note)(result.message);
+  return static_cast<int>(!mpm::results_arrived() && done ? mpm::ExitCode::not_finished : result.code);
 }

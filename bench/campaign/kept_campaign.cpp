@@ -8,7 +8,6 @@
 #include "bench/version.hpp"
 #include "results/archive/archive.hpp"
 #include "results/files/archive_error.hpp"
-#include "results/files/atomic_file.hpp"
 
 namespace mpm {
 namespace {
@@ -61,7 +60,6 @@ Campaign run_and_keep(const fs::path& archive, const Study& study, RunOptions op
   note_command(campaign, command);
   write_archive(archive, campaign, findings_of(campaign));
   remove_shards(archive);
-  remove_abandoned_files(archive);
   return campaign;
 }
 

@@ -18,6 +18,7 @@
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
@@ -136,7 +137,7 @@ void add_trial(RecordAssessment& assessment, const AssessArguments& options, Pro
     const Study study = trial_study(assessment.study, options.trials - faulty, faulty);
     std::optional<Campaign> campaign = kept_campaign(archive, study, run);
     if (!campaign) {
-      require_output_folder(archive, "calibration run");
+      require_output_archive(archive, "calibration run");
       campaign = run_and_keep(archive, study, run, hooks_of(progress), command);
     }
     RecordTrial trial{archive.filename().string(), std::ssize(campaign->records), {}};
@@ -199,7 +200,7 @@ ExitCode assess(AssessArguments options, const std::string& command) {
   }
   if (!options.page.empty())
     write_text(options.page, assessment_html(assessment));
-  fmt::print("{}", options.json ? assessment_json(assessment) : assessment_text(assessment));
+  print_result(options.json ? assessment_json(assessment) : assessment_text(assessment));
   return ExitCode::done;
 }
 
@@ -210,10 +211,10 @@ void add_assess(CommandSet& commands) {
   CLI::App& app =
       commands.add("assess", "Assess records of a plant: which CVs lose how much, why, and how sure that is",
                    [options, &commands] { return assess(*options, commands.command_line()); });
-  app.add_option("STUDY", options->study, "Study file, or name of a shipped study")->required();
-  app.add_option("DATA", options->data, "Records of the loop (CSV)")->required();
+  add_path(app, "STUDY", options->study, "Study file, or name of a shipped study")->required();
+  add_path(app, "DATA", options->data, "Records of the loop (CSV)")->required();
   add_methods_option(app, options->methods, "Methods, separated by commas; the first one gives the verdict");
-  app.add_option("-o,--output", options->page, "Page to write (HTML)");
+  add_path(app, "-o,--output", options->page, "Page to write (HTML)");
   app.add_option("--window", options->window, "Samples of a window that moves over the record");
   app.add_option("--stride", options->stride, "Samples from one window to the next")
       ->check(CLI::PositiveNumber);
@@ -221,8 +222,8 @@ void add_assess(CommandSet& commands) {
                  "Simulated loops like the record that show how far to trust the verdict; 0: none")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
-  app.add_option("--calibration", options->calibration,
-                 "Archive of these loops, made when it is not there; by default DATA.calibration.h5");
+  add_path(app, "--calibration", options->calibration,
+           "Archive of these loops, made when it is not there; by default DATA.calibration.h5");
   add_jobs(app, options->run.jobs, "How many loops run at once");
   add_solver(app, options->run.solver);
   add_json(app, options->json);

@@ -7,6 +7,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 #include "results/gates/gate_check.hpp"
@@ -31,7 +32,7 @@ ExitCode check(const CheckArguments& options) {
   const GateCheck result = check_gates(campaign, gates, baseline ? &*baseline : nullptr);
   if (!options.junit.empty())
     write_text(options.junit, gates_junit(result, campaign, options.archive));
-  fmt::print("{}", gates_text(result));
+  print_result(gates_text(result));
   return result.passed() ? ExitCode::done : ExitCode::comparison_failed;
 }
 
@@ -42,8 +43,8 @@ void add_check(CommandSet& commands) {
   CLI::App& app = commands.add("check", "Hold an archive against the limits of a gate file",
                                [options] { return check(*options); });
   add_archive(app, options->archive);
-  app.add_option("--gates", options->gates, "Gate file (TOML)")->required();
-  app.add_option("--junit", options->junit, "JUnit XML to write");
+  add_path(app, "--gates", options->gates, "Gate file (TOML)")->required();
+  add_path(app, "--junit", options->junit, "JUnit XML to write");
 }
 
 }  // namespace mpm

@@ -12,8 +12,15 @@
 
 namespace mpm {
 
+CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path,
+                      const std::string& description) {
+  return app.add_option(name, path, description)->check([](const std::string& word) {
+    return word.empty() ? std::string("found nothing; allowed: a path") : std::string();
+  });
+}
+
 void add_archive(CLI::App& app, std::string& archive) {
-  app.add_option("ARCHIVE", archive, "Archive")->required();
+  add_path(app, "ARCHIVE", archive, "Archive")->required();
 }
 
 void add_index(CLI::App& app, std::int64_t& index) {

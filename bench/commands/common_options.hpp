@@ -7,12 +7,16 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace mpm {
 
 // Arguments and options that several commands have, each declared once.
 
+/// An option or argument that names a file or a folder, and is not empty.
+CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path,
+                      const std::string& description);
 void add_archive(CLI::App& app, std::string& archive);
 void add_index(CLI::App& app, std::int64_t& index);
 void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments, const std::string& description);

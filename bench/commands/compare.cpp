@@ -16,6 +16,7 @@
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
@@ -88,11 +89,10 @@ std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std
       throw InputError("--verdicts", fmt::format("'{}' twice", name), "each name once");
     const OutsideVerdicts verdicts = read_verdicts(path, name, campaign);
     if (!verdicts.says_which_loops)
-      fmt::print(
-          stderr,
+      print_note(fmt::format(
           "mpmbench: {} does not say which loops it is of; that they are those of the archive is taken on "
           "trust\n",
-          path.string());
+          path.string()));
     add_verdicts(campaign, verdicts, command_line);
     names.push_back(name);
   }
@@ -105,7 +105,7 @@ std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std
 ExitCode compare(const CompareArguments& options, const std::string& command_line) {
   Campaign campaign = read_input(options.archive);
   if (!options.output.empty())
-    require_output_folder(options.output, "archive");
+    require_output_archive(options.output, "archive");
   const std::int64_t loops = compared_loops(campaign, options.experiments);
   if (loops == 0)
     throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
@@ -132,7 +132,7 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
     write_archive(options.output, campaign, findings_of(campaign));
   const Campaign shown = with_methods(std::move(campaign), asked, options.experiments);
   const StudyFindings findings = findings_of(shown);
-  fmt::print("{}", options.json ? comparison_json(shown, findings) : comparison_text(shown, findings));
+  print_result(options.json ? comparison_json(shown, findings) : comparison_text(shown, findings));
   return ExitCode::done;
 }
 
@@ -150,8 +150,8 @@ void add_compare(CommandSet& commands) {
       "--verdicts", options->verdicts,
       "CSV file with verdicts on the loops of `export --blind`, FILE or NAME=FILE; a method like any "
       "other. May be given several times");
-  app.add_option("-o,--output", options->output,
-                 "Archive to write with the comparison in it (HDF5); may be ARCHIVE itself");
+  add_path(app, "-o,--output", options->output,
+           "Archive to write with the comparison in it (HDF5); may be ARCHIVE itself");
   add_experiments(app, options->experiments, "Compare on the first N experiments only");
   add_jobs(app, options->jobs, "How many loops are assessed at once");
   add_json(app, options->json);

@@ -12,6 +12,7 @@
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
@@ -50,7 +51,8 @@ ExitCode export_blind(const ExportArguments& options) {
   const AssessmentContext context =
       assessment_context(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver));
   write_blind_loops(options.output, campaign, context, loops);
-  fmt::print("{} loops of {} without the truth: {}\n", loops.size(), options.archive, options.output);
+  print_result(
+      fmt::format("{} loops of {} without the truth: {}\n", loops.size(), options.archive, options.output));
   return ExitCode::done;
 }
 
@@ -66,7 +68,7 @@ ExitCode export_table(const ExportArguments& options) {
     campaign.records = {experiment_of(campaign, *options.index)};
   const std::string table = csv_table(campaign, options.table);
   if (options.output.empty())
-    fmt::print("{}", table);
+    print_result(table);
   else
     write_text(options.output, table);
   return ExitCode::done;
@@ -87,7 +89,7 @@ void add_export(CommandSet& commands) {
   app.add_flag(
       "--blind", options->blind,
       "Write the loops without the truth into the folder OUTPUT, for somebody who is to assess them");
-  app.add_option("-o,--output", options->output, "File to write, with --blind a folder; stdout without one");
+  add_path(app, "-o,--output", options->output, "File to write, with --blind a folder; stdout without one");
   add_jobs(app, options->jobs, "With --blind: how many loops are run at once, those that were not kept");
   add_quiet(app, options->quiet);
 }

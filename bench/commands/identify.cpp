@@ -13,6 +13,7 @@
 #include "analysis/identification/step_test.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
@@ -169,7 +170,7 @@ ExitCode identify(const IdentifyArguments& arguments) {
         progress.note(
             fmt::format("warning: {} to {}: {}", inputs[input].name, study.plant.cvs[cv].name, doubt));
     }
-  fmt::print("{}", text);
+  print_result(text);
   return ExitCode::done;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "bench/commands/commands.hpp"
+#include "bench/console/output.hpp"
 #include "scenarios/study_library.hpp"
 
 namespace mpm {
@@ -15,7 +16,7 @@ ExitCode list() {
   for (const StudyEntry& study : studies)
     width = std::max(width, study.name.size());
   for (const StudyEntry& study : studies)
-    fmt::print("{:<{}}  {}\n", study.name, width, study.title);
+    print_result(fmt::format("{:<{}}  {}\n", study.name, width, study.title));
   return ExitCode::done;
 }
 

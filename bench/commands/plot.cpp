@@ -73,7 +73,7 @@ void add_plot(CommandSet& commands) {
       commands.add("plot", "Draw the closed loop of one experiment", [options] { return plot(*options); });
   add_archive(app, options->archive);
   add_index(app, options->index);
-  app.add_option("-o,--output", options->output, "Figure to write: NAME.svg, NAME.pdf or NAME.png")
+  add_path(app, "-o,--output", options->output, "Figure to write: NAME.svg, NAME.pdf or NAME.png")
       ->required();
 }
 

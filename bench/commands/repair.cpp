@@ -12,6 +12,7 @@
 #include "analysis/findings/repair_findings.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
 #include "plants/error.hpp"
@@ -220,7 +221,7 @@ void repair_one(const Campaign& campaign, std::int64_t index, const ChannelChoic
                                  campaign.methods[choice.method].form->method().name),
                      "another experiment, or --channel");
   const Repair done = repaired(campaign, record, *channel, qp_solver_factory(campaign.info.solver));
-  fmt::print("{}", json ? json_of(campaign.study, done).dump(2) + "\n" : text_of(campaign.study, done));
+  print_result(json ? json_of(campaign.study, done).dump(2) + "\n" : text_of(campaign.study, done));
 }
 
 /// The repairs of all experiments in which a channel is named; of a changed tuning the model is not to be.
@@ -253,8 +254,9 @@ void repair_all(const Campaign& campaign, const ChannelChoice& choice, const Rep
       repair_findings(outcomes_of(repairs), campaign.study.aggregate.confidence);
   const std::string& method = campaign.methods[choice.method].form->method().name;
   if (!options.json) {
-    fmt::print("{}: {} of {} experiments with a channel that {} names\n\n{}", campaign.study.name,
-               repairs.size(), campaign.records.size(), method, text_of(findings));
+    print_result(fmt::format("{}: {} of {} experiments with a channel that {} names\n\n{}",
+                             campaign.study.name, repairs.size(), campaign.records.size(), method,
+                             text_of(findings)));
     return;
   }
   Json json{{"study", campaign.study.name},
@@ -263,7 +265,7 @@ void repair_all(const Campaign& campaign, const ChannelChoice& choice, const Rep
             {"repairs", Json::array()}};
   for (const Repair& each : repairs)
     json["repairs"].push_back(json_of(campaign.study, each));
-  fmt::print("{}\n", json.dump(2));
+  print_result(fmt::format("{}\n", json.dump(2)));
 }
 
 ExitCode repair(const RepairArguments& options) {

@@ -12,6 +12,7 @@
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/text/experiment_text.hpp"
@@ -32,7 +33,7 @@ Campaign with_known_methods(Campaign campaign) {
   for (const std::string& method : method_names(campaign))
     (std::find(known.begin(), known.end(), method) == known.end() ? left_out : kept).push_back(method);
   if (!left_out.empty())
-    fmt::print("not asked again: {}\n", fmt::join(left_out, ", "));
+    print_result(fmt::format("not asked again: {}\n", fmt::join(left_out, ", ")));
   return with_methods(std::move(campaign), kept, std::nullopt);
 }
 
@@ -48,12 +49,13 @@ ExitCode replay(const ReplayArguments& options) {
           .run(options.index, archived.loop ? StorePolicy::all : StorePolicy::none);
   const std::vector<std::string> differences =
       RecordBytes(campaign.study, forms_of(campaign)).differences(archived, again);
-  fmt::print("experiment {}: {}, {}\n", options.index, to_string(again.draw.kind), to_string(again.status));
-  fmt::print("{}\n", experiment_line(campaign.study, again));
+  print_result(fmt::format("experiment {}: {}, {}\n", options.index, to_string(again.draw.kind),
+                           to_string(again.status)));
+  print_result(fmt::format("{}\n", experiment_line(campaign.study, again)));
   if (differences.empty())
-    fmt::print("bit-identical to the archive\n");
+    print_result("bit-identical to the archive\n");
   else
-    fmt::print("DIFFERS from the archive: {}\n", fmt::join(differences, ", "));
+    print_result(fmt::format("DIFFERS from the archive: {}\n", fmt::join(differences, ", ")));
   return differences.empty() ? ExitCode::done : ExitCode::comparison_failed;
 }
 

@@ -9,6 +9,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 
@@ -30,11 +31,11 @@ ExitCode report(const ReportArguments& options) {
   const StudyFindings findings = findings_of(campaign);
   if (!options.output.empty()) {
     write_text(options.output, report_html(campaign, findings, options.archive));
-    fmt::print("{}\n", options.output);
+    print_result(fmt::format("{}\n", options.output));
   }
   if (!options.figures.empty())
     for (const std::filesystem::path& file : write_figures(campaign, findings, options.figures, format))
-      fmt::print("{}\n", file.string());
+      print_result(fmt::format("{}\n", file.string()));
   return ExitCode::done;
 }
 
@@ -47,9 +48,9 @@ void add_report(CommandSet& commands) {
                    [options] { return report(*options); });
   add_archive(app, options->archive);
   CLI::Option_group* const outputs = app.add_option_group("outputs", "What to write, one or both");
-  outputs->add_option("-o,--output", options->output, "Page to write (HTML)");
+  add_path(*outputs, "-o,--output", options->output, "Page to write (HTML)");
   CLI::Option* const figures =
-      outputs->add_option("--figures", options->figures, "Folder to write the figures into, one file each");
+      add_path(*outputs, "--figures", options->figures, "Folder to write the figures into, one file each");
   outputs->require_option(1, 2);
   app.add_option("--format", options->format, "Format of these files")
       ->check(CLI::IsMember(figure_format_names()))

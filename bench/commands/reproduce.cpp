@@ -11,6 +11,7 @@
 #include "bench/campaign/reproduction_runs.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/version.hpp"
 #include "results/reproduction/reproduction.hpp"
@@ -47,14 +48,14 @@ void write_page(const std::string& output, const std::string& page) {
 
 void show(const ReproduceArguments& options, const std::vector<ReproducedTable>& tables) {
   write_page(options.output, reproduction_html(tables, mpmbench_version(), options.changes));
-  fmt::print("{}", options.json ? reproduction_json(tables, options.changes)
-                                : reproduction_text(tables, options.changes));
+  print_result(options.json ? reproduction_json(tables, options.changes)
+                            : reproduction_text(tables, options.changes));
 }
 
 void show_over_seeds(const ReproduceArguments& options, const std::vector<SeededTable>& tables) {
   write_page(options.output, seeded_reproduction_html(tables, mpmbench_version(), options.changes));
-  fmt::print("{}", options.json ? seeded_reproduction_json(tables, options.changes)
-                                : seeded_reproduction_text(tables, options.changes));
+  print_result(options.json ? seeded_reproduction_json(tables, options.changes)
+                            : seeded_reproduction_text(tables, options.changes));
 }
 
 /// Done even when verdicts differ: they are results.
@@ -86,7 +87,7 @@ void add_reproduce(CommandSet& commands) {
                                [options] { return reproduce_tables(*options); });
   app.add_option("TABLES", options->tables, "all, chapter2 to chapter6, or the number of a table such as 4.5")
       ->capture_default_str();
-  app.add_option("-o,--output", options->output, "Page to write (HTML)");
+  add_path(app, "-o,--output", options->output, "Page to write (HTML)");
   add_solver(app, options->run.solver);
   add_json(app, options->json);
   app.add_option("--set", options->changes,

@@ -14,12 +14,12 @@
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
-#include "results/files/atomic_file.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/study_library.hpp"
 
@@ -46,12 +46,6 @@ std::string how_to_go_on(const RunArguments& options, std::string command_line) 
                      options.run.leftovers == Leftovers::resume ? "" : " --resume");
 }
 
-/// After the archive is written: removes the shards, and what killed runs have left.
-void clean_up(const std::filesystem::path& output) {
-  remove_shards(output);
-  remove_abandoned_files(output);
-}
-
 /// What one should look at, without the advice, which `validate` gives.
 void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
   std::vector<StudyWarning> warnings = study_warnings(study);
@@ -67,7 +61,7 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
   RunOptions run_options = options.run;
   run_options.methods =
       with_programs(options.run.methods, study.methods, take_method_files(options.method_files));
-  require_output_folder(options.output, "archive");
+  require_output_archive(options.output, "archive");
 
   Progress progress(options.quiet);
   CampaignHooks hooks = hooks_of(progress);
@@ -79,9 +73,9 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
     note_command(campaign, command_line);
     const StudyFindings findings = findings_of(campaign);
     write_archive(options.output, campaign, findings);
-    clean_up(options.output);
+    remove_shards(options.output);
     if (!options.quiet)
-      fmt::print("{}", summary_text(campaign, findings, options.output));
+      print_result(summary_text(campaign, findings, options.output));
   } catch (const InputError&) {
     throw;
   } catch (const Interrupted& error) {
@@ -139,8 +133,8 @@ void add_run(CommandSet& commands) {
   const auto options = std::make_shared<RunArguments>();
   CLI::App& app = commands.add("run", "Run a study and write its archive",
                                [options, &commands] { return run(*options, commands.command_line()); });
-  app.add_option("STUDY", options->study, "Study file, or name of a shipped study")->required();
-  app.add_option("-o,--output", options->output, "Archive to write (HDF5)")->required();
+  add_path(app, "STUDY", options->study, "Study file, or name of a shipped study")->required();
+  add_path(app, "-o,--output", options->output, "Archive to write (HDF5)")->required();
   add_experiments(app, options->run.experiments, "Run the first N experiments; any N keeps the proportions");
   app.add_option("--seed", options->run.seed, "Master seed instead of the study's");
   add_methods_option(app, options->run.methods,

@@ -11,6 +11,7 @@
 #include "bench/campaign/suite_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/version.hpp"
@@ -78,7 +79,7 @@ ExitCode run_suite_command(const SuiteArguments& options, const std::string& com
   const std::string json = leaderboard_json(board);
   write_text(run.folder / "leaderboard.json", json);
   write_pictures(run.folder, board, progress);
-  fmt::print("{}", options.json ? json : leaderboard_text(board));
+  print_result(options.json ? json : leaderboard_text(board));
   return ExitCode::done;
 }
 
@@ -91,10 +92,10 @@ void add_suite(CommandSet& commands) {
   CLI::App& app =
       commands.add("suite", "Run a suite of plants and families of experiments, and make its leaderboard",
                    [options, &commands] { return run_suite_command(*options, commands.command_line()); });
-  app.add_option("SUITE", options->suite, "Suite file, or name of a shipped suite: standard, quick")
+  add_path(app, "SUITE", options->suite, "Suite file, or name of a shipped suite: standard, quick")
       ->required();
-  app.add_option("-o,--output", options->output,
-                 "Folder for the archives and the leaderboard; what it has of this suite is kept")
+  add_path(app, "-o,--output", options->output,
+           "Folder for the archives and the leaderboard; what it has of this suite is kept")
       ->required();
   app.add_option("--seed", options->choice.seed, "Seed of the suite instead of its own: a private suite");
   app.add_option("--plants", options->choice.plants, "These plants only, separated by commas")

@@ -7,6 +7,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 
 namespace mpm {
@@ -20,8 +21,8 @@ struct SummaryArguments {
 ExitCode summary(const SummaryArguments& options) {
   const Campaign campaign = read_input(options.archive);
   const StudyFindings findings = findings_of(campaign);
-  fmt::print("{}", options.json ? summary_json(campaign, findings)
-                                : summary_text(campaign, findings, options.archive));
+  print_result(options.json ? summary_json(campaign, findings)
+                            : summary_text(campaign, findings, options.archive));
   return ExitCode::done;
 }
 

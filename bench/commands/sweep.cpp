@@ -10,6 +10,7 @@
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
 #include "results/archive/archive.hpp"
@@ -62,7 +63,7 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
   }
   const std::string table = sweep_table(rows);
   write_text(folder / "sweep.md", table);
-  fmt::print("{}\n{}", sweep.title, table);
+  print_result(fmt::format("{}\n{}", sweep.title, table));
   return ExitCode::done;
 }
 
@@ -75,8 +76,8 @@ void add_sweep(CommandSet& commands) {
       true;  // marked in the table: how much a choice matters is the question
   CLI::App& app = commands.add("sweep", "Run a study once for each value of its open choices, and tabulate",
                                [options, &commands] { return run_sweep(*options, commands.command_line()); });
-  app.add_option("SWEEP", options->sweep, "Sweep file, or name of a shipped sweep")->required();
-  app.add_option("-o,--output", options->output, "Folder for the archives and the table")->required();
+  add_path(app, "SWEEP", options->sweep, "Sweep file, or name of a shipped sweep")->required();
+  add_path(app, "-o,--output", options->output, "Folder for the archives and the table")->required();
   add_experiments(app, options->run.experiments, "Run the first N experiments of each study");
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);

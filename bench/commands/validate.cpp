@@ -13,6 +13,7 @@
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "results/text/number_json.hpp"
 #include "scenarios/study_library.hpp"
@@ -159,8 +160,7 @@ std::string text_of(const Validation& found, int jobs) {
 ExitCode validate(const ValidateArguments& arguments) {
   Progress progress(arguments.quiet);
   const Validation found = validated(arguments, progress);
-  fmt::print("{}",
-             arguments.json ? json_text(found, arguments.run.jobs) : text_of(found, arguments.run.jobs));
+  print_result(arguments.json ? json_text(found, arguments.run.jobs) : text_of(found, arguments.run.jobs));
   return ExitCode::done;
 }
 

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "bench/console/output.hpp"
+
 namespace mpm {
 namespace {
 
@@ -49,12 +51,12 @@ void Progress::note(const std::string& text) {
   if (quiet_)
     return;
   end_line();
-  fmt::print(stderr, "{}\n", text);
+  print_note(fmt::format("{}\n", text));
 }
 
 void Progress::warn(const std::string& text) {
   end_line();
-  fmt::print(stderr, "mpmbench: warning: {}\n", text);
+  print_note(fmt::format("mpmbench: warning: {}\n", text));
 }
 
 std::string Progress::explain(const Interrupted& error) const {
@@ -76,20 +78,21 @@ void Progress::show() {
   if (terminal_) {
     constexpr int kWidth = 30;
     const auto filled = static_cast<int>(kWidth * done_ / std::max<std::int64_t>(total_, 1));
-    fmt::print(stderr, "\r[{:<{}}] {}\033[K", std::string(static_cast<std::size_t>(filled), '#'), kWidth,
-               text);
+    const std::string line = fmt::format("\\r[{:<{}}] {}\\033[K",
+                                         std::string(static_cast<std::size_t>(filled), '#'), kWidth, text);
+    std::fputs(line.c_str(), stderr);  // with the control characters that rewrite a line
     std::fflush(stderr);
     in_line_ = true;
     if (done_ >= total_)
       end_line();
   } else {
-    fmt::print(stderr, "{}\n", text);
+    print_note(fmt::format("{}\n", text));
   }
 }
 
 void Progress::end_line() {
   if (in_line_)
-    fmt::print(stderr, "\n");
+    print_note("\n");
   in_line_ = false;
 }
 

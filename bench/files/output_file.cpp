@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "plants/error.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
 
@@ -20,6 +21,14 @@ void require_output_folder(const std::filesystem::path& output, std::string_view
     throw ArchiveError(fmt::format("{}: no {} can be written: it is a folder", output.string(), what));
 }
 
+void require_output_archive(const std::filesystem::path& output, std::string_view what) {
+  require_output_folder(output, what);
+  std::error_code error;  // what cannot be looked at is not there
+  if (std::filesystem::exists(output, error) && !std::filesystem::is_regular_file(output, error))
+    throw InputError("--output", fmt::format("{}, a device or a pipe", output.string()),
+                     fmt::format("a file: the {} is read again", what));
+}
+
 void make_output_folder(const std::filesystem::path& folder, std::string_view what) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -28,7 +37,11 @@ void make_output_folder(const std::filesystem::path& folder, std::string_view wh
 }
 
 void write_text(const std::filesystem::path& output, std::string_view text) {
-  write_file_atomically(output, std::as_bytes(std::span(text)));
+  const auto bytes = std::as_bytes(std::span(text));
+  if (is_stream(output))
+    write_through(output, bytes);
+  else
+    write_file_atomically(output, bytes);
 }
 
 }  // namespace mpm

@@ -17,6 +17,7 @@
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
+#include "plants/input_file.hpp"
 #include "results/blind/blind_loops.hpp"
 
 namespace mpm {
@@ -104,9 +105,7 @@ void take_heading(VerdictText& text, std::vector<std::string> columns, const std
 }
 
 VerdictText read_verdict_text(const std::filesystem::path& path, const PlantModel& plant) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path))
-    throw InputError(path.string(), "no file that can be read", "a CSV file of verdicts");
+  std::ifstream file = open_input(path, "a CSV file of verdicts");
   const std::string kHash = trimmed_cell(hash_line(""));
   VerdictText text;
   std::string line;

@@ -5,10 +5,13 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "results/files/archive_error.hpp"
@@ -23,15 +26,41 @@ constexpr std::string_view kExtension = ".tmp";  // after the number of the proc
   throw ArchiveError(fmt::format("{}: cannot {}: {}", path.string(), action, error.message()));
 }
 
-/// A file that is open for writing, and is removed again unless it is renamed.
+void write_all(int descriptor, std::span<const std::byte> content, const std::filesystem::path& path) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(descriptor, content.data(), content.size());
+    if (written < 0 && errno == EINTR)
+      continue;
+    if (written < 0)
+      fail(path, "write");
+    content = content.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+/// Where a path leads that may be a link, also one to nothing.
+std::filesystem::path target_of(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as the kernel has it
+  for (int links = 0; std::filesystem::is_symlink(path); ++links) {
+    errno = ELOOP;
+    if (links == kMostLinks)
+      fail(path, "follow the link");
+    path = path.parent_path() / std::filesystem::read_symlink(path);
+  }
+  return path;
+}
+
+bool is_locked_by_its_writer(int descriptor) {
+  return ::flock(descriptor, LOCK_EX | LOCK_NB) != 0;
+}
+
+/// A file that is open for writing, and is removed again unless it is renamed. It is locked meanwhile: one
+/// that is not was left by a process that was killed.
 class TemporaryFile {
  public:
   TemporaryFile(const std::filesystem::path& target)
       : target_(target), path_(fmt::format("{}.{}{}", target.string(), ::getpid(), kExtension)) {
-    constexpr mode_t kAnybody = 0666;  // less the umask, as for any new file
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kAnybody);
-    if (descriptor_ < 0)
-      fail(target_, "create a temporary file beside it");
+    while (!make_and_lock()) {
+    }
   }
 
   TemporaryFile(const TemporaryFile&) = delete;
@@ -44,24 +73,11 @@ class TemporaryFile {
       ::unlink(path_.c_str());
   }
 
-  void write(std::span<const std::byte> content) {
-    while (!content.empty()) {
-      const ssize_t written = ::write(descriptor_, content.data(), content.size());
-      if (written < 0 && errno == EINTR)
-        continue;
-      if (written < 0)
-        fail(target_, "write");
-      content = content.subspan(static_cast<std::size_t>(written));
-    }
-  }
+  void write(std::span<const std::byte> content) { write_all(descriptor_, content, target_); }
 
-  void flush_and_close() {
+  void flush() {
     if (::fsync(descriptor_) != 0)
       fail(target_, "flush to the disk");
-    const int result = ::close(descriptor_);
-    descriptor_ = -1;
-    if (result != 0)
-      fail(target_, "close");
   }
 
   void rename() {
@@ -71,6 +87,21 @@ class TemporaryFile {
   }
 
  private:
+  /// Whether the file is ours: somebody who clears up may have removed it before it was locked.
+  bool make_and_lock() {
+    constexpr mode_t kAnybody = 0666;  // less the umask, as for any new file
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, kAnybody);
+    if (descriptor_ < 0)
+      fail(target_, "create a temporary file beside it");
+    struct stat status {};
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system that knows no locks does without
+    if (::fstat(descriptor_, &status) == 0 && status.st_nlink == 0) {
+      ::close(std::exchange(descriptor_, -1));
+      return false;
+    }
+    return true;
+  }
+
   std::filesystem::path target_;
   std::string path_;
   int descriptor_ = -1;
@@ -102,24 +133,59 @@ void flush_folder(const std::filesystem::path& file) {
   ::close(descriptor);
 }
 
-}  // namespace
-
-void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content) {
-  TemporaryFile file(path);
-  file.write(content);
-  file.flush_and_close();
-  file.rename();
-  flush_folder(path);
+/// Removes the temporary files of `target` that nobody has locked.
+void remove_abandoned_files(const std::filesystem::path& target) {
+  std::vector<std::filesystem::path> temporary;
+  std::error_code error;  // what cannot be listed or removed stays
+  for (const auto& entry : std::filesystem::directory_iterator(folder_of(target), error))
+    if (is_temporary_name(entry.path().filename().string(), target.filename().string()) &&
+        entry.is_regular_file(error))
+      temporary.push_back(entry.path());
+  for (const std::filesystem::path& file : temporary) {
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0)
+      continue;
+    if (!is_locked_by_its_writer(descriptor))
+      std::filesystem::remove(file, error);
+    ::close(descriptor);
+  }
 }
 
-void remove_abandoned_files(const std::filesystem::path& path) {
-  std::vector<std::filesystem::path> abandoned;
-  std::error_code error;  // what cannot be listed or removed stays
-  for (const auto& entry : std::filesystem::directory_iterator(folder_of(path), error))
-    if (is_temporary_name(entry.path().filename().string(), path.filename().string()))
-      abandoned.push_back(entry.path());
-  for (const std::filesystem::path& file : abandoned)
-    std::filesystem::remove(file, error);
+}  // namespace
+
+bool is_stream(const std::filesystem::path& path) {
+  std::error_code error;  // what cannot be looked at is none
+  const auto status = std::filesystem::status(path, error);
+  return std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status);
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content) {
+  const std::filesystem::path target = target_of(path);
+  std::error_code error;  // what cannot be looked at cannot be written either, which is said below
+  if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error))
+    throw ArchiveError(
+        fmt::format("{}: cannot be replaced: no regular file, but a {}", path.string(),
+                    std::filesystem::is_directory(target, error) ? "folder" : "device or a pipe"));
+  remove_abandoned_files(target);
+  TemporaryFile file(target);
+  file.write(content);
+  file.flush();
+  file.rename();
+  flush_folder(target);
+}
+
+void write_through(const std::filesystem::path& path, std::span<const std::byte> content) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0)
+    fail(path, "open");
+  try {
+    write_all(descriptor, content, path);
+  } catch (...) {
+    ::close(descriptor);
+    throw;
+  }
+  if (::close(descriptor) != 0)
+    fail(path, "close");
 }
 
 }  // namespace mpm

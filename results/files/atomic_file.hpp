@@ -8,14 +8,18 @@ namespace mpm {
 
 /// Makes `path` a file with this content, all or nothing: the bytes go to a temporary file beside it, are
 /// flushed to the disk, and the temporary file is renamed. Whoever opens `path` sees the old file or the new
-/// one, also after a crash.
+/// one, also after a crash. A link stays, and what it leads to is replaced. Temporary files of `path` that
+/// killed processes have left are removed.
 ///
-/// Throws ArchiveError when that cannot be done (no such folder, no permission, disk full); the temporary
-/// file is then removed and a file that was at `path` is as it was.
+/// Throws ArchiveError when that cannot be done (no such folder, no permission, disk full, a device or a pipe
+/// in its place); the temporary file is then removed and a file that was at `path` is as it was.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content);
 
-/// Removes the temporary files of `path` that killed processes have left beside it. No other process may be
-/// writing `path`.
-void remove_abandoned_files(const std::filesystem::path& path);
+/// Whether `path` is, or leads to, something that takes bytes and keeps no file: a terminal, /dev/null, a
+/// FIFO.
+bool is_stream(const std::filesystem::path& path);
+
+/// Writes the content into the stream `path`, and waits for the reader of a FIFO. Throws ArchiveError.
+void write_through(const std::filesystem::path& path, std::span<const std::byte> content);
 
 }  // namespace mpm

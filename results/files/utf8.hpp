@@ -9,8 +9,9 @@ namespace mpm {
 /// and each NUL, is replaced by U+FFFD; a proper text comes back as it is.
 std::string proper_utf8(std::string_view text);
 
-/// `text` as XML 1.0 and a terminal take it: UTF-8 in which each control character but tab and line feed, and
-/// each of the non-characters U+FFFE and U+FFFF, is replaced by U+FFFD. No escape of XML can stand for these.
+/// `text` as XML 1.0 and a terminal take it: UTF-8 in which each control character (C0 and C1) but tab and
+/// line feed, and each of the non-characters U+FFFE and U+FFFF, is replaced by U+FFFD. No escape of XML can
+/// stand for these.
 std::string plain_text(std::string_view text);
 
 }  // namespace mpm

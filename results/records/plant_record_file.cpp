@@ -16,6 +16,7 @@
 
 #include "analysis/findings/monitored_loop.hpp"
 #include "plants/error.hpp"
+#include "plants/input_file.hpp"
 #include "plants/non_finite.hpp"
 #include "results/records/csv_columns.hpp"
 #include "results/records/time_stamps.hpp"
@@ -531,11 +532,7 @@ PlantRecord read_plant_record(const Study& study, std::string_view text, const s
 }
 
 PlantRecord load_plant_record(const Study& study, const std::filesystem::path& path) {
-  std::error_code no_status;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path, no_status))
-    throw InputError(path.string(), "no file that can be read",
-                     "a CSV file of records (docs/own_records.md)");
+  std::ifstream stream = open_input(path, "a CSV file of records (docs/own_records.md)");
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   return read_plant_record(study, text, path.filename().string());
 }

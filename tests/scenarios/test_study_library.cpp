@@ -121,7 +121,7 @@ TEST_CASE("an unknown study is refused with the known ones", "[study_library]") 
 TEST_CASE("a study file that cannot be read is refused by its path", "[study_library]") {
   const TemporaryFolder folder;
   const std::string missing = (folder.path() / "none.toml").string();
-  CHECK_THROWS_WITH(find_study(missing), missing + ": found nothing that can be read; allowed: a study file");
+  CHECK_THROWS_WITH(find_study(missing), missing + ": found no such file; allowed: a study file");
   CHECK_THROWS_AS(load_study(folder.path()), InputError);  // a folder
   const std::string empty = folder.write("empty.toml", "").string();
   CHECK_THROWS_WITH(load_study(empty), empty + ":1: study: found nothing; allowed: a table");

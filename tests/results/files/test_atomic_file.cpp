@@ -79,7 +79,22 @@ TEST_CASE("atomic file: a path that cannot be written is refused by name and rea
   CHECK_THROWS_WITH(write_text(folder / "f/f", "x"), Catch::Contains("Not a directory"));
   std::filesystem::create_directory(folder / "folder");
   CHECK_THROWS_AS(write_text(folder / "folder", "x"), ArchiveError);
-  CHECK(count_files(folder) == 2);
+  std::filesystem::create_symlink("/dev/null", folder / "device");
+  CHECK_THROWS_WITH(write_text(folder / "device", "x"), Catch::Contains("no regular file"));
+  CHECK(std::filesystem::is_symlink(folder / "device"));
+  CHECK(count_files(folder) == 3);
+}
+
+TEST_CASE("atomic file: a link stays, and what it leads to is replaced") {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("f", folder / "link");
+  std::filesystem::create_symlink("link", folder / "link to it");
+  for (const char* text : {"first", "second"}) {
+    write_text(folder / "link to it", text);
+    CHECK(file_content(folder / "f") == text);
+  }
+  CHECK(std::filesystem::is_symlink(folder / "link"));
+  CHECK(count_files(folder) == 3);
 }
 
 }  // namespace

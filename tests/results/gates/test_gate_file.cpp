@@ -152,7 +152,7 @@ TEST_CASE("gate file: mistakes are refused with line, key, what was found and wh
                       0) == 0);
   CHECK(refused(kGate) == "accepted");
   CHECK_THROWS_WITH(load_gates("none.toml", findings()),
-                    "none.toml: found nothing that can be read; allowed: a gate file");
+                    "none.toml: found no such file; allowed: a gate file");
 }
 
 TEST_CASE("the document of the gate file has exactly the keys that the reader knows") {

@@ -1,0 +1,37 @@
+#include "bench/console/output.hpp"
+
+#include <cstdio>
+#include <string>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "results/files/utf8.hpp"
+
+namespace mpm {
+
+void print_result(std::string_view text) {
+  const std::string plain = plain_text(text);
+  std::fwrite(plain.data(), 1, plain.size(), stdout);  // its error stays with the stream
+}
+
+void print_note(std::string_view text) {
+  const std::string plain = plain_text(text);
+  std::fwrite(plain.data(), 1, plain.size(), stderr);
+}
+
+bool results_arrived() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
+    return true;
+  print_note("mpmbench: stdout: not all could be written (disk full, closed, or a reader that is gone)\n");
+  return false;
+}
+
+void occupy_closed_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+    while (::fcntl(stream, F_GETFD) < 0 &&
+           ::open("/dev/null", O_RDONLY) >= 0) {  // which refuses what is written
+    }
+}
+
+}  // namespace mpm

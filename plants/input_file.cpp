@@ -1,0 +1,31 @@
+#include "plants/input_file.hpp"
+
+#include <cerrno>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+
+namespace mpm {
+
+std::ifstream open_input(const std::filesystem::path& path, const std::string& allowed) {
+  const auto refuse = [&](const std::string& found) { throw InputError(path.string(), found, allowed); };
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found)
+    refuse("no such file");
+  if (status.type() == std::filesystem::file_type::none)
+    refuse(fmt::format("a file that cannot be looked at ({})", error.message()));
+  if (std::filesystem::is_directory(status))
+    refuse("a folder");
+  if (!std::filesystem::is_regular_file(status))
+    refuse("a device or a pipe");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    refuse(fmt::format("a file that cannot be opened ({})", std::generic_category().message(errno)));
+  return file;
+}
+
+}  // namespace mpm

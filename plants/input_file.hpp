@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace mpm {
+
+/// Opens a file of the user for reading. Only a regular file, or a link to one: a pipe or a device may never
+/// answer, or never end. Throws InputError with `path`, what is in the way, and `allowed`.
+std::ifstream open_input(const std::filesystem::path& path, const std::string& allowed);
+
+}  // namespace mpm
