@@ -94,9 +94,10 @@ FaultSource source_of(ExperimentKind kind) {
       return FaultSource::ud;
     case ExperimentKind::mpm_ud:
       return FaultSource::mpm_ud;
+    case ExperimentKind::other:
+      return FaultSource::other;
     case ExperimentKind::healthy:
     case ExperimentKind::tuning:
-    case ExperimentKind::other:
       break;
   }
   return FaultSource::none;
@@ -130,6 +131,8 @@ std::string_view to_string(FaultSource source) {
       return "ud";
     case FaultSource::mpm_ud:
       return "mpm_ud";
+    case FaultSource::other:
+      return "other";
   }
   return "unknown";
 }

@@ -30,7 +30,7 @@ inline bool is_faultless(ExperimentKind kind) {
 }
 
 /// What a method sees as the cause of a fault, and what affects a CV: a mismatch, a disturbance, or both.
-enum class FaultSource : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3 };
+enum class FaultSource : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3, other = 4 };
 
 /// The source of the faults of an experiment of this kind; none where model and plant agree, and for `other`.
 FaultSource source_of(ExperimentKind kind);

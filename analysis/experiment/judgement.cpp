@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "scenarios/candidates.hpp"
+
 namespace mpm {
 namespace {
 
@@ -121,6 +123,9 @@ Judgement judge(const Study& study, const ExperimentRecord& record, const Assess
     judgement.channel = correctness(assessment.flagged && assessment.names(*channel));
   if (method.names_mismatches && channel)
     judge_mismatch(draw.mismatches[0], assessment, judgement);
+  if (const Eigen::Index cause = true_candidate(study, draw);
+      method.names_candidates && assessment.flagged && cause >= 0)
+    judgement.candidate = correctness(assessment.number("named_candidate") == static_cast<double>(cause));
   if (draw.named && method.locates_cvs)
     judgement.cvs = judge_cvs(record, assessment);
   return judgement;
@@ -141,8 +146,9 @@ FaultSource named_source(const AssessmentRecord& assessment) {
 }
 
 bool tells_fault(const ExperimentRecord& record, const AssessmentRecord& assessment) {
-  return assessment.answered() && assessment.flagged &&
-         named_source(assessment) == source_of(record.draw.kind);
+  const FaultSource truth = source_of(record.draw.kind), named = named_source(assessment);
+  const bool no_other_word = truth == FaultSource::other && named == FaultSource::none;
+  return assessment.answered() && assessment.flagged && (named == truth || no_other_word);
 }
 
 bool to_be_flagged(const Study& study, const ExperimentRecord& record, FlagTruth truth) {

@@ -44,7 +44,8 @@ struct CvJudgement {
 /// | channel          | is the mismatched channel among the named | with one mismatch, of an MV      |
 /// | parameter        | are channel and parameter the named ones  | as channel                       |
 /// | size             | is the true size in its interval          | parameter is right               |
-/// | cvs              | is every CV judged rightly                | named scenarios                  |
+/// | candidate        | is the named signal the cause             | flagged, a logged signal drives the
+/// disturbance | | cvs              | is every CV judged rightly                | named scenarios |
 ///
 /// Of a loop that is not flagged no channel and no mismatch is named.
 struct Judgement {
@@ -53,6 +54,7 @@ struct Judgement {
   Correctness channel = Correctness::not_judged;
   Correctness parameter = Correctness::not_judged;
   Correctness size = Correctness::not_judged;
+  Correctness candidate = Correctness::not_judged;
   /// |size - true size| over the true deviation from the model (1 of a factor, 0 of what is added), of those
   /// whose parameter is right: 1 is no better than the model. NaN otherwise.
   double size_error = kNaN;
@@ -84,9 +86,9 @@ bool in_source_population(const Study& study, const AssessmentRecord& assessment
 /// None when the loop is not flagged, nothing is said, or the method tells no sources.
 FaultSource named_source(const AssessmentRecord& assessment);
 
-/// Is the fault told from the others, three ways (mismatch, disturbance, both)? The loop must have a fault.
-/// Nothing said is not right. Of a fault that is neither of them the right answer is a flagged loop without a
-/// source.
+/// Is the fault told from the others (mismatch, disturbance, both, another one)? The loop must have a fault.
+/// Nothing said is not right. Of a fault that is neither of them the right answer is a flagged loop with the
+/// source `other`, or, by a method that has no word for it, without a source.
 bool tells_fault(const ExperimentRecord& record, const AssessmentRecord& assessment);
 
 /// Which loops a method is right to flag, and no others.

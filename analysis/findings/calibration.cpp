@@ -10,24 +10,24 @@
 namespace mpm {
 namespace {
 
-double kept_score(const AssessmentRecord& said) {
-  if (!said.answered())
-    return kNaN;
-  return std::isnan(said.score) ? -kInfinity : said.score;
-}
-
 CalibratedThreshold threshold_of(const std::vector<double>& scores, double false_alarms) {
   return {conformal_threshold(scores, false_alarms), std::ssize(scores)};
 }
 
 }  // namespace
 
+double calibration_score(const AssessmentRecord& said) {
+  if (!said.answered())
+    return kNaN;
+  return std::isnan(said.score) ? -kInfinity : said.score;
+}
+
 Calibration calibration_of(const Study& loops, std::span<const ExperimentRecord> records) {
   Calibration calibration{loops.seed, {}};
   for (const ExperimentRecord& record : records) {
     CalibrationLoop loop{record.draw.kind, {}};
     for (const AssessmentRecord& said : record.assessments)
-      loop.scores.push_back(kept_score(said));
+      loop.scores.push_back(calibration_score(said));
     calibration.loops.push_back(std::move(loop));
   }
   return calibration;

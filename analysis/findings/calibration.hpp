@@ -25,6 +25,9 @@ struct Calibration {
   std::vector<CalibrationLoop> loops;
 };
 
+/// CalibrationLoop::scores of one answer.
+double calibration_score(const AssessmentRecord& said);
+
 /// The scores of these experiments of calibration_study().
 Calibration calibration_of(const Study& loops, std::span<const ExperimentRecord> records);
 

@@ -106,10 +106,20 @@ const Rate* MethodScores::of(std::string_view name) const {
   return info == nullptr ? nullptr : &rates[static_cast<std::size_t>(info - method_rate_infos().data())];
 }
 
+Estimate MethodScores::estimate(std::string_view name) const {
+  const auto infos = method_estimate_infos();
+  for (std::size_t i = 0; i < estimates.size(); ++i)
+    if (infos[i].name == name)
+      return estimates[i];
+  return {};
+}
+
 CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
   CellScores scores{.plant = cell.plant,
                     .family = cell.family,
                     .seed = cell.study.seed,
+                    .time_unit = cell.study.plant.time_unit,
+                    .monitored = cell.study.monitoring.has_value(),
                     .experiments = findings.experiments,
                     .failed = findings.failed,
                     .infeasible = findings.infeasible.hits};
@@ -117,6 +127,8 @@ CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
     MethodScores& of_method = scores.methods.emplace_back(MethodScores{method.rates.reason, {}});
     for (const MethodRateInfo& info : method_rate_infos())
       of_method.rates.push_back(method.rates.*info.rate);
+    for (const MethodEstimateInfo& info : method_estimate_infos())
+      of_method.estimates.push_back(method.rates.*info.estimate);
   }
   return scores;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/findings/study_findings.hpp"
+#include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "scenarios/suite_file.hpp"
 
@@ -17,9 +18,13 @@ namespace mpm {
 struct MethodScores {
   std::string reason;       ///< why there was no verdict on the first loop without one; empty: on every loop
   std::vector<Rate> rates;  ///< in the order of method_rate_infos()
+  /// In the order of method_estimate_infos(), of one cell only: medians cannot be added up.
+  std::vector<Estimate> estimates = {};
 
   /// The rate of this name; null when there is none.
   const Rate* of(std::string_view name) const;
+  /// The estimate of this name; of nothing when there is none.
+  Estimate estimate(std::string_view name) const;
 };
 
 /// What a cell of a suite gave.
@@ -27,7 +32,9 @@ struct CellScores {
   std::size_t plant = 0;   ///< place in Suite::plants
   std::size_t family = 0;  ///< place in Suite::families
   std::uint64_t seed = 0;
-  std::string trouble = {};  ///< why it could not be run; empty: it was
+  std::string time_unit = {};  ///< of the plant, and of its delays
+  bool monitored = false;      ///< methods watched moving windows
+  std::string trouble = {};    ///< why it could not be run; empty: it was
   std::int64_t experiments = 0;
   std::int64_t failed = 0;
   std::int64_t infeasible = 0;

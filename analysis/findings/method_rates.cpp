@@ -37,7 +37,7 @@ struct Count {
 struct Counts {
   Count answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
       false_alarm_healthy, false_alarm_tuning, located, source, channel, channel_impact, parameter_impact,
-      size_covered, source_all, abstained;
+      size_covered, candidate, source_all, abstained;
   Count false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
   Count monitored_impact;
   std::int64_t false_alarms = 0, verdicts_before = 0;
@@ -127,12 +127,13 @@ struct Counts {
     if (judgement.channel != Correctness::not_judged)
       channels_named.push_back(said.values("channel_flagged").sum());
     size_covered.add(judgement.size);
+    candidate.add(judgement.candidate);
     if (!std::isnan(judgement.size_error))
       size_errors.push_back(judgement.size_error);
   }
 };
 
-constexpr std::array<MethodRateInfo, 22> kRates{{
+constexpr std::array<MethodRateInfo, 23> kRates{{
     {"answered", "answered", "of all loops those on which the method gave a verdict", &MethodRates::answered},
     {"detected", "detected", "of the loops with a fault those that are flagged", &MethodRates::detected},
     {"detected_mpm", "detected, mismatch", "of the loops with a mismatch alone those that are flagged",
@@ -172,9 +173,13 @@ constexpr std::array<MethodRateInfo, 22> kRates{{
      "of the flagged loops with one mismatch of an MV whose channel and parameter are named those in which "
      "the interval of its size holds the true size",
      &MethodRates::size_covered},
+    {"candidate", "cause named",
+     "of the flagged loops with a disturbance that a logged signal drives those in which the method names "
+     "this signal",
+     &MethodRates::candidate, StudyFeature::candidates},
     {"source_all", "fault told, three ways",
      "of the loops with a fault, with or without verdict, those that are flagged with the right source: "
-     "mismatch, disturbance or both",
+     "mismatch, disturbance or both; of another fault `other`, or none",
      &MethodRates::source_all},
     {"abstained", "no source named",
      "of the loops with a fault, with or without verdict, those of which no source is named",
@@ -240,6 +245,8 @@ bool has(const Study& study, StudyFeature feature) {
   switch (feature) {
     case StudyFeature::any:
       return true;
+    case StudyFeature::candidates:
+      return study.record.candidates > 0;
     case StudyFeature::calibration:
       return study.calibration.has_value();
     case StudyFeature::monitoring:
@@ -328,6 +335,7 @@ MethodRates method_rates(const Study& study, std::size_t method, std::span<const
                     .channel_impact = counts.channel_impact.rate(confidence),
                     .parameter_impact = counts.parameter_impact.rate(confidence),
                     .size_covered = counts.size_covered.rate(confidence),
+                    .candidate = counts.candidate.rate(confidence),
                     .source_all = counts.source_all.rate(confidence),
                     .abstained = counts.abstained.rate(confidence),
                     .false_alarm_calibrated = counts.false_alarm_calibrated.rate(confidence),
@@ -351,6 +359,16 @@ MethodRates method_rates(const Study& study, std::size_t method, std::span<const
   std::tie(rates.roc_impact, rates.roc_impact_area) =
       curve_with_area(counts.impact_scores, counts.no_impact_scores, confidence);
   return rates;
+}
+
+std::vector<UnansweredPart> unanswered_parts(const Study& study, const MethodRates& rates) {
+  std::vector<UnansweredPart> parts;
+  if (study.calibration && rates.thresholds.not_mpm.loops == 0)
+    parts.push_back(
+        {"calibration", "no verdict on any calibration loop, and so no rate at a calibrated threshold"});
+  if (study.monitoring && rates.monitored_impact.total == 0 && rates.false_alarms_a_day.count == 0)
+    parts.push_back({"windows", "no verdict on any window, and so neither a delay nor alarms a day"});
+  return parts;
 }
 
 std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method) {

@@ -23,7 +23,7 @@ struct MethodRates {
       reason;  ///< why there was no verdict on the first loop without one; empty when it always gave one
   Rate answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
       false_alarm_healthy, false_alarm_tuning, located, source, channel, channel_impact, parameter_impact,
-      size_covered, source_all, abstained;
+      size_covered, candidate, source_all, abstained;
   // At calibrated thresholds; nothing is counted without one.
   Rate false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
   // On moving windows; nothing is counted in a study that does not monitor.
@@ -40,7 +40,7 @@ struct MethodRates {
 };
 
 /// Which studies have a number.
-enum class StudyFeature : std::int8_t { any, calibration, monitoring };
+enum class StudyFeature : std::int8_t { any, candidates, calibration, monitoring };
 
 /// A rate of a method under the name that text, JSON, archive, report and gates have for it. All are shares
 /// of loops.
@@ -86,6 +86,14 @@ std::span<const ThresholdInfo> threshold_infos();
 /// `calibration`, which may have none.
 MethodRates method_rates(const Study& study, std::size_t method, std::span<const ExperimentRecord> records,
                          const Calibration& calibration = {});
+
+/// The parts of the study on which the method gave no verdict at all, each with the rates that cannot be had
+/// without: {"calibration", "no verdict on a calibration loop: no rate at a calibrated threshold"}.
+struct UnansweredPart {
+  const char* name;    ///< "calibration", "windows"
+  const char* reason;  ///< for people
+};
+std::vector<UnansweredPart> unanswered_parts(const Study& study, const MethodRates& rates);
 
 /// Its rows: "compare.METHOD.RATE" for each rate that the study can have, "compare.METHOD.roc_area",
 /// "compare.METHOD.roc_area_impact", the estimates, and in a study with a calibration the thresholds.

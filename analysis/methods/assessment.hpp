@@ -72,6 +72,9 @@ struct Assessment {
   std::vector<CvAssessment> cvs;                     ///< ny; empty when the method does not look at CVs alone
   std::vector<Channel> flagged_channels;             ///< of methods that name channels
   std::optional<NamedMismatch> named_mismatch = {};  ///< of methods that name mismatches; none: none is named
+  /// Of methods that name candidates: position of the logged signal that drives the disturbance; none: none
+  /// is named.
+  std::optional<Eigen::Index> named_candidate = {};
   std::vector<AssessmentNumber> numbers;
 
   /// The CV with the largest score; none without one.

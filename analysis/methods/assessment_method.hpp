@@ -70,6 +70,7 @@ struct MethodDescription {
   bool names_channels = false;    ///< Assessment::flagged_channels
   bool tells_sources = false;     ///< CvAssessment::source
   bool names_mismatches = false;  ///< Assessment::named_mismatch
+  bool names_candidates = false;  ///< Assessment::named_candidate
   /// The share of loops without a fault that the method says it flags; none: it says nothing of it.
   std::optional<double> stated_false_alarms = {};
   std::vector<AssessmentNumberInfo> numbers;

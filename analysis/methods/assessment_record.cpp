@@ -35,7 +35,7 @@ std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& metho
                        NumberScope::cv,
                        "source that the method sees in a flagged CV or the worst one",
                        "1",
-                       {"none", "mpm", "ud", "mpm_ud"}});
+                       {"none", "mpm", "ud", "mpm_ud", "other"}});
   if (method.names_channels)
     numbers.push_back({"channel_flagged", NumberScope::channel, "the method names this channel of the model",
                        "1", no_yes()});
@@ -48,6 +48,9 @@ std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& metho
     numbers.push_back({"mismatch_lower", NumberScope::channel, "lower end of the interval of the size"});
     numbers.push_back({"mismatch_upper", NumberScope::channel, "upper end of the interval of the size"});
   }
+  if (method.names_candidates)
+    numbers.push_back({"named_candidate", NumberScope::loop,
+                       "position of the logged signal that the method says drives the disturbance"});
   return numbers;
 }
 
@@ -191,6 +194,8 @@ AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessme
     record.set_number("mismatch_lower", named->lower, cv, mv);
     record.set_number("mismatch_upper", named->upper, cv, mv);
   }
+  if (assessment.named_candidate && method.names_candidates)
+    record.set_number("named_candidate", static_cast<double>(*assessment.named_candidate));
   for (const AssessmentNumber& number : assessment.numbers)
     record.set_number(number.name, number.value, std::max<Eigen::Index>(number.cv, 0),
                       std::max<Eigen::Index>(number.column, 0));

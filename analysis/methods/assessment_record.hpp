@@ -46,6 +46,7 @@ struct NumberPlace {
 /// | channel_flagged | channel | name channels: 1 for a channel that is named, 0 for others |
 /// | mismatch_parameter | channel | name mismatches: Assessment::named_mismatch in the place of its channel |
 /// | mismatch_size, mismatch_lower, mismatch_upper | channel | the same, NaN elsewhere           |
+/// | named_candidate | loop    | name candidates: Assessment::named_candidate; NaN: none           |
 class AssessmentForm {
  public:
   AssessmentForm(MethodDescription method, const Study& study);

@@ -15,7 +15,8 @@ namespace {
 
 /// Inputs that the model lacks (thesis, 8.2): do signals that are logged, and that the model does not know,
 /// help to predict the simulation errors? prewhitened_test() of e_i on each candidate alone; the candidate
-/// of the least p-value is named. Each p-value is that of one of ny nc tests, nc candidates.
+/// of the least p-value is named, in a flagged loop that of the worst CV. Each p-value is that of one of ny
+/// nc tests, nc candidates.
 class Candidates final : public AssessmentMethod {
  public:
   explicit Candidates(const AssessmentContext& context)
@@ -31,9 +32,12 @@ class Candidates final : public AssessmentMethod {
     assessment.cvs.resize(static_cast<std::size_t>(e.rows()));
     for (std::size_t candidate = 0; candidate < filtered.size(); ++candidate)
       add_candidate(static_cast<Eigen::Index>(candidate), filtered, e, assessment);
-    if (!assessment.worst_cv())
+    const std::optional<Eigen::Index> worst = assessment.worst_cv();
+    if (!worst)
       return Assessment::not_applicable(fmt::format("its regressions need {} samples of a CV without a gap",
                                                     error_regression_samples(options_, 1)));
+    if (assessment.flagged)
+      assessment.named_candidate = static_cast<Eigen::Index>(assessment.number("candidate", *worst));
     return assessment;
   }
 
@@ -82,6 +86,7 @@ AssessmentMethodInfo candidates_method() {
            .locates_cvs = true,
            .names_channels = false,
            .tells_sources = true,
+           .names_candidates = true,
            .numbers = {{"candidate", NumberScope::cv, "position of the logged signal with the least p-value"},
                        {"log10_p", NumberScope::cv,
                         "log10 p of this signal not helping to predict the error of the CV"}}},

@@ -237,10 +237,21 @@ class FaultPosterior final : public AssessmentMethod {
     assessment.flagged_channels.push_back(named.channel);
     if (!worst)
       return;
-    const double tail = 0.5 * (1.0 - study_.aggregate.confidence);
+    const Interval sizes =
+        up_to_ends(shortest_interval(likeliest->sizes, study_.aggregate.confidence), support(named.size));
     assessment.named_mismatch = {named.channel, named.parameter, mixture_quantile(likeliest->sizes, 0.5),
-                                 mixture_quantile(likeliest->sizes, tail),
-                                 mixture_quantile(likeliest->sizes, 1.0 - tail)};
+                                 sizes.lower, sizes.upper};
+  }
+
+  /// An end that differs from one of the possible sizes by rounding is this one. A size that studies scale to
+  /// an effect often lies there.
+  static Interval up_to_ends(Interval sizes, std::pair<double, double> ends) {
+    const double rounding = 1e-9 * (ends.second - ends.first);
+    if (sizes.lower < ends.first + rounding)
+      sizes.lower = ends.first - rounding;
+    if (sizes.upper > ends.second - rounding)
+      sizes.upper = ends.second + rounding;
+    return sizes;
   }
 
   void add_numbers(const FaultProbabilities& probabilities, const std::vector<CvEvidence>& evidence,

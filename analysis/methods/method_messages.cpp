@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -105,7 +106,7 @@ class AnswerReader {
     if (!answer.is_object())
       refuse("answer", answer, "a JSON object");
     refuse_unknown(answer, {"flagged", "score", "cv", "source", "cv_flagged", "cv_score", "cv_source",
-                            "channels", "mismatch", "numbers", "error", "not_applicable"});
+                            "channels", "mismatch", "candidate", "numbers", "error", "not_applicable"});
     if (const Json* const error = given(answer, "error"))
       return Assessment::failed(text("error", *error));
     if (const Json* const reason = given(answer, "not_applicable"))
@@ -120,6 +121,7 @@ class AnswerReader {
     read_cvs(answer, assessment);
     read_channels(answer, assessment);
     read_mismatch(answer, assessment);
+    read_candidate(answer, assessment);
     read_numbers(answer, assessment);
     return assessment;
   }
@@ -202,6 +204,8 @@ class AnswerReader {
     const Json* const scores = given_if(method_.locates_cvs, answer, "cv_score", "cv");
     const Json* const source = given_if(method_.tells_sources, answer, "source", "source");
     const Json* const sources = given_if(method_.tells_sources, answer, "cv_source", "source");
+    if (source != nullptr && cv == nullptr && *source != "none")
+      refuse("source", *source, "none, or the CV that it is of as well");
     if (cv == nullptr && flags == nullptr)
       return;
     const std::size_t count = plant_.cvs.size();
@@ -218,7 +222,7 @@ class AnswerReader {
                     : *of_cv.flagged ? 1.0
                                      : 0.0;
       if (sources != nullptr && !list("cv_source", *sources, count)[i].is_null())
-        of_cv.source = word("cv_source", (*sources)[i], FaultSource::mpm_ud);
+        of_cv.source = word("cv_source", (*sources)[i], FaultSource::other);
     }
     if (cv == nullptr)
       return;
@@ -228,7 +232,7 @@ class AnswerReader {
     named.flagged = assessment.flagged;
     named.score = std::isnan(assessment.score) ? 0.0 : assessment.score;
     if (source != nullptr)
-      named.source = word("source", *source, FaultSource::mpm_ud);
+      named.source = word("source", *source, FaultSource::other);
   }
 
   Channel channel(const char* key, const Json& value) const {
@@ -257,6 +261,15 @@ class AnswerReader {
     assessment.named_mismatch = {channel("mismatch", mismatch->at("channel")),
                                  word("mismatch", mismatch->at("parameter"), MismatchParameter::sign),
                                  size("size"), size("lower"), size("upper")};
+  }
+
+  void read_candidate(const Json& answer, Assessment& assessment) const {
+    const Json* const candidate = given_if(method_.names_candidates, answer, "candidate", "candidate");
+    if (candidate == nullptr)
+      return;
+    if (!candidate->is_number_integer() || candidate->get<std::int64_t>() < 1)
+      refuse("candidate", *candidate, "the number of a logged signal, from 1");
+    assessment.named_candidate = candidate->get<std::int64_t>() - 1;
   }
 
   void read_numbers(const Json& answer, Assessment& assessment) const {

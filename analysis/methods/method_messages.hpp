@@ -40,10 +40,11 @@ nlohmann::ordered_json context_json(const AssessmentContext& context);
 /// |----------------|----------------------------------------------------------------------------------|
 /// | flagged        | true, false; the only one that must be there                                     |
 /// | score          | number, larger is worse; 1 or 0 by `flagged` without one                         |
-/// | cv, source     | the CV that is worst, by name; its source: "none", "mpm", "ud", "mpm_ud"         |
+/// | cv, source     | the CV that is worst, by name; its source: "none", "mpm", "ud", "mpm_ud", "other" |
 /// | cv_flagged, cv_score, cv_source | lists of ny in place of these two, null: nothing is said        |
 /// | channels       | [["y1", "u2"], ...]: channels of the model that are named                        |
 /// | mismatch       | {"channel", "parameter", "size", "lower", "upper"}; the last three may be absent |
+/// | candidate      | number of the logged signal that drives the disturbance, from 1                  |
 /// | numbers        | {"name": value}: those of the description; lists by CV, lists of lists by channel |
 /// | error, not_applicable | in the place of all others: why there is no verdict                       |
 ///

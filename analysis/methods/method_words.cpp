@@ -33,7 +33,8 @@ std::string answers_text(const MethodDescription& method) {
   return listed({{method.locates_cvs, "the CV"},
                  {method.names_channels, "the channels"},
                  {method.tells_sources, "the source"},
-                 {method.names_mismatches, "the parameter"}});
+                 {method.names_mismatches, "the parameter"},
+                 {method.names_candidates, "the logged cause"}});
 }
 
 }  // namespace mpm

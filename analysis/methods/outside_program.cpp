@@ -98,7 +98,8 @@ class DescriptionReader {
       set(word, {{{"cv", &method.locates_cvs},
                   {"channel", &method.names_channels},
                   {"source", &method.tells_sources},
-                  {"mismatch", &method.names_mismatches}}});
+                  {"mismatch", &method.names_mismatches},
+                  {"candidate", &method.names_candidates}}});
     if (const auto stated = answer.find("stated_false_alarms"); stated != answer.end() && !stated->is_null())
       method.stated_false_alarms = stated->get<double>();
     if (const auto numbers = answer.find("numbers"); numbers != answer.end())

@@ -53,31 +53,65 @@ double TruncatedNormal::cumulative(double x) const {
                                 log_normal_integral(low, high, mean, deviation)));
 }
 
-double mixture_quantile(const std::vector<TruncatedNormal>& parts, double probability) {
-  constexpr double kNegligible = 30.0;  // e^-30 of the largest part
-  constexpr int kHalvings = 50;
-  double largest = -kInfinity;
-  for (const TruncatedNormal& part : parts)
-    largest = std::max(largest, part.log_mass);
-  if (!std::isfinite(largest))
-    return kNaN;
-  double low = kInfinity, high = -kInfinity, total = 0.0;
-  std::vector<TruncatedNormal> kept;
-  for (const TruncatedNormal& part : parts)
-    if (part.log_mass > largest - kNegligible) {
-      kept.push_back(part);
-      low = std::min(low, part.low);
-      high = std::max(high, part.high);
-      total += std::exp(part.log_mass - largest);
-    }
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    double below = 0.0;
-    for (const TruncatedNormal& part : kept)
-      below += std::exp(part.log_mass - largest) * part.cumulative(middle);
-    (below < probability * total ? low : high) = middle;
+namespace {
+
+/// The parts of a mixture that have mass, with its quantiles.
+class Mixture {
+ public:
+  explicit Mixture(const std::vector<TruncatedNormal>& parts) {
+    constexpr double kNegligible = 30.0;  // e^-30 of the largest part
+    for (const TruncatedNormal& part : parts)
+      largest_ = std::max(largest_, part.log_mass);
+    for (const TruncatedNormal& part : parts)
+      if (std::isfinite(largest_) && part.log_mass > largest_ - kNegligible) {
+        kept_.push_back(part);
+        low_ = std::min(low_, part.low);
+        high_ = std::max(high_, part.high);
+        total_ += std::exp(part.log_mass - largest_);
+      }
   }
-  return 0.5 * (low + high);
+
+  double quantile(double probability) const {
+    constexpr int kHalvings = 50;
+    if (kept_.empty())
+      return kNaN;
+    if (probability <= 0.0 || probability >= 1.0)
+      return probability <= 0.0 ? low_ : high_;
+    double low = low_, high = high_;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      double below = 0.0;
+      for (const TruncatedNormal& part : kept_)
+        below += std::exp(part.log_mass - largest_) * part.cumulative(middle);
+      (below < probability * total_ ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+
+ private:
+  std::vector<TruncatedNormal> kept_;
+  double largest_ = -kInfinity;
+  double low_ = kInfinity, high_ = -kInfinity, total_ = 0.0;
+};
+
+}  // namespace
+
+double mixture_quantile(const std::vector<TruncatedNormal>& parts, double probability) {
+  return Mixture(parts).quantile(probability);
+}
+
+Interval shortest_interval(const std::vector<TruncatedNormal>& parts, double probability) {
+  constexpr int kSteps = 50;
+  const Mixture mixture(parts);
+  Interval shortest{kNaN, kNaN};
+  for (int step = 0; step <= kSteps; ++step) {
+    const double below = (1.0 - probability) * step / kSteps;
+    const Interval each{mixture.quantile(below),
+                        mixture.quantile(step == kSteps ? 1.0 : below + probability)};
+    if (!(each.upper - each.lower >= shortest.upper - shortest.lower))
+      shortest = each;
+  }
+  return shortest;
 }
 
 double log_sum(double a, double b) {

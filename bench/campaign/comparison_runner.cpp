@@ -9,7 +9,6 @@
 #include "bench/execution/experiment_execution.hpp"
 #include "bench/execution/thread_loop.hpp"
 #include "bench/version.hpp"
-#include "plants/non_finite.hpp"
 #include "scenarios/calibration.hpp"
 #include "solvers/qp_solver.hpp"
 
@@ -108,14 +107,14 @@ class ThreadedRunners {
   }
 
   /// An experiment, run as a campaign runs it.
-  ExperimentRecord run(std::int64_t index, std::size_t thread) {
+  ExperimentRecord run(std::int64_t index, std::size_t thread, StorePolicy store = StorePolicy::none) {
     if (solver_ != "ipopt") {
-      ExperimentRecord record = by_active_set_[thread]->run(index, StorePolicy::none);
+      ExperimentRecord record = by_active_set_[thread]->run(index, store);
       if (solver_ == "active-set" || !needs_ipopt(record))
         return record;
     }
     const std::lock_guard alone(ipopt_);
-    return by_campaign_solver_->run(index, StorePolicy::none);
+    return by_campaign_solver_->run(index, store);
   }
 
  private:
@@ -191,14 +190,23 @@ void add_methods(Campaign& campaign, const ComparisonOptions& options, const std
     add_calibration(campaign, options, threads, done);
 }
 
-std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<std::size_t>& places, int jobs,
+std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
                                    const std::function<void()>& on_done) {
   const int threads = std::max(1, jobs);
   ThreadedRunners runners(campaign, campaign.study, {}, threads);
-  std::vector<AssessedLoop> loops(places.size());
+  const Study calibration = campaign.study.calibration ? calibration_study(campaign.study) : campaign.study;
+  ThreadedRunners calibrating(campaign, calibration, {}, threads);
+  std::vector<AssessedLoop> loops(order.size());
   DoneReports done(on_done);
-  for_each_in_threads(places.size(), threads, [&](std::size_t i, std::size_t thread) {
-    loops[i] = runners.loop_of(campaign.records[places[i]], thread);
+  for_each_in_threads(order.size(), threads, [&](std::size_t i, std::size_t thread) {
+    const std::size_t place = order[i].place;
+    if (!order[i].of_calibration) {
+      loops[i] = runners.loop_of(campaign.records[place], thread);
+    } else if (const ExperimentRecord record =
+                   calibrating.run(static_cast<std::int64_t>(place), thread, StorePolicy::all);
+               record.status == ExperimentStatus::ok) {
+      loops[i] = calibrating.loop_of(record, thread);
+    }
     done.one_more();
   });
   return loops;
@@ -208,8 +216,8 @@ void add_verdicts(Campaign& campaign, const OutsideVerdicts& verdicts, const std
   append(campaign, {verdicts.form}, {}, {}, command);
   for (std::size_t i = 0; i < campaign.records.size(); ++i)
     campaign.records[i].assessments.back() = verdicts.answers[i];
-  for (CalibrationLoop& loop : campaign.calibration.loops)
-    loop.scores.push_back(kNaN);
+  for (std::size_t i = 0; i < campaign.calibration.loops.size(); ++i)
+    campaign.calibration.loops[i].scores.push_back(verdicts.calibration_scores[i]);
 }
 
 Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods,

@@ -8,6 +8,7 @@
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "results/archive/campaign.hpp"
+#include "results/blind/blind_loops.hpp"
 #include "results/blind/verdict_file.hpp"
 
 namespace mpm {
@@ -37,13 +38,13 @@ bool has_answers(const Campaign& campaign, const std::string& method,
 /// @throws InputError for an unknown method, or options that do not fit the study: that of its first loop
 void add_methods(Campaign& campaign, const ComparisonOptions& options, const std::string& command);
 
-/// The loops of these records, which have status ok, as methods see them; run again where they were not kept.
-std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<std::size_t>& places, int jobs,
+/// These loops as methods see them; run again where they were not kept. Without samples: a calibration loop
+/// that does not run to its end.
+std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
                                    const std::function<void()>& on_done);
 
 /// Puts verdicts from outside behind the answers of the methods that the campaign has, in the place of those
-/// of the same name. They say nothing of calibration loops, so that such a method has no calibrated
-/// threshold.
+/// of the same name.
 void add_verdicts(Campaign& campaign, const OutsideVerdicts& verdicts, const std::string& command);
 
 /// The campaign with these of its methods alone, in this order, on its first `experiments`.

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -29,6 +30,8 @@ struct ExportArguments {
   std::optional<std::int64_t> index;  ///< of the experiment; all without
   std::string output;                 ///< stdout when empty
   bool blind = false;
+  BlindParts parts;
+  std::string key;  ///< file for the key of the blind loops; none when empty
   int jobs = 1;
   bool quiet = false;
 };
@@ -36,23 +39,31 @@ struct ExportArguments {
 /// The loops without the truth, into a folder.
 ExitCode export_blind(const ExportArguments& options) {
   const Campaign campaign = read_input(options.archive);
-  const std::vector<std::size_t> order = blind_order(campaign);
+  if (options.parts.calibration && !campaign.study.calibration)
+    throw InputError("--calibration", "a study without a table `calibration`", "a study with one");
+  if (options.parts.windows && !campaign.study.monitoring)
+    throw InputError("--windows", "a study without a table `monitoring`", "a study with one");
+  const std::vector<BlindLoop> order = blind_order(campaign, options.parts.calibration);
   if (order.empty())
     throw InputError(options.archive, "no loop that ran to its end", "one or more to export");
   if (options.output.empty())
     throw InputError("--output", "none", "with --blind a folder");
+  if (!options.key.empty())
+    require_output_folder(options.key, "key");
   make_output_folder(options.output, "loops");
   Progress progress(options.quiet);
   progress.begin(std::ssize(order));
-  const std::vector<AssessedLoop> loops = loops_of(campaign, order, options.jobs, [&] {
+  std::vector<AssessedLoop> loops = loops_of(campaign, order, options.jobs, [&] {
     progress.advance();
     progress.end_when_requested();
   });
   const AssessmentContext context =
       assessment_context(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver));
-  write_blind_loops(options.output, campaign, context, loops);
+  write_blind_loops(options.output, campaign, context, std::move(loops), options.parts);
+  if (!options.key.empty())
+    write_text(options.key, blind_key(campaign, options.parts.calibration));
   print_result(
-      fmt::format("{} loops of {} without the truth: {}\n", loops.size(), options.archive, options.output));
+      fmt::format("{} loops of {} without the truth: {}\n", order.size(), options.archive, options.output));
   return ExitCode::done;
 }
 
@@ -86,9 +97,20 @@ void add_export(CommandSet& commands) {
       ->capture_default_str();
   app.add_option("--index", options->index, "One experiment only; not of the findings")
       ->check(CLI::NonNegativeNumber);
-  app.add_flag(
+  CLI::Option* const blind = app.add_flag(
       "--blind", options->blind,
       "Write the loops without the truth into the folder OUTPUT, for somebody who is to assess them");
+  app.add_flag("--calibration", options->parts.calibration,
+               "With --blind: the calibration loops as well, among the others")
+      ->needs(blind);
+  app.add_flag("--windows", options->parts.windows,
+               "With --blind: ask for verdicts on the moving windows of each loop as well")
+      ->needs(blind);
+  app.add_option(
+         "--key", options->key,
+         "With --blind: CSV file to write with the experiment that each loop is, for whoever trains a "
+         "method")
+      ->needs(blind);
   add_path(app, "-o,--output", options->output, "File to write, with --blind a folder; stdout without one");
   add_jobs(app, options->jobs, "With --blind: how many loops are run at once, those that were not kept");
   add_quiet(app, options->quiet);

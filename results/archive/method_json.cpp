@@ -77,7 +77,8 @@ Json method_json(const MethodDescription& method) {
        {{"cv", method.locates_cvs},
         {"channel", method.names_channels},
         {"source", method.tells_sources},
-        {"mismatch", method.names_mismatches}}},
+        {"mismatch", method.names_mismatches},
+        {"candidate", method.names_candidates}}},
       {"stated_false_alarms", method.stated_false_alarms ? Json(*method.stated_false_alarms) : Json(nullptr)},
       {"origin", method.origin.empty() ? Json(nullptr) : Json(method.origin)}};
 }
@@ -114,6 +115,7 @@ MethodDescription method_description(const std::string& text, const std::string&
                              .names_channels = answers.at("channel"),
                              .tells_sources = answers.at("source"),
                              .names_mismatches = answers.value("mismatch", false),
+                             .names_candidates = answers.value("candidate", false),
                              .stated_false_alarms = stated_in(json),
                              .numbers = {},
                              .origin = origin_in(json)};

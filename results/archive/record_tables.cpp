@@ -350,7 +350,8 @@ RecordVariable of_methods(VariableText text, const AssessmentForms& forms, Membe
 }
 
 Flags source_flags() {
-  return enum_flags(std::array{FaultSource::none, FaultSource::mpm, FaultSource::ud, FaultSource::mpm_ud});
+  return enum_flags(std::array{FaultSource::none, FaultSource::mpm, FaultSource::ud, FaultSource::mpm_ud,
+                               FaultSource::other});
 }
 
 RecordTable outcomes(const Study& study, const AssessmentForms& forms) {

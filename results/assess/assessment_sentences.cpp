@@ -54,6 +54,12 @@ void add_source(const RecordAssessment& of, Sentences& sentences) {
       sentences.push_back(
           fmt::format("It is at {}: a model-plant mismatch and an unmeasured disturbance.", cv));
       break;
+    case FaultSource::other:
+      sentences.push_back(fmt::format(
+          "It is at {}, and it is neither the model nor a disturbance: a sensor, a valve, a limit or an "
+          "operator.",
+          cv));
+      break;
     case FaultSource::none:
       sentences.push_back(fmt::format(
           "It is at {}; whether it is the model or a disturbance this record does not tell.", cv));

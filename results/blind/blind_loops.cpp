@@ -4,6 +4,7 @@
 #include <cstring>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/methods/method_messages.hpp"
+#include "plants/non_finite.hpp"
 #include "results/archive/dimensions.hpp"
 #include "results/archive/matrix_io.hpp"
 #include "results/files/atomic_file.hpp"
@@ -87,13 +89,26 @@ std::string benchmark_csv(const Study& study, const AssessedLoop& benchmark) {
   return text;
 }
 
-/// A form to fill in, with all columns that there can be for a whole loop.
-std::string empty_verdicts(std::size_t loops, const std::string& hash) {
-  std::string text = fmt::format("{}loop,flagged,score,cv,source,channels,parameter,size,lower,upper,error\n",
-                                 hash_line(hash));
-  for (std::size_t i = 0; i < loops; ++i)
-    fmt::format_to(std::back_inserter(text), "{},,,,,,,,,,\n", i);
+/// A form to fill in, with all columns that there can be for a whole loop; `windows` of each loop follow it.
+std::string empty_verdicts(std::size_t loops, std::optional<int> windows, const std::string& hash) {
+  std::string text =
+      fmt::format("{}loop,{}flagged,score,cv,source,channels,parameter,size,lower,upper,error\n",
+                  hash_line(hash), windows ? "window," : "");
+  for (std::size_t i = 0; i < loops; ++i) {
+    fmt::format_to(std::back_inserter(text), "{},{},,,,,,,,,\n", i, windows ? "," : "");
+    for (int window = 0; window < windows.value_or(0); ++window)
+      fmt::format_to(std::back_inserter(text), "{},{},,,,,,,,,,\n", i, window);
+  }
   return text;
+}
+
+/// In the place of a loop that did not run to its end.
+AssessedLoop missing_loop(const Study& study) {
+  AssessedLoop loop;
+  for (const LoopSignal& signal : loop_signals())
+    loop.*signal.member =
+        Eigen::MatrixXd::Constant(std::ssize(row_names(study, signal)), study.simulation.samples, kNaN);
+  return loop;
 }
 
 void write_signals(Hdf5Group& group, const Study& study, const std::vector<const AssessedLoop*>& loops,
@@ -155,18 +170,20 @@ void write_blind_text(const std::filesystem::path& path, const std::string& text
 
 }  // namespace
 
-std::vector<std::size_t> blind_order(const Campaign& campaign) {
-  std::vector<std::size_t> order;
+std::vector<BlindLoop> blind_order(const Campaign& campaign, bool with_calibration) {
+  std::vector<BlindLoop> order;
   for (std::size_t i = 0; i < campaign.records.size(); ++i)
     if (campaign.records[i].status == ExperimentStatus::ok)
-      order.push_back(i);
+      order.push_back({.of_calibration = false, .place = i});
+  for (std::size_t i = 0; with_calibration && i < campaign.calibration.loops.size(); ++i)
+    order.push_back({.of_calibration = true, .place = i});
   RandomStream stream(campaign.study.seed, 0, StreamId::blind_order);
   for (std::size_t left = order.size(); left > 1; --left)
     std::swap(order[left - 1], order[static_cast<std::size_t>(stream.below(left))]);
   return order;
 }
 
-std::string loops_hash(const Campaign& campaign) {
+std::string loops_hash(const Campaign& campaign, bool with_calibration) {
   std::string content =
       fmt::format("{}\n{}\n{}\n", campaign.study.source, campaign.study.seed, campaign.info.solver);
   for (const ExperimentRecord& record : campaign.records)
@@ -176,6 +193,9 @@ std::string loops_hash(const Campaign& campaign) {
         append_number(content, value);
       content += '\n';
     }
+  if (with_calibration)
+    fmt::format_to(std::back_inserter(content), "calibration {} {}\n", campaign.calibration.seed,
+                   campaign.calibration.loops.size());
   return sha256(std::as_bytes(std::span(content)));
 }
 
@@ -183,20 +203,39 @@ std::string hash_line(const std::string& hash) {
   return fmt::format("# mpmbench loops sha256 {}\n", hash);
 }
 
+std::string blind_key(const Campaign& campaign, bool with_calibration) {
+  std::string text = fmt::format("{}loop,experiment\n", hash_line(loops_hash(campaign, with_calibration)));
+  std::size_t number = 0;
+  for (const BlindLoop& loop : blind_order(campaign, with_calibration))
+    text += loop.of_calibration ? fmt::format("{},\n", number++)
+                                : fmt::format("{},{}\n", number++, campaign.records[loop.place].draw.index);
+  return text;
+}
+
 void write_blind_loops(const std::filesystem::path& folder, const Campaign& campaign,
-                       const AssessmentContext& context, const std::vector<AssessedLoop>& loops) {
+                       const AssessmentContext& context, std::vector<AssessedLoop> loops,
+                       const BlindParts& parts) {
   const Study& study = campaign.study;
-  const std::string hash = loops_hash(campaign);
+  for (AssessedLoop& loop : loops)
+    if (loop.samples() == 0)
+      loop = missing_loop(study);
+  const std::string hash = loops_hash(campaign, parts.calibration);
   nlohmann::ordered_json description = context_json(context);
   description["loops"] = loops.size();
   description["loops_sha256"] = hash;
+  std::optional<int> windows;
+  if (parts.windows) {
+    windows = study.monitoring->count(study.simulation.samples);
+    description["monitoring"] = {
+        {"window", study.monitoring->window}, {"stride", study.monitoring->stride}, {"windows", *windows}};
+  }
   const std::filesystem::path netcdf = folder / "loops.nc";
   write_file_atomically(netcdf, blind_netcdf(netcdf.string(), study, context, loops, hash).image());
   write_blind_text(folder / "loops.csv", blind_csv(study, loops, hash));
   if (context.benchmark)
     write_blind_text(folder / "benchmark.csv", benchmark_csv(study, *context.benchmark));
   write_blind_text(folder / "context.json", description.dump(1) + "\n");
-  write_blind_text(folder / "verdicts.csv", empty_verdicts(loops.size(), hash));
+  write_blind_text(folder / "verdicts.csv", empty_verdicts(loops.size(), windows, hash));
 }
 
 }  // namespace mpm

@@ -13,22 +13,41 @@
 
 namespace mpm {
 
-/// Which records of the campaign (those with status ok) are the loops 0, 1, 2, ... of its blind export: a
-/// shuffle by the stream `blind_order` of the master seed (Fisher and Yates), so that the archive is the key.
-std::vector<std::size_t> blind_order(const Campaign& campaign);
+/// What a blind export has besides the loops of the experiments.
+struct BlindParts {
+  bool calibration = false;  ///< the calibration loops, among the others and under numbers like theirs
+  bool windows = false;      ///< a line of the form for each moving window of each loop
+};
+
+/// A loop of a blind export.
+struct BlindLoop {
+  bool of_calibration = false;
+  std::size_t place = 0;  ///< in Campaign::records, or in Campaign::calibration.loops
+};
+
+/// Which loops of the campaign are the loops 0, 1, 2, ... of its blind export: records with status ok and, if
+/// asked for, all calibration loops, in a shuffle by the stream `blind_order` of the master seed (Fisher and
+/// Yates), so that the archive is the key. Whether a calibration loop ran to its end no archive tells.
+std::vector<BlindLoop> blind_order(const Campaign& campaign, bool with_calibration);
 
 /// SHA-256 of what makes the loops what they are: study, seed, solver, indices and Ivar_basis of the records
-/// with status ok. Methods that are added to the campaign do not change it, and it does not tell what it was
-/// made of.
-std::string loops_hash(const Campaign& campaign);
+/// with status ok, and whether calibration loops are among them. Methods that are added to the campaign do
+/// not change it, and it does not tell what it was made of.
+std::string loops_hash(const Campaign& campaign, bool with_calibration);
 
 /// The comment line of a CSV file that says which loops it is of.
 std::string hash_line(const std::string& hash);
 
 /// Writes a blind export into `folder`, which must be there (docs/bring_your_own.md): `loops.nc` (netCDF-4),
 /// `loops.csv`, `benchmark.csv`, `context.json` and `verdicts.csv`, a form to fill in. `loops` are those of
-/// blind_order(). Errors: ArchiveError when a file cannot be written.
+/// blind_order(); one without samples did not run to its end, and is missing throughout. With windows the
+/// study must monitor. Errors: ArchiveError when a file cannot be written.
 void write_blind_loops(const std::filesystem::path& folder, const Campaign& campaign,
-                       const AssessmentContext& context, const std::vector<AssessedLoop>& loops);
+                       const AssessmentContext& context, std::vector<AssessedLoop> loops,
+                       const BlindParts& parts);
+
+/// CSV with the columns `loop` and `experiment` (its index; empty: a calibration loop): the key of a blind
+/// export, for whoever trains a method on it.
+std::string blind_key(const Campaign& campaign, bool with_calibration);
 
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -14,10 +15,12 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/findings/calibration.hpp"
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
 #include "plants/input_file.hpp"
+#include "plants/non_finite.hpp"
 #include "results/blind/blind_loops.hpp"
 
 namespace mpm {
@@ -26,8 +29,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::vector<std::string> known_columns(const PlantModel& plant) {
-  std::vector<std::string> columns{"loop",      "flagged", "score", "cv",    "source", "channels",
-                                   "parameter", "size",    "lower", "upper", "error"};
+  std::vector<std::string> columns{"loop",   "window",    "flagged",   "score", "cv",
+                                   "source", "channels",  "parameter", "size",  "lower",
+                                   "upper",  "candidate", "error"};
   for (const char* of_cv : {"cv_flagged", "cv_score", "cv_source"})
     for (const PlantModel::Variable& cv : plant.cvs)
       columns.push_back(fmt::format("{}.{}", of_cv, cv.name));
@@ -186,6 +190,16 @@ Json channels_json(const VerdictLine& line) {
   return channels;
 }
 
+Json candidate_json(const VerdictLine& line) {
+  const std::string* const field = line.find("candidate");
+  if (field == nullptr)
+    return nullptr;
+  const std::optional<std::int64_t> number = number_in<std::int64_t>(*field);
+  if (!number)
+    line.refuse("candidate", "the number of a logged signal, from 1");
+  return *number;
+}
+
 /// The answer that a program would give in the place of this line.
 Json answer_json(const VerdictLine& line, const PlantModel& plant, const MethodDescription& method) {
   if (const std::string* const error = line.find("error"))
@@ -221,6 +235,8 @@ Json answer_json(const VerdictLine& line, const PlantModel& plant, const MethodD
                           {"lower", number_json(line, "lower")},
                           {"upper", number_json(line, "upper")}};
   }
+  if (method.names_candidates)
+    answer["candidate"] = candidate_json(line);
   return answer;
 }
 
@@ -242,28 +258,92 @@ MethodDescription description_of(const VerdictText& text, const std::string& nam
   method.title = fmt::format("{} (verdicts from outside)", name);
   method.verdict = "as whoever made the file of verdicts means it";
   method.requirements.complete_record = false;
-  method.locates_cvs = text.uses("cv");
   method.tells_sources = text.uses("source") || text.uses("cv_source");
+  method.locates_cvs = text.uses("cv") || method.tells_sources;
   method.names_channels = text.uses("channels");
   method.names_mismatches = text.uses("parameter");
+  method.names_candidates = text.uses("candidate");
   method.origin = fmt::format("file of verdicts {}", file);
   return method;
 }
 
+/// What a file says of one loop: a line on it as a whole, and lines on its windows; null: none.
+struct LoopLines {
+  const VerdictLine* whole = nullptr;
+  std::vector<const VerdictLine*> windows = {};
+};
+
+/// The number in a column, below `count`, which is above 0.
+std::size_t place_in(const VerdictLine& line, const std::string& column, std::size_t count) {
+  const std::string* const field = line.find(column);
+  const std::optional<std::size_t> place = field ? number_in<std::size_t>(*field) : std::nullopt;
+  if (!place || *place >= count)
+    throw InputError(fmt::format("{}: {}", line.place, column), fmt::format("'{}'", field ? *field : ""),
+                     fmt::format("0 to {}", count - 1));
+  return *place;
+}
+
 /// The lines by the loop that they are of.
-std::vector<const VerdictLine*> by_loop(const VerdictText& text, std::size_t loops) {
-  std::vector<const VerdictLine*> lines(loops, nullptr);
+std::vector<LoopLines> by_loop(const VerdictText& text, std::size_t loops, std::size_t windows) {
+  std::vector<LoopLines> lines(loops);
   for (const VerdictLine& line : text.lines) {
-    const std::string* const field = line.find("loop");
-    const std::optional<std::size_t> loop = field ? number_in<std::size_t>(*field) : std::nullopt;
-    if (!loop || *loop >= loops)
-      throw InputError(fmt::format("{}: loop", line.place), fmt::format("'{}'", field ? *field : ""),
-                       fmt::format("0 to {}", loops - 1));
-    if (lines[*loop] != nullptr)
-      throw InputError(fmt::format("{}: loop", line.place), fmt::format("{} twice", *loop), "each loop once");
-    lines[*loop] = &line;
+    const std::size_t loop = place_in(line, "loop", loops);
+    const VerdictLine** place = &lines[loop].whole;
+    if (line.find("window") != nullptr) {
+      if (windows == 0)
+        line.refuse("window", "nothing: the study does not monitor");
+      lines[loop].windows.resize(windows, nullptr);
+      place = &lines[loop].windows[place_in(line, "window", windows)];
+    }
+    if (*place != nullptr)
+      throw InputError(fmt::format("{}: loop", line.place), fmt::format("{} twice", loop),
+                       "each loop once, and each of its windows");
+    *place = &line;
   }
   return lines;
+}
+
+/// Reads the lines on one loop.
+class LoopVerdicts {
+ public:
+  LoopVerdicts(std::shared_ptr<const AssessmentForm> form, const PlantModel& plant, int candidates)
+      : form_(std::move(form)), plant_(plant), candidates_(candidates) {}
+
+  AssessmentRecord on(const LoopLines& lines) const {
+    AssessmentRecord record =
+        kept(form_, lines.whole ? said(*lines.whole)
+                                : Assessment::failed("the file of verdicts has no line for this loop"));
+    for (std::size_t window = 0; window < lines.windows.size(); ++window)
+      if (const VerdictLine* const line = lines.windows[window])
+        if (const Assessment of_window = said(*line); record.answered())
+          add_window(record, static_cast<Eigen::Index>(window), of_window);
+    return record;
+  }
+
+ private:
+  Assessment said(const VerdictLine& line) const {
+    Assessment assessment =
+        assessment_of(answer_json(line, plant_, form_->method()), plant_, form_->method(), line.place);
+    if (assessment.named_candidate && *assessment.named_candidate >= candidates_)
+      line.refuse("candidate", candidates_ == 0 ? "nothing: the study logs no candidates"
+                                                : fmt::format("1 to {}", candidates_));
+    return assessment;
+  }
+
+  std::shared_ptr<const AssessmentForm> form_;
+  const PlantModel& plant_;
+  int candidates_;
+};
+
+/// Are calibration loops among those that the file is of? Refuses verdicts on the loops of another archive.
+bool has_calibration(const VerdictText& text, const Campaign& campaign, const std::string& file) {
+  if (!text.hash || *text.hash == loops_hash(campaign, false))
+    return false;
+  if (*text.hash != loops_hash(campaign, true))
+    throw InputError(file, fmt::format("verdicts on the loops {}", *text.hash),
+                     fmt::format("verdicts on those of the archive, {}, with calibration loops {}",
+                                 loops_hash(campaign, false), loops_hash(campaign, true)));
+  return true;
 }
 
 }  // namespace
@@ -271,24 +351,26 @@ std::vector<const VerdictLine*> by_loop(const VerdictText& text, std::size_t loo
 OutsideVerdicts read_verdicts(const std::filesystem::path& path, const std::string& name,
                               const Campaign& campaign) {
   require_name(name);
-  const PlantModel& plant = campaign.study.plant;
-  const VerdictText text = read_verdict_text(path, plant);
-  if (const std::string hash = loops_hash(campaign); text.hash && *text.hash != hash)
-    throw InputError(path.string(), fmt::format("verdicts on the loops {}", *text.hash),
-                     fmt::format("verdicts on those of the archive, {}", hash));
-  const MethodDescription method = description_of(text, name, path.filename().string());
-  OutsideVerdicts verdicts{
-      std::make_shared<const AssessmentForm>(method, campaign.study), {}, text.hash.has_value()};
-  for (std::size_t i = 0; i < campaign.records.size(); ++i)
-    verdicts.answers.push_back(unassessed({verdicts.form}).front());
-  const std::vector<std::size_t> order = blind_order(campaign);
-  const std::vector<const VerdictLine*> lines = by_loop(text, order.size());
-  for (std::size_t loop = 0; loop < order.size(); ++loop)
-    verdicts.answers[order[loop]] = kept(
-        verdicts.form,
-        lines[loop] == nullptr
-            ? Assessment::failed("the file of verdicts has no line for this loop")
-            : assessment_of(answer_json(*lines[loop], plant, method), plant, method, lines[loop]->place));
+  const Study& study = campaign.study;
+  const VerdictText text = read_verdict_text(path, study.plant);
+  const std::vector<BlindLoop> order = blind_order(campaign, has_calibration(text, campaign, path.string()));
+  const auto windows =
+      static_cast<std::size_t>(study.monitoring ? study.monitoring->count(study.simulation.samples) : 0);
+  const std::vector<LoopLines> lines = by_loop(text, order.size(), windows);
+  OutsideVerdicts verdicts{.form = std::make_shared<const AssessmentForm>(
+                               description_of(text, name, path.filename().string()), study),
+                           .answers = {},
+                           .calibration_scores = std::vector<double>(campaign.calibration.loops.size(), kNaN),
+                           .says_which_loops = text.hash.has_value()};
+  verdicts.answers.assign(campaign.records.size(), unassessed({verdicts.form}).front());
+  const LoopVerdicts reader(verdicts.form, study.plant, study.record.candidates);
+  for (std::size_t loop = 0; loop < order.size(); ++loop) {
+    AssessmentRecord answer = reader.on(lines[loop]);
+    if (order[loop].of_calibration)
+      verdicts.calibration_scores[order[loop].place] = calibration_score(answer);
+    else
+      verdicts.answers[order[loop].place] = std::move(answer);
+  }
   return verdicts;
 }
 

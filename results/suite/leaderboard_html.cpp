@@ -74,6 +74,30 @@ std::string scores_section(const Leaderboard& board, const char* id, const char*
   return html + "</section>\n";
 }
 
+/// Delays by plant, of the families in which methods watched moving windows; nothing without one.
+std::string delays_section(const Leaderboard& board) {
+  std::string tables;
+  for (std::size_t family = 0; family < board.families.size(); ++family) {
+    const std::vector<const CellScores*> cells = monitored_cells(board, family);
+    if (cells.empty())
+      continue;
+    std::vector<HtmlTable::Column> columns{{"Method", HtmlTable::Align::left}};
+    for (const CellScores* const cell : cells)
+      columns.push_back({html_text(plant_and_unit(board, *cell))});
+    HtmlTable table(fmt::format("{}: {}", html_text(board.families[family].name), kDelayTitle), columns);
+    for (std::size_t method = 0; method < board.methods.size(); ++method) {
+      std::vector<std::string> row{html_text(board.methods[method])};
+      for (const CellScores* const cell : cells)
+        row.push_back(delay_words(cell->methods[method]));
+      table.row(row);
+    }
+    tables += table.html();
+  }
+  return tables.empty()
+             ? ""
+             : fmt::format("<section id=\"delays\"><h2>How long it takes</h2>\n{}</section>\n", tables);
+}
+
 std::string passed_html(const PooledScores& scores) {
   std::string html;
   for (const LeaderboardTask task : kLeaderboardTasks)
@@ -159,7 +183,7 @@ std::string leaderboard_html(const Leaderboard& board) {
       scores_section(board, "by-family", "By family, pooled over the plants", board.families,
                      board.by_family) +
       scores_section(board, "by-plant", "By plant, pooled over the families", board.plants, board.by_plant) +
-      silences_section(board) + families_section(board) + cells_section(board);
+      delays_section(board) + silences_section(board) + families_section(board) + cells_section(board);
   return html_page({fmt::format("suite {} {}", board.suite, board.version),
                     fmt::format("Suite {} {}", html_text(board.suite), html_text(board.version)),
                     fmt::format("<p>{}: {}.</p>\n", html_text(board.title), size_text(board)),

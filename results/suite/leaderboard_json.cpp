@@ -49,9 +49,18 @@ SuiteJson along(const std::vector<SuiteAxis>& axis, const std::vector<PooledScor
   return json;
 }
 
+/// Of each method on the moving windows of a cell.
+SuiteJson delays_json(const Leaderboard& board, const CellScores& cell) {
+  SuiteJson json{{"time_unit", cell.time_unit}, {"methods", SuiteJson::object()}};
+  for (std::size_t method = 0; method < board.methods.size(); ++method)
+    for (const char* const name : {"detection_delay", "false_alarms_a_day"})
+      json["methods"][board.methods[method]][name] = estimate_json(cell.methods[method].estimate(name));
+  return json;
+}
+
 SuiteJson cells_json(const Leaderboard& board) {
   SuiteJson cells = SuiteJson::array();
-  for (const CellScores& cell : board.cells)
+  for (const CellScores& cell : board.cells) {
     cells.push_back({{"plant", board.plants[cell.plant].name},
                      {"family", board.families[cell.family].name},
                      {"seed", cell.seed},
@@ -59,6 +68,9 @@ SuiteJson cells_json(const Leaderboard& board) {
                      {"failed", cell.failed},
                      {"infeasible", cell.infeasible},
                      {"trouble", proper_utf8(cell.trouble)}});
+    if (cell.monitored && cell.trouble.empty())
+      cells.back()["delays"] = delays_json(board, cell);
+  }
   return cells;
 }
 

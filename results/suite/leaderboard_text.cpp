@@ -18,6 +18,7 @@ constexpr std::size_t kTextWidth = 120;
 
 /// Columns of numbers that fit into kTextWidth beside the names of the methods.
 constexpr std::size_t kColumnsAbreast = 6;
+constexpr std::size_t kDelaysAbreast = 4;
 
 std::string score_text(const PooledScores& scores, const LeaderboardScore& score) {
   const Rate* const rate = scores.of(score.rate);
@@ -66,12 +67,12 @@ const PooledScores& scores_at(const Leaderboard& board, std::size_t method, std:
   return column < board.families.size() ? board.by_family[method][column] : board.overall[method];
 }
 
-/// One row a method, the columns in blocks; `cell` makes the entries.
-std::string blocks_text(const Leaderboard& board, const std::string& title, const auto& cell) {
-  const std::vector<std::string> heads = heads_of(board);
+/// One row a method, the columns in blocks of `abreast`; `cell` makes the entry of a method and a column.
+std::string blocks_text(const Leaderboard& board, const std::string& title,
+                        const std::vector<std::string>& heads, std::size_t abreast, const auto& cell) {
   std::string text;
-  for (std::size_t first = 0; first < heads.size(); first += kColumnsAbreast) {
-    const std::size_t last = std::min(first + kColumnsAbreast, heads.size());
+  for (std::size_t first = 0; first < heads.size(); first += abreast) {
+    const std::size_t last = std::min(first + abreast, heads.size());
     TextTable table;
     TextTable::Row head{""};
     head.insert(head.end(), heads.begin() + static_cast<std::ptrdiff_t>(first),
@@ -80,10 +81,32 @@ std::string blocks_text(const Leaderboard& board, const std::string& title, cons
     for (std::size_t method = 0; method < board.methods.size(); ++method) {
       TextTable::Row row{board.methods[method]};
       for (std::size_t column = first; column < last; ++column)
-        row.push_back(cell(scores_at(board, method, column)));
+        row.push_back(cell(method, column));
       table.add(row);
     }
-    text += fmt::format("\n{}{}\n{}", title, first == 0 ? "" : " (further families)", table.text());
+    text += fmt::format("\n{}{}\n{}", title, first == 0 ? "" : " (continued)", table.text());
+  }
+  return text;
+}
+
+/// The same with a column for each family and one for all of them; `cell` makes the entries from the scores.
+std::string families_text(const Leaderboard& board, const std::string& title, const auto& cell) {
+  return blocks_text(
+      board, title, heads_of(board), kColumnsAbreast,
+      [&](std::size_t method, std::size_t column) { return cell(scores_at(board, method, column)); });
+}
+
+/// The delays of the families in which methods watched moving windows, a column a plant.
+std::string delays_text(const Leaderboard& board) {
+  std::string text;
+  for (std::size_t family = 0; family < board.families.size(); ++family) {
+    const std::vector<const CellScores*> cells = monitored_cells(board, family);
+    std::vector<std::string> heads;
+    for (const CellScores* const cell : cells)
+      heads.push_back(plant_and_unit(board, *cell));
+    text += blocks_text(
+        board, fmt::format("{}: {}", board.families[family].name, kDelayTitle), heads, kDelaysAbreast,
+        [&](std::size_t method, std::size_t column) { return delay_words(cells[column]->methods[method]); });
   }
   return text;
 }
@@ -103,11 +126,11 @@ std::string ceiling_text(const Leaderboard& board) {
     if (known[i].low_is_good || std::none_of(board.overall.begin(), board.overall.end(),
                                              [](const PooledScores& all) { return all.has_ceiling(); }))
       continue;
-    text += blocks_text(board, fmt::format("{}, % of the ceiling", known[i].title),
-                        [&](const PooledScores& scores) -> std::string {
-                          const double share = scores.shares_of_ceiling[i];
-                          return std::isnan(share) ? "-" : fmt::format("{:.0f}", 100 * share);
-                        });
+    text += families_text(board, fmt::format("{}, % of the ceiling", known[i].title),
+                          [&](const PooledScores& scores) -> std::string {
+                            const double share = scores.shares_of_ceiling[i];
+                            return std::isnan(share) ? "-" : fmt::format("{:.0f}", 100 * share);
+                          });
   }
   return text;
 }
@@ -152,10 +175,11 @@ std::string leaderboard_text(const Leaderboard& board) {
   std::string text =
       fmt::format("{} {}: {}\n{}; % of loops [{:g} % interval], pooled over the plants\n", board.suite,
                   board.version, board.title, size_text(board), 100 * board.confidence);
-  text += blocks_text(board, "passed: D detection, L location, S source", passed_text);
+  text += families_text(board, "passed: D detection, L location, S source", passed_text);
   for (const LeaderboardScore& score : leaderboard_scores())
-    text += blocks_text(board, std::string(score.title),
-                        [&](const PooledScores& scores) { return score_text(scores, score); });
+    text += families_text(board, std::string(score.title),
+                          [&](const PooledScores& scores) { return score_text(scores, score); });
+  text += delays_text(board);
   text += ceiling_text(board);
   return fmt::format("{}\n{}\n{}{}{}", text, legend_text(board), nobody_text(board), silences_text(board),
                      troubles_text(board));

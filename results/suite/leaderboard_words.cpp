@@ -1,6 +1,7 @@
 #include "results/suite/leaderboard_words.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -44,6 +45,38 @@ std::string size_text(const Leaderboard& board) {
   }
   return fmt::format("{} cells ({} plants, {} families), {} experiments, seed {}", cells, board.plants.size(),
                      board.families.size(), experiments, board.seed);
+}
+
+std::vector<const CellScores*> monitored_cells(const Leaderboard& board, std::size_t family) {
+  std::vector<const CellScores*> cells;
+  for (const CellScores& cell : board.cells)
+    if (cell.family == family && cell.monitored && cell.trouble.empty())
+      cells.push_back(&cell);
+  std::sort(cells.begin(), cells.end(),
+            [](const CellScores* a, const CellScores* b) { return a->plant < b->plant; });
+  return cells;
+}
+
+std::string plant_and_unit(const Leaderboard& board, const CellScores& cell) {
+  return fmt::format("{} ({})", board.plants[cell.plant].name, cell.time_unit);
+}
+
+namespace {
+
+std::string time_words(double time) {
+  return std::isinf(time) ? "never" : fmt::format("{:.3g}", time);
+}
+
+}  // namespace
+
+std::string delay_words(const MethodScores& scores) {
+  const Estimate delay = scores.estimate("detection_delay"), alarms = scores.estimate("false_alarms_a_day");
+  if (delay.count == 0 && alarms.count == 0)
+    return "-";
+  std::string text = delay.count == 0 ? "-" : time_words(delay.value);
+  if (delay.count > 0 && !std::isnan(delay.interval.lower))
+    text += fmt::format(" ({} to {})", time_words(delay.interval.lower), time_words(delay.interval.upper));
+  return alarms.count == 0 ? text : fmt::format("{}; {:.2g}", text, alarms.value);
 }
 
 std::vector<std::string> passed_by_nobody(const Leaderboard& board, LeaderboardTask task) {

@@ -59,6 +59,9 @@ Json method_findings_json(const Study& study, const MethodFindings& method) {
   json["reason"] = proper_utf8(rates.reason);
   json["rates"] = rates_json(study, rates);
   json["estimates"] = estimates_json(study, rates);
+  json["unanswered"] = Json::object();
+  for (const UnansweredPart& part : unanswered_parts(study, rates))
+    json["unanswered"][part.name] = part.reason;
   json["false_alarm_mark"] = to_string(false_alarm_mark(method.form->method(), rates));
   json["roc"] = roc_json(rates.roc, rates.roc_area);
   json["roc_impact"] = roc_json(rates.roc_impact, rates.roc_impact_area);

@@ -102,10 +102,20 @@ std::string calibration_text(const Campaign& campaign, const StudyFindings& find
       options.healthy, options.ud, campaign.calibration.seed, 100.0 * options.false_alarms);
   for (const MethodFindings& method : findings.methods)
     for (const ThresholdInfo& info : threshold_infos())
-      if (const CalibratedThreshold& threshold = method.rates.thresholds.*info.threshold; !threshold.value)
+      if (const CalibratedThreshold& threshold = method.rates.thresholds.*info.threshold;
+          !threshold.value && threshold.loops > 0)
         text += fmt::format("no {} of {}: {} calibration loops with a verdict are too few\n", info.name,
                             method.name(), threshold.loops);
   return text;
+}
+
+/// Which rates cannot be had, and why.
+std::string unanswered_text(const Study& study, const std::vector<MethodFindings>& methods) {
+  std::string text;
+  for (const MethodFindings& method : methods)
+    for (const UnansweredPart& part : unanswered_parts(study, method.rates))
+      text += fmt::format("{}: {}\n", method.name(), part.reason);
+  return text.empty() ? text : fmt::format("\n{}", text);
 }
 
 /// The methods that gave no verdict on some loop, with the reason.
@@ -149,8 +159,9 @@ std::string comparison_text(const Campaign& campaign, const StudyFindings& findi
   for (std::size_t first = 0; first < findings.methods.size(); first += kMethodsAbreast)
     text += fmt::format("\n{}", rates_text(campaign.study, findings.methods, first,
                                            std::min(first + kMethodsAbreast, findings.methods.size())));
-  return fmt::format("{}{}{}{}{}", text, marks_text(findings), calibration_text(campaign, findings),
-                     reasons_text(findings.methods), pairs_text(findings));
+  return fmt::format("{}{}{}{}{}{}", text, marks_text(findings), calibration_text(campaign, findings),
+                     unanswered_text(campaign.study, findings.methods), reasons_text(findings.methods),
+                     pairs_text(findings));
 }
 
 }  // namespace mpm

@@ -149,11 +149,10 @@ std::string kind_name(ExperimentKind kind) {
       return "healthy";
     case ExperimentKind::tuning:
       return "tuning";
-    case ExperimentKind::other:
-      return "other";
     case ExperimentKind::mpm:
     case ExperimentKind::ud:
     case ExperimentKind::mpm_ud:
+    case ExperimentKind::other:
       return source_name(source_of(kind));
   }
   return "unknown";
@@ -169,6 +168,8 @@ std::string source_name(FaultSource source) {
       return "UD";
     case FaultSource::mpm_ud:
       return "MPM+UD";
+    case FaultSource::other:
+      return "other";
   }
   return "unknown";
 }

@@ -16,6 +16,23 @@ import h5py
 import numpy
 
 EXPERIMENTS = 24
+CALIBRATION = 30
+# With calibration loops and moving windows, both of which verdicts may be on.
+WATCHED = f"""
+[experiments]
+mpm = 6
+ud = 6
+mpm_ud = 0
+healthy = 4
+[onset]
+sample = {{uniform = [160, 200]}}
+[monitoring]
+window = 150
+stride = 50
+[calibration]
+healthy = {CALIBRATION - 4}
+ud = 4
+"""
 TRUTH = ("kind", "seed", "experiment", "ivar", "impact", "mismatch", "disturbance", "scenario", "status")
 
 
@@ -165,6 +182,71 @@ def check_truth_as_verdicts(outside, sha256, experiments):
         assert file["methods/knows-all/reason"].asstr()[experiments[0]] == "no, not this one"
 
 
+def check_key(outside, experiments):
+    """The key names the experiment of each loop."""
+    key = outside.folder / "key.csv"
+    outside.run("export", outside.archive, "--blind", "-o", outside.folder / "keyed", "--key", key, "--quiet")
+    rows = list(csv.reader(line for line in key.read_text(encoding="utf-8").splitlines() if line[0] != "#"))
+    assert rows[0] == ["loop", "experiment"]
+    assert [(int(loop), int(experiment)) for loop, experiment in rows[1:]] == list(enumerate(experiments))
+
+
+def check_everything_as_verdicts(outside):
+    """SSE in numpy on loops, windows and calibration loops gives all rates of SSE in C++, calibrated ones and delays."""
+    study, archive, blind = outside.folder / "watched.toml", outside.folder / "watched.h5", outside.folder / "watched"
+    shipped = pathlib.Path("scenarios/studies/wood-berry.toml").read_text(encoding="utf-8")
+    before, after = shipped.split("[experiments]")
+    study.write_text(before + WATCHED + after[after.index("[mismatch]"):], encoding="utf-8")
+    outside.run("run", study, "-o", archive, "--methods", "sse", "--solver", "active-set", "--quiet")
+    outside.run("export", archive, "--blind", "--calibration", "--windows", "-o", blind, "--quiet")
+    found, attributes = variables(blind / "loops.nc")
+    context = json.loads((blind / "context.json").read_text(encoding="utf-8"))
+    window, stride, windows = (context["monitoring"][key] for key in ("window", "stride", "windows"))
+    form = [line for line in (blind / "verdicts.csv").read_text(encoding="utf-8").splitlines() if line[0] != "#"]
+    assert len(form) == 1 + len(found["y"]) * (1 + windows) and form[2].startswith("0,0,"), form[:3]
+    with h5py.File(archive) as file:
+        loops = int((file["status"][:] == 0).sum())
+        # The window of the basis case is the same samples of it.
+        cvs, threshold = list(file["cv"].asstr()), 1.5
+    assert len(found["y"]) == loops + CALIBRATION
+    lines = [f"# mpmbench loops sha256 {attributes['loops_sha256']}",
+             ",".join(["loop,window,flagged,score", *(f"cv_flagged.{cv}" for cv in cvs), *(f"cv_score.{cv}" for cv in cvs)])]
+    squares = (found["benchmark/y"] - found["benchmark/y_sim"]) ** 2
+    errors = (found["y"] - found["y_sim"]) ** 2
+    for loop, squares_of_loop in enumerate(errors):
+        parts = [("", slice(None))] + [(i, slice(i * stride, i * stride + window)) for i in range(windows)]
+        for part, samples in parts:
+            ratio = squares_of_loop[:, samples].mean(axis=1) / squares.mean(axis=1)
+            lines.append(",".join(map(str, [loop, part, int((ratio > threshold).any()), repr(float(ratio.max())),
+                                            *(ratio > threshold).astype(int), *map(repr, map(float, ratio))])))
+    verdicts = outside.folder / "all.csv"
+    verdicts.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    answer = outside.methods(archive, "--verdicts", verdicts)
+    mine, theirs = answer["all"], answer["sse"]
+    assert mine["rates"] == theirs["rates"] and mine["rates"]["power_05"]["total"] > 0, (mine["rates"], theirs["rates"])
+    assert mine["estimates"] == theirs["estimates"] and mine["estimates"]["detection_delay"]["count"] > 0
+    assert mine["unanswered"] == theirs["unanswered"] == {}
+
+    # Without them it is said which rates cannot be had.
+    outside.run("export", archive, "--blind", "-o", blind / "plain", "--quiet")
+    form = (blind / "plain/verdicts.csv").read_text(encoding="utf-8").splitlines()
+    assert len(form) == 2 + loops
+    plain = outside.folder / "plain.csv"
+    plain.write_text("\n".join([form[0], "loop,flagged", *(f"{loop},1" for loop in range(loops))]) + "\n", encoding="utf-8")
+    answer = outside.methods(archive, "--verdicts", plain)["plain"]
+    assert sorted(answer["unanswered"]) == ["calibration", "windows"], answer["unanswered"]
+    assert answer["rates"]["power_05"]["total"] == 0
+    said = outside.run("compare", archive, "--verdicts", plain, "--quiet")
+    assert "plain: no verdict on any calibration loop" in said and "plain: no verdict on any window" in said, said
+    assert "sse: no verdict" not in said, said
+
+    for flag, table in ("--calibration", "calibration"), ("--windows", "monitoring"):
+        said = outside.run("export", outside.archive, "--blind", flag, "-o", blind / "refused", code=2)
+        assert f"{flag}: found a study without a table `{table}`" in said, said
+    assert "--blind" in outside.run("export", archive, "--windows", "-o", blind / "refused", code=2)
+    assert not (blind / "refused").exists()
+
+
 def check_refusals(outside, verdicts, sha256):
     good = verdicts.read_text(encoding="utf-8").splitlines()
     cvs = [name.split(".")[1] for name in good[1].split(",") if name.startswith("cv_score")]
@@ -173,13 +255,13 @@ def check_refusals(outside, verdicts, sha256):
     for text, message in (
             (good[0][:-1] + "x\n" + "\n".join(good[1:]), "allowed: verdicts on those of the archive"),
             ("flagged\n1\n", "bad.csv:1: found columns flagged; allowed: at least loop and flagged"),
-            ("loop,flagged,guess\n", "bad.csv:1: found column 'guess'; allowed: each once: loop, flagged, score"),
+            ("loop,flagged,guess\n", "bad.csv:1: found column 'guess'; allowed: each once: loop, window, flagged, score"),
             ("", "bad.csv: found no line; allowed: a heading line"),
             (heading + "0,maybe,,,,,\n", "bad.csv:3: flagged: found 'maybe'; allowed: 1, 0, true"),
             (heading + "0,1,high,,,,\n", "bad.csv:3: score: found 'high'; allowed: a number"),
             (heading + "0,1,,y99,,,\n", f'bad.csv:3: cv: found "y99"; allowed: {", ".join(cvs)}'),
             (heading + "0,1,,,weather,,\n0,1,,y1,weather,,\n", "bad.csv:4: loop: found 0 twice; allowed: each loop once"),
-            (heading + "0,1,,y1,weather,,\n", 'bad.csv:3: source: found "weather"; allowed: none, mpm, ud, mpm_ud'),
+            (heading + "0,1,,y1,weather,,\n", 'bad.csv:3: source: found "weather"; allowed: none, mpm, ud, mpm_ud, other'),
             (heading + "0,1,,,,y1,\n", "bad.csv:3: channels: found 'y1'; allowed: channels CV/MV"),
             (heading + "0,1,,,,,gain\n", "bad.csv:3: parameter: found 'gain'; allowed: nothing without a channel"),
             (heading + "0,1,,,,y1/u1,colour\n", 'bad.csv:3: mismatch: found "colour"; allowed: gain, time_constant'),
@@ -297,7 +379,7 @@ def check_program_refusals(outside):
             ("[method.x]\ncommand = ['cat']\n", "the unknown key 'ask'"),
             ("[method.x]\ncommand = ['sleep', '100']\ntime_limit = 0.1\n", "did not answer in time"),
             ("[method.x]\ncommand = ['sh', '-c', 'echo \"{\\\"number\\\": 1, \\\"answers\\\": [\\\"tea\\\"]}\"; cat']\n",
-             "found 'tea'; allowed: cv, channel, source, mismatch")):
+             "found 'tea'; allowed: cv, channel, source, mismatch, candidate")):
         path.write_text(text, encoding="utf-8")
         said = outside.run("compare", outside.archive, "--method-file", path, "-o", out, "--quiet", code=2)
         assert message in said, (text, message, said)
@@ -353,6 +435,8 @@ def main(program, source, octave=""):
         found, sha256, experiments = check_blind(outside)
         verdicts, _ = check_same_as_sse(outside, found, sha256)
         check_truth_as_verdicts(outside, sha256, experiments)
+        check_key(outside, experiments)
+        check_everything_as_verdicts(outside)
         check_refusals(outside, verdicts, sha256)
         check_programs(outside, octave)
         check_odd_programs(outside)

@@ -1,6 +1,6 @@
 """A suite as a user runs it: its leaderboard, made in one go, in two threads, and after an interruption.
 
-usage: check_suite.py MPMBENCH
+usage: check_suite.py MPMBENCH SOURCE_FOLDER
 """
 
 import json
@@ -51,6 +51,15 @@ title = "noise alone"
 plants = ["shell"]
 set.simulation.noise_standard_deviation = 5.0
 """
+# A further family, in which the methods watch moving windows.
+WATCHED = """
+[[family]]
+name = "watched"
+title = "faults that begin in mid-record"
+plants = ["column"]
+set.onset = {sample = {uniform = [80, 100]}, growth = 0}
+set.monitoring = {window = 80, stride = 20}
+"""
 CELLS = ["column.classic", "column.both", "shell.classic"]
 
 
@@ -68,8 +77,8 @@ class Tiny:
         assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
         return result.stderr if code else result.stdout
 
-    def compare(self, archive):
-        command = [self.program, "compare", str(archive), "--methods", "botelho,sun,sse", "--json", "--quiet"]
+    def compare(self, archive, methods="botelho,sun,sse"):
+        command = [self.program, "compare", str(archive), "--methods", methods, "--json", "--quiet"]
         return json.loads(subprocess.run(command, capture_output=True, timeout=PATIENCE, check=True).stdout)
 
     def board(self, output):
@@ -142,6 +151,34 @@ def check_interrupted(tiny, shown):
     assert not list((tiny.folder / "stopped").glob("*.shards")), os.listdir(tiny.folder / "stopped")
 
 
+def check_program(tiny, source):
+    """A method that is a program stands in the leaderboard as the same one in C++ does, windows included."""
+    tiny.file.write_text(SUITE + WATCHED)
+    methods = tiny.folder / "methods.toml"
+    methods.write_text(f"[method.mine]\ncommand = ['{sys.executable}', '{source}/examples/mine.py']\n")
+    words = ["--plants", "column", "--families", "both,watched", "--methods", "sse,mine", "--method-file", methods]
+    shown = tiny.run("program", *words, "--jobs", 2, "--quiet", "--json")
+    board = json.loads(shown)
+    sse, mine = board["methods"]
+    assert (sse["name"], mine["name"]) == ("sse", "mine") and mine["all"]["rates"]["answered"]["hits"] > 0
+    for part in "all", "families", "plants":
+        assert mine[part] == sse[part], part
+    assert "delays" not in board["cells"][0] and board["cells"][1]["family"] == "watched"
+    delays = board["cells"][1]["delays"]
+    assert delays["time_unit"] == "min" and delays["methods"]["mine"] == delays["methods"]["sse"]
+    compared = tiny.compare(tiny.folder / "program" / "column.watched.h5", "sse")["methods"][0]["estimates"]
+    for name, estimate in delays["methods"]["sse"].items():
+        assert estimate == compared[name] and estimate["count"] > 0, (name, estimate, compared)
+
+    before = tiny.archives("program")
+    text = tiny.run("program", *words, "--quiet")
+    assert tiny.archives("program") == before
+    assert "watched: median time from the onset" in text and "column (min)" in text, text
+    page = (tiny.folder / "program" / "leaderboard.html").read_text()
+    assert "How long it takes" in page and "How long it takes" not in (tiny.folder / "one/leaderboard.html").read_text()
+    tiny.file.write_text(SUITE)
+
+
 def check_refusals(tiny):
     for words, message in ((["--methods", "botelo"], "botelo"), (["--families", "clasic"], "nearest: 'classic'")):
         error = tiny.run("refused", *words, code=2)
@@ -150,13 +187,14 @@ def check_refusals(tiny):
 
 
 def main():
-    (program,) = sys.argv[1:]
+    program, source = sys.argv[1:]
     with tempfile.TemporaryDirectory() as name:
         tiny = Tiny(program, pathlib.Path(name))
         shown = check_leaderboard(tiny)
         check_texts(tiny)
         check_kept(tiny, shown)
         check_interrupted(tiny, shown)
+        check_program(tiny, source)
         check_refusals(tiny)
 
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
 #include <tuple>
 
 #include <catch2/catch.hpp>
@@ -132,6 +133,37 @@ TEST_CASE("rates of a method: faults are told three ways, over all of them", "[m
   tells_none.add(kMpm, testing::verdict(form, true, 1.0, 1));
   check_rate(tells_none.rates().source_all, 0, 0);
   check_rate(tells_none.rates().abstained, 0, 0);
+}
+
+TEST_CASE("rates of a method: of another fault the word for it is right, and a flag without a source",
+          "[method_rates]") {
+  const auto other_record = [](std::int64_t index) {
+    ExperimentRecord record = made_up_record(index, kUd, 1, 0.2);
+    record.draw.kind = ExperimentKind::other;
+    return record;
+  };
+  Case made;
+  made.add(other_record(1), verdict(true, 1, 1, FaultSource::other), verdict(false));  // right
+  made.add(other_record(2), verdict(true, 1, 1), verdict(false));                      // right
+  made.add(other_record(3), verdict(true, 1, 1, kIsUd), verdict(false));
+  made.add(other_record(4), verdict(false, 1, 1, FaultSource::other), verdict(false));  // not flagged
+  made.add(kMpm, verdict(true, 1, 1, FaultSource::other));
+  check_rate(made.rates().source_all, 2, 5);
+  check_rate(made.rates().abstained, 2, 5);
+}
+
+TEST_CASE("rates of a method: what could not be had is said by part of the study", "[method_rates]") {
+  Study both = study();
+  MethodRates rates{};
+  CHECK(unanswered_parts(both, rates).empty());
+  both.calibration.emplace();
+  both.monitoring.emplace();
+  const std::vector<UnansweredPart> parts = unanswered_parts(both, rates);
+  REQUIRE(parts.size() == 2);
+  CHECK((parts[0].name == std::string("calibration") && parts[1].name == std::string("windows")));
+  rates.thresholds.not_mpm.loops = 1;
+  rates.false_alarms_a_day.count = 1;
+  CHECK(unanswered_parts(both, rates).empty());
 }
 
 TEST_CASE("rates of a method: by the truth of impact a fault without one is a negative", "[method_rates]") {
@@ -434,12 +466,13 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   CHECK(rows[rows.size() - estimates - 1].name == "compare.botelho.roc_area_impact");
 
   // Rates at calibrated thresholds, and the thresholds, are of studies with a calibration; delays of those
-  // that monitor.
+  // that monitor; the rate of named causes of those that log candidates.
   CHECK(std::none_of(rows.begin(), rows.end(),
                      [](const Finding& row) { return row.name == "compare.botelho.power_05"; }));
   Study calibrated = study();
   calibrated.calibration.emplace();
   calibrated.monitoring.emplace();
+  calibrated.record.candidates = 1;
   CHECK(rows_of(calibrated, rates, testing::chain_form()->method()).size() ==
         method_rate_infos().size() + 2 + method_estimate_infos().size() + threshold_infos().size());
 }

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "scenarios/candidates.hpp"
@@ -79,6 +80,7 @@ TEST_CASE("candidates: the cause of a disturbance is named, decoys are not") {
     const Eigen::Index cause = true_candidate(study, record.draw);
     if (cause < 0) {
       ++decoys;
+      CHECK(judge(study, record, said).candidate == Correctness::not_judged);
       flagged_decoys += said.flagged ? 1 : 0;
       continue;
     }
@@ -86,6 +88,14 @@ TEST_CASE("candidates: the cause of a disturbance is named, decoys are not") {
     const bool right = said.flagged && said.predicted_cv == record.draw.true_cv() &&
                        said.number("candidate", said.predicted_cv) == static_cast<double>(cause);
     named += right ? 1 : 0;
+    // The rate of `compare` looks at the signal that is named for the loop, whatever its CV.
+    const bool told = said.number("named_candidate") == static_cast<double>(cause);
+    CHECK(judge(study, record, said).candidate == (!said.flagged ? Correctness::not_judged
+                                                   : told        ? Correctness::right
+                                                                 : Correctness::wrong));
+    AssessmentRecord another = said;
+    another.set_number("named_candidate", static_cast<double>((cause + 1) % kCandidates));
+    CHECK((!said.flagged || judge(study, record, another).candidate == Correctness::wrong));
     CHECK((!said.flagged || said.predicted_source == FaultSource::ud));
   }
   INFO(named << " of " << with_cause << " causes, " << flagged_decoys << " of " << decoys << " without");

@@ -48,7 +48,28 @@ TEST_CASE("the quantiles of a mixture of cut-off normal densities") {
                                           {-kInfinity, 9.0, 1.0, 8.0, 9.0}};
   CHECK(mixture_quantile(flat, 0.25) == Approx(1.0).margin(1e-9));
   CHECK(mixture_quantile(flat, 0.625) == Approx(1.5).margin(1e-9));
+  CHECK(mixture_quantile(flat, 0.0) == 0.0);
+  CHECK(mixture_quantile(flat, 1.0) == 2.0);
   CHECK(std::isnan(mixture_quantile({}, 0.5)));
+}
+
+TEST_CASE("the shortest interval of a mixture leaves out what is least dense, and no end that is densest") {
+  constexpr double kZ = 1.959964;  // of 95 %, two-sided
+  const Interval whole = shortest_interval({{0.0, 1.0, 2.0, -30.0, 30.0}}, 0.95);
+  CHECK(whole.lower == Approx(1.0 - 2.0 * kZ).margin(1e-5));
+  CHECK(whole.upper == Approx(1.0 + 2.0 * kZ).margin(1e-5));
+  const Interval falling = shortest_interval({{0.0, 0.0, 1.0, 0.0, 30.0}}, 0.95);
+  CHECK(falling.lower == 0.0);
+  CHECK(falling.upper == Approx(kZ).margin(1e-5));
+  const Interval rising = shortest_interval({{0.0, 3.0, 1.0, -30.0, 3.0}}, 0.95);
+  CHECK(rising.upper == 3.0);
+  CHECK(rising.lower == Approx(3.0 - kZ).margin(1e-5));
+  // Flat parts with the masses 1 and 3: the second one is as much as is asked for.
+  const Interval dense = shortest_interval(
+      {{std::log(1.0), 0.5, kInfinity, 0.0, 1.0}, {std::log(3.0), 1.5, kInfinity, 1.0, 2.0}}, 0.75);
+  CHECK(dense.lower == Approx(1.0).margin(1e-9));
+  CHECK(dense.upper == Approx(2.0).margin(1e-9));
+  CHECK(std::isnan(shortest_interval({}, 0.5).lower));
 }
 
 }  // namespace mpm

@@ -314,8 +314,8 @@ TEST_CASE("record bytes: a flag that is none of its values is refused by name") 
   CHECK(refusal([](ExperimentRecord& r) {
           r.assessments[0].predicted_source = static_cast<FaultSource>(9);
         }) == "predicted_source is 9, which is none of its values");
-  CHECK(refusal([](ExperimentRecord& r) { r.assessments[0].set_number("cv_source", 4.0); }) ==
-        "cv_source is 4, which is none of its values");
+  CHECK(refusal([](ExperimentRecord& r) { r.assessments[0].set_number("cv_source", 5.0); }) ==
+        "cv_source is 5, which is none of its values");
 }
 
 }  // namespace
