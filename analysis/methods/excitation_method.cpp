@@ -18,10 +18,10 @@ namespace {
 
 /// Signals that act on the loop and upon which nothing in the loop acts: no unmeasured disturbance can know
 /// them, so that a simulation error that follows them shows a wrong model, in closed loop, too, and whatever
-/// disturbs it. Relatives are the cross-correlations of Webber and Gupta (2008), which were not to be had, and
-/// the mutual information of Gao, Chen, Xie, Su and Wang (2012, IFAC Proceedings Volumes, ADCHEM), of which the
-/// abstract was: mutual information between dithering signals and model residuals shows a mismatch "regardless
-/// of change in disturbance dynamics". Estimator and limits are not in it: the tests are our own.
+/// disturbs it. Relatives are the cross-correlations of Webber and Gupta (2008), which were not to be had,
+/// and the mutual information of Gao, Chen, Xie, Su and Wang (2012, IFAC Proceedings Volumes, ADCHEM), of
+/// which the abstract was: mutual information between dithering signals and model residuals shows a mismatch
+/// "regardless of change in disturbance dynamics". Estimator and limits are not in it: the tests are our own.
 ///
 ///   measure f:                   prewhitened_test() of e_i on the filtered signals together
 ///   measure mutual_information:  binned_information() of the whitened e_i and each filtered signal, as it

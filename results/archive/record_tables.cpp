@@ -111,8 +111,10 @@ void set_kind(Record& record, std::int8_t value) {
     draw.tuning.emplace();
 }
 
-/// With two random faults both are on the same CV.
+/// With two random faults both are on the same CV. A fault of another kind affects those that it is said to.
 void set_true_cv(Record& record, std::int32_t value) {
+  if (record.draw.kind == ExperimentKind::other && value >= 0)
+    record.draw.affected_cvs = std::vector<Eigen::Index>{value};
   for (Mismatch& mismatch : record.draw.mismatches)
     mismatch.cv = value;
   for (Disturbance& disturbance : record.draw.disturbances)

@@ -57,7 +57,7 @@ WATCHED = """
 name = "watched"
 title = "faults that begin in mid-record"
 plants = ["column"]
-set.onset = {sample = {uniform = [80, 100]}, growth = 0}
+set.onset = {sample = {uniform = [80, 100]}, growth = {uniform = [0, 20]}}
 set.monitoring = {window = 80, stride = 20}
 """
 CELLS = ["column.classic", "column.both", "shell.classic"]

@@ -1,4 +1,6 @@
+#include <cmath>
 #include <string>
+#include <tuple>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -150,7 +152,8 @@ TEST_CASE("method messages: what is no answer is refused by its key") {
 }
 
 TEST_CASE("method messages: what the description does not announce is refused") {
-  const MethodDescription plain{.name = "mine"};
+  MethodDescription plain;
+  plain.name = "mine";
   for (const auto& [key, value, word] :
        {std::tuple{"cv", "\"y1\"", "cv"}, std::tuple{"cv_flagged", "[]", "cv"},
         std::tuple{"source", "\"mpm\"", "source"}, std::tuple{"channels", "[]", "channel"},
