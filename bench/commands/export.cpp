@@ -106,10 +106,9 @@ void add_export(CommandSet& commands) {
   app.add_flag("--windows", options->parts.windows,
                "With --blind: ask for verdicts on the moving windows of each loop as well")
       ->needs(blind);
-  app.add_option(
-         "--key", options->key,
-         "With --blind: CSV file to write with the experiment that each loop is, for whoever trains a "
-         "method")
+  add_path(
+      app, "--key", options->key,
+      "With --blind: CSV file to write with the experiment that each loop is, for whoever trains a method")
       ->needs(blind);
   add_path(app, "-o,--output", options->output, "File to write, with --blind a folder; stdout without one");
   add_jobs(app, options->jobs, "With --blind: how many loops are run at once, those that were not kept");

@@ -1,14 +1,13 @@
-#include <fmt/core.h>
-
 #include "bench/commands/commands.hpp"
 #include "bench/console/manual_page.hpp"
+#include "bench/console/output.hpp"
 #include "bench/version.hpp"
 
 namespace mpm {
 
 void add_manual(CommandSet& commands) {
   commands.add("manual", "Print the manual page, for man", [&commands] {
-    fmt::print("{}", manual_page(commands.program(), mpmbench_version()));
+    print_result(manual_page(commands.program(), mpmbench_version()));
     return ExitCode::done;
   });
 }
@@ -17,7 +16,7 @@ void add_completion(CommandSet& commands) {
   commands.add("completion",
                "Print what completes commands and options in bash: source <(mpmbench completion)",
                [&commands] {
-                 fmt::print("{}", bash_completion(commands.program()));
+                 print_result(bash_completion(commands.program()));
                  return ExitCode::done;
                });
 }
