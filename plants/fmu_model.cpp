@@ -11,17 +11,19 @@
 #include "plants/error.hpp"
 #include "plants/fmu_instance.hpp"
 #include "plants/fmu_package.hpp"
+#include "plants/fork_server.hpp"
 
 namespace mpm {
 namespace {
 
-/// An FMU that was unpacked, with what the study uses of it.
+/// An FMU that was unpacked, with what the study uses of it, and the process that makes those of its loops.
 struct LoadedFmu {
   explicit LoadedFmu(const std::filesystem::path& file) : package(file) {}
 
   FmuPackage package;
   FmuReferences references;
   std::vector<bool> tunable;  ///< of the parameters
+  std::optional<ForkServer> server;
 };
 
 /// What is asked of the process that has the instance: the first number of a request.
@@ -38,15 +40,15 @@ std::vector<double> request_of(FmuRequest kind, const Eigen::VectorXd& first,
 /// The other end: the instance, in the process that has it.
 class FmuServer {
  public:
-  FmuServer(std::shared_ptr<const LoadedFmu> fmu, double step) : fmu_(std::move(fmu)), step_(step) {}
+  FmuServer(const LoadedFmu& fmu, double step) : fmu_(fmu), step_(step) {}
 
   std::vector<double> serve(const std::vector<double>& request) {
     const Eigen::Map<const Eigen::VectorXd> all(request.data(), static_cast<Eigen::Index>(request.size()));
-    const auto parameters = static_cast<Eigen::Index>(fmu_->references.parameters.size());
+    const auto parameters = static_cast<Eigen::Index>(fmu_.references.parameters.size());
     const Eigen::VectorXd numbers = all.tail(all.size() - 1);
     switch (static_cast<FmuRequest>(static_cast<int>(request.front()))) {
       case FmuRequest::start:
-        instance_.emplace(fmu_->package, fmu_->references, numbers.head(parameters),
+        instance_.emplace(fmu_.package, fmu_.references, numbers.head(parameters),
                           numbers.tail(numbers.size() - parameters));
         break;
       case FmuRequest::change:
@@ -61,7 +63,7 @@ class FmuServer {
   }
 
  private:
-  std::shared_ptr<const LoadedFmu> fmu_;
+  const LoadedFmu& fmu_;
   double step_;
   std::optional<FmuInstance> instance_;
 };
@@ -72,9 +74,7 @@ class FmuSimulation final : public ForeignSimulation {
       : fmu_(std::move(fmu)), step_(step), time_limit_(time_limit) {}
 
   void start(const Eigen::VectorXd& parameters, const Eigen::VectorXd& input) override {
-    const auto server = std::make_shared<FmuServer>(fmu_, step_);
-    service_.emplace([server](const std::vector<double>& request) { return server->serve(request); },
-                     time_limit_);
+    service_.emplace(*fmu_->server, std::vector{step_}, time_limit_);
     service_->ask(request_of(FmuRequest::start, parameters, input));
   }
   void change(const Eigen::VectorXd& parameters) override {
@@ -88,7 +88,7 @@ class FmuSimulation final : public ForeignSimulation {
  private:
   std::shared_ptr<const LoadedFmu> fmu_;
   double step_, time_limit_;
-  std::optional<ForkedService> service_;
+  std::optional<ServedProcess> service_;
 };
 
 class FmuModel final : public ForeignModel {
@@ -122,6 +122,10 @@ class FmuModel final : public ForeignModel {
                        references_of(fmu->package, settings_.parameters, FmuRole::parameter)};
     for (const FmuSettings::Variable& each : settings_.parameters)
       fmu->tunable.push_back(fmu->package.description().variables.at(each.name).variability == "tunable");
+    fmu->server.emplace([&loaded = *fmu](const std::vector<double>& setting) {
+      const auto server = std::make_shared<FmuServer>(loaded, setting.front());
+      return [server](const std::vector<double>& request) { return server->serve(request); };
+    });
     loaded_ = std::move(fmu);
   }
 

@@ -42,6 +42,17 @@ void remove(Campaign& campaign, const std::string& method) {
     loop.scores.erase(loop.scores.begin() + place);
 }
 
+/// Where somebody else simulates the plant, its processes have to be prepared before threads are at work. Its
+/// file may be gone: that matters to the loops that are run again, which then say so.
+void prepare_plant(const Study& study) {
+  if (!study.nonlinear || !study.nonlinear->model.foreign)
+    return;
+  try {
+    study.nonlinear->model.foreign->load();
+  } catch (const InputError&) {
+  }
+}
+
 /// Puts the answers of further methods behind those of the campaign.
 void append(Campaign& campaign, const AssessmentForms& forms, const Records& records,
             std::vector<std::vector<AssessmentRecord>> assessments, const std::string& command) {
@@ -178,6 +189,7 @@ void add_calibration(Campaign& campaign, const ComparisonOptions& options, int t
 void add_methods(Campaign& campaign, const ComparisonOptions& options, const std::string& command) {
   const Records records = compared_records(campaign, options.experiments);
   const int threads = std::max(1, options.jobs);
+  prepare_plant(campaign.study);
   ThreadedRunners runners(campaign, campaign.study, options.methods, threads);
   std::vector<std::vector<AssessmentRecord>> assessments(records.size());
   DoneReports done(options.on_done);
@@ -193,6 +205,7 @@ void add_methods(Campaign& campaign, const ComparisonOptions& options, const std
 std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
                                    const std::function<void()>& on_done) {
   const int threads = std::max(1, jobs);
+  prepare_plant(campaign.study);
   ThreadedRunners runners(campaign, campaign.study, {}, threads);
   const Study calibration = campaign.study.calibration ? calibration_study(campaign.study) : campaign.study;
   ThreadedRunners calibrating(campaign, calibration, {}, threads);

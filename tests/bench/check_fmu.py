@@ -3,6 +3,7 @@
 usage: check_fmu.py MPMBENCH TANK_FMU CHAPTER5_TANK
 """
 
+import hashlib
 import json
 import os
 import pathlib
@@ -10,6 +11,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+import h5py
+import numpy
 
 from archives import check_same
 
@@ -73,12 +77,25 @@ def main(program, fmu, base):
         text = run("summary", archive).stdout
         assert "its process ended by signal 11" in text and "it says: tank 3 is empty" in text, text
 
+        # The archive knows the FMU by its content.
+        digest = hashlib.sha256((folder / "tank.fmu").read_bytes()).hexdigest()[:16]
+        with h5py.File(archive) as file:
+            assert file.attrs["outside_files"] == f"plant.fmu tank.fmu {digest}", file.attrs["outside_files"]
+
         # Whatever runs the experiments, they are the same; an archive is read without the FMU, and replayed with it.
         threads = folder / "threads.h5"
         run("run", "study.toml", "-o", threads, "--parallel", "threads", "--jobs", 3, "--store", "all", "--quiet")
         check_same(threads, archive)
         assert "bit-identical" in run("replay", archive, 3).stdout
         run("summary", archive, cwd=elsewhere)
+
+        # Methods that are asked later run loops in threads, each FMU in a process of its own.
+        bare, later = folder / "bare.h5", folder / "later.h5"
+        run("run", "study.toml", "-o", bare, "--jobs", 2, "--store", "none", "--methods", "sse", "--quiet")
+        run("compare", bare, "--methods", "botelho", "-o", later, "--jobs", 4, "--quiet")
+        with h5py.File(archive) as a, h5py.File(later) as b:
+            ivar = a["methods/botelho/ivar"][:], b["methods/botelho/ivar"][:]
+            assert numpy.array_equal(*ivar, equal_nan=True) and numpy.isfinite(ivar[0][[0, 3]]).all(), ivar
         message = run("replay", archive, 3, cwd=elsewhere, code=2).stderr
         assert "plant.fmu.file: found 'tank.fmu', which is no file" in message, message
 

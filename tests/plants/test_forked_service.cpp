@@ -1,12 +1,17 @@
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
+#include <mutex>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include <catch2/catch.hpp>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include "plants/fork_server.hpp"
 #include "plants/forked_service.hpp"
 
 namespace mpm {
@@ -81,6 +86,70 @@ TEST_CASE("a forked service keeps what it prints and what it does to memory to i
       kPatience);
   CHECK(service.ask({}) == std::vector<double>{1, 2});
   CHECK(mine == 1);
+}
+
+TEST_CASE("services of a server: in other threads too, and whatever locks they hold", "[fork-server]") {
+  std::mutex mutex;
+  const ForkServer server([&mutex](const std::vector<double>& setting) {
+    return [&mutex, setting](const std::vector<double>& numbers) {
+      const std::lock_guard lock(mutex);  // of the copy: nobody holds it there
+      return std::vector<double>{setting.at(0) * sum_of(numbers).front()};
+    };
+  });
+  const std::lock_guard held(mutex);
+  std::vector<double> answers(8);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    threads.emplace_back([&, i] {
+      ServedProcess service(server, {static_cast<double>(i)}, kPatience);
+      answers[i] = service.ask({1, 2}).front() + service.ask({4}).front();
+    });
+  for (std::thread& thread : threads)
+    thread.join();
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    CHECK(answers[i] == 7.0 * static_cast<double>(i));
+}
+
+TEST_CASE("services of a server: their ends and failures are told, and the next one is another",
+          "[fork-server]") {
+  const ForkServer server([](const std::vector<double>&) {
+    return [](const std::vector<double>& numbers) -> std::vector<double> {
+      if (numbers.empty())
+        throw std::runtime_error("nothing to add");
+      if (numbers.front() == 0)
+        std::raise(SIGSEGV);
+      if (numbers.front() == 1)
+        std::_Exit(7);
+      if (numbers.front() == 2)
+        for (;;)
+          ::pause();
+      return sum_of(numbers);
+    };
+  });
+  ServedProcess service(server, {}, kPatience);
+  CHECK_THROWS_WITH(service.ask({}), "nothing to add");
+  CHECK_THROWS_WITH(service.ask({0}), Contains("ended by signal 11"));
+  CHECK_THROWS_AS(service.ask({3}), ForeignFailure);
+  ServedProcess other(server, {}, kPatience);
+  CHECK_THROWS_WITH(other.ask({1}), "its process ended with code 7");
+  ServedProcess slow(server, {}, 0.05);
+  CHECK_THROWS_WITH(slow.ask({2}), "no answer within 0.05 s");
+  ServedProcess last(server, {}, kPatience);
+  CHECK(last.ask({3, 4}) == std::vector<double>{7});
+}
+
+TEST_CASE("services of a server: a process that was forked later has them too", "[fork-server]") {
+  const ForkServer server([](const std::vector<double>&) { return sum_of; });
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ServedProcess service(server, {}, kPatience);
+    ::_exit(service.ask({1, 2}) == std::vector<double>{3} ? 0 : 1);
+  }
+  ServedProcess service(server, {}, kPatience);
+  CHECK(service.ask({2, 3}) == std::vector<double>{5});
+  int status = 1;
+  ::waitpid(child, &status, 0);
+  CHECK(status == 0);
 }
 
 }  // namespace

@@ -1,0 +1,171 @@
+#include "plants/fork_server.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstddef>
+#include <cstring>
+#include <exception>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "plants/forked_process.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::size_t kLongestSetting = 64;  // numbers, the time limit among them
+
+std::array<int, 2> socket_pair(int type, const char* what) {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, type | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw std::system_error(errno, std::generic_category(), what);
+  return ends;
+}
+
+/// A datagram with numbers and the right to use a socket: whoever asks the server sends it one end of a pair
+/// and needs no answer, so that threads and processes can ask it at the same time.
+class ServiceOrder {
+ public:
+  ServiceOrder() {
+    content_ = {numbers_.data(), sizeof numbers_};
+    message_.msg_iov = &content_;
+    message_.msg_iovlen = 1;
+    message_.msg_control = control_.data();
+    message_.msg_controllen = control_.size();
+  }
+  ServiceOrder(const ServiceOrder&) = delete;
+  ServiceOrder& operator=(const ServiceOrder&) = delete;
+
+  bool send(int server, const std::vector<double>& numbers, int socket) {
+    std::copy(numbers.begin(), numbers.end(), numbers_.begin());
+    content_.iov_len = numbers.size() * sizeof(double);
+    cmsghdr* const header = CMSG_FIRSTHDR(&message_);
+    header->cmsg_level = SOL_SOCKET;
+    header->cmsg_type = SCM_RIGHTS;
+    header->cmsg_len = CMSG_LEN(sizeof socket);
+    std::memcpy(CMSG_DATA(header), &socket, sizeof socket);
+    ssize_t sent = 0;
+    while ((sent = ::sendmsg(server, &message_, MSG_NOSIGNAL)) < 0 && errno == EINTR) {
+    }
+    return sent >= 0;
+  }
+
+  /// The socket that came, and its numbers; none when nobody is left who could ask.
+  std::optional<int> receive(int server, std::vector<double>& numbers) {
+    ssize_t received = 0;
+    while ((received = ::recvmsg(server, &message_, 0)) < 0 && errno == EINTR) {
+    }
+    const cmsghdr* const header = received > 0 ? CMSG_FIRSTHDR(&message_) : nullptr;
+    if (header == nullptr)
+      return std::nullopt;
+    int socket = -1;
+    std::memcpy(&socket, CMSG_DATA(header), sizeof socket);
+    numbers.assign(numbers_.begin(), numbers_.begin() + static_cast<std::size_t>(received) / sizeof(double));
+    return socket;
+  }
+
+ private:
+  std::array<double, kLongestSetting> numbers_{};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control_{};
+  iovec content_{};
+  msghdr message_{};
+};
+
+/// Stands between the user of a service and its process.
+void mediate(int socket, const ForkedService::Serve& serve, double time_limit) {
+  std::vector<double> numbers;
+  std::string failure;
+  std::optional<ForkedService> service;
+  bool open = true;
+  while (open && receive_numbers(socket, numbers, failure) == Received::all) {
+    try {
+      if (!service)
+        service.emplace(serve, time_limit);
+      open = send_numbers(socket, service->ask(numbers));
+    } catch (const std::exception& error) {
+      open = send_failure(socket, error.what());
+    }
+  }
+}
+
+[[noreturn]] void make_services(int socket, const ForkServer::MakeService& make) {
+  ::signal(SIGCHLD, SIG_IGN);  // nobody asks how a mediator ended
+  std::vector<double> setting;
+  for (;;) {
+    ServiceOrder order;
+    const std::optional<int> user = order.receive(socket, setting);
+    if (!user)
+      ::_exit(0);  // not exit(): destructors and buffers belong to the parent
+    if (::fork() == 0) {
+      const int own = leave_parent(*user);
+      const double time_limit = setting.back();
+      setting.pop_back();
+      mediate(own, make(setting), time_limit);
+      ::_exit(0);
+    }
+    ::close(*user);
+  }
+}
+
+}  // namespace
+
+ForkServer::ForkServer(const MakeService& make) : owner_(::getpid()) {
+  const std::array<int, 2> ends = socket_pair(SOCK_SEQPACKET, "no socket for simulations");
+  pid_ = ::fork();
+  if (pid_ == 0)
+    make_services(leave_parent(ends[1]), make);
+  const int error = errno;
+  ::close(ends[1]);
+  socket_ = ends[0];
+  if (pid_ < 0) {
+    ::close(socket_);
+    throw std::system_error(error, std::generic_category(), "no process for simulations");
+  }
+}
+
+ForkServer::~ForkServer() {
+  ::close(socket_);
+  if (owner_ != ::getpid())
+    return;
+  ::kill(pid_, SIGKILL);  // it does nothing but wait
+  while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+ServedProcess::ServedProcess(const ForkServer& server, const std::vector<double>& setting,
+                             double time_limit) {
+  const std::array<int, 2> ends = socket_pair(SOCK_STREAM, "no socket for a simulation");
+  std::vector<double> numbers = setting;
+  numbers.push_back(time_limit);
+  const bool is_ordered = ServiceOrder().send(server.socket_, numbers, ends[1]);
+  ::close(ends[1]);
+  socket_ = ends[0];
+  if (!is_ordered) {
+    ::close(socket_);
+    throw ForeignFailure("the process that makes its processes has ended");
+  }
+}
+
+ServedProcess::~ServedProcess() {
+  ::close(socket_);
+}
+
+std::vector<double> ServedProcess::ask(const std::vector<double>& request) {
+  send_numbers(socket_, request);  // a failure shows below
+  std::vector<double> numbers;
+  std::string failure;
+  if (receive_numbers(socket_, numbers, failure) != Received::all)
+    throw ForeignFailure("its process has ended");
+  if (!failure.empty())
+    throw ForeignFailure(failure);
+  return numbers;
+}
+
+}  // namespace mpm
