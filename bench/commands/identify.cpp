@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "analysis/identification/step_response_fit.hpp"
 #include "analysis/identification/step_test.hpp"
@@ -32,6 +33,7 @@ struct IdentifyArguments {
   std::vector<std::string> steps;  ///< "NAME=SIZE"
   int samples = 0;                 ///< 0: those of the step responses of T0
   bool noise = false;
+  bool json = false;
   bool quiet = false;
 };
 
@@ -141,36 +143,105 @@ std::string heading_text(const Study& study, const Eigen::VectorXd& sizes, const
       toml_literal(study.plant.time_unit));
 }
 
+/// A channel as a step test gives it.
+struct IdentifiedChannel {
+  std::string cv, input;
+  StepResponseFit fit;
+  double asymmetry;   ///< of the responses up and down
+  double rms_error;   ///< under the step, CV unit
+  std::string unit;   ///< of the CV
+  std::string doubt;  ///< what speaks against it; empty: nothing
+};
+
+/// The channels that are not zero, CV by CV.
+std::vector<IdentifiedChannel> identified_channels(const Study& study,
+                                                   const std::vector<StepResponse>& responses,
+                                                   const Eigen::VectorXd& sizes) {
+  const std::vector<PlantModel::Variable> inputs = all_inputs(study);
+  std::vector<IdentifiedChannel> channels;
+  for (std::size_t cv = 0; cv < study.plant.cvs.size(); ++cv)
+    for (std::size_t input = 0; input < inputs.size(); ++input) {
+      const auto row = static_cast<Eigen::Index>(cv);
+      const double size = sizes(static_cast<Eigen::Index>(input));
+      const Eigen::MatrixXd& response = responses[input].response;
+      const StepResponseFit fit = fit_step_response(response.row(row).transpose(),
+                                                    study.controller.sample_time, kNegligibleMove / size);
+      if (!fit.channel.is_zero())
+        channels.push_back({study.plant.cvs[cv].name, inputs[input].name, fit,
+                            responses[input].asymmetry(row), fit.rms_error * size, study.plant.cvs[cv].unit,
+                            doubt_of(fit, response(row, response.cols() - 1))});
+    }
+  return channels;
+}
+
+std::string channel_entry(const IdentifiedChannel& channel) {
+  return fmt::format(
+      "# {:.3f} % explained, error {:.2g} {} rms under this step; asymmetry of up and down {:.2g}\n"
+      "[[plant.channel]]\ncv = {}\ninput = {}\n{}\n",
+      100.0 * channel.fit.explained, channel.rms_error, channel.unit, channel.asymmetry,
+      toml_literal(channel.cv), toml_literal(channel.input), channel_text(channel.fit.channel));
+}
+
+std::vector<double> list_of_numbers(const Eigen::VectorXd& vector) {
+  return {vector.begin(), vector.end()};
+}
+
+/// The same with all digits.
+nlohmann::ordered_json channel_json(const IdentifiedChannel& channel) {
+  const TransferFunction& G = channel.fit.channel;
+  return {
+      {"cv", channel.cv},
+      {"input", channel.input},
+      {"gain", G.static_gain()},
+      {"numerator", list_of_numbers(G.numerator())},
+      {"denominator", list_of_numbers(G.denominator())},
+      {"dead_time", G.dead_time()},
+      {"explained", channel.fit.explained},
+      {"rms_error", channel.rms_error},
+      {"asymmetry", channel.asymmetry},
+      {"warning", channel.doubt.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(channel.doubt)}};
+}
+
+std::string model_json_text(const Study& study, const Eigen::VectorXd& sizes,
+                            const IdentifyArguments& arguments, int samples,
+                            const std::vector<IdentifiedChannel>& channels) {
+  nlohmann::ordered_json json{{"plant", study.plant.name},
+                              {"time_unit", study.plant.time_unit},
+                              {"sample_time", study.controller.sample_time},
+                              {"samples", samples},
+                              {"noise", arguments.noise},
+                              {"steps", nlohmann::ordered_json::object()},
+                              {"channels", nlohmann::ordered_json::array()}};
+  const std::vector<PlantModel::Variable> inputs = all_inputs(study);
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    json["steps"][inputs[i].name] = sizes(static_cast<Eigen::Index>(i));
+  for (const IdentifiedChannel& channel : channels)
+    json["channels"].push_back(channel_json(channel));
+  return json.dump(2) + "\n";
+}
+
+std::string model_toml_text(const Study& study, const Eigen::VectorXd& sizes,
+                            const IdentifyArguments& arguments, int samples,
+                            const std::vector<IdentifiedChannel>& channels) {
+  std::string text = heading_text(study, sizes, arguments, samples) + variables_text("cv", study.plant.cvs) +
+                     variables_text("mv", study.plant.mvs) + variables_text("md", study.plant.mds);
+  for (const IdentifiedChannel& channel : channels)
+    text += channel_entry(channel);
+  return text;
+}
+
 ExitCode identify(const IdentifyArguments& arguments) {
   Progress progress(arguments.quiet);
   const Study study = find_study(arguments.study);
   const Eigen::VectorXd sizes = step_sizes(study, arguments.steps);
   const int samples = arguments.samples > 0 ? arguments.samples : study.sensitivity.samples;
-  const std::vector<StepResponse> responses =
-      step_test(study, {.sizes = sizes, .samples = samples, .noise = arguments.noise});
-  std::string text = heading_text(study, sizes, arguments, samples) + variables_text("cv", study.plant.cvs) +
-                     variables_text("mv", study.plant.mvs) + variables_text("md", study.plant.mds);
-  const std::vector<PlantModel::Variable> inputs = all_inputs(study);
-  for (std::size_t cv = 0; cv < study.plant.cvs.size(); ++cv)
-    for (std::size_t input = 0; input < inputs.size(); ++input) {
-      const auto row = static_cast<Eigen::Index>(cv);
-      const double size = sizes(static_cast<Eigen::Index>(input));
-      const StepResponseFit fit = fit_step_response(responses[input].response.row(row).transpose(),
-                                                    study.controller.sample_time, kNegligibleMove / size);
-      if (fit.channel.is_zero())
-        continue;
-      text += fmt::format(
-          "# {:.3f} % explained, error {:.2g} {} rms under this step; asymmetry of up and down {:.2g}\n"
-          "[[plant.channel]]\ncv = {}\ninput = {}\n{}\n",
-          100.0 * fit.explained, fit.rms_error * size, study.plant.cvs[cv].unit,
-          responses[input].asymmetry(row), toml_literal(study.plant.cvs[cv].name),
-          toml_literal(inputs[input].name), channel_text(fit.channel));
-      if (const std::string doubt = doubt_of(fit, responses[input].response(row, samples - 1));
-          !doubt.empty())
-        progress.note(
-            fmt::format("warning: {} to {}: {}", inputs[input].name, study.plant.cvs[cv].name, doubt));
-    }
-  print_result(text);
+  const std::vector<IdentifiedChannel> channels = identified_channels(
+      study, step_test(study, {.sizes = sizes, .samples = samples, .noise = arguments.noise}), sizes);
+  for (const IdentifiedChannel& channel : channels)
+    if (!channel.doubt.empty())
+      progress.note(fmt::format("warning: {} to {}: {}", channel.input, channel.cv, channel.doubt));
+  print_result(
+      (arguments.json ? model_json_text : model_toml_text)(study, sizes, arguments, samples, channels));
   return ExitCode::done;
 }
 
@@ -190,6 +261,7 @@ void add_identify(CommandSet& commands) {
                  "Samples of a step response; by default sensitivity.samples of the study")
       ->check(CLI::Range(8, 1000000));
   app.add_flag("--noise", options->noise, "With the measurement noise of the study");
+  add_json(app, options->json);
   add_quiet(app, options->quiet, "No warnings");
 }
 

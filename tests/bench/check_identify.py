@@ -33,6 +33,16 @@ def main(program, fmu, base):
         # The response is printed and fitted to six digits.
         assert all(abs(a - b) <= 1e-4 * max(abs(b), 1) for a, b in zip(numbers, expected)), (name, channel)
 
+    # The same for programs, with all digits.
+    said = json.loads(run("identify", "chapter6", "--json").stdout)
+    assert said["samples"] > 0 and said["noise"] is False and set(said["steps"]) == {"u1", "u2", "u3", "d1", "d2"}, said
+    assert {(c["cv"], c["input"]) for c in said["channels"]} == set(found), said
+    for channel in said["channels"]:
+        written = found[channel["cv"], channel["input"]]
+        gain = written.get("gain", channel["gain"])
+        assert abs(channel["gain"] - gain) <= 1e-5 * abs(gain) and channel["warning"] is None, (channel, written)
+        assert channel["numerator"] and len(channel["denominator"]) >= 2 and channel["explained"] > 0.999, channel
+
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         shutil.copy(fmu, folder / "tank.fmu")
