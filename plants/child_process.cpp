@@ -134,7 +134,7 @@ int milliseconds_until(ChildProcess::Deadline deadline) {
 }  // namespace
 
 ChildProcess::ChildProcess(std::vector<std::string> command)
-    : name_(fmt::format("{}", fmt::join(command, " "))), ends_{-1, -1, -1} {
+    : name_(fmt::format("{}", fmt::join(command, " "))), owner_(::getpid()), ends_{-1, -1, -1} {
   if (command.empty())
     throw ChildFailure("a program without a name");
   Pipe in, out, error;
@@ -154,10 +154,15 @@ ChildProcess::ChildProcess(std::vector<std::string> command)
 }
 
 ChildProcess::~ChildProcess() {
-  kill_and_reap();
+  if (is_ours())
+    kill_and_reap();
   for (const int end : ends_)
     if (end >= 0)
       ::close(end);
+}
+
+bool ChildProcess::is_ours() const {
+  return owner_ == ::getpid();
 }
 
 void ChildProcess::kill_and_reap() {

@@ -48,6 +48,10 @@ class ChildProcess {
   /// The next line of the program that is not empty, without its end. Throws ChildFailure.
   std::string receive(Deadline deadline);
 
+  /// Is it a program of this process, not of the one that this was forked from? Such a program is left
+  /// alone, also by the destructor, and not to be asked.
+  bool is_ours() const;
+
   /// Processor time that the program has used, in seconds.
   double processor_seconds() const;
 
@@ -62,6 +66,7 @@ class ChildProcess {
   [[noreturn]] void fail(const std::string& what);
 
   std::string name_;             ///< the command, for messages
+  pid_t owner_;                  ///< the process that started it
   pid_t pid_ = -1;               ///< -1: reaped
   std::array<int, 3> ends_;      ///< ours of its stdin, stdout and stderr; -1: closed
   std::string unsent_, unread_;  ///< bytes for its stdin, and from its stdout

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -54,7 +55,9 @@ class ForeignModel {
   /// Reads its files, once, and checks them against the study. Errors: InputError.
   virtual void load() const = 0;
   /// The file that it is; none: empty.
-  virtual std::filesystem::path file() const = 0;
+  virtual std::filesystem::path file() const { return {}; }
+  /// The program that it is, with its arguments; none: empty.
+  virtual std::vector<std::string> command() const { return {}; }
   virtual Eigen::Index output_count() const = 0;
   /// May this parameter of a loaded model change while it runs?
   virtual bool is_tunable(std::size_t parameter) const = 0;

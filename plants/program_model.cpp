@@ -92,7 +92,7 @@ class ProgramModel final : public ForeignModel {
                        options().settle_tolerance, options().time_limit);
   }
   void load() const override {}  // a program that is not there shows when it is started
-  std::filesystem::path file() const override { return {}; }
+  std::vector<std::string> command() const override { return settings_.command; }
   Eigen::Index output_count() const override { return settings_.outputs; }
   bool is_tunable(std::size_t) const override { return false; }
   std::unique_ptr<ForeignSimulation> simulation(double sample_time) const override {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plants/non_finite.hpp"
+#include "solvers/mpc.hpp"
 
 namespace mpm {
 namespace {
@@ -45,15 +46,17 @@ AuditSampler::AuditSampler(std::uint64_t seed, std::int64_t experiment, double s
       share_(share),
       experiment_(experiment) {}
 
-void AuditSampler::observe(const Mpc& controller) {
+void AuditSampler::observe(const Controller& controller) {
   const std::int64_t step = step_++;
-  if (!(stream_.uniform() < share_))
+  const bool is_picked = stream_.uniform() < share_;
+  const std::optional<SolvedQp> moves = controller.move_problem();
+  if (!is_picked || !moves)
     return;
   AuditSample sample{experiment_, step, {}, {}};
   if (const std::optional<SolvedQp> targets = controller.target_problem())
     sample.targets = copy_of(*targets);
   if (!sample.targets.posed() || sample.targets.status == QpStatus::solved)
-    sample.moves = copy_of(controller.move_problem());
+    sample.moves = copy_of(*moves);
   samples_.push_back(std::move(sample));
 }
 
@@ -62,7 +65,7 @@ Auditor::Auditor(const Study& study, const QpSolverFactory& ipopt) {
   const Mpc controller(study.plant.G, study.mv_count(), study.controller, ipopt);
   if (const std::optional<SolvedQp> targets = controller.target_problem())
     targets_ = ipopt(std::make_shared<QpStructure>(targets->structure));
-  moves_ = ipopt(std::make_shared<QpStructure>(controller.move_problem().structure));
+  moves_ = ipopt(std::make_shared<QpStructure>(controller.move_problem()->structure));
 }
 
 AuditDifference Auditor::check(const AuditedProblem& problem, QpSolver* ipopt, double& kkt_residual) const {

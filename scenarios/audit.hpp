@@ -10,7 +10,7 @@
 
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study.hpp"
-#include "solvers/mpc.hpp"
+#include "solvers/controller.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {
@@ -66,8 +66,8 @@ class AuditSampler {
  public:
   AuditSampler(std::uint64_t seed, std::int64_t experiment, double share);
 
-  /// To be called after each step (a StepObserver).
-  void observe(const Mpc& controller);
+  /// To be called after each step (a StepObserver). Of a controller that poses no problems nothing is picked.
+  void observe(const Controller& controller);
 
   std::vector<AuditSample> take() { return std::move(samples_); }
 

@@ -12,8 +12,10 @@
 #include "plants/changing_plant.hpp"
 #include "plants/error.hpp"
 #include "plants/linear_plant.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/other_fault.hpp"
 #include "scenarios/signals.hpp"
+#include "scenarios/study_controller.hpp"
 
 namespace mpm {
 namespace {
@@ -77,7 +79,7 @@ class Surroundings {
       : study_(study), faults_(signals.faults), u_d_(signals.u_d) {}
 
   /// Before the controller decides on sample k: its soft limits, where they move.
-  void prepare(Eigen::Index k, Mpc& controller) const {
+  void prepare(Eigen::Index k, Controller& controller) const {
     if (!some_limit_moves(study_, k) && !(faults_.limit && k == faults_.limit->sample))
       return;
     Limits limits = soft_limits(study_, k);
@@ -171,6 +173,8 @@ std::string_view to_string(LoopFailure failure) {
       return "plant";
     case LoopFailure::no_steady_state:
       return "no_steady_state";
+    case LoopFailure::controller:
+      return "controller";
   }
   return "unknown";
 }
@@ -179,7 +183,7 @@ void SolverStatistics::add(const SolverStatistics& other) {
   steps += other.steps;
   iterations += other.iterations;
   fallbacks += other.fallbacks;
-  largest_kkt_residual = std::max(largest_kkt_residual, other.largest_kkt_residual);
+  largest_kkt_residual = std::max(other.largest_kkt_residual, largest_kkt_residual);  // keeps a NaN
 }
 
 Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
@@ -204,7 +208,8 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   if (signals.within_plant.size() > 0)
     require_shape("disturbances within the plant", signals.within_plant, inner, samples);
 
-  Mpc controller(study.plant.G, study.mv_count(), study.controller, factory);
+  const std::unique_ptr<Controller> own = controller_of(study, study.controller, factory);
+  Controller& controller = *own;
   const Eigen::VectorXd d_rest = Eigen::VectorXd::Zero(study.md_count());
   controller.set_setpoints(study.simulation.initial_setpoint);
   Eigen::VectorXd input = Eigen::VectorXd::Zero(plant.input_count());
@@ -216,6 +221,8 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   Eigen::VectorXd u = input.head(study.mv_count());
   Eigen::VectorXd u_before = u;
   begin(plant, input, trajectory);
+  if (study.controller_program)
+    trajectory.solver.largest_kkt_residual = kNaN;
   for (Eigen::Index k = 0; k < samples && trajectory.failure == LoopFailure::none; ++k) {
     trajectory.y.col(k) = plant.output() + signals.y_d.col(k) + signals.noise.col(k);
     if (signals.y_set.size() > 0)
@@ -229,11 +236,12 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
       observer(controller);
     trajectory.status = move.status;
     if (move.status == ControlStatus::failed)
-      fail(trajectory, LoopFailure::solver, "the solver gave no answer");
+      fail(trajectory, study.controller_program ? LoopFailure::controller : LoopFailure::solver,
+           controller.failure());
     if (move.status != ControlStatus::ok)
       break;
     trajectory.solver.largest_kkt_residual =
-        std::max(trajectory.solver.largest_kkt_residual, move.kkt_residual);
+        std::max(trajectory.solver.largest_kkt_residual, move.kkt_residual);  // keeps a NaN
     u = move.u;
     if (signals.dither.size() > 0) {
       const Limits& hard = study.controller.mv_hard;

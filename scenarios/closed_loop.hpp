@@ -12,7 +12,7 @@
 #include "plants/transfer_matrix.hpp"
 #include "scenarios/draw.hpp"
 #include "scenarios/study.hpp"
-#include "solvers/mpc.hpp"
+#include "solvers/controller.hpp"
 
 namespace mpm {
 
@@ -20,8 +20,8 @@ namespace mpm {
 struct SolverStatistics {
   std::int64_t steps = 0;
   std::int64_t iterations = 0;
-  std::int64_t fallbacks = 0;  ///< problems whose answer is Ipopt's (CertifiedSolver)
-  double largest_kkt_residual = 0.0;
+  std::int64_t fallbacks = 0;         ///< problems whose answer is Ipopt's (CertifiedSolver)
+  double largest_kkt_residual = 0.0;  ///< NaN: of answers that nobody can certify
 
   void add(const SolverStatistics& other);
 };
@@ -32,9 +32,10 @@ enum class LoopFailure {
   solver,           ///< it gave no answer
   plant,            ///< it could not be integrated
   no_steady_state,  ///< the plant cannot rest where the loop begins
+  controller,       ///< the program that is the controller gave no move
 };
 
-/// "none", "solver", "plant", "no_steady_state"
+/// "none", "solver", "plant", "no_steady_state", "controller"
 std::string_view to_string(LoopFailure failure);
 
 /// The data of one closed loop; one row a variable, one column a sample.
@@ -99,10 +100,10 @@ struct LoopSignals {
 };
 
 /// Called after each step with the controller, whose two problems and answers it may look at.
-using StepObserver = std::function<void(const Mpc& controller)>;
+using StepObserver = std::function<void(const Controller& controller)>;
 
 /// Runs the controller of the study on `plant`, whose inputs are the MVs and then the MDs of the study, from
-/// the steady state of the nominal model at zero disturbances that Mpc::nominal_target() gives for the
+/// the steady state of the nominal model at zero disturbances that Controller::nominal_target() gives for the
 /// first setpoints. The soft limits are those of soft_limits() at each sample.
 ///
 /// What acts, and what the record shows, is the move of the controller and the dither, within the hard limits

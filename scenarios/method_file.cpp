@@ -3,7 +3,6 @@
 #include <sstream>
 #include <string_view>
 
-#include "scenarios/number_rule.hpp"
 #include "scenarios/toml_file.hpp"
 #include "scenarios/toml_text.hpp"
 #include "scenarios/toml_values.hpp"
@@ -18,22 +17,6 @@ bool is_method_name(std::string_view name) {
   return !name.empty() && name.size() <= kLongest &&
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
              std::string_view::npos;
-}
-
-/// Not read_texts_or(): an argument may stand there twice, or be empty.
-std::vector<std::string> program_command(const TomlTable& table) {
-  constexpr const char* kAllowed = "a list of texts: the program and its arguments";
-  const toml::node& node = table.require("command", kAllowed);
-  std::vector<std::string> words;
-  if (const toml::array* const list = node.as_array())
-    for (const toml::node& word : *list) {
-      if (!word.is_string())
-        table.refuse("command", describe(word), kAllowed);
-      words.push_back(word.as_string()->get());
-    }
-  if (words.empty() || words.front().empty())
-    table.refuse("command", describe(node), kAllowed);
-  return words;
 }
 
 std::string program_options(const TomlTable& table) {
@@ -65,8 +48,9 @@ std::vector<MethodProgram> load_method_file(const std::filesystem::path& path) {
     if (!is_method_name(name))
       methods.refuse(name, in_quotes(name), "a name of 1 to 64 letters, digits, '-' and '_'");
     const TomlTable table = methods.table(name, kMethodKeys);
-    MethodProgram program{.name = name, .command = program_command(table), .options = program_options(table)};
-    program.time_limit = read_number_or(table, "time_limit", NumberRule::positive(), program.time_limit);
+    MethodProgram program{
+        .name = name, .command = read_command(table, "command"), .options = program_options(table)};
+    program.time_limit = read_time_limit_or(table, "time_limit", program.time_limit);
     programs.push_back(std::move(program));
   }
   return programs;

@@ -11,6 +11,7 @@
 #include "plants/nonlinear_model.hpp"
 #include "plants/plant_model.hpp"
 #include "scenarios/assessment_options.hpp"
+#include "scenarios/controller_program.hpp"
 #include "scenarios/data_options.hpp"
 #include "scenarios/distribution.hpp"
 #include "scenarios/fault.hpp"
@@ -195,6 +196,7 @@ struct Study {
   PlantModel plant;                              ///< the nominal model G0
   std::optional<NonlinearSimulation> nonlinear;  ///< none: the plant is linear as well
   MpcOptions controller;
+  std::optional<ControllerProgram> controller_program;  ///< none: the controller is the built-in one
   SimulationOptions simulation;
   RecordOptions record;
   ExperimentCounts experiments;     ///< of random experiments; all 0 in a study of named scenarios

@@ -62,6 +62,7 @@ Study read_study(std::string_view text, const std::string& file_name, TomlDraft*
   study.nonlinear =
       read_nonlinear_simulation(document, study.plant, std::filesystem::path(file_name).parent_path());
   study.controller = read_controller(document, study.plant);
+  study.controller_program = read_controller_program(document);
   study.simulation = read_simulation(document, study.plant, study.controller);
   study.record = read_record(document, study);
   study.scenarios = read_scenarios(document, study);
@@ -96,6 +97,8 @@ Study load_study(const std::filesystem::path& path) {
   Study study = parse_study(read_toml_file(path, "a study file"), path.string());
   if (study.nonlinear && study.nonlinear->model.foreign)
     study.nonlinear->model.foreign->load();
+  if (study.controller_program)
+    study.controller_program->runs_on_model();
   return study;
 }
 

@@ -120,6 +120,16 @@ MpcOptions read_controller(const TomlTable& document, const PlantModel& plant) {
   return options;
 }
 
+std::optional<ControllerProgram> read_controller_program(const TomlTable& document) {
+  const TomlTable controller = document.table("controller", study_file_keys("controller"));
+  if (!controller.has("program"))
+    return std::nullopt;
+  const TomlTable program = controller.table("program", study_file_keys("controller.program"));
+  constexpr double kTimeLimit = 60.0;  // s
+  return ControllerProgram(read_command(program, "command"),
+                           read_time_limit_or(program, "time_limit", kTimeLimit));
+}
+
 Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantModel& plant,
                                        const MpcOptions& controller) {
   const std::vector<std::string> names = variable_names(plant.cvs);

@@ -21,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostForeignVariables = 1000;  // a bound on what a file can make the program do
-constexpr double kLongestTimeLimit = 86400.0;        // s
 
 using FmuVariables = std::vector<FmuSettings::Variable>;
 
@@ -115,28 +114,8 @@ ForeignOptions read_options(const TomlTable& foreign) {
   options.settle = read_number(foreign, "settle", NumberRule::positive());
   options.settle_tolerance =
       read_number_or(foreign, "settle_tolerance", NumberRule::positive(), standard.settle_tolerance);
-  options.time_limit = read_number_or(foreign, "time_limit", NumberRule::positive(), standard.time_limit);
-  if (options.time_limit > kLongestTimeLimit)
-    foreign.refuse("time_limit", fmt::to_string(options.time_limit),
-                   fmt::format("at most {} s", kLongestTimeLimit));
+  options.time_limit = read_time_limit_or(foreign, "time_limit", standard.time_limit);
   return options;
-}
-
-/// A list of texts: a program and its arguments, of which two may be alike.
-std::vector<std::string> read_words(const TomlTable& table, const std::string& key) {
-  const std::string allowed = "a list of texts: a program and its arguments";
-  const toml::node& node = table.require(key, allowed);
-  const toml::array* const list = node.as_array();
-  if (list == nullptr || list->empty())
-    table.refuse(key, describe(node), allowed);
-  std::vector<std::string> words;
-  for (const toml::node& word : *list) {
-    if (!word.is_string())
-      table.refuse(key, describe(word), allowed);
-    words.push_back(word.as_string()->get());
-  }
-  table.record(key, words);
-  return words;
 }
 
 /// A path of the study file: from its folder or, when nothing is there, from the current one.
@@ -173,7 +152,7 @@ NonlinearModel read_fmu(const TomlTable& fmu, const PlantModel& plant, const fs:
 NonlinearModel read_program(const TomlTable& program, const PlantModel& plant) {
   NonlinearModel model;
   ProgramSettings settings;
-  settings.command = read_words(program, "command");
+  settings.command = read_command(program, "command");
   const ForeignOptions options = read_options(program);
   read_inputs(program, "plant.program.input[]", plant, model);
   read_parameters(program, "plant.program.parameter[]", model);

@@ -44,6 +44,9 @@ Eigen::Index read_inner_input(const TomlTable& disturbance, const Study& study);
 /// [controller] (study_file_controller.cpp).
 MpcOptions read_controller(const TomlTable& document, const PlantModel& plant);
 
+/// [controller.program]; none without the table.
+std::optional<ControllerProgram> read_controller_program(const TomlTable& document);
+
 /// The setpoints at the start, of [controller.cv.NAME]; ny numbers, 0 for a CV without a setpoint.
 Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantModel& plant,
                                        const MpcOptions& controller);

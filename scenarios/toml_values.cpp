@@ -187,6 +187,30 @@ std::vector<std::string> read_texts_or(const TomlTable& table, std::string_view 
   return texts;
 }
 
+std::vector<std::string> read_command(const TomlTable& table, std::string_view key) {
+  const std::string allowed = "a list of texts: the program and its arguments";
+  const toml::node& node = table.require(key, allowed);
+  std::vector<std::string> words;
+  if (const toml::array* const list = node.as_array())
+    for (const toml::node& word : *list) {
+      if (!word.is_string())
+        table.refuse(key, describe(word), allowed);
+      words.push_back(word.as_string()->get());
+    }
+  if (words.empty() || words.front().empty())
+    table.refuse(key, describe(node), allowed);
+  table.record(key, words);
+  return words;
+}
+
+double read_time_limit_or(const TomlTable& table, std::string_view key, double fallback) {
+  constexpr double kDay = 86400.0;
+  const double seconds = read_number_or(table, key, NumberRule::positive(), fallback);
+  if (seconds > kDay)
+    table.refuse(key, fmt::to_string(seconds), fmt::format("at most {} s", kDay));
+  return seconds;
+}
+
 Eigen::VectorXd read_numbers(const TomlTable& table, std::string_view key, const NumberRule& rule,
                              std::size_t longest) {
   const std::string allowed = fmt::format("a list of 1 to {}, each {}", longest, rule.text());

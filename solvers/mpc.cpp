@@ -112,6 +112,10 @@ std::optional<SolvedQp> Mpc::target_problem() const {
   return targets_->problem();
 }
 
+std::optional<SolvedQp> Mpc::move_problem() const {
+  return SolvedQp{solver_->structure(), qp_.data(), solver_->result()};
+}
+
 Eigen::VectorXd Mpc::nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) {
   require_signal("measured disturbances", d, md_gain_.cols());
   if (!targets_)

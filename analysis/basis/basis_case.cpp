@@ -10,6 +10,7 @@
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/draw.hpp"
+#include "scenarios/study_controller.hpp"
 
 namespace mpm {
 namespace {
@@ -27,7 +28,7 @@ Eigen::VectorXd repeated_indices(const Study& study, const BasisCase& basis, con
 
 void check_health(const Study& study, const QpSolverFactory& factory, BasisCase& basis) {
   const DiagnosisOptions& options = study.diagnosis;
-  if (basis.trajectory.failure == LoopFailure::plant) {
+  if (basis.trajectory.failure == LoopFailure::plant || basis.trajectory.failure == LoopFailure::controller) {
     basis.explanation = fmt::format("the nominal loop fails at sample {}: {}", basis.trajectory.samples_done,
                                     basis.trajectory.message);
     return;
@@ -82,11 +83,42 @@ void require_start(const Trajectory& loop) {
                      "a plant with a steady state at the first setpoints and limits");
 }
 
+/// Of a controller that runs on the plant only there is no S0, and nothing that is made of it.
+void refuse_without_sensitivity(const Study& study) {
+  const std::string found = "a program that runs on the plant only (on_model is false)";
+  if (study.diagnosis.self_check == SelfCheck::ivar)
+    throw InputError("controller.program", found,
+                     "with diagnosis.self_check = \"repeat\" or \"none\": Ivar of the nominal loop needs S0");
+  if (!study.s0_perturbation.multipliers.empty())
+    throw InputError("controller.program", found, "without s0_perturbation: there is no S0 to be modified");
+}
+
+/// The loop without a fault, and what is said of it.
+void run_loop(const Study& study, const QpSolverFactory& factory, const StepObserver& observer,
+              BasisCase& basis) {
+  basis.trajectory = simulate_experiment(study, basis_draw(), factory, observer);
+  require_start(basis.trajectory);
+  if (basis.trajectory.status == ControlStatus::ok) {
+    basis.nominal =
+        NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);
+    if (basis.sensitivity.is_known)
+      basis.diagnosis = DiagnosisChain(study).diagnose(basis.trajectory.y, basis.nominal);
+  }
+  check_health(study, factory, basis);
+}
+
 }  // namespace
 
 BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, const StepObserver& observer) {
   BasisCase basis;
   basis.point = operating_point(study, factory);
+  if (!runs_on_model(study)) {
+    refuse_without_sensitivity(study);
+    basis.point.active.clear();
+    basis.sensitivity = {.cv_count = study.cv_count(), .active = {}, .step_response = {}, .is_known = false};
+    run_loop(study, factory, observer, basis);
+    return basis;
+  }
   const bool identified = study.sensitivity.form == SensitivityForm::box_jenkins;
   const auto sensitivity = identified ? box_jenkins_sensitivity : nominal_sensitivity;
   basis.sensitivity = sensitivity(study, basis.point, factory, observer);
@@ -95,15 +127,7 @@ BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, con
   require_active(study, basis.sensitivity);
   if (!study.s0_perturbation.fixed_mvs.empty())
     basis.sensitivity_fixed = sensitivity(study, with_fixed_mvs(study, basis.point), factory, observer);
-  basis.trajectory = simulate_experiment(study, basis_draw(), factory, observer);
-  require_start(basis.trajectory);
-  if (basis.trajectory.status == ControlStatus::ok) {
-    basis.nominal =
-        NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);
-    DiagnosisChain chain(study);
-    basis.diagnosis = chain.diagnose(basis.trajectory.y, basis.nominal);
-  }
-  check_health(study, factory, basis);
+  run_loop(study, factory, observer, basis);
   return basis;
 }
 

@@ -12,13 +12,14 @@ class StepCounter {
  public:
   explicit StepCounter(SolverStatistics& statistics) : statistics_(statistics) {}
 
-  void observe(const Mpc& controller) {
+  void observe(const Controller& controller) {
     ++statistics_.steps;
     last_ = QpStatus::solved;
+    const std::optional<SolvedQp> moves = controller.move_problem();
     if (const std::optional<SolvedQp> targets = controller.target_problem())
       add(targets->result);
-    if (last_ == QpStatus::solved)  // otherwise there were no moves to be found
-      add(controller.move_problem().result);
+    if (last_ == QpStatus::solved && moves)  // otherwise there were no moves to be found
+      add(moves->result);
   }
   /// What ended the loops, when something did: without an answer to its problem a controller is infeasible.
   ControlStatus reason() const {
@@ -53,8 +54,8 @@ std::optional<TunedBasis> tuned_basis(const Study& study, const ExperimentDraw& 
   own.study.s0_perturbation = {};
   StepCounter counter(own.solver);
   try {
-    own.basis =
-        run_basis_case(own.study, factory, [&](const Mpc& controller) { counter.observe(controller); });
+    own.basis = run_basis_case(own.study, factory,
+                               [&](const Controller& controller) { counter.observe(controller); });
   } catch (const InputError& error) {
     // The study itself has an S0, so that it is the changed weight that leaves none.
     own.basis.trajectory.status = counter.reason();

@@ -36,6 +36,10 @@ bool some_setpoint_moves(const AssessedLoop& loop) {
 
 std::optional<std::string> unmet_requirement(const AssessmentRequirements& requirements,
                                              const AssessmentContext& context, const AssessedLoop& loop) {
+  if (requirements.nominal_loop && !context.basis.sensitivity.is_known)
+    return "it needs the controller on its own model, and the program that is the controller runs on the "
+           "plant "
+           "only";
   if (requirements.complete_record) {
     if (const std::string missing = missing_samples(context.study, loop.y); !missing.empty())
       return fmt::format("it needs a complete record, and {} are missing", missing);

@@ -21,6 +21,7 @@ struct AssessmentRequirements {
   bool moving_setpoints = false;  ///< some setpoint changes during the record
   bool benchmark = false;         ///< a period in which the controller did what it was designed for
   bool moving_mvs = false;        ///< some MV moves during the record
+  bool nominal_loop = false;      ///< the controller runs on its own model: S0, or the nominal loop
   bool complete_record = true;    ///< no sample of a CV is missing, in the record and in the benchmark
 };
 
@@ -76,6 +77,9 @@ struct MethodDescription {
   std::vector<AssessmentNumberInfo> numbers;
   /// Where the answers come from when it is no method of this program, in a few words; empty otherwise.
   std::string origin = {};
+  /// What decides on the answers of a method from outside besides its name: its command with the content of
+  /// its files, and its options. Whoever has it knows it; empty for others.
+  std::string fingerprint = {};
 };
 
 /// A method that this program has.

@@ -327,7 +327,7 @@ AssessmentMethodInfo autocovariance_method() {
   return {{.name = "autocovariance",
            .title = "Wang et al. (2018), reconstruction",
            .verdict = "the autocovariances of some CV are not those of the controller on its own model",
-           .requirements = {.benchmark = true, .moving_mvs = true},
+           .requirements = {.benchmark = true, .moving_mvs = true, .nominal_loop = true},
            .locates_cvs = true,
            .names_channels = true,
            .tells_sources = true,

@@ -89,6 +89,7 @@ AssessmentMethodInfo botelho_method() {
   info.name = kChainMethod;
   info.title = "Botelho (2015)";
   info.verdict = "a modelling error has an impact: some Ivar lies outside the band of impact";
+  info.requirements.nominal_loop = true;
   info.locates_cvs = true;
   info.tells_sources = true;
   info.numbers = chain_number_infos();

@@ -37,7 +37,7 @@ AssessmentMethodInfo counterfactual_method() {
        .title = "counterfactual nominal output",
        .verdict = "a modelling error has an impact: Ivar of some CV against the simulated nominal loop lies "
                   "outside the band of impact",
-       .requirements = {.complete_record = false},
+       .requirements = {.nominal_loop = true, .complete_record = false},
        .locates_cvs = true,
        .numbers = {{.name = "ivar",
                     .meaning = "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise",

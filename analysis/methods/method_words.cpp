@@ -26,6 +26,7 @@ std::string needs_text(const MethodDescription& method) {
                  {needs.moving_setpoints, "setpoints that move"},
                  {needs.benchmark, "a benchmark period"},
                  {needs.moving_mvs, "MVs that move"},
+                 {needs.nominal_loop, "a controller that runs on its model"},
                  {needs.complete_record, "every sample"}});
 }
 

@@ -114,7 +114,7 @@ AssessmentMethodInfo mpmbench_method() {
        .title = "impact, source, channel and size together",
        .verdict = "a modelling error has an impact: Ivar of some CV against the simulated nominal loop lies "
                   "outside the band of impact",
-       .requirements = {.benchmark = true, .complete_record = false},
+       .requirements = {.benchmark = true, .nominal_loop = true, .complete_record = false},
        .locates_cvs = true,
        .names_channels = true,
        .tells_sources = true,

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,9 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/methods/method_messages.hpp"
-#include "plants/child_process.hpp"
 #include "plants/error.hpp"
-#include "plants/thread_clock.hpp"
+#include "plants/program_talk.hpp"
 
 namespace mpm {
 namespace {
@@ -25,54 +22,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kProtocol = 1;
 
-/// A program that is running, and its answers by number.
-class ProgramTalk {
- public:
-  explicit ProgramTalk(const MethodProgram& program) : program_(program), child_(program.command) {}
+std::unique_ptr<ProgramTalk> talk_with(const MethodProgram& program) {
+  return std::make_unique<ProgramTalk>(fmt::format("method '{}'", program.name), program.command,
+                                       program.time_limit);
+}
 
-  /// Sends {"ask": what, "number": n, what: content} and returns the answer without its number. Throws
-  /// ChildFailure; and InputError for a line that is no answer, after which the talk is out of step.
-  Json ask(const char* what, Json content) {
-    const double before = child_.processor_seconds();
-    Json message{{"ask", what}, {"number", ++number_}};
-    message[what] = std::move(content);
-    const auto deadline = ChildProcess::in_seconds(program_.time_limit);
-    child_.send(message.dump(), deadline);
-    for (;;)
-      if (std::optional<Json> answer = answer_in(child_.receive(deadline))) {
-        count_for_thread(child_.processor_seconds() - before);
-        return std::move(*answer);
-      }
-  }
-
- private:
-  /// None: it answers an earlier message.
-  std::optional<Json> answer_in(const std::string& line) const {
-    Json answer = Json::parse(line, nullptr, false);
-    const auto number = answer.is_object() ? answer.find("number") : answer.end();
-    if (!answer.is_object() || number == answer.end() || !number->is_number_integer() ||
-        number->get<std::int64_t>() > number_)
-      throw InputError(fmt::format("method '{}'", program_.name),
-                       fmt::format("the line '{}'", beginning(line)),
-                       "a JSON object with the number of the message");
-    if (number->get<std::int64_t>() < number_)
-      return std::nullopt;
-    answer.erase("number");
-    return answer;
-  }
-
-  static std::string beginning(const std::string& line) {
-    constexpr std::size_t kShown = 60;
-    std::string text = line.substr(0, kShown);
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return line.size() > kShown ? fmt::format("{}...", text) : text;
-  }
-
-  const MethodProgram& program_;
-  ChildProcess child_;
-  std::int64_t number_ = 0;
-};
+/// {"ask": what, what: content}
+Json question(const char* what, Json content) {
+  return {{"ask", what}, {what, std::move(content)}};
+}
 
 Json describe_content(const MethodProgram& program) {
   return {{"protocol", kProtocol}, {"name", program.name}, {"options", Json::parse(program.options)}};
@@ -93,6 +51,7 @@ class DescriptionReader {
                   {"moving_setpoints", &method.requirements.moving_setpoints},
                   {"benchmark", &method.requirements.benchmark},
                   {"moving_mvs", &method.requirements.moving_mvs},
+                  {"nominal_loop", &method.requirements.nominal_loop},
                   {"complete_record", &method.requirements.complete_record}}});
     for (const std::string& word : words(answer, "answers"))
       set(word, {{{"cv", &method.locates_cvs},
@@ -165,7 +124,8 @@ MethodDescription description_of(const MethodProgram& program) {
   method.requirements.complete_record = false;
   method.origin = fmt::format("program {}", fmt::join(program.command, " "));
   try {
-    DescriptionReader(program).read(ProgramTalk(program).ask("describe", describe_content(program)), method);
+    const Json answer = talk_with(program)->ask(question("describe", describe_content(program)));
+    DescriptionReader(program).read(answer, method);
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("method '{}', description", program.name), error.what(),
                      "the description of a method, docs/bring_your_own.md");
@@ -188,7 +148,7 @@ class ProgramMethod final : public AssessmentMethod {
     try {
       if (!talk_)
         begin();
-      answer = talk_->ask("loop", loop_json(loop));
+      answer = talk_->ask(question("loop", loop_json(loop)));
     } catch (const ChildFailure& error) {
       talk_.reset();
       throw InputError(fmt::format("method '{}'", program_.name), error.what(),
@@ -202,16 +162,16 @@ class ProgramMethod final : public AssessmentMethod {
 
  private:
   void begin() {
-    talk_.emplace(program_);
-    talk_->ask("describe", describe_content(program_));
-    talk_->ask("context", context_);
+    talk_ = talk_with(program_);
+    talk_->ask(question("describe", describe_content(program_)));
+    talk_->ask(question("context", context_));
   }
 
   const MethodProgram program_;
   const MethodDescription method_;
   const PlantModel& plant_;
   const Json context_;
-  std::optional<ProgramTalk> talk_;  ///< none before the first loop, and after one that failed
+  std::unique_ptr<ProgramTalk> talk_;  ///< none before the first loop, and after one that failed
 };
 
 }  // namespace

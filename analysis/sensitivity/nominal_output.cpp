@@ -6,6 +6,7 @@
 
 #include "plants/error.hpp"
 #include "plants/linear_plant.hpp"
+#include "plants/non_finite.hpp"
 #include "plants/row_major.hpp"
 
 namespace mpm {
@@ -65,6 +66,10 @@ NominalOutputs nominal_outputs(const NominalSensitivity& sensitivity,
   // y + S0 (y_sim - y) = y_sim + T0 (y - y_sim): only the columns of T0 of active CVs are not zero. Rows are
   // made contiguous once, because the convolution runs along time.
   const RowMajorMatrix error = y - y_sim;
+  if (!sensitivity.is_known) {
+    const Eigen::MatrixXd none = Eigen::MatrixXd::Constant(y.rows(), y.cols(), kNaN);
+    return {y_sim, none, none};
+  }
   RowMajorMatrix y0 = y_sim;
   RowMajorMatrix y0_diag = y_sim;
   for (std::size_t a = 0; a < sensitivity.active.size(); ++a) {

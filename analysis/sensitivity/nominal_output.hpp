@@ -33,7 +33,8 @@ Eigen::RowVectorXd diagonal_nominal_output(const Eigen::Ref<const Eigen::RowVect
                                            const Eigen::Ref<const Eigen::RowVectorXd>& y_sim);
 
 /// y0 and y0_diag of the record y (ny x N) with the model output y_sim (ny x N). A CV inside its range has
-/// S0_diag = 1, hence y0_diag = y_sim (6.17). Throws InputError when the shapes differ.
+/// S0_diag = 1, hence y0_diag = y_sim (6.17). NaN without a sensitivity that is known. Throws InputError when
+/// the shapes differ.
 NominalOutputs nominal_outputs(const NominalSensitivity& sensitivity,
                                const Eigen::Ref<const Eigen::MatrixXd>& y,
                                const Eigen::Ref<const Eigen::MatrixXd>& y_sim);

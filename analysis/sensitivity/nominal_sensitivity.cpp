@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "analysis/sensitivity/active_limit.hpp"
 #include "plants/error.hpp"
 #include "plants/linear_plant.hpp"
+#include "scenarios/study_controller.hpp"
 #include "solvers/mpc.hpp"
 
 namespace mpm {
@@ -170,7 +172,8 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
                                  const Eigen::Ref<const Eigen::RowVectorXd>& moves,
                                  const QpSolverFactory& factory, const StepObserver& observer) {
   const MpcOptions options = relaxed_options(study, point);
-  Mpc controller(study.plant.G, study.mv_count(), options, factory);
+  const std::unique_ptr<Controller> own = controller_of(study, options, factory);
+  Controller& controller = *own;
   const Eigen::VectorXd y_set = setpoints_at_rest(study, point);
   controller.set_setpoints(y_set);
   const Eigen::VectorXd d = Eigen::VectorXd::Zero(study.md_count());
@@ -201,11 +204,14 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
     if (observer)
       observer(controller);
     if (move.status != ControlStatus::ok)
-      throw InputError("nominal sensitivity",
-                       fmt::format("a controller that is {} after a step in the {} of {}",
-                                   to_string(move.status), to_string(reference.kind),
-                                   study.plant.cvs[static_cast<std::size_t>(reference.cv)].name),
-                       "a relaxed controller with a solution (are the active CVs right?)");
+      throw InputError(
+          "nominal sensitivity",
+          fmt::format("a controller that is {} after a step in the {} of {}{}", to_string(move.status),
+                      to_string(reference.kind), study.plant.cvs[static_cast<std::size_t>(reference.cv)].name,
+                      study.controller_program && move.status == ControlStatus::failed
+                          ? fmt::format(" ({})", controller.failure())
+                          : ""),
+          "a relaxed controller with a solution (are the active CVs right?)");
     input.head(u.size()) = move.u;
     plant.advance(input);
     y.col(k + 1) = plant.output() - rest;
@@ -215,7 +221,7 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
 
 NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint& point,
                                        const QpSolverFactory& factory, const StepObserver& observer) {
-  NominalSensitivity sensitivity{study.cv_count(), point.active, {}};
+  NominalSensitivity sensitivity{.cv_count = study.cv_count(), .active = point.active, .step_response = {}};
   for (const ActiveConstraint& reference : point.active)
     sensitivity.step_response.push_back(directed_response(study, point, reference, factory, observer));
   return sensitivity;

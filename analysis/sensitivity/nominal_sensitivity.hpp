@@ -61,6 +61,7 @@ struct NominalSensitivity {
   Eigen::Index cv_count = 0;
   std::vector<ActiveConstraint> active;
   std::vector<Eigen::MatrixXd> step_response;
+  bool is_known = true;  ///< not of a controller that cannot be run on its own model: then nothing is active
 
   /// Last values of the step responses, ny x ny; column j is zero for a CV inside its range.
   Eigen::MatrixXd static_gain() const;

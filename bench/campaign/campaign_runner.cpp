@@ -10,6 +10,7 @@
 #include "bench/campaign/calibration_runs.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/campaign/experiment_series.hpp"
+#include "bench/files/outside_files.hpp"
 #include "bench/version.hpp"
 #include "scenarios/calibration.hpp"
 
@@ -34,14 +35,15 @@ void require_health(const BasisCase& basis, const RunOptions& options) {
   throw UnhealthyBasis("the basis case of the study fails its self-check: " + basis.explanation);
 }
 
-/// In processes also where somebody else simulates the plant: its loops wait for other processes, and these
-/// are made without other threads at work. Throws InputError for threads that the solver does not bear.
+/// In processes also where somebody else simulates the plant or is the controller: such loops wait for other
+/// processes, and these are made without other threads at work. Throws InputError for threads that the solver
+/// does not bear.
 Execution execution_of(const Study& study, const RunOptions& options) {
   const bool safe = options.solver == "auto" || options.solver == "active-set";
   if (options.parallel == Parallel::threads && !safe)
     throw InputError("parallel", fmt::format("threads for the solver {}", options.solver),
                      "processes, or one of the solvers auto and active-set");
-  const bool foreign = study.nonlinear && study.nonlinear->model.foreign;
+  const bool foreign = (study.nonlinear && study.nonlinear->model.foreign) || study.controller_program;
   const bool in_threads =
       options.parallel == Parallel::by_solver ? safe && !foreign : options.parallel == Parallel::threads;
   return in_threads ? execute_in_threads : execute_in_processes;
@@ -50,21 +52,22 @@ Execution execution_of(const Study& study, const RunOptions& options) {
 /// The basis case; with Ipopt it takes as long as an experiment, so that a stop must not wait for it.
 BasisCase stoppable_basis_case(const Study& study, const QpSolverFactory& factory, const StopRequest& stop,
                                const ExperimentTally& tally) {
-  return run_basis_case(study, factory, [&](const Mpc&) {
+  return run_basis_case(study, factory, [&](const Controller&) {
     if (requested(stop))
       throw Interrupted(tally.done, tally.count);
   });
 }
 
 /// How, when and by which program; without the times.
-CampaignInfo info_of(const RunOptions& options) {
+CampaignInfo info_of(const Study& study, const RunOptions& options) {
   CampaignInfo info;
   info.mpmbench_version = mpmbench_version();
   info.git_sha = source_revision();
   info.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  info.outside_files = outside_files(study);
   info.solver = options.solver;
   info.jobs = options.jobs;
-  info.audit_share = audited_share(options);
+  info.audit_share = audited_share(study, options);
   return info;
 }
 
@@ -116,7 +119,7 @@ Campaign run_campaign(Study study, const RunOptions& options, const CampaignHook
   if (calibration)
     campaign.calibration = calibration->run(campaign.basis, execute, hooks, tally);
 
-  campaign.info = info_of(options);
+  campaign.info = info_of(campaign.study, options);
   campaign.info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() +
                           experiments.earlier_seconds() +
                           (calibration ? calibration->series.earlier_seconds() : 0.0);

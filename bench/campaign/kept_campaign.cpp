@@ -1,9 +1,12 @@
 #include "bench/campaign/kept_campaign.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <system_error>
 #include <utility>
 
+#include "analysis/methods/method_table.hpp"
+#include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
 #include "results/archive/archive.hpp"
@@ -14,11 +17,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Were the methods of this campaign those of this program, also where they come from outside?
+bool has_same_methods(const Campaign& campaign, const Study& study) {
+  return method_names(campaign) == study.methods &&
+         std::all_of(campaign.methods.begin(), campaign.methods.end(), [](const CampaignMethod& method) {
+           const MethodDescription& kept = method.form->method();
+           return kept.fingerprint == assessment_method(kept.name).fingerprint;
+         });
+}
+
 bool is_of(const Campaign& campaign, const Study& of, const RunOptions& options) {
   const Study study = study_to_run(of, options);
   const std::int64_t count = options.experiments.value_or(study.experiment_count());
   return campaign.study.source == study.source && campaign.study.seed == study.seed &&
-         method_names(campaign) == study.methods && campaign.info.solver == options.solver &&
+         has_same_methods(campaign, study) && campaign.info.solver == options.solver &&
+         campaign.info.outside_files == outside_files(study) &&
          campaign.info.mpmbench_version == mpmbench_version() && campaign.info.git_sha == source_revision() &&
          static_cast<std::int64_t>(campaign.records.size()) == count;
 }

@@ -83,6 +83,9 @@ Eigen::MatrixXd nominal_loop(const Study& study, const AssessedLoop& loop, const
 /// The basis case of the record. Throws InputError when the controller does not run through it.
 BasisCase basis_of(const Study& study, const QpSolverFactory& factory) {
   BasisCase basis = run_basis_case(study, factory);
+  if (!basis.sensitivity.is_known)
+    throw InputError("controller.program", "a program that runs on the plant only (on_model is false)",
+                     "one that runs on its model: a record is held against the nominal loop");
   if (basis.trajectory.status != ControlStatus::ok)
     throw InputError(
         "record",

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/outside_program.hpp"
+#include "bench/files/outside_files.hpp"
 #include "scenarios/method_file.hpp"
 #include "solvers/qp_solver.hpp"
 
@@ -57,7 +60,9 @@ std::vector<std::string> take_method_files(const std::vector<std::string>& files
   std::vector<std::string> names;
   for (const std::string& file : files)
     for (const MethodProgram& program : load_method_file(file)) {
-      add_assessment_method(program_method(program));
+      AssessmentMethodInfo method = program_method(program);
+      method.fingerprint = fmt::format("{}, options {}", command_identity(program.command), program.options);
+      add_assessment_method(std::move(method));
       names.push_back(program.name);
     }
   return names;

@@ -270,6 +270,9 @@ void repair_all(const Campaign& campaign, const ChannelChoice& choice, const Rep
 
 ExitCode repair(const RepairArguments& options) {
   const Campaign campaign = read_input(options.archive);
+  if (!campaign.basis.sensitivity.is_known)
+    throw InputError(options.archive, "a controller program that runs on the plant only (on_model is false)",
+                     "one that runs on its model: a repaired model is judged by the loops that it promises");
   const ChannelChoice choice = chosen(campaign, options);
   if (options.index)
     repair_one(campaign, *options.index, choice, options.json);

@@ -14,9 +14,9 @@ ExperimentWork::ExperimentWork(const Study& study, const BasisCase& basis, const
 ExperimentOutcome ExperimentWork::run(std::int64_t index) {
   ExperimentOutcome outcome;
   try {
-    AuditSampler sampler(study_.seed, index, audited_share(options_));
-    outcome.record =
-        runner_.run(index, options_.store, [&](const Mpc& controller) { sampler.observe(controller); });
+    AuditSampler sampler(study_.seed, index, audited_share(study_, options_));
+    outcome.record = runner_.run(index, options_.store,
+                                 [&](const Controller& controller) { sampler.observe(controller); });
     outcome.samples = sampler.take();
   } catch (const std::exception& error) {
     outcome = {};

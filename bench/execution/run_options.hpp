@@ -40,9 +40,10 @@ struct RunOptions {
 /// InputError for an unknown method.
 Study study_to_run(Study study, const RunOptions& options);
 
-/// The share of the steps that is audited: the other solvers have nothing to be audited by.
-inline double audited_share(const RunOptions& options) {
-  return options.solver == "auto" ? options.audit_share : 0.0;
+/// The share of the steps that is audited: the other solvers have nothing to be audited by, and a controller
+/// that is a program poses no problems.
+inline double audited_share(const Study& study, const RunOptions& options) {
+  return options.solver == "auto" && !study.controller_program ? options.audit_share : 0.0;
 }
 
 }  // namespace mpm

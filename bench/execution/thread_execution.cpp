@@ -81,9 +81,9 @@ bool needs_ipopt(const ExperimentRecord& record) {
 }
 
 void execute_in_threads(const ExecutionPlan& plan, const StopRequest& stop, const OutcomeSink& deliver) {
-  const bool fall_back = plan.options.solver == "auto";
+  const bool fall_back = plan.options.solver == "auto" && !plan.study.controller_program;
   std::optional<IpoptProcesses> ipopt;
-  if (fall_back || audited_share(plan.options) > 0.0)
+  if (fall_back || audited_share(plan.study, plan.options) > 0.0)
     ipopt.emplace(plan);  // before the first thread starts
   const QpSolverFactory in_thread = qp_solver_factory("active-set");
   ThreadWork work;

@@ -1,33 +1,20 @@
 #include "bench/shards/shard_identity.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/methods/method_table.hpp"
+#include "bench/files/outside_files.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
-#include "results/files/sha256.hpp"
 
 namespace mpm {
 namespace {
-
-std::string digest(std::string_view content) {
-  constexpr std::size_t kDigits = 16;  // enough against accidents, and short enough for a message
-  return sha256(std::as_bytes(std::span(content))).substr(0, kDigits);
-}
-
-std::string digest_of_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(file), {}};
-  return digest(content);
-}
 
 /// The version, the revision, and the digest of the program file: two builds of a revision may differ.
 std::string program() {
@@ -35,11 +22,20 @@ std::string program() {
                      digest_of_file("/proc/self/exe"));
 }
 
-/// What the file of a plant that somebody else simulates adds to a study.
-std::string plant_file(const Study& study) {
-  return study.nonlinear && study.nonlinear->model.foreign && !study.nonlinear->model.foreign->file().empty()
-             ? fmt::format(", FMU {}", digest_of_file(study.nonlinear->model.foreign->file()))
-             : "";
+/// The methods, each with what else decides on its answers.
+std::string methods_text(const Study& study) {
+  std::vector<std::string> methods;
+  for (const std::string& name : study.methods) {
+    const std::string& fingerprint = assessment_method(name).fingerprint;
+    methods.push_back(fingerprint.empty() ? name : fmt::format("{} ({})", name, fingerprint));
+  }
+  return fmt::format("{}", fmt::join(methods, ", "));
+}
+
+std::string study_text(const Study& study) {
+  const std::string outside = outside_files(study);
+  return fmt::format("{} (text {}{}{})", study.name, digest_of(study.source), outside.empty() ? "" : ", ",
+                     outside);
 }
 
 std::string_view name_of(StorePolicy store) {
@@ -58,11 +54,11 @@ std::string_view name_of(StorePolicy store) {
 
 ShardIdentity shard_identity(const Study& study, const RunOptions& options) {
   return {{"program", program()},
-          {"study", fmt::format("{} (text {}{})", study.name, digest(study.source), plant_file(study))},
+          {"study", study_text(study)},
           {"seed", fmt::format("{}", study.seed)},
-          {"methods", fmt::format("{}", fmt::join(study.methods, ", "))},
+          {"methods", methods_text(study)},
           {"solver", options.solver},
-          {"audit", fmt::format("{}", audited_share(options))},
+          {"audit", fmt::format("{}", audited_share(study, options))},
           {"store", std::string(name_of(options.store))}};
 }
 

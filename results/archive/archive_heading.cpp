@@ -61,6 +61,7 @@ void write_heading(Hdf5Group& root, const Campaign& campaign) {
       {"git_sha", info.git_sha},
       {"created", info.created},
       {"command", info.command},
+      {"outside_files", info.outside_files},
       {"master_seed", std::uint64_t{campaign.study.seed}},
       {"solver", info.solver},
       {"seconds", info.seconds},
@@ -82,6 +83,8 @@ Campaign read_heading(const Hdf5Group& root, const std::string& file) {
   info.git_sha = root.attribute<std::string>("git_sha");
   info.created = root.attribute<std::string>("created");
   info.command = root.attribute<std::string>("command");
+  if (root.has_attribute("outside_files"))  // from 2.1 on
+    info.outside_files = root.attribute<std::string>("outside_files");
   info.solver = root.attribute<std::string>("solver");
   info.seconds = root.attribute<double>("seconds");
   info.jobs = root.attribute<std::int32_t>("jobs");

@@ -46,6 +46,7 @@ ConstraintKind constraint_kind(std::int8_t side, const char* group, const std::s
 void write_sensitivity(Hdf5Group& group, const std::string& title, const Study& study,
                        const NominalSensitivity& sensitivity) {
   group.write_attribute("title", title);
+  group.write_attribute("known", std::int32_t{sensitivity.is_known});
   std::vector<PlantModel::Variable> active;
   std::vector<std::int8_t> side;
   std::vector<const Eigen::MatrixXd*> responses;
@@ -77,6 +78,7 @@ NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, con
   const auto lags = static_cast<Eigen::Index>(group.read_list<std::int32_t>("lag").size());
   NominalSensitivity sensitivity;
   sensitivity.cv_count = study.cv_count();
+  sensitivity.is_known = !group.has_attribute("known") || group.attribute<std::int32_t>("known") != 0;
   sensitivity.step_response.resize(active.size());
   std::vector<Eigen::MatrixXd*> responses;
   for (std::size_t a = 0; a < active.size(); ++a) {

@@ -20,6 +20,7 @@ struct CampaignInfo {
   std::string git_sha;
   std::string created;  ///< ISO 8601, UTC
   std::string command;
+  std::string outside_files = {};  ///< programs and FMUs of the study, with digests; empty: none
   std::string solver;
   double seconds = 0.0;        ///< wall-clock time
   int jobs = 1;                ///< experiments run at once

@@ -73,7 +73,7 @@ std::vector<Column<Trajectory>> loop_columns() {
            plain<std::int32_t, &Trajectory::samples_done, Trajectory>()},
           {{"failure", "what made the closed loop fail", "1", "",
             enum_flags(std::array{LoopFailure::none, LoopFailure::solver, LoopFailure::plant,
-                                  LoopFailure::no_steady_state})},
+                                  LoopFailure::no_steady_state, LoopFailure::controller})},
            plain<std::int8_t, &Trajectory::failure, Trajectory>()},
           {{"message", "what failed", "1", "empty when nothing did"},
            plain<std::string, &Trajectory::message, Trajectory>()}};

@@ -358,6 +358,10 @@ bool Hdf5Group::has_group(const std::string& name) const {
   return H5Lexists(state_->group.get(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
+bool Hdf5Group::has_attribute(const std::string& name) const {
+  return H5Aexists(state_->group.get(), name.c_str()) > 0;
+}
+
 Hdf5Group Hdf5Group::group(const std::string& name) const {
   const Place place = state_->place("group", name);
   if (!has_group(name))

@@ -52,6 +52,7 @@ class Hdf5Group {
   /// A group in this one.
   Hdf5Group group(const std::string& name) const;
 
+  bool has_attribute(const std::string& name) const;
   /// T is one of the types that an attribute can hold, and must be the type in the file.
   template <class T>
   T attribute(const std::string& name) const;

@@ -72,6 +72,7 @@ Json method_json(const MethodDescription& method) {
         {"moving_setpoints", needs.moving_setpoints},
         {"benchmark", needs.benchmark},
         {"moving_mvs", needs.moving_mvs},
+        {"nominal_loop", needs.nominal_loop},
         {"complete_record", needs.complete_record}}},
       {"answers",
        {{"cv", method.locates_cvs},
@@ -85,6 +86,8 @@ Json method_json(const MethodDescription& method) {
 
 std::string method_description_json(const MethodDescription& method) {
   Json json = method_json(method);
+  if (!method.fingerprint.empty())
+    json["fingerprint"] = method.fingerprint;
   json["numbers"] = Json::array();
   for (const AssessmentNumberInfo& number : method.numbers)
     json["numbers"].push_back({{"name", number.name},
@@ -110,6 +113,7 @@ MethodDescription method_description(const std::string& text, const std::string&
                                               .moving_setpoints = needs.at("moving_setpoints"),
                                               .benchmark = needs.at("benchmark"),
                                               .moving_mvs = needs.at("moving_mvs"),
+                                              .nominal_loop = needs.value("nominal_loop", false),
                                               .complete_record = needs.value("complete_record", true)},
                              .locates_cvs = answers.at("cv"),
                              .names_channels = answers.at("channel"),
@@ -118,7 +122,8 @@ MethodDescription method_description(const std::string& text, const std::string&
                              .names_candidates = answers.value("candidate", false),
                              .stated_false_alarms = stated_in(json),
                              .numbers = {},
-                             .origin = origin_in(json)};
+                             .origin = origin_in(json),
+                             .fingerprint = json.value("fingerprint", "")};
     for (const Json& number : json.at("numbers"))
       method.numbers.push_back(number_of(number));
     return method;

@@ -99,6 +99,10 @@ ReportSection solver_section(const ReportInput& input) {
     add_row(table, kind_name(kind.kind), std::move(effort));
   }
   add_row(table, "all", std::move(all));
+  if (campaign.study.controller_program) {
+    section.leave_out("the controller is a program: what it solves, and how well, is not known here.");
+    return section;
+  }
   section.add(
       fmt::format("<p>Every quadratic program was solved by <strong>{}</strong>. The KKT residual is "
                   "computed from the problem alone, whichever solver gave the answer.</p>\n",

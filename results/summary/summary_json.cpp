@@ -224,26 +224,30 @@ Json wrong_json(const std::vector<const ExperimentRecord*>& wrong) {
 
 std::string summary_json(const Campaign& campaign, const StudyFindings& total) {
   const SummaryContent parts = summary_content(campaign, total);
-  const Json summary{{"study", campaign.study.name},
-                     {"seed", campaign.study.seed},
-                     {"solver", campaign.info.solver},
-                     {"seconds", campaign.info.seconds},
-                     {"experiments", total.experiments},
-                     {"infeasible", total.infeasible.hits},
-                     {"failed", total.failed},
-                     {"kinds", kinds_json(kind_counts(campaign))},
-                     {"basis", basis_json(campaign.study, campaign.basis)},
-                     {"settings", settings_json(campaign.study)},
-                     {"run", run_json(campaign.info)},
-                     {"confidence", campaign.study.aggregate.confidence},
-                     {"methods", method_names(campaign)},
-                     {"findings", findings_json(total.rows)},
-                     {"scenarios", scenarios_json(campaign)},
-                     {"dominance", dominance_json(total.dominance)},
-                     {"s0_perturbation", s0_perturbation_json(campaign.study, parts)},
-                     {"audit", audit_json(parts, campaign.info)},
-                     {"failures", failures_json(parts.failed)},
-                     {"wrong_verdicts", wrong_json(parts.wrong)}};
+  const Json summary{
+      {"study", campaign.study.name},
+      {"seed", campaign.study.seed},
+      {"solver", campaign.info.solver},
+      {"controller_program",
+       campaign.study.controller_program ? Json(campaign.study.controller_program->command()) : Json()},
+      {"outside_files", campaign.info.outside_files},
+      {"seconds", campaign.info.seconds},
+      {"experiments", total.experiments},
+      {"infeasible", total.infeasible.hits},
+      {"failed", total.failed},
+      {"kinds", kinds_json(kind_counts(campaign))},
+      {"basis", basis_json(campaign.study, campaign.basis)},
+      {"settings", settings_json(campaign.study)},
+      {"run", run_json(campaign.info)},
+      {"confidence", campaign.study.aggregate.confidence},
+      {"methods", method_names(campaign)},
+      {"findings", findings_json(total.rows)},
+      {"scenarios", scenarios_json(campaign)},
+      {"dominance", dominance_json(total.dominance)},
+      {"s0_perturbation", s0_perturbation_json(campaign.study, parts)},
+      {"audit", audit_json(parts, campaign.info)},
+      {"failures", failures_json(parts.failed)},
+      {"wrong_verdicts", wrong_json(parts.wrong)}};
   return summary.dump(2) + "\n";
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
@@ -73,15 +74,22 @@ void add_heading(SummaryLines& text, const Campaign& campaign, const SummaryCont
              fmt::format("sample time {:g} {}, prediction horizon {}, control horizon {}",
                          study.controller.sample_time, plant.time_unit, study.controller.prediction_horizon,
                          study.controller.control_horizon));
+  if (study.controller_program)
+    text.entry("is a program", fmt::format("`{}`: its answers are neither certified nor audited",
+                                           fmt::join(study.controller_program->command(), " ")));
+  if (!campaign.basis.sensitivity.is_known)
+    text.entry("S0", "none: the program runs on the plant only, not on its own model");
   text.entry("experiments", fmt::format("{} ({}) of {} samples; {} infeasible, {} failed",
                                         findings.experiments, kinds_text(campaign), study.simulation.samples,
                                         findings.infeasible.hits, findings.failed));
   text.entry("seed", fmt::format("{}", study.seed));
   text.entry("program", fmt::format("mpmbench {} ({}), solver {}", info.mpmbench_version,
                                     info.git_sha.empty() ? "unknown revision" : info.git_sha, info.solver));
+  if (!info.outside_files.empty())
+    text.entry("from outside", info.outside_files);
   text.entry("run", fmt::format("{}, {:.1f} s with {}", info.created, info.seconds,
                                 plural(static_cast<std::size_t>(std::max(info.jobs, 0)), "job")));
-  if (info.solver == "auto")
+  if (info.solver == "auto" && !study.controller_program)
     text.entry("audit", audit_sentence(parts, info));
   if (campaign.basis.sensitivity_direct)
     text.entry("T0", identification_sentence(study, campaign.basis));

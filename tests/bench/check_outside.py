@@ -426,6 +426,41 @@ def check_programs(outside, octave):
     assert "mine-py" in outside.run("summary", path)
 
 
+def check_changed_programs(outside):
+    """A name is not enough: behind it the command, its files and the options have to be those of before."""
+    program, methods, out = (outside.folder / name for name in ("own.py", "own.toml", "own.h5"))
+    original = pathlib.Path("examples/mine.py").read_text(encoding="utf-8")
+    program.write_text(original, encoding="utf-8")
+    text = f"[method.own]\ncommand = ['{sys.executable}', '-B', '{program}']\n"
+    methods.write_text(text, encoding="utf-8")
+    words = ["run", "chapter6", "-o", out, "--experiments", EXPERIMENTS, "--methods", "sse,own", "--method-file", methods,
+             "--solver", "active-set", "--shard-interval", 0, "--jobs", 2, "--quiet"]
+    process = subprocess.Popen([outside.program, *map(str, words)])
+    shards = outside.folder / "own.h5.shards"
+    while process.poll() is None and not list(shards.glob("*.shard")):
+        pass
+    process.kill()
+    process.wait()
+    assert not out.exists() and list(shards.glob("*.shard"))
+    for changed in "program", "options", "command":
+        if changed == "program":
+            program.write_text(original + "# of another mind\n", encoding="utf-8")
+        elif changed == "options":
+            methods.write_text(text + "options = {threshold = 2.5}\n", encoding="utf-8")
+        else:
+            methods.write_text(text.replace("'-B'", "'-B', '-O'"), encoding="utf-8")
+        message = outside.run(*words, "--resume", code=2)
+        assert "it belongs to a run with another methods" in message and "own.py" in message, (changed, message)
+        program.write_text(original, encoding="utf-8")
+        methods.write_text(text, encoding="utf-8")
+    outside.run(*words, "--resume")
+    with h5py.File(out) as file, h5py.File(outside.archive) as before:
+        assert numpy.array_equal(file["flagged"][:, 0], file["flagged"][:, 1])
+        fingerprint = json.loads(file["methods/own"].attrs["description"])["fingerprint"]
+        assert str(program) in fingerprint and "options {}" in fingerprint, fingerprint
+        assert "fingerprint" not in json.loads(before["methods/sse"].attrs["description"])
+
+
 def main(program, source, octave=""):
     os.chdir(source)
     with tempfile.TemporaryDirectory() as name:
@@ -441,6 +476,7 @@ def main(program, source, octave=""):
         check_programs(outside, octave)
         check_odd_programs(outside)
         check_program_refusals(outside)
+        check_changed_programs(outside)
 
 
 if __name__ == "__main__":

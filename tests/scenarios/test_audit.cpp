@@ -13,7 +13,7 @@ namespace {
 std::vector<AuditSample> samples_of(const Study& study, std::int64_t experiment, double share) {
   AuditSampler sampler(study.seed, experiment, share);
   simulate_experiment(study, draw_experiment(study, experiment), qp_solver_factory("active-set"),
-                      [&](const Mpc& controller) { sampler.observe(controller); });
+                      [&](const Controller& controller) { sampler.observe(controller); });
   return sampler.take();
 }
 

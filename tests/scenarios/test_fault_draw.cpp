@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "plants/linear_plant.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/draw.hpp"
 #include "scenarios/signals.hpp"

@@ -213,6 +213,12 @@ parameter = [{name = "cd1", value = 3.145}, {name = "k2", value = 3.29}]
 )");
 }
 
+/// The small study with a controller of somebody else.
+std::string controller_program_text() {
+  return replaced(small_study(), "[controller.mv.hot]",
+                  "[controller.program]\ncommand = [\"mpc\", \"\", \"mpc\"]\n\n[controller.mv.hot]");
+}
+
 /// The small study in which nothing but noise and faults moves the loop.
 std::string unexcited_study_text() {
   const std::string text = small_study();
@@ -225,7 +231,7 @@ std::vector<Study> of_tests() {
   std::vector<Study> studies;
   for (const std::string& text :
        {small_study(), random_study_text(), scenario_study_text(), nonlinear_study_text(), random_tank_text(),
-        fmu_study_text(), program_study_text(), unexcited_study_text()})
+        fmu_study_text(), program_study_text(), controller_program_text(), unexcited_study_text()})
     studies.push_back(parse_study(text, "s.toml"));
   return studies;
 }

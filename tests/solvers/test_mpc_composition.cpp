@@ -70,7 +70,7 @@ TEST_CASE("setpoint MPC: its first plan minimises (2.26), evaluated by simulatio
   controller.set_setpoints(y_set);
   controller.reset(Eigen::Vector2d::Zero(), Eigen::VectorXd::Zero(1));
   REQUIRE(controller.step(Eigen::Vector2d::Zero(), Eigen::VectorXd::Zero(1)).status == ControlStatus::ok);
-  const Eigen::VectorXd plan = controller.move_problem().result.x;
+  const Eigen::VectorXd plan = controller.move_problem()->result.x;
   const double best = simulated_objective(options, plan, y_set);
   // A quadratic with its minimum at the plan is even about it: the first-order part must vanish.
   const double h = 1e-4;

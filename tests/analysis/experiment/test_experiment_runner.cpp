@@ -62,7 +62,7 @@ TEST_CASE("runner: a loop is run once however many methods look at it, and none 
   const auto counted = [&](const std::vector<std::string>& methods) {
     steps = 0;
     return ExperimentRunner(study, basis, methods, testing::kFactory)
-        .run(index, StorePolicy::none, [&](const Mpc&) { ++steps; });
+        .run(index, StorePolicy::none, [&](const Controller&) { ++steps; });
   };
   const ExperimentRecord by_all = counted(all);
   REQUIRE(by_all.status == ExperimentStatus::ok);

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "solvers/mpc_options.hpp"
+#include "solvers/qp_solver.hpp"
+
+namespace mpm {
+
+enum class ControlStatus {
+  ok,
+  infeasible,  ///< no move keeps the hard limits of MVs and CVs over the horizon
+  failed,      ///< the solver, or the program that is the controller, gave no answer
+};
+
+std::string_view to_string(ControlStatus status);
+
+/// What the controller decided at one sample, and how well its problems were solved.
+struct ControlMove {
+  ControlStatus status = ControlStatus::ok;
+  Eigen::VectorXd u;          ///< MVs to apply from this sample on, nu
+  Eigen::VectorXd u_target;   ///< targets of the optimizer, nu
+  double kkt_residual = 0.0;  ///< the larger of the two problems' residuals
+  int iterations = 0;         ///< of the solver, both problems
+  int fallbacks = 0;          ///< problems whose answer is Ipopt's, see CertifiedSolver
+};
+
+/// Whoever decides on the MVs of a loop: the Mpc of this program, or somebody else's. y(k) and d(k) are
+/// measured just before u(k) acts; d(k) acts from sample k on, as u(k) does.
+///
+/// | symbol | meaning                     | shape |
+/// |--------|-----------------------------|-------|
+/// | y, d   | measured CVs and MDs        | ny, nd|
+/// | u      | MVs                         | nu    |
+class Controller {
+ public:
+  Controller() = default;
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+  virtual ~Controller() = default;
+
+  /// Starts from the steady state of MVs `u` (nu) and MDs `d` (nd) and forgets what was before. Throws
+  /// InputError for a wrong size or a number that is not finite.
+  virtual void reset(const Eigen::Ref<const Eigen::VectorXd>& u,
+                     const Eigen::Ref<const Eigen::VectorXd>& d) = 0;
+
+  /// The move of this sample, which acts unless set_acting() is called. When the status is not `ok` the MVs
+  /// stay where they are. The reference stays valid until the next call. Throws InputError as reset().
+  virtual const ControlMove& step(const Eigen::Ref<const Eigen::VectorXd>& y,
+                                  const Eigen::Ref<const Eigen::VectorXd>& d) = 0;
+
+  /// MVs that act from the last step on in place of those of its move, because something is added to them
+  /// that the controller knows, such as a test signal. Throws InputError as reset().
+  virtual void set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) = 0;
+
+  /// Replaces the soft limits of the CVs from the next step on.
+  virtual void set_cv_soft(const Limits& limits) = 0;
+
+  /// The setpoints from the next step on; ny numbers, of which those of CVs without a setpoint are not read.
+  /// They are zero until this is called.
+  virtual void set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) = 0;
+
+  /// The MVs at which a loop starts: the economic optimum (6.19) for measured disturbances `d`, the setpoints
+  /// as they are and no bias; without targets zero, the operating point of the model. Depends on its
+  /// arguments alone.
+  virtual Eigen::VectorXd nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) = 0;
+
+  /// The problems of the last step, for those who solve them again; a controller has none that does not pose
+  /// them here, and there is no target problem without targets. When the targets have no answer, the moves
+  /// are those of an earlier step.
+  virtual std::optional<SolvedQp> target_problem() const { return std::nullopt; }
+  virtual std::optional<SolvedQp> move_problem() const { return std::nullopt; }
+
+  /// Why the status of the last move is `failed`, for people.
+  virtual std::string failure() const { return "the solver gave no answer"; }
+};
+
+}  // namespace mpm
