@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "plants/coker.hpp"
 #include "plants/error.hpp"
 #include "plants/quadruple_tank.hpp"
 #include "plants/transfer_function_plants.hpp"
@@ -37,6 +38,7 @@ constexpr std::array kCatalogue{
     CatalogueEntry{"siso", siso_plant},
     CatalogueEntry{"ogunnaike-ray", ogunnaike_ray_column},
     CatalogueEntry{"banded-20x8", banded_unit_20x8},
+    CatalogueEntry{"coker-12x7", coker_12x7},
 };
 
 const CatalogueEntry& entry_of(const std::string& name) {

@@ -185,4 +185,24 @@ TEST_CASE("the made-up unit has channels along its diagonal only, each by its fo
   CHECK(plant.G(19, 6) == TransferFunction::first_order(-3.0 * std::exp(-0.8), 17.0, 4.0));
 }
 
+TEST_CASE("the coker interacts as figure 7.7 has it with MV2 and MV4 free", "[catalogue]") {
+  const PlantModel plant = benchmark_plant("coker-12x7");
+  REQUIRE(plant.cvs.size() == 12);
+  REQUIRE(plant.mvs.size() == 7);
+  REQUIRE(plant.mds.size() == 2);
+  // Moves of MV2 and MV4 that bring CV11 and CV12 up by one, each with the other one held.
+  const Eigen::MatrixXd gains = plant.G.static_gain();
+  const Eigen::MatrixXd free = (Eigen::MatrixXd(12, 2) << gains.col(1), gains.col(3)).finished();
+  const Eigen::MatrixXd answers = free * free.bottomRows(2).inverse();
+  for (int cv = 0; cv < 12; ++cv) {
+    CAPTURE(cv + 1);
+    const bool in_range = cv < 10;
+    const bool not_by_cv11 = cv == 5 || cv == 6 || cv == 8;
+    const bool by_cv12 = cv < 4 || cv == 5;
+    CHECK((answers(cv, 0) != 0.0) == (in_range ? !not_by_cv11 : cv == 10));
+    CHECK((answers(cv, 1) != 0.0) == (in_range ? by_cv12 : cv == 11));
+  }
+  CHECK_FALSE(plant.G(10, 4).is_zero());  // the channel that is identified again
+}
+
 }  // namespace mpm

@@ -46,7 +46,8 @@ TEST_CASE("an unknown plant of the catalogue is refused with the known ones", "[
   CHECK(refusal("[study]\nname = 's'\ntitle = 's'\nseed = 1\n[plant]\ncatalogue = 'shell-7x4'\n") ==
         "s.toml:6: plant.catalogue: found 'shell-7x4' (nearest: 'shell-7x3'); allowed: shell-7x3, shell-3x3, "
         "quadruple-tank, quadruple-tank-table-3.1, quadruple-tank-flows, "
-        "quadruple-tank-flows-table-3.1, distillation-column, siso, ogunnaike-ray, banded-20x8");
+        "quadruple-tank-flows-table-3.1, distillation-column, siso, ogunnaike-ray, banded-20x8, "
+        "coker-12x7");
 }
 
 TEST_CASE("the channels of a plant are checked", "[study_file]") {
