@@ -22,7 +22,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kLastChapter = 6;
+constexpr std::int64_t kLastChapter = 7;
+
+/// The study of a variant: that of the table with changes, or another one, with changes or without.
+Study read_variant(const TomlTable& variant, const toml::table& base, const fs::path& path,
+                   const std::string& name) {
+  const std::string place = fmt::format("{} ({})", path.string(), name);
+  if (!variant.has("study"))
+    return read_study_variant(variant, base, place);
+  toml::table text = parse_toml(read_base_study(variant, path.parent_path()).source, place);
+  make_changes(text, variant);
+  return study_of(text, place);
+}
 
 std::map<std::string, Study> read_studies(const TomlTable& document, const TomlTable& heading,
                                           const fs::path& path) {
@@ -31,12 +42,11 @@ std::map<std::string, Study> read_studies(const TomlTable& document, const TomlT
   if (!document.has("variant"))
     return studies;
   const toml::table text = parse_toml(base.source, path.string());
-  for (const TomlTable& table : document.tables("variant", {"name", "remove", "set"})) {
+  for (const TomlTable& table : document.tables("variant", {"name", "study", "remove", "set"})) {
     const std::string name = read_name(table, "name");
     if (name == kStudyItself)
       table.refuse("name", in_quotes(name), "another name: it stands for the study as it is");
-    if (!studies.emplace(name, read_study_variant(table, text, fmt::format("{} ({})", path.string(), name)))
-             .second)
+    if (!studies.emplace(name, read_variant(table, text, path, name)).second)
       table.refuse("name", in_quotes(name), "each name once");
   }
   return studies;

@@ -85,7 +85,7 @@ void add_reproduce(CommandSet& commands) {
   options->run.solver = "active-set";
   CLI::App& app = commands.add("reproduce", "Run the studies behind the tables of the thesis, cell by cell",
                                [options] { return reproduce_tables(*options); });
-  app.add_option("TABLES", options->tables, "all, chapter2 to chapter6, or the number of a table such as 4.5")
+  app.add_option("TABLES", options->tables, "all, chapter2 to chapter7, or the number of a table such as 4.5")
       ->capture_default_str();
   add_path(app, "-o,--output", options->output, "Page to write (HTML)");
   add_solver(app, options->run.solver);

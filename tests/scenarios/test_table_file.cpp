@@ -256,6 +256,22 @@ TEST_CASE("a row can name the benchmark of methods that need one", "[table_file]
              Catch::Contains("variant[0].name: found 'study'; allowed: another name"));
 }
 
+TEST_CASE("a variant can be another study", "[table_file]") {
+  const TableFolder folder;
+  const auto with_other = [&](const std::string& keys) {
+    return folder.put("t.toml",
+                      replaced(kTable, "[[row]]", "[[variant]]\nname = \"other\"\n" + keys + "\n[[row]]"));
+  };
+  const ThesisTable table = load_table(with_other("study = \"wood-berry\""), kQuantities);
+  CHECK(table.studies.at("other").name == "wood-berry");
+  CHECK(table.studies.at("").name != "wood-berry");
+  const ThesisTable changed =
+      load_table(with_other("study = \"wood-berry\"\nset.simulation.samples = 321"), kQuantities);
+  CHECK(changed.studies.at("other").simulation.samples == 321);
+  CHECK_THAT(message_of(folder.path(), [&] { load_table(with_other("study = \"wood-bery\""), kQuantities); }),
+             Catch::Contains("variant[1].study") && Catch::Contains("nearest: 'wood-berry'"));
+}
+
 TEST_CASE("what a table file cannot mean is refused by file, line and key", "[table_file]") {
   CHECK_THAT(table_refusal("cv = \"y1\"", "cv = \"y9\""),
              Catch::StartsWith("t.toml:13: column[0].cv: found 'y9'"));
