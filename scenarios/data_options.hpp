@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/record_options.hpp"
+
 namespace mpm {
 
 /// The order of day, month and year in the time stamps of a file.
@@ -42,9 +44,11 @@ struct DataOptions {
   std::vector<std::string> on_values{"1", "on", "true", "auto"};
   CvResampling cv_resampling = CvResampling::mean;
   RecordStart start = RecordStart::automatic;
-  double most_missing = 0.3;           ///< share of the samples of a CV; beyond it the record is refused
-  std::vector<std::string> period;     ///< two time stamps; empty: the whole file
-  std::vector<std::string> benchmark;  ///< two time stamps; empty: the simulated loop of the study
+  double most_missing = 0.3;            ///< share of the samples of a CV; beyond it the record is refused
+  std::vector<std::string> candidates;  ///< columns of signals that the model does not know
+  GapFill fill = GapFill::none;         ///< what methods find where a CV is missing
+  std::vector<std::string> period;      ///< two time stamps; empty: the whole file
+  std::vector<std::string> benchmark;   ///< two time stamps, or "found"; empty: the simulated loop
 
   bool operator==(const DataOptions&) const = default;
 };

@@ -19,9 +19,11 @@ namespace mpm {
 /// | y_set    | y_set        | ny x N | setpoints; NaN in a row without a column                        |
 /// |          | lower, upper | ny x N | soft limits; NaN in a row without a column                      |
 /// | y_sim    | y_sim        | ny x N | output of the model; NaN in a row without a column              |
+/// |          | candidates   | nc x N | signals that the model does not know, without their means       |
 struct PlantRecord {
-  Eigen::MatrixXd y, u, d, u_target, y_set, lower, upper, y_sim;
-  std::vector<std::string> stamps;  ///< of the samples, for people
+  Eigen::MatrixXd y, u, d, u_target, y_set, lower, upper, y_sim, candidates;
+  std::vector<std::string> candidate_names;  ///< their columns
+  std::vector<std::string> stamps;           ///< of the samples, for people
   /// First sample of the benchmark period and the one after its last; equal: there is none.
   std::pair<Eigen::Index, Eigen::Index> benchmark{0, 0};
   std::vector<std::string> warnings;  ///< a sentence each

@@ -15,6 +15,8 @@ enum class GapFill {
 /// was measured. The sizes are in standard deviations of the measurement noise of the CV
 /// (SimulationOptions::noise_standard_deviation), to which ranges and resolutions of transmitters are chosen.
 struct RecordOptions {
+  static constexpr int kMostCandidates = 9;  ///< each has a stream of its own
+
   double outlier_share = 0.0;                              ///< of the samples of each CV, drawn one by one
   Distribution outlier_size = Distribution::constant(10);  ///< added, with either sign
   double quantisation = 0.0;                               ///< step between two values; 0: none

@@ -99,8 +99,20 @@ toml::array limit_steps(const Study& study, const PlantRecord& record) {
   return steps;
 }
 
+const char* word_of(GapFill fill) {
+  switch (fill) {
+    case GapFill::none:
+      return "none";
+    case GapFill::hold:
+      return "hold";
+    case GapFill::linear:
+      return "linear";
+  }
+  return "none";
+}
+
 /// Share of the samples of the CVs that are missing, and the mean length of a gap.
-toml::table missing_of(const Eigen::MatrixXd& y) {
+toml::table missing_of(const Eigen::MatrixXd& y, GapFill fill) {
   double missing = 0.0, gaps = 0.0;
   for (Eigen::Index cv = 0; cv < y.rows(); ++cv)
     for (Eigen::Index k = 0; k < y.cols(); ++k)
@@ -112,7 +124,7 @@ toml::table missing_of(const Eigen::MatrixXd& y) {
   return toml::table{
       {"share", std::min(missing / static_cast<double>(y.size()), 0.99 * length / (length + 1.0))},
       {"length", length},
-      {"fill", "none"}};
+      {"fill", word_of(fill)}};
 }
 
 void refuse_short_record(const Study& study, const PlantRecord& record) {
@@ -158,7 +170,11 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
   historian.erase("missing");
   historian.erase("candidates");
   if (record.y.array().isNaN().cast<double>().mean() > kFewestMissing)
-    historian.insert_or_assign("missing", missing_of(record.y));
+    historian.insert_or_assign("missing", missing_of(record.y, study.data.fill));
+  if (record.candidates.rows() > 0)
+    historian.insert_or_assign(
+        "candidates", toml::table{{"count", std::min<Eigen::Index>(record.candidates.rows(),
+                                                                   RecordOptions::kMostCandidates)}});
   table_in(text, "diagnosis").insert_or_assign("self_check", "none");
   if (monitoring)
     text.insert_or_assign("monitoring",

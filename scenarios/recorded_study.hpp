@@ -14,11 +14,12 @@ namespace mpm {
 /// The study whose loops are as long as the record, under its measured disturbances, and with the setpoints
 /// and soft limits as they were at the time (those of the study where they were not recorded). Its basis case
 /// is the nominal loop of the record, and its experiments are loops of this very controller, excitation and
-/// length. Samples are missing in them as often as in the record, in gaps of the same mean length; what else
-/// a historian does to them stands in the [record] of the study. It is the
-/// text of `study` with other values, as parse_study() reads it: what is not known of a plant (a test signal,
-/// named scenarios, thresholds, reported numbers) is left out, and so is the self-check, since nobody can
-/// choose another excitation.
+/// length. Samples are missing in them as often as in the record, in gaps of the same mean length, filled as
+/// the [data] says, and they have as many candidates, up to 9, one of which drives every second disturbance;
+/// what else a historian does to them stands in the [record] of the study. It is the text of `study` with
+/// other values, as parse_study() reads it: what is not known of a plant (a test signal, named scenarios,
+/// thresholds, reported numbers) is left out, and so is the self-check, since nobody can choose another
+/// excitation.
 ///
 /// Moves of MDs are steps of the text: with more than 10000 of them moves below a growing part of the
 /// standard deviation are left out of the simulated loops.

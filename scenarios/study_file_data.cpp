@@ -1,4 +1,5 @@
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/study_file_keys.hpp"
@@ -37,6 +38,15 @@ std::vector<std::string> read_period(const TomlTable& data, std::string_view key
   if (stamps.size() != 2)
     data.refuse(key, "another number of time stamps", "two, the first and the last");
   return stamps;
+}
+
+/// Two time stamps, or "found" alone.
+std::vector<std::string> read_benchmark_period(const TomlTable& data) {
+  const toml::node* const node = data.find("benchmark");
+  if (node == nullptr || !node->is_string())
+    return read_period(data, "benchmark");
+  read_one_of(data, "benchmark", {"found"});
+  return {"found"};
 }
 
 /// One of these characters; empty without the key.
@@ -93,8 +103,10 @@ DataOptions read_data(const TomlTable& document, const Study& study) {
                                                {"anywhere", RecordStart::anywhere}},
                                               options.start);
   options.most_missing = read_number_or(data, "most_missing", NumberRule::inside(0, 1), options.most_missing);
+  options.candidates = read_texts_or(data, "candidates", "columns", options.candidates);
+  options.fill = read_gap_fill_or(data, "fill", options.fill);
   options.period = read_period(data, "period");
-  options.benchmark = read_period(data, "benchmark");
+  options.benchmark = read_benchmark_period(data);
   return options;
 }
 

@@ -132,6 +132,10 @@ std::optional<CalibrationOptions> read_calibration(const TomlTable& document, co
 
 /// [aggregate]
 AggregateOptions read_aggregate(const TomlTable& document);
+
+/// "none", "hold" or "linear" under `key` (study_file_record.cpp).
+GapFill read_gap_fill_or(const TomlTable& table, std::string_view key, GapFill fallback);
+
 /// [data] (study_file_data.cpp); `study` has its plant.
 DataOptions read_data(const TomlTable& document, const Study& study);
 

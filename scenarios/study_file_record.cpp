@@ -9,8 +9,7 @@
 namespace mpm {
 namespace {
 
-constexpr double kMostOutliers = 0.5;        // beyond it the others are the outliers
-constexpr std::int64_t kMostCandidates = 9;  // each has a stream of its own
+constexpr double kMostOutliers = 0.5;  // beyond it the others are the outliers
 
 /// A gap begins with a probability of at most 1 after each sample that is there.
 double largest_missing_share(double length) {
@@ -32,14 +31,12 @@ void read_missing(const TomlTable& record, RecordOptions& options) {
     table.refuse("share", fmt::format("{}", options.missing_share),
                  fmt::format("at most {:.3g} with gaps of {} samples: a sample stands between two gaps",
                              largest, options.missing_length));
-  options.fill = read_choice_or<GapFill>(
-      table, "fill", {{"none", GapFill::none}, {"hold", GapFill::hold}, {"linear", GapFill::linear}},
-      options.fill);
+  options.fill = read_gap_fill_or(table, "fill", options.fill);
 }
 
 void read_candidates(const TomlTable& record, RecordOptions& options) {
   const TomlTable table = record.table("candidates", study_file_keys("record.candidates"));
-  options.candidates = static_cast<int>(read_whole(table, "count", 1, kMostCandidates));
+  options.candidates = static_cast<int>(read_whole(table, "count", 1, RecordOptions::kMostCandidates));
   options.candidate_share =
       read_number_or(table, "share", {.low = 0, .high = 1, .low_included = true, .high_included = true},
                      options.candidate_share);
@@ -58,6 +55,11 @@ void refuse_without_noise(const TomlTable& record, const Study& study) {
 }
 
 }  // namespace
+
+GapFill read_gap_fill_or(const TomlTable& table, std::string_view key, GapFill fallback) {
+  return read_choice_or<GapFill>(
+      table, key, {{"none", GapFill::none}, {"hold", GapFill::hold}, {"linear", GapFill::linear}}, fallback);
+}
 
 RecordOptions read_record(const TomlTable& document, const Study& study) {
   RecordOptions options;

@@ -94,7 +94,8 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
                     .u_target = where_recorded(record.u_target, point.u.replicate(1, record.samples())),
                     .d = record.d,
                     .y_sim = where_recorded(record.y_sim, y_sim),
-                    .y_set = Eigen::MatrixXd::Constant(record.y.rows(), record.samples(), kNaN)};
+                    .y_set = Eigen::MatrixXd::Constant(record.y.rows(), record.samples(), kNaN),
+                    .candidates = record.candidates};
   loop.y.leftCols(std::min(unjudged, record.samples())).setConstant(kNaN);
   const Eigen::MatrixXd of_study = setpoints(study);
   for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)

@@ -14,6 +14,7 @@
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/method_panel.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/validation/benchmark_period.hpp"
 #include "analysis/validation/record_check.hpp"
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
@@ -26,9 +27,11 @@
 #include "plants/error.hpp"
 #include "results/assess/record_assessment.hpp"
 #include "results/records/plant_record_file.hpp"
+#include "scenarios/historian.hpp"
 #include "scenarios/recorded_study.hpp"
 #include "scenarios/signals.hpp"
 #include "scenarios/study_library.hpp"
+#include "scenarios/window_scan.hpp"
 
 namespace mpm {
 namespace {
@@ -153,6 +156,36 @@ void add_trial(RecordAssessment& assessment, const AssessArguments& options, Pro
   }
 }
 
+/// Does the method not apply to a record with gaps?
+bool needs_every_sample(const std::string& method) {
+  return assessment_method(method).requirements.complete_record;
+}
+
+/// The loop with the gaps of its CVs closed, from the first sample that is judged on.
+AssessedLoop without_gaps(AssessedLoop loop, Eigen::Index unjudged, GapFill fill) {
+  auto judged = loop.y.rightCols(loop.samples() - unjudged);
+  for (Eigen::Index cv = 0; cv < judged.rows(); ++cv)
+    judged.row(cv) = filled(judged.row(cv), fill);
+  return loop;
+}
+
+/// The period of the record that data.benchmark = "found" asks for: a quarter of it, or what windows need.
+void find_benchmark(const Study& study, RecordAssessment& assessment) {
+  if (study.data.benchmark.size() != 1)
+    return;
+  PlantRecord& record = assessment.record;
+  const Eigen::Index fewest = window_scan(assessment.study).longest + kFewestCorrelatedPairs;
+  record.benchmark = quietest_period(assessment.loop, std::max(record.samples() / 4, fewest));
+  const auto [first, end] = record.benchmark;
+  if (first == end)
+    throw InputError("data.benchmark", "\"found\", and no period with enough samples of a CV",
+                     "two time stamps, or a longer record");
+  assessment.warnings.push_back(fmt::format(
+      "the benchmark is the period of the record in which the model is best, {} to {}: look whether the loop "
+      "ran well then (data.benchmark)",
+      record.stamps[static_cast<std::size_t>(first)], record.stamps[static_cast<std::size_t>(end - 1)]));
+}
+
 RecordAssessment assessed(const AssessArguments& options, const Study& study) {
   RecordAssessment assessment;
   assessment.file = std::filesystem::path(options.data).filename().string();
@@ -160,7 +193,15 @@ RecordAssessment assessed(const AssessArguments& options, const Study& study) {
   assessment.record = load_plant_record(study, options.data);
   assessment.warnings = check_record(study, assessment.record);
   const auto monitoring = monitoring_of(options, study, assessment.record);
-  assessment.study = recorded_study(study, assessment.record, options.methods, monitoring);
+  const GapFill fill = study.data.fill;
+  const auto study_with = [&](GapFill gaps) {
+    Study of = study;
+    of.data.fill = gaps;
+    return recorded_study(of, assessment.record, options.methods, monitoring);
+  };
+  // The calibration run has the gaps as the method of the verdict has them.
+  const bool closed_verdict = needs_every_sample(options.methods.front());
+  assessment.study = study_with(closed_verdict ? fill : GapFill::none);
   const QpSolverFactory factory = qp_solver_factory(options.run.solver);
   const BasisCase basis = basis_of(assessment.study, factory);
   assessment.unjudged = samples_to_settle(assessment.study, basis.point, assessment.record, study.data.start);
@@ -176,12 +217,19 @@ RecordAssessment assessed(const AssessArguments& options, const Study& study) {
                     "judged, until the slowest channel has settled (data.start)",
                     assessment.unjudged));
   assessment.loop = assessed_loop(assessment.study, basis.point, assessment.record, assessment.unjudged);
+  find_benchmark(study, assessment);
   const auto [first, end] = assessment.record.benchmark;
-  std::optional<AssessedLoop> benchmark;
-  if (end > first)
-    benchmark = window_of(assessment.loop, first, end - first);
-  MethodPanel panel(assessment.study, basis, options.methods, factory, benchmark);
-  assessment.said = panel.assess(assessment.loop);
+  const Study as_kept = study_with(GapFill::none), closed = study_with(fill);
+  for (const std::string& name : options.methods) {
+    const bool closes = needs_every_sample(name);
+    const AssessedLoop loop =
+        closes ? without_gaps(assessment.loop, assessment.unjudged, fill) : assessment.loop;
+    std::optional<AssessedLoop> benchmark;
+    if (end > first)
+      benchmark = window_of(loop, first, end - first);
+    MethodPanel panel(closes ? closed : as_kept, basis, {name}, factory, benchmark);
+    assessment.said.push_back(panel.assess(loop).front());
+  }
   assessment.y0 = nominal_loop(assessment.study, assessment.loop, factory);
   add_repair_to(assessment, basis, factory);
   assessment.warnings.insert(assessment.warnings.begin(), assessment.record.warnings.begin(),
@@ -215,7 +263,7 @@ void add_assess(CommandSet& commands) {
       commands.add("assess", "Assess records of a plant: which CVs lose how much, why, and how sure that is",
                    [options, &commands] { return assess(*options, commands.command_line()); });
   add_path(app, "STUDY", options->study, "Study file, or name of a shipped study")->required();
-  add_path(app, "DATA", options->data, "Records of the loop (CSV)")->required();
+  add_path(app, "DATA", options->data, "Records of the loop (CSV or netCDF-4)")->required();
   add_methods_option(app, options->methods, "Methods, separated by commas; the first one gives the verdict");
   add_path(app, "-o,--output", options->page, "Page to write (HTML)");
   app.add_option("--window", options->window, "Samples of a window that moves over the record");

@@ -405,6 +405,163 @@ std::vector<T> Hdf5Group::read_list(const std::string& name) const {
   return read_dataset<T>(place, dataset);
 }
 
+// --- What others have written -----------------------------------------------------------------------------
+
+namespace {
+
+bool is_text_type(hid_t type) {
+  return H5Tget_class(type) == H5T_STRING;
+}
+
+bool is_number_type(hid_t type) {
+  return H5Tget_class(type) == H5T_INTEGER || H5Tget_class(type) == H5T_FLOAT;
+}
+
+/// Texts of any length out of `read`, which fills a buffer of a given type in memory.
+template <class Read>
+std::vector<std::string> any_texts(hid_t type, hid_t space, std::size_t count, Read read) {
+  if (H5Tis_variable_str(type) > 0)
+    return from_buffer<std::string>(count, type, space, [&](void* buffer) { read(type, buffer); });
+  const std::size_t length = H5Tget_size(type);
+  std::vector<char> characters(length * count);
+  read(type, characters.data());
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < count; ++i) {
+    const char* const first = characters.data() + i * length;
+    texts.emplace_back(first, std::find(first, first + length, '\0'));
+    texts.back().erase(texts.back().find_last_not_of(' ') + 1);
+  }
+  return texts;
+}
+
+/// An attribute of a variable, and its type; none when there is none with one value.
+struct ForeignAttribute {
+  Handle attribute, type, space;
+
+  static std::optional<ForeignAttribute> find(const Place& place, hid_t dataset) {
+    if (H5Aexists(dataset, place.name.c_str()) <= 0)
+      return std::nullopt;
+    Handle attribute = place.own(H5Aopen(dataset, place.name.c_str(), H5P_DEFAULT), H5Aclose, "open it");
+    Handle type = place.own(H5Aget_type(attribute.get()), H5Tclose, "read its type");
+    Handle space = place.own(H5Aget_space(attribute.get()), H5Sclose, "read its shape");
+    if (H5Sget_simple_extent_npoints(space.get()) != 1)
+      return std::nullopt;
+    return ForeignAttribute{std::move(attribute), std::move(type), std::move(space)};
+  }
+};
+
+herr_t keep_name(hid_t, const char* name, const H5L_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+herr_t keep_scale_name(hid_t, unsigned, hid_t scale, void* name) {
+  const ssize_t length = H5Iget_name(scale, nullptr, 0);
+  std::string path(length > 0 ? static_cast<std::size_t>(length) + 1 : 1, '\0');
+  H5Iget_name(scale, path.data(), path.size());
+  path.resize(path.size() - 1);
+  *static_cast<std::string*>(name) = path.substr(path.rfind('/') + 1);
+  return 1;
+}
+
+}  // namespace
+
+std::vector<std::string> Hdf5Group::variables() const {
+  std::vector<std::string> links, names;
+  state_->place("group", "")
+      .check(H5Literate(state_->group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &links),
+             "list it");
+  for (std::string& name : links) {
+    H5O_info_t info;
+    if (H5Oget_info_by_name2(state_->group.get(), name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0 &&
+        info.type == H5O_TYPE_DATASET)
+      names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::vector<std::size_t> Hdf5Group::shape(const std::string& variable) const {
+  const Place place = state_->place("variable", variable);
+  const Shape found = shape_of_dataset(place, open_dataset(place, state_->group.get()));
+  return {found.begin(), found.end()};
+}
+
+std::vector<std::string> Hdf5Group::dimensions(const std::string& variable) const {
+  const Place place = state_->place("variable", variable);
+  const Handle dataset = open_dataset(place, state_->group.get());
+  std::vector<std::string> names(shape_of_dataset(place, dataset).size());
+  const bool coordinates = names.size() == 1 && H5DSis_scale(dataset.get()) > 0;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (coordinates)
+      names[i] = variable;
+    else if (H5DSget_num_scales(dataset.get(), static_cast<unsigned>(i)) > 0)
+      H5DSiterate_scales(dataset.get(), static_cast<unsigned>(i), nullptr, keep_scale_name, &names[i]);
+  return names;
+}
+
+bool Hdf5Group::is_number(const std::string& variable) const {
+  const Place place = state_->place("variable", variable);
+  const Handle dataset = open_dataset(place, state_->group.get());
+  return is_number_type(place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type").get());
+}
+
+bool Hdf5Group::is_text(const std::string& variable) const {
+  const Place place = state_->place("variable", variable);
+  const Handle dataset = open_dataset(place, state_->group.get());
+  return is_text_type(place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type").get());
+}
+
+std::vector<double> Hdf5Group::numbers(const std::string& variable) const {
+  const Place place = state_->place("variable", variable);
+  const Handle dataset = open_dataset(place, state_->group.get());
+  if (!is_number(variable))
+    place.fail("no numbers");
+  std::vector<double> values(product(shape_of_dataset(place, dataset)));
+  if (!values.empty())
+    place.check(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+                "read it");
+  return values;
+}
+
+std::vector<std::string> Hdf5Group::texts(const std::string& variable) const {
+  const Place place = state_->place("variable", variable);
+  const Handle dataset = open_dataset(place, state_->group.get());
+  const Handle type = place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type");
+  const Handle space = place.own(H5Dget_space(dataset.get()), H5Sclose, "read its shape");
+  if (!is_text_type(type.get()))
+    place.fail("no texts");
+  return any_texts(
+      type.get(), space.get(), product(shape_of_dataset(place, dataset)), [&](hid_t as, void* buffer) {
+        place.check(H5Dread(dataset.get(), as, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer), "read it");
+      });
+}
+
+std::optional<double> Hdf5Group::number_attribute(const std::string& variable,
+                                                  const std::string& name) const {
+  const Place place = state_->place("attribute", name);
+  const Handle dataset = open_dataset(state_->place("variable", variable), state_->group.get());
+  const auto found = ForeignAttribute::find(place, dataset.get());
+  if (!found || !is_number_type(found->type.get()))
+    return std::nullopt;
+  double value = 0.0;
+  place.check(H5Aread(found->attribute.get(), H5T_NATIVE_DOUBLE, &value), "read it");
+  return value;
+}
+
+std::optional<std::string> Hdf5Group::text_attribute(const std::string& variable,
+                                                     const std::string& name) const {
+  const Place place = state_->place("attribute", name);
+  const Handle dataset = open_dataset(state_->place("variable", variable), state_->group.get());
+  const auto found = ForeignAttribute::find(place, dataset.get());
+  if (!found || !is_text_type(found->type.get()))
+    return std::nullopt;
+  return any_texts(found->type.get(), found->space.get(), 1,
+                   [&](hid_t as, void* buffer) {
+                     place.check(H5Aread(found->attribute.get(), as, buffer), "read it");
+                   })
+      .front();
+}
+
 // --- Files ------------------------------------------------------------------------------------------------
 
 namespace {
@@ -439,13 +596,16 @@ Hdf5File Hdf5File::create(const std::string& name) {
 }
 
 Hdf5File Hdf5File::open(const std::filesystem::path& path) {
+  return open_unsealed(read_sealed_file(path), path.string());
+}
+
+Hdf5File Hdf5File::open_unsealed(std::vector<std::byte> content, const std::string& name) {
   silence_library();
-  const Place place{path.string(), "group", "/", ""};
-  std::vector<std::byte> content = read_sealed_file(path);
+  const Place place{name, "group", "/", ""};
   constexpr unsigned kReadOnlyCopy = 0;
   const Handle file(H5LTopen_file_image(content.data(), content.size(), kReadOnlyCopy), H5Fclose);
   if (file.get() < 0)
-    throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one ({})", path.string(), last_error()));
+    throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one ({})", name, last_error()));
   return Hdf5File(std::make_shared<const Hdf5Group::State>(
       Hdf5Group::State{open_root(place, file), place.file, place.parent}));
 }

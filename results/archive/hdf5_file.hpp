@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -65,6 +66,24 @@ class Hdf5Group {
   template <class T>
   std::vector<T> read_list(const std::string& name) const;
 
+  // Of files that others have written, whatever types they chose:
+
+  /// Names of the variables of this group, in the order of the alphabet.
+  std::vector<std::string> variables() const;
+  /// The lengths of the dimensions of a variable.
+  std::vector<std::size_t> shape(const std::string& variable) const;
+  /// The names of its dimensions; the name of the variable itself of coordinates, empty where it has none.
+  std::vector<std::string> dimensions(const std::string& variable) const;
+  bool is_number(const std::string& variable) const;
+  bool is_text(const std::string& variable) const;
+  /// All values, row by row, of whatever number type.
+  std::vector<double> numbers(const std::string& variable) const;
+  /// All values of texts of fixed or variable length.
+  std::vector<std::string> texts(const std::string& variable) const;
+  /// An attribute of a variable; none when there is none, or one of another kind.
+  std::optional<double> number_attribute(const std::string& variable, const std::string& name) const;
+  std::optional<std::string> text_attribute(const std::string& variable, const std::string& name) const;
+
  private:
   friend class Hdf5File;
   struct State;
@@ -87,6 +106,10 @@ class Hdf5File {
 
   /// Opens a file for reading. Throws ArchiveError when it is no HDF5 file, not a whole one, or damaged.
   static Hdf5File open(const std::filesystem::path& path);
+
+  /// The content of a file that somebody else has written and nothing has sealed: the library notices damage
+  /// of it in few places only. `name` is for messages. Throws ArchiveError when it is no HDF5 file.
+  static Hdf5File open_unsealed(std::vector<std::byte> content, const std::string& name);
 
   /// The group that holds everything.
   Hdf5Group root() const;

@@ -38,10 +38,17 @@ std::string cvs_html(const RecordAssessment& of) {
   HtmlTable table(
       "Variance of each CV over that of the nominal loop (1: as designed), and where the method sees the "
       "fault",
-      {{"CV", HtmlTable::Align::left}, {"variance against the nominal loop"}, {"flagged"}, {"score"}});
+      {{"CV", HtmlTable::Align::left},
+       {"variance against the nominal loop"},
+       {"flagged"},
+       {"source"},
+       {"score"}});
   for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
     table.row({html_text(cv_name(of.study, cv)), html_number(number_of_cv(of.verdict(), "ivar", cv)),
                word(number_of_cv(of.verdict(), "cv_flagged", cv)),
+               source_of_cv(of.verdict(), cv) == FaultSource::none
+                   ? "&ndash;"
+                   : html_text(source_name(source_of_cv(of.verdict(), cv))),
                html_number(number_of_cv(of.verdict(), "cv_score", cv))});
   return table.html();
 }

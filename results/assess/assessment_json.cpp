@@ -23,7 +23,10 @@ Json cvs_json(const RecordAssessment& of, const AssessmentRecord& said) {
     cvs.push_back({{"cv", cv_name(of.study, cv)},
                    {"flagged", std::isnan(flagged) ? Json() : Json(flagged == 1.0)},
                    {"score", number_of_cv(said, "cv_score", cv)},
-                   {"ivar", number_of_cv(said, "ivar", cv)}});
+                   {"ivar", number_of_cv(said, "ivar", cv)},
+                   {"source", to_string(source_of_cv(said, cv))},
+                   {"channels", named_mvs(of.study, said, cv)},
+                   {"candidate", named_candidate(of, said, cv)}});
   }
   return cvs;
 }
@@ -104,6 +107,11 @@ std::string assessment_json(const RecordAssessment& assessment) {
   json["trial"] = assessment.trial
                       ? Json{{"loops", assessment.trial->loops}, {"archive", assessment.trial->archive}}
                       : Json{{"loops", 0}, {"why", assessment.no_trial}};
+  const auto [first, end] = assessment.record.benchmark;
+  json["benchmark"] = first == end
+                          ? Json()
+                          : Json{{"from", assessment.record.stamps[static_cast<std::size_t>(first)]},
+                                 {"to", assessment.record.stamps[static_cast<std::size_t>(end - 1)]}};
   json["warnings"] = assessment.warnings;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

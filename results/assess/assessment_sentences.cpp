@@ -69,6 +69,32 @@ void add_source(const RecordAssessment& of, Sentences& sentences) {
     sentences.push_back(fmt::format("Most likely: {}.", mismatch_sentence(of.study, *named)));
 }
 
+/// What else than the worst CV is flagged: records of plants have more than one fault.
+void add_other_cvs(const RecordAssessment& of, Sentences& sentences) {
+  Sentences others;
+  for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
+    if (cv != of.verdict().predicted_cv && number_of_cv(of.verdict(), "cv_flagged", cv) == 1.0)
+      others.push_back(fmt::format("{} ({})", cv_name(of.study, cv),
+                                   source_of_cv(of.verdict(), cv) == FaultSource::none
+                                       ? "source not told"
+                                       : source_name(source_of_cv(of.verdict(), cv))));
+  if (of.verdict().flagged && !others.empty())
+    sentences.push_back(fmt::format("Flagged as well: {}.", fmt::join(others, ", ")));
+}
+
+/// The signals that a method names as inputs which the model lacks.
+void add_candidates(const RecordAssessment& of, Sentences& sentences) {
+  Sentences named;
+  for (const AssessmentRecord& said : of.said)
+    for (Eigen::Index cv = 0; said.answered() && cv < of.study.cv_count(); ++cv)
+      if (const std::string candidate = named_candidate(of, said, cv); !candidate.empty())
+        named.push_back(fmt::format("{} for {} (log10 p = {:.1f})", candidate, cv_name(of.study, cv),
+                                    number_of_cv(said, "log10_p", cv)));
+  if (!named.empty())
+    sentences.push_back(fmt::format("Signals that the model does not know and that drive its errors: {}.",
+                                    fmt::join(named, ", ")));
+}
+
 void add_repair(const RecordAssessment& of, Sentences& sentences) {
   if (!of.no_repair.empty())
     sentences.push_back(fmt::format("What a repair would bring is not known: {}.", of.no_repair));
@@ -132,6 +158,29 @@ double number_of_cv(const AssessmentRecord& said, std::string_view name, Eigen::
   return row < values.rows() && values.cols() == 1 ? values(row, 0) : kNaN;
 }
 
+FaultSource source_of_cv(const AssessmentRecord& said, Eigen::Index cv) {
+  const double source = number_of_cv(said, "cv_source", cv);
+  return number_of_cv(said, "cv_flagged", cv) != 1.0 || std::isnan(source) ? FaultSource::none
+                                                                           : static_cast<FaultSource>(source);
+}
+
+std::vector<std::string> named_mvs(const Study& study, const AssessmentRecord& said, Eigen::Index cv) {
+  const Eigen::MatrixXd channels = said.values("channel_flagged");
+  std::vector<std::string> mvs;
+  for (Eigen::Index mv = 0; cv < channels.rows() && mv < channels.cols(); ++mv)
+    if (channels(cv, mv) == 1.0)
+      mvs.push_back(study.plant.mvs[static_cast<std::size_t>(mv)].name);
+  return mvs;
+}
+
+std::string named_candidate(const RecordAssessment& assessment, const AssessmentRecord& said,
+                            Eigen::Index cv) {
+  const double candidate = number_of_cv(said, "candidate", cv);
+  return number_of_cv(said, "cv_flagged", cv) != 1.0 || std::isnan(candidate)
+             ? ""
+             : assessment.record.candidate_names[static_cast<std::size_t>(candidate)];
+}
+
 std::string mismatch_sentence(const Study& study, const NamedMismatch& named) {
   const std::string channel = fmt::format("{}/{}", cv_name(study, named.channel.cv),
                                           study.plant.mvs[static_cast<std::size_t>(named.channel.mv)].name);
@@ -168,6 +217,8 @@ std::vector<std::string> verdict_sentences(const RecordAssessment& assessment) {
   Sentences sentences{flag_sentence(assessment)};
   if (assessment.verdict().answered() && assessment.verdict().flagged)
     add_source(assessment, sentences);
+  add_other_cvs(assessment, sentences);
+  add_candidates(assessment, sentences);
   add_repair(assessment, sentences);
   add_trust(assessment, sentences);
   return sentences;

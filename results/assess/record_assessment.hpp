@@ -52,6 +52,14 @@ std::string assessment_html(const RecordAssessment& assessment);
 
 /// Number `row` of the answer under this name; NaN when the method has no such number.
 double number_of_cv(const AssessmentRecord& said, std::string_view name, Eigen::Index row);
+/// What the method says is wrong with a CV that it flags; none of a CV that it does not, or when it does not
+/// tell.
+FaultSource source_of_cv(const AssessmentRecord& said, Eigen::Index cv);
+/// The MVs whose channels to a CV the method names.
+std::vector<std::string> named_mvs(const Study& study, const AssessmentRecord& said, Eigen::Index cv);
+/// The logged signal that the method names for a CV that it flags; empty for none.
+std::string named_candidate(const RecordAssessment& assessment, const AssessmentRecord& said,
+                            Eigen::Index cv);
 /// "gain of y2/u1 x 0.62 (0.55 to 0.7)"
 std::string mismatch_sentence(const Study& study, const NamedMismatch& named);
 /// First and last stamp of a window of the study.

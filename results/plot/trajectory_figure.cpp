@@ -1,9 +1,12 @@
 #include "results/plot/trajectory_figure.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "plants/non_finite.hpp"
 #include "results/archive/variable_text.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
@@ -49,20 +52,45 @@ struct Setting {
   }
 };
 
-void add_limits(PanelScript& panel, const Limits& limits, Eigen::Index i, const Pen& pen) {
-  panel.across(limits.lower(i), pen);
-  panel.across(limits.upper(i), pen);
+/// Where a limit is worth its place in a panel: the range of the signals, and as much again on either side. A
+/// CV that moves little would else be a flat line between its limits.
+struct Reach {
+  double lower = -kInfinity, upper = kInfinity;
+
+  /// Of signals that stand still every limit is within reach.
+  explicit Reach(const std::vector<std::vector<double>>& signals) {
+    double least = kInfinity, largest = -kInfinity;
+    for (const std::vector<double>& signal : signals)
+      for (const double value : signal)
+        if (std::isfinite(value)) {
+          least = std::min(least, value);
+          largest = std::max(largest, value);
+        }
+    if (const double span = largest - least; span > 0.0) {
+      lower = least - span;
+      upper = largest + span;
+    }
+  }
+};
+
+void add_limits(PanelScript& panel, const Limits& limits, Eigen::Index i, const Reach& reach,
+                const Pen& pen) {
+  for (const double limit : {limits.lower(i), limits.upper(i)})
+    if (limit >= reach.lower && limit <= reach.upper)
+      panel.across(limit, pen);
 }
 
 Panel cv_panel(const Setting& at, const Trajectory& loop, const NominalOutputs& nominal, Eigen::Index i) {
   const PlantModel::Variable& variable = at.study.plant.cvs[static_cast<std::size_t>(i)];
   PanelScript panel = at.panel("cv", i, variable);
-  add_limits(panel, at.study.controller.cv_hard, i, kHardLimit);
-  add_limits(panel, at.study.controller.cv_soft, i, kSoftLimit);
-  panel.line(at.time, row(nominal.y0, i, at.samples), kNominal);  // below the thinner line
+  const std::vector<double> y = row(loop.y, i, at.samples), y0 = row(nominal.y0, i, at.samples);
+  const Reach reach({y, y0});
+  add_limits(panel, at.study.controller.cv_hard, i, reach, kHardLimit);
+  add_limits(panel, at.study.controller.cv_soft, i, reach, kSoftLimit);
+  panel.line(at.time, y0, kNominal);  // below the thinner line
   if (at.study.controller.has_setpoint(i))
     panel.steps(at.time, row(loop.y_set, i, at.samples), kSetpoint);
-  panel.line(at.time, row(loop.y, i, at.samples), kRecorded);
+  panel.line(at.time, y, kRecorded);
   return panel.finish(fmt::format("Controlled variable {} and its nominal output over time.", variable.name),
                       kHeight);
 }
@@ -70,10 +98,11 @@ Panel cv_panel(const Setting& at, const Trajectory& loop, const NominalOutputs& 
 Panel mv_panel(const Setting& at, const Trajectory& loop, Eigen::Index i) {
   const PlantModel::Variable& variable = at.study.plant.mvs[static_cast<std::size_t>(i)];
   PanelScript panel = at.panel("mv", i, variable);
-  add_limits(panel, at.study.controller.mv_hard, i, kHardLimit);
+  const std::vector<double> u = row(loop.u, i, at.samples);
+  add_limits(panel, at.study.controller.mv_hard, i, Reach({u}), kHardLimit);
   if (at.study.controller.has_targets())
     panel.steps(at.time, row(loop.u_target, i, at.samples), kTarget);
-  panel.steps(at.time, row(loop.u, i, at.samples), kRecorded);
+  panel.steps(at.time, u, kRecorded);
   return panel.finish(fmt::format("Manipulated variable {} and its target over time.", variable.name),
                       kHeight);
 }

@@ -78,7 +78,7 @@ bool is_number(const std::string& field) {
   return error == std::errc() && end != field.data();
 }
 
-void refuse_ragged(const CsvColumns& csv, std::size_t line, std::size_t fields) {
+void refuse_ragged(const RecordColumns& csv, std::size_t line, std::size_t fields) {
   const bool decimal_commas = csv.separator == ',' && fields > csv.names.size();
   throw InputError(
       at_line(csv.file, line), fmt::format("{} fields", fields),
@@ -90,11 +90,11 @@ void refuse_ragged(const CsvColumns& csv, std::size_t line, std::size_t fields) 
 
 }  // namespace
 
-CsvColumns parse_csv(std::string_view text, const std::string& file, const std::string& separator) {
+RecordColumns parse_csv(std::string_view text, const std::string& file, const std::string& separator) {
   refuse_bytes(text, file);
   if (text.starts_with("\xEF\xBB\xBF"))
     text.remove_prefix(3);
-  CsvColumns csv;
+  RecordColumns csv;
   csv.file = file;
   std::size_t line = 0;
   for (std::size_t at = 0; at < text.size();) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,8 +19,9 @@
 #include "plants/input_file.hpp"
 #include "plants/non_finite.hpp"
 #include "results/records/csv_columns.hpp"
+#include "results/records/netcdf_columns.hpp"
+#include "results/records/record_columns.hpp"
 #include "results/records/time_stamps.hpp"
-#include "scenarios/nearest_name.hpp"
 
 namespace mpm {
 namespace {
@@ -28,7 +29,6 @@ namespace {
 constexpr double kMostSamples = 1e6;
 constexpr double kWorthSaying = 0.05;  // share of missing samples
 constexpr double kSecondsOfHour = 3600.0;
-constexpr std::size_t kColumnsShown = 20;
 
 std::string in_lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -58,8 +58,8 @@ using Signal = std::vector<double>;
 
 class RecordReader {
  public:
-  RecordReader(const Study& study, std::string_view text, const std::string& file)
-      : study_(study), data_(study.data), csv_(parse_csv(text, file, data_.separator)), decimal_(decimal()) {
+  RecordReader(const Study& study, RecordColumns columns)
+      : study_(study), data_(study.data), file_(std::move(columns)) {
     read_times();
     choose_samples();
   }
@@ -79,9 +79,10 @@ class RecordReader {
         group(cvs, [&](const std::string& name) { return companion(name, data_.upper, "upper"); });
     record_.y_sim =
         group(cvs, [&](const std::string& name) { return companion(name, data_.y_sim, "y_sim"); });
+    read_candidates();
     leave_out_without_controller();
     refuse_missing();
-    if (!data_.benchmark.empty())
+    if (data_.benchmark.size() == 2)
       record_.benchmark = samples_between("benchmark", data_.benchmark);
     return std::move(record_);
   }
@@ -90,122 +91,70 @@ class RecordReader {
   // --- Cells ---
 
   std::string where(const std::string& key, const std::string& variable) const {
-    return fmt::format("{}: data.{}.{}", csv_.file, key, variable);
-  }
-
-  /// "," where numbers are written so: known of the separators ; and tab when a cell has one and no point.
-  char decimal() const {
-    if (!data_.decimal.empty())
-      return data_.decimal.front();
-    std::size_t commas = 0, points = 0;
-    for (const auto& column : csv_.columns)
-      for (const std::string& cell : column) {
-        const bool digits = cell.find_first_not_of("+-0123456789.,eE") == std::string::npos;
-        commas += digits && std::count(cell.begin(), cell.end(), ',') == 1 ? 1 : 0;
-        points += digits && std::count(cell.begin(), cell.end(), '.') == 1 ? 1 : 0;
-      }
-    return commas > points ? ',' : '.';
-  }
-
-  std::optional<double> number(std::string cell) const {
-    if (decimal_ == ',')
-      std::replace(cell.begin(), cell.end(), ',', '.');
-    const std::size_t sign = cell.starts_with('+') ? 1 : 0;
-    double value = 0.0;
-    const char* const end = cell.data() + cell.size();
-    const auto [last, error] = std::from_chars(cell.data() + sign, end, value);
-    return error == std::errc() && last == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
-  }
-
-  std::optional<std::size_t> column_of(const std::string& name) const {
-    std::optional<std::size_t> found;
-    for (std::size_t column = 0; column < csv_.names.size(); ++column)
-      if (csv_.names[column] == name) {
-        if (found)
-          throw InputError(fmt::format("{}: column '{}'", csv_.file, name), "two columns of this name",
-                           "one: rename the other");
-        found = column;
-      }
-    for (std::size_t column = 0; column < csv_.names.size() && !found; ++column)
-      if (in_lower_case(csv_.names[column]) == in_lower_case(name))
-        found = column;
-    return found;
-  }
-
-  std::string columns_text() const {
-    std::vector<std::string> shown(
-        csv_.names.begin(),
-        csv_.names.begin() + static_cast<std::ptrdiff_t>(std::min(csv_.names.size(), kColumnsShown)));
-    if (shown.size() < csv_.names.size())
-      shown.push_back(fmt::format("{} more", csv_.names.size() - shown.size()));
-    return fmt::format("one of the columns {}", fmt::join(shown, ", "));
-  }
-
-  /// The column of this tag, which must be there.
-  std::size_t tagged_column(const std::string& place, const std::string& tag) const {
-    if (const auto column = column_of(tag))
-      return *column;
-    const std::string nearest = nearest_name(tag, csv_.names);
-    throw InputError(
-        place,
-        fmt::format("no column '{}'{}", tag, nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)),
-        columns_text());
+    return fmt::format("{}: data.{}.{}", file_.file, key, variable);
   }
 
   /// Columns that the export of this program or a person may have: "xD", "y.xD".
   std::size_t variable_column(const std::string& variable, const char* prefix) const {
     if (const auto tag = named(data_.tags, variable))
-      return tagged_column(where("tags", variable), *tag);
-    if (const auto exported = column_of(fmt::format("{}.{}", prefix, variable)))
+      return file_.column(where("tags", variable), *tag);
+    if (const auto exported = file_.find(fmt::format("{}.{}", prefix, variable)))
       return *exported;
-    if (const auto column = column_of(variable))
+    if (const auto column = file_.find(variable))
       return *column;
-    return tagged_column(where("tags", variable), variable);
+    return file_.column(where("tags", variable), variable);
   }
 
   /// The numbers of a column in the study's unit; NaN where there is none.
   Signal numbers(std::size_t column, const std::string& variable) {
     const double zero = named(data_.operating_point, variable).value_or(0.0);
     const double scale = named(data_.scale, variable).value_or(1.0);
-    Signal signal(csv_.rows(), kNaN);
+    Signal signal(file_.rows(), kNaN);
     std::size_t texts = 0, first_text = 0, filled = 0;
-    for (std::size_t row = 0; row < csv_.rows(); ++row) {
-      const std::string& cell = csv_.columns[column][row];
-      if (const auto value = number(cell))
+    for (std::size_t row = 0; row < file_.rows(); ++row) {
+      const std::string& cell = file_.columns[column][row];
+      if (const auto value = file_.number(cell))
         signal[row] = scale * (*value - zero);
       else if (!cell.empty() && texts++ == 0)
         first_text = row;
       filled += cell.empty() ? 0 : 1;
     }
-    const std::string name = csv_.names[column];
-    const std::string text = texts == 0 ? "" : csv_.columns[column][first_text].substr(0, 40);
+    const std::string name = file_.names[column];
+    const std::string text = texts == 0 ? "" : file_.columns[column][first_text].substr(0, 40);
     if (texts == filled)
-      throw InputError(fmt::format("{}: column '{}', for {}", csv_.file, name, variable),
+      throw InputError(fmt::format("{}: column '{}', for {}", file_.file, name, variable),
                        texts == 0 ? std::string("no value") : fmt::format("no number, but '{}'", text),
-                       decimal_ == '.' ? "numbers with a decimal point; data.decimal = \",\" for commas"
-                                       : "numbers with a decimal comma; data.decimal = \".\" for points");
+                       file_.decimal == '.'
+                           ? "numbers with a decimal point; data.decimal = \",\" for commas"
+                           : "numbers with a decimal comma; data.decimal = \".\" for points");
     if (texts > 0)
       record_.warnings.push_back(fmt::format(
           "column '{}': {} cells are no numbers and count as missing, the first is '{}' in line {}", name,
-          texts, text, csv_.lines[first_text]));
+          texts, text, file_.lines[first_text]));
     return signal;
+  }
+
+  bool has_numbers(std::size_t column) const {
+    const std::vector<std::string>& cells = file_.columns[column];
+    return std::any_of(cells.begin(), cells.end(),
+                       [&](const std::string& cell) { return file_.number(cell).has_value(); });
   }
 
   void drop_bad_quality(const std::string& variable, Signal& signal) {
     const auto tag = named(data_.quality, variable);
     if (!tag)
       return;
-    const std::size_t column = tagged_column(where("quality", variable), *tag);
+    const std::size_t column = file_.column(where("quality", variable), *tag);
     std::size_t bad = 0;
     for (std::size_t row = 0; row < signal.size(); ++row)
-      if (!is_one_of(csv_.columns[column][row], data_.good_quality)) {
+      if (!is_one_of(file_.columns[column][row], data_.good_quality)) {
         signal[row] = kNaN;
         ++bad;
       }
     if (bad == signal.size())
       throw InputError(
           where("quality", variable),
-          fmt::format("no row of good quality, but '{}'", csv_.columns[column].front().substr(0, 40)),
+          fmt::format("no row of good quality, but '{}'", file_.columns[column].front().substr(0, 40)),
           fmt::format("one of data.good_quality: {}", fmt::join(data_.good_quality, ", ")));
   }
 
@@ -213,9 +162,9 @@ class RecordReader {
 
   std::optional<std::size_t> time_column() const {
     if (!data_.time.empty())
-      return tagged_column(csv_.file + ": data.time", data_.time);
+      return file_.column(file_.file + ": data.time", data_.time);
     for (const char* usual : {"time", "timestamp", "datetime", "date", "t"})
-      if (const auto column = column_of(usual))
+      if (const auto column = file_.find(usual))
         return column;
     return std::nullopt;
   }
@@ -228,7 +177,7 @@ class RecordReader {
       return 1.0;
     const std::optional<double> plant_days = days_in(of_plant);
     if (!plant_days)
-      throw InputError(fmt::format("{}: time stamps", csv_.file),
+      throw InputError(fmt::format("{}: time stamps", file_.file),
                        fmt::format("dates, or data.time_unit, and the time unit '{}' of the plant", of_plant),
                        "plant.time_unit s, min, h or d, or stamps that are numbers in its unit");
     return *days_in(of_stamps) / *plant_days;
@@ -238,16 +187,16 @@ class RecordReader {
     const auto column = time_column();
     if (!column) {
       unit_ = 1.0;
-      for (std::size_t row = 0; row < csv_.rows(); ++row)
+      for (std::size_t row = 0; row < file_.rows(); ++row)
         times_.push_back(static_cast<double>(row) * study_.controller.sample_time);
       record_.warnings.push_back(
           fmt::format("no column of time stamps (data.time): each row is taken as one sample of {:g} {}",
                       study_.controller.sample_time, study_.plant.time_unit));
       return;
     }
-    const std::string place = fmt::format("{}: column '{}'", csv_.file, csv_.names[*column]);
+    const std::string place = fmt::format("{}: column '{}'", file_.file, file_.names[*column]);
     TimeStamps stamps =
-        parse_time_stamps({place, csv_.columns[*column], csv_.lines}, data_.date_order, decimal_);
+        parse_time_stamps({place, file_.columns[*column], file_.lines}, data_.date_order, file_.decimal);
     calendar_ = stamps.calendar;
     local_ = stamps.calendar && !stamps.offsets;
     unit_ = unit_of_stamps(calendar_);
@@ -257,16 +206,11 @@ class RecordReader {
   }
 
   void keep_rows(const std::vector<std::size_t>& rows) {
-    const auto kept = [&](const auto& values) {
-      std::remove_cvref_t<decltype(values)> picked;
-      for (const std::size_t row : rows)
-        picked.push_back(values[row]);
-      return picked;
-    };
-    for (auto& column : csv_.columns)
-      column = kept(column);
-    csv_.lines = kept(csv_.lines);
-    times_ = kept(times_);
+    file_.keep_rows(rows);
+    std::vector<double> kept;
+    for (const std::size_t row : rows)
+      kept.push_back(times_[row]);
+    times_ = std::move(kept);
   }
 
   void drop_rows_without_stamp() {
@@ -275,7 +219,7 @@ class RecordReader {
       if (!std::isnan(times_[row]))
         rows.push_back(row);
     if (rows.empty())
-      throw InputError(csv_.file + ": time stamps", "none", "a stamp in each row");
+      throw InputError(file_.file + ": time stamps", "none", "a stamp in each row");
     if (rows.size() < times_.size()) {
       record_.warnings.push_back(
           fmt::format("{} rows without a time stamp are left out", times_.size() - rows.size()));
@@ -304,7 +248,7 @@ class RecordReader {
         refuse_step_back(place, row);
       if (local_ && is_spring_forward(row))
         throw InputError(
-            fmt::format("{}, line {}", place, csv_.lines[row]),
+            fmt::format("{}, line {}", place, file_.lines[row]),
             fmt::format("{} after {}, an hour too late at night", stamp_text(times_[row]),
                         stamp_text(times_[row - 1])),
             "stamps that no clock is put forward in: export them in UTC (with Z, also where the hour is "
@@ -322,7 +266,7 @@ class RecordReader {
     const double back = times_[row - 1] - times_[row];
     const bool clock = calendar_ && back <= kSecondsOfHour && back + usual >= kSecondsOfHour * 0.99;
     throw InputError(
-        fmt::format("{}, line {}", place, csv_.lines[row]),
+        fmt::format("{}, line {}", place, file_.lines[row]),
         fmt::format("{} after {}", stamp_text(times_[row]), stamp_text(times_[row - 1])),
         clock ? "stamps that do not go back by an hour, as local time does when the clock is put back: "
                 "export them in UTC, or with their offset (2024-10-27T02:30:00+02:00)"
@@ -343,7 +287,7 @@ class RecordReader {
     const std::string place = fmt::format("data.{}", key);
     const std::vector<std::size_t> no_lines{0, 0};
     DateOrder order = data_.date_order;
-    const TimeStamps stamps = parse_time_stamps({place, period, no_lines}, order, decimal_);
+    const TimeStamps stamps = parse_time_stamps({place, period, no_lines}, order, file_.decimal);
     if (stamps.calendar != calendar_ || !(stamps.times[0] < stamps.times[1]))
       throw InputError(place, fmt::format("[{}, {}]", period[0], period[1]),
                        fmt::format("two stamps of the form of the file, ascending, between {} and {}",
@@ -364,7 +308,7 @@ class RecordReader {
     const double count = std::floor((last - first_) / sample_ + 1e-6) + 1.0;
     if (!(count >= 2.0 && count <= kMostSamples))
       throw InputError(
-          fmt::format("{}: time stamps", csv_.file),
+          fmt::format("{}: time stamps", file_.file),
           fmt::format("{} to {}, {:.0f} samples of {:g} {}", stamp_text(first_), stamp_text(last),
                       std::max(count, 0.0), study_.controller.sample_time, study_.plant.time_unit),
           "2 to 1000000 samples of the controller: look at the stamps, data.time_unit, data.period");
@@ -461,17 +405,34 @@ class RecordReader {
                                const char* exported = "") {
     const auto tag = named(tags, variable);
     const auto column =
-        tag ? tagged_column(where(key, variable), *tag) : column_of(fmt::format("{}.{}", exported, variable));
-    return column ? held(numbers(*column, variable)) : Eigen::RowVectorXd::Constant(samples_, kNaN);
+        tag ? file_.column(where(key, variable), *tag) : file_.find(fmt::format("{}.{}", exported, variable));
+    const bool recorded = tag || (column && has_numbers(*column));  // exports have empty columns
+    return recorded ? held(numbers(*column, variable)) : Eigen::RowVectorXd::Constant(samples_, kNaN);
+  }
+
+  /// Signals beside those of the loop, in units of their own: a regression looks at their moves only.
+  void read_candidates() {
+    record_.candidate_names = data_.candidates;
+    record_.candidates.resize(static_cast<Eigen::Index>(data_.candidates.size()), samples_);
+    for (std::size_t i = 0; i < data_.candidates.size(); ++i) {
+      const std::string& name = data_.candidates[i];
+      const std::size_t column = file_.column(fmt::format("{}: data.candidates", file_.file), name);
+      const Eigen::RowVectorXd values = held(numbers(column, name));
+      if ((values.array() == values(0)).all())
+        throw InputError(fmt::format("{}: data.candidates: '{}'", file_.file, name),
+                         fmt::format("{:g} in every sample", values(0)),
+                         "a signal that changes, or leave it out");
+      record_.candidates.row(static_cast<Eigen::Index>(i)) = values.array() - values.mean();
+    }
   }
 
   void leave_out_without_controller() {
     if (data_.controller_on.empty())
       return;
-    const std::size_t column = tagged_column(csv_.file + ": data.controller_on", data_.controller_on);
+    const std::size_t column = file_.column(file_.file + ": data.controller_on", data_.controller_on);
     Signal on;
-    for (const std::string& cell : csv_.columns[column]) {
-      const auto value = number(cell);
+    for (const std::string& cell : file_.columns[column]) {
+      const auto value = file_.number(cell);
       const bool numeric = value && is_one_of(fmt::format("{:g}", *value), data_.on_values);
       on.push_back(cell.empty() ? kNaN : numeric || is_one_of(cell, data_.on_values) ? 1.0 : 0.0);
     }
@@ -479,8 +440,8 @@ class RecordReader {
     const double off = (is_on.array() != 1.0).cast<double>().mean();
     if (off == 1.0)
       throw InputError(
-          csv_.file + ": data.controller_on",
-          fmt::format("'{}' throughout", csv_.columns[column].front().substr(0, 40)),
+          file_.file + ": data.controller_on",
+          fmt::format("'{}' throughout", file_.columns[column].front().substr(0, 40)),
           fmt::format("a period with one of data.on_values: {}", fmt::join(data_.on_values, ", ")));
     if (off > 0.0)
       record_.warnings.push_back(
@@ -493,7 +454,7 @@ class RecordReader {
   void refuse_missing(const std::string& name, double missing) const {
     if (missing > data_.most_missing)
       throw InputError(
-          fmt::format("{}: {}", csv_.file, name), fmt::format("{} of its samples missing", percent(missing)),
+          fmt::format("{}: {}", file_.file, name), fmt::format("{} of its samples missing", percent(missing)),
           fmt::format("at most {} (data.most_missing): choose another period (data.period), export a value "
                       "at least every {:g} {}, or raise data.most_missing",
                       percent(data_.most_missing), study_.controller.sample_time, study_.plant.time_unit));
@@ -513,8 +474,7 @@ class RecordReader {
 
   const Study& study_;
   const DataOptions& data_;
-  CsvColumns csv_;
-  char decimal_;
+  RecordColumns file_;
   bool calendar_ = false;
   bool local_ = false;         ///< dates without an offset
   double unit_ = 1.0;          ///< time units of the plant in one of the stamps
@@ -528,13 +488,19 @@ class RecordReader {
 }  // namespace
 
 PlantRecord read_plant_record(const Study& study, std::string_view text, const std::string& file) {
-  return RecordReader(study, text, file).record();
+  RecordColumns columns = parse_csv(text, file, study.data.separator);
+  columns.decimal = study.data.decimal.empty() ? found_decimal(columns) : study.data.decimal.front();
+  return RecordReader(study, std::move(columns)).record();
 }
 
 PlantRecord load_plant_record(const Study& study, const std::filesystem::path& path) {
-  std::ifstream stream = open_input(path, "a CSV file of records (docs/own_records.md)");
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  return read_plant_record(study, text, path.filename().string());
+  std::ifstream stream = open_input(path, "a CSV or netCDF-4 file of records (docs/own_records.md)");
+  const std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const std::string file = path.filename().string();
+  if (!is_netcdf4(content))
+    return read_plant_record(study, content, file);
+  const auto bytes = std::as_bytes(std::span(content));
+  return RecordReader(study, netcdf_columns({bytes.begin(), bytes.end()}, file, study.data.time)).record();
 }
 
 }  // namespace mpm

@@ -26,7 +26,8 @@ namespace mpm {
 /// data.most_missing. What can be read and needs a look is a warning of the record.
 PlantRecord read_plant_record(const Study& study, std::string_view text, const std::string& file);
 
-/// The same of a file. Errors: the same, for a file that cannot be read as well.
+/// The same of a file, CSV or netCDF-4 (netcdf_columns()). Errors: the same, for a file that cannot be read
+/// as well.
 PlantRecord load_plant_record(const Study& study, const std::filesystem::path& path);
 
 }  // namespace mpm

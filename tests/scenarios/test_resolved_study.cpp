@@ -105,7 +105,8 @@ std::string random_study_text() {
       "tags = {level = 'LI 1', drain = 'FI 3'}\noperating_point = {heat = 80.5}\nscale = {hot = -2}\n"
       "setpoint = {level = 'LC 1'}\nlower = {level = 'lo'}\nupper = {heat = 'hi'}\ny_sim = {heat = 'model'}\n"
       "target = {hot = 'best'}\nquality = {level = 'q'}\ngood_quality = ['ok']\ncontroller_on = 'on'\n"
-      "on_values = ['yes']\ncv_resampling = 'nearest'\nstart = 'rest'\nmost_missing = 0.5\n"
+      "on_values = ['yes']\ncv_resampling = 'nearest'\nstart = 'rest'\nmost_missing = 0.5\nfill = 'hold'\n"
+      "candidates = ['FI 9']\n"
       "period = ['0', '9']\nbenchmark = ['1', '4']\n[reference]\n";
   for (const std::string& key : study_file_keys("reference"))
     text += "\"" + key + "\" = 0.123\n";

@@ -14,7 +14,7 @@ ABOVE_THE_ROOMS = ["tests", "examples"]
 FOLDERS = {
     "analysis": ["statistics", "identification", "sensitivity", "indicators", "basis", "methods", "experiment",
                  "findings", "reproduction", "validation"],
-    "results": ["files", "records", "archive", "blind", "text", "plot", "summary", "gates", "report", "assess",
+    "results": ["files", "archive", "records", "blind", "text", "plot", "summary", "gates", "report", "assess",
                 "reproduction", "suite"],
     "bench": ["version.hpp", "files", "outcome", "byte_stream.hpp", "record_bytes.hpp", "outcome_bytes.hpp", "execution",
               "shards", "campaign", "comparison_runner.hpp", "console", "commands", "perf"],

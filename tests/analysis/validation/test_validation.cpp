@@ -4,8 +4,11 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/validation/benchmark_period.hpp"
 #include "analysis/validation/study_forecast.hpp"
 #include "analysis/validation/study_warnings.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/random_stream.hpp"
 #include "scenarios/study_library.hpp"
 
 // What is implausible in a study, one slip at a time, and what its first experiments say of the others.
@@ -152,6 +155,43 @@ TEST_CASE("a pilot says how many loops with impact there will be, and how well r
   std::vector<ExperimentRecord> few(10, made_up(study, ExperimentKind::mpm, 1.5));
   CHECK_THAT(to_string(forecast_warnings(small, forecast(small, few), few).front()),
              Contains("about 20 loops with impact: a rate of 0.5 over them is known to +- 0.20"));
+}
+
+/// Two CVs of 300 samples, whose simulation errors are white with these deviations in three thirds.
+AssessedLoop loop_of_thirds(const Eigen::Matrix<double, 2, 3>& deviations) {
+  AssessedLoop loop;
+  loop.y_sim = Eigen::MatrixXd::Zero(2, 300);
+  loop.y = loop.y_sim;
+  RandomStream stream(20261122, 0, StreamId::measurement_noise);
+  for (Eigen::Index k = 0; k < 300; ++k)
+    for (Eigen::Index cv = 0; cv < 2; ++cv)
+      loop.y(cv, k) += deviations(cv, k / 100) * stream.normal();
+  return loop;
+}
+
+TEST_CASE("the quietest period is where the model is best, whatever the units", "[validation]") {
+  const Eigen::Matrix<double, 2, 3> deviations{{3.0, 1.0, 2.0}, {30.0, 20.0, 60.0}};
+  AssessedLoop loop = loop_of_thirds(deviations);
+  const auto [first, end] = quietest_period(loop, 80);
+  CHECK(end - first == 80);
+  CHECK(first >= 90);
+  CHECK(end <= 210);
+  // A constant error costs nothing, another unit neither.
+  loop.y.row(0).array() += 100.0;
+  loop.y.row(1) *= 1000.0;
+  CHECK(quietest_period(loop, 80) == std::pair(first, end));
+  // A CV counts only where half of it is there.
+  loop.y.row(1).setConstant(kNaN);
+  CHECK(quietest_period(loop, 80).first >= 90);
+  loop.y.row(0).segment(90, 120).setConstant(kNaN);
+  CHECK(quietest_period(loop, 80).first >= 170);
+}
+
+TEST_CASE("a record without enough samples has no quietest period", "[validation]") {
+  AssessedLoop loop = loop_of_thirds(Eigen::Matrix<double, 2, 3>::Ones());
+  CHECK(quietest_period(loop, 301) == std::pair<Eigen::Index, Eigen::Index>(0, 0));
+  loop.y.setConstant(kNaN);
+  CHECK(quietest_period(loop, 80) == std::pair<Eigen::Index, Eigen::Index>(0, 0));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ std::string record_text(const std::vector<std::string>& rows) {
 }
 
 TEST_CASE("a CSV text is read as RFC 4180 and spreadsheets have it", "[records]") {
-  const CsvColumns csv = parse_csv(
+  const RecordColumns csv = parse_csv(
       "\xEF\xBB\xBF# made by a historian\r\n\"a;1\" ; b\r\n\r\n1,5;\"say \"\"x\"\"\"\r\n2;\r\n", "f", "");
   CHECK(csv.separator == ';');
   CHECK(csv.names == std::vector<std::string>{"a;1", "b"});

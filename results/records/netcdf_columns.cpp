@@ -1,0 +1,196 @@
+#include "results/records/netcdf_columns.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "plants/error.hpp"
+#include "results/archive/hdf5_file.hpp"
+#include "results/files/archive_error.hpp"
+#include "results/records/time_stamps.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::array kUsualTimes{"time", "timestamp", "datetime", "date", "t"};
+constexpr double kMillisecondsOfSecond = 1000.0;
+
+/// Seconds in a unit of CF; none of another one. Months and years have no fixed length.
+std::optional<double> seconds_in(std::string unit) {
+  if (unit.size() > 1 && unit.back() == 's')
+    unit.pop_back();
+  for (const auto& [names, seconds] :
+       {std::pair{" msec millisecond ms ", 1e-3}, std::pair{" sec second s ", 1.0},
+        std::pair{" min minute ", 60.0}, std::pair{" hr hour h ", 3600.0}, std::pair{" day d ", 86400.0}})
+    if (std::string(names).find(fmt::format(" {} ", unit)) != std::string::npos)
+      return seconds;
+  return std::nullopt;
+}
+
+/// The stamp of a time in s since 1970, to the millisecond.
+std::string utc_text(double seconds) {
+  const double milliseconds = std::round(seconds * kMillisecondsOfSecond);
+  const double whole = std::floor(milliseconds / kMillisecondsOfSecond);
+  const auto rest = static_cast<int>(milliseconds - whole * kMillisecondsOfSecond);
+  return fmt::format("{}{}Z", date_text(whole), rest == 0 ? "" : fmt::format(".{:03}", rest));
+}
+
+class NetcdfReader {
+ public:
+  NetcdfReader(const Hdf5Group& root, const std::string& file, const std::string& time)
+      : root_(root), variables_(root.variables()) {
+    columns_.file = file;
+    find_time(time);
+  }
+
+  RecordColumns columns() {
+    columns_.lines.resize(samples_);
+    std::iota(columns_.lines.begin(), columns_.lines.end(), std::size_t{1});
+    if (!time_.empty())
+      add(time_, time_cells());
+    for (const std::string& variable : variables_)
+      if (variable != time_)
+        add_variable(variable);
+    if (columns_.names.size() < 2)
+      throw InputError(columns_.file, several_loops_ ? "several loops" : "no variables along the time",
+                       several_loops_ ? "a file of one loop: take it out first (ncks -d loop,0)"
+                                      : "numbers of one dimension, or of two with the time last");
+    return std::move(columns_);
+  }
+
+ private:
+  bool has(const std::string& name) const {
+    return std::find(variables_.begin(), variables_.end(), name) != variables_.end();
+  }
+
+  void find_time(const std::string& wanted) {
+    if (!wanted.empty() && !has(wanted))
+      throw InputError(fmt::format("{}: data.time", columns_.file), fmt::format("no variable '{}'", wanted),
+                       fmt::format("one of {}", fmt::join(variables_, ", ")));
+    time_ = wanted;
+    for (const char* usual : kUsualTimes)
+      if (time_.empty() && has(usual))
+        time_ = usual;
+    const std::string along = time_.empty() && has("sample") ? "sample" : time_;
+    if (along.empty() || root_.dimensions(along).size() != 1)
+      throw InputError(
+          columns_.file, "no variable of the time",
+          fmt::format("one of one dimension (data.time), such as {}", fmt::join(kUsualTimes, ", ")));
+    dimension_ = root_.dimensions(along).front();
+    samples_ = root_.shape(along).front();
+  }
+
+  std::vector<std::string> time_cells() const {
+    if (root_.is_text(time_))
+      return root_.texts(time_);
+    const std::vector<std::string> numbers = number_cells(time_);
+    const std::string units = root_.text_attribute(time_, "units").value_or("");
+    const std::size_t since = units.find(" since ");
+    return since == std::string::npos ? numbers : dates(units.substr(0, since), units.substr(since + 7));
+  }
+
+  /// Times in CF units, "UNIT since DATE".
+  std::vector<std::string> dates(const std::string& unit, const std::string& date) const {
+    const std::string place = fmt::format("{}: units of '{}'", columns_.file, time_);
+    const std::optional<double> seconds = seconds_in(unit);
+    if (!seconds)
+      throw InputError(place, fmt::format("'{} since {}'", unit, date), "milliseconds to days since a date");
+    const std::string calendar = root_.text_attribute(time_, "calendar").value_or("standard");
+    if (calendar != "standard" && calendar != "gregorian" && calendar != "proleptic_gregorian")
+      throw InputError(fmt::format("{}: calendar of '{}'", columns_.file, time_),
+                       fmt::format("'{}'", calendar), "standard, gregorian or proleptic_gregorian");
+    const std::vector<std::string> cell{date};
+    const std::vector<std::size_t> line{0};
+    const TimeStamps begin = parse_time_stamps({place, cell, line}, DateOrder::year_month_day, '.');
+    if (!begin.calendar)
+      throw InputError(place, fmt::format("'{}'", date), "a date, such as 2024-10-27 00:00:00");
+    std::vector<std::string> stamps;
+    for (const double time : root_.numbers(time_))
+      stamps.push_back(std::isfinite(time) ? utc_text(begin.times.front() + time * *seconds) : "");
+    return stamps;
+  }
+
+  /// The numbers of a variable, as they are meant.
+  std::vector<std::string> number_cells(const std::string& variable) const {
+    const auto attribute = [&](const char* name) { return root_.number_attribute(variable, name); };
+    const std::optional<double> fill = attribute("_FillValue"), missing = attribute("missing_value");
+    const double scale = attribute("scale_factor").value_or(1.0);
+    const double offset = attribute("add_offset").value_or(0.0);
+    std::vector<std::string> cells;
+    for (const double value : root_.numbers(variable))
+      cells.push_back(!std::isfinite(value) || value == fill || value == missing
+                          ? ""
+                          : fmt::format("{}", scale * value + offset));
+    return cells;
+  }
+
+  void add(const std::string& name, std::vector<std::string> cells) {
+    columns_.names.push_back(name);
+    columns_.columns.push_back(std::move(cells));
+  }
+
+  /// The coordinates of a dimension, as texts.
+  std::vector<std::string> coordinates(const std::string& dimension, std::size_t length) const {
+    if (has(dimension) && root_.is_text(dimension) && root_.shape(dimension) == std::vector{length})
+      return root_.texts(dimension);
+    std::vector<std::string> numbers;
+    for (std::size_t i = 1; i <= length; ++i)
+      numbers.push_back(fmt::format("{}", i));
+    return numbers;
+  }
+
+  void add_variable(const std::string& variable) {
+    const std::vector<std::string> dimensions = root_.dimensions(variable);
+    const std::vector<std::size_t> shape = root_.shape(variable);
+    if (dimensions.empty() || dimensions.back() != dimension_ || dimensions.size() > 3 ||
+        variable == dimension_ || !(root_.is_number(variable) || root_.is_text(variable)))
+      return;
+    if (dimensions.size() == 3 && shape.front() != 1) {
+      several_loops_ = true;
+      return;
+    }
+    std::vector<std::string> cells = root_.is_text(variable) ? root_.texts(variable) : number_cells(variable);
+    if (dimensions.size() == 1) {
+      add(variable, std::move(cells));
+      return;
+    }
+    const std::size_t rows = shape[shape.size() - 2];
+    const std::vector<std::string> names = coordinates(dimensions[dimensions.size() - 2], rows);
+    for (std::size_t row = 0; row < rows; ++row) {
+      const auto first = cells.begin() + static_cast<std::ptrdiff_t>(row * samples_);
+      add(fmt::format("{}.{}", variable, names[row]), {first, first + static_cast<std::ptrdiff_t>(samples_)});
+    }
+  }
+
+  Hdf5Group root_;
+  std::vector<std::string> variables_;
+  RecordColumns columns_;
+  std::string time_;       ///< variable; empty: none, rows are samples
+  std::string dimension_;  ///< along the time
+  std::size_t samples_ = 0;
+  bool several_loops_ = false;
+};
+
+}  // namespace
+
+bool is_netcdf4(std::string_view content) {
+  return content.starts_with("\x89HDF\r\n\x1a\n");
+}
+
+RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file,
+                             const std::string& time) {
+  try {
+    const Hdf5File opened = Hdf5File::open_unsealed(std::move(content), file);
+    return NetcdfReader(opened.root(), file, time).columns();
+  } catch (const ArchiveError& error) {
+    throw InputError(file, error.what(), "a netCDF-4 file of records, or a CSV file (docs/own_records.md)");
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "results/records/record_columns.hpp"
+
+namespace mpm {
+
+/// Does a file that begins so hold HDF5, as netCDF-4 does?
+bool is_netcdf4(std::string_view content);
+
+/// The variables of a netCDF-4 file that run along its time, as columns:
+///
+/// | variable       | columns                                                          |
+/// |----------------|------------------------------------------------------------------|
+/// | x(time)        | x                                                                |
+/// | x(c, time)     | x.NAME of each coordinate of c, or x.1, x.2, ... without names   |
+/// | x(1, c, time)  | the same: one loop                                               |
+/// | others         | none                                                             |
+///
+/// Time is the dimension of the variable `time`; empty: of one with a usual name, otherwise of "sample".
+/// Times with CF units "UNIT since DATE" are written as dates of UTC, others stay numbers. _FillValue,
+/// missing_value and NaN are empty cells, scale_factor and add_offset are applied. Groups are not looked
+/// into.
+///
+/// Errors: InputError that names the file, the variable and what to do: no HDF5 file, no time, another
+/// calendar than the usual one, several loops, no variable along the time.
+RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file,
+                             const std::string& time);
+
+}  // namespace mpm

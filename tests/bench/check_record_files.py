@@ -1,0 +1,175 @@
+"""Records of a plant beside CSV: netCDF-4 files of others and of this program, signals that the model lacks, and a
+benchmark that is found.
+
+usage: check_record_files.py MPMBENCH STUDY
+"""
+
+import json
+import os
+import pathlib
+import random
+import sys
+import tempfile
+
+import h5py
+import numpy
+
+from check_assess import Bench, rows_of, text_of, verdict
+
+COLUMNS = ["time", "xD", "xB", "R", "S", "F"]
+
+
+class Files(Bench):
+    """One loop with a dead time that is too long, as rows, and a study with a [data] of choice."""
+
+    def __init__(self, program, folder, study):
+        super().__init__(program, folder)
+        self.text = pathlib.Path(study).read_text()
+        self.run("run", study, "--experiments", 1, "--methods", "sse", "--store", "all", "-o", "clean.h5", "--quiet")
+        self.rows = rows_of(self)
+
+    def assess(self, record, data="", code=0, options=()):
+        (self.folder / "f.toml").write_text(f"{self.text}\n[data]\n{data}\n")
+        result = self.run("assess", "f.toml", record, "--trials", 0, "--json", "--quiet", *options, code=code)
+        return json.loads(result.stdout) if code == 0 else result.stderr
+
+    def write(self, name, units="minutes since 2024-03-01 12:00:00", start=0.0, change=None):
+        """The rows as somebody else would write them: packed integers, floats, texts of fixed length."""
+        path = self.folder / name
+        with h5py.File(path, "w") as file:
+            time = file.create_dataset("time", data=start + numpy.array([float(r["time"]) for r in self.rows]))
+            time.make_scale("time")
+            time.attrs["units"] = units
+            for column in COLUMNS[1:]:
+                values = numpy.array([r[column] for r in self.rows])
+                if column == "xB":  # packed as CF has it, one value missing
+                    packed = numpy.round((values - 0.25) / 1e-6).astype("i4")
+                    packed[7] = -2147483647
+                    values = packed
+                dataset = file.create_dataset(column, data=values)
+                dataset.dims[0].attach_scale(time)
+                if column == "xB":
+                    dataset.attrs.update({"scale_factor": 1e-6, "add_offset": 0.25,
+                                          "_FillValue": numpy.int32(-2147483647)})
+            quality = file.create_dataset("q", data=numpy.array([b"Good"] * len(self.rows), dtype="S8"))
+            quality.dims[0].attach_scale(time)
+            file.create_dataset("height", data=3.0)  # no variable along the time
+            if change:
+                change(file)
+        return path
+
+
+def check_netcdf(files, right):
+    (files.folder / "c.csv").write_text(text_of(files.rows))
+    csv = files.assess("c.csv")
+    assert verdict(csv) == right, csv["methods"][0]
+    answer = files.assess(files.write("n.nc"), "quality = {xD = 'q'}")
+    assert verdict(answer) == right and answer["from"] == "2024-03-01 12:00:00", answer
+    # Packed to 1e-6, and with a sample less: the score of the CSV file but for that.
+    assert abs(answer["methods"][0]["score"] / csv["methods"][0]["score"] - 1) < 0.01, answer
+    hours = files.assess(files.write("h.nc", units="minutes"), "time_unit = 'min'")
+    assert verdict(hours) == right and hours["from"] == "0", hours
+    unmarked = files.assess(files.write("u.nc", change=lambda f: f["xB"].attrs.pop("_FillValue")))
+    assert unmarked["methods"][0]["cvs"][1]["ivar"] > 100, "a gap that nobody marks is a number"
+    zone = files.assess(files.write("z.nc", units="minutes since 2024-03-01T12:00:00+02:00"))
+    assert zone["from"] == "2024-03-01 10:00:00", zone["from"]
+
+    def refused(change, *sentences, units="minutes since 2024-03-01", data=""):
+        message = files.assess(files.write("r.nc", units=units, change=change), data, code=2)
+        for sentence in sentences:
+            assert sentence in message, (sentence, message)
+    refused(None, "'months since 2024-03-01'", "milliseconds to days", units="months since 2024-03-01")
+    refused(lambda f: f["time"].attrs.update({"calendar": "360_day"}), "'360_day'", "gregorian")
+    refused(lambda f: f.pop("time"), "no variable of the time", "data.time")
+    refused(lambda f: f.move("xD", "AI101"), "no column 'xD'", "AI101")
+    refused(None, "no variable 'stamp'", data="time = 'stamp'")
+    stream = random.Random(5)
+    whole = files.write("whole.nc").read_bytes()
+    for share in (0.3, 0.9):  # cut off: a sentence, no crash
+        (files.folder / "cut.nc").write_bytes(whole[:int(share * len(whole))])
+        assert "found" in files.assess("cut.nc", code=2)
+    (files.folder / "noise.nc").write_bytes(whole[:8] + bytes(stream.randrange(256) for _ in range(3000)))
+    assert "no HDF5 file" in files.assess("noise.nc", code=2)
+
+
+def check_candidates(files):
+    """A disturbance whose cause is logged: named among decoys, out of this program's own netCDF file."""
+    named = 0
+    for seed in (1, 2, 3):
+        study = files.folder / "cause.toml"
+        start = files.text.index("[experiments]")
+        end = files.text.index("[mismatch]")
+        study.write_text(files.text[:start] + "[experiments]\nmpm = 0\nud = 1\nmpm_ud = 0\n" + files.text[end:]
+                         + "\n[record.candidates]\ncount = 5\nshare = 1.0\n")
+        files.run("run", study, "--seed", seed, "--methods", "sse", "-o", "cause.h5",
+                  "--allow-unhealthy-basis", "--quiet")
+        with h5py.File(files.folder / "cause.h5") as archive:
+            true = int(archive["true_candidate"][0])
+        files.run("export", "cause.h5", "--blind", "-o", "blind", "--quiet")
+        signals = ", ".join(f"'candidates.{i}'" for i in range(1, 6))
+        for record in ("blind/loops.nc", "blind/loops.csv"):
+            answer = files.assess(record, f"candidates = [{signals}]", options=["--methods", "candidates"])
+            said = answer["methods"][0]
+            found = {cv["candidate"] for cv in said["cvs"] if cv["flagged"]}
+            named += found == {f"candidates.{true + 1}"}
+            assert not said["flagged"] or said["source"] == "ud", said
+        assert any("drive its errors" in sentence for sentence in answer["verdict"]) == bool(found), answer["verdict"]
+    assert named == 6, named
+    message = files.assess("blind/loops.csv", "candidates = ['candidates.9']", code=2)
+    assert "data.candidates" in message and "nearest: 'candidates." in message, message
+    message = files.assess("blind/loops.csv", "candidates = ['loop']", code=2)
+    assert "0 in every sample" in message, message
+    none = files.assess("blind/loops.csv", options=["--methods", "candidates"])["methods"][0]
+    assert none["status"] != "ok" and "no signal is logged" in none["reason"], none
+
+
+def check_benchmark(files):
+    """A disturbance from the middle on: what is found lies before it."""
+    stream = random.Random(4)
+    level, rows = 0.0, []
+    for k, row in enumerate(files.rows):
+        level = 0.95 * level + stream.gauss(0, 0.1) if k >= 200 else 0.0
+        rows.append(dict(row, xD=row["xD"] + level))
+    (files.folder / "late.csv").write_text(text_of(rows))
+    found = files.assess("late.csv", "benchmark = 'found'", options=["--methods", "sse"])
+    assert float(found["benchmark"]["to"]) < 200, found["benchmark"]
+    assert any("look whether the loop ran well then" in warning for warning in found["warnings"]), found["warnings"]
+    chosen = files.assess("late.csv", "benchmark = ['50', '149']", options=["--methods", "sse"])
+    assert chosen["benchmark"] == {"from": "50", "to": "149"}, chosen["benchmark"]
+    assert files.assess("late.csv")["benchmark"] is None
+    for answer in (found, chosen):
+        assert answer["methods"][0]["flagged"] and answer["methods"][0]["cv"] == "xD", answer["methods"][0]
+    message = files.assess("late.csv", "benchmark = 'best'", code=2)
+    assert "data.benchmark: found 'best'" in message and "found" in message, message
+
+
+def check_several_faults(files):
+    """All flagged CVs are told, with their sources; gaps can be closed for methods that need every sample."""
+    stream = random.Random(6)
+    level, rows = 0.0, []
+    for row in files.rows:
+        level = 0.95 * level + stream.gauss(0, 0.1)
+        rows.append(dict(row, xD=None if stream.random() < 0.02 else row["xD"] + level))
+    (files.folder / "both.csv").write_text(text_of(rows))
+    said = files.assess("both.csv", options=["--methods", "likelihood"])["methods"][0]
+    assert [(cv["cv"], cv["flagged"], cv["source"]) for cv in said["cvs"]] == [
+        ("xD", True, "ud"), ("xB", True, "mpm")], said["cvs"]
+    text = files.run("assess", "f.toml", "both.csv", "--methods", "likelihood", "--trials", 0, "--quiet").stdout
+    assert "Flagged as well: x" in text, text
+    closed = files.assess("both.csv", "fill = 'linear'", options=["--methods", "botelho"])["methods"][0]
+    gaps = files.assess("both.csv", options=["--methods", "botelho"])["methods"][0]
+    assert closed["status"] == "ok" and gaps["status"] != "ok" and "missing" in gaps["reason"], (closed, gaps)
+
+
+def main(program, study):
+    with tempfile.TemporaryDirectory() as name:
+        files = Files(program, pathlib.Path(name), study)
+        check_netcdf(files, (True, "xB", "mpm", ("xB", "S", "dead_time")))
+        check_candidates(files)
+        check_benchmark(files)
+        check_several_faults(files)
+
+
+if __name__ == "__main__":
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    main(*sys.argv[1:])
