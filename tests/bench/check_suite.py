@@ -60,6 +60,16 @@ plants = ["column"]
 set.onset = {sample = {uniform = [80, 100]}, growth = {uniform = [0, 20]}}
 set.monitoring = {window = 80, stride = 20}
 """
+OWN_METHOD = """
+import json, sys
+for line in sys.stdin:
+    if line.strip():
+        message, answer = json.loads(line), {}
+        if message["ask"] == "loop":
+            largest = max(abs(y) for row in message["loop"]["y"] for y in row)
+            answer = {"flagged": largest > THRESHOLD, "score": largest}
+        print(json.dumps({"number": message["number"], **answer}), flush=True)
+"""
 CELLS = ["column.classic", "column.both", "shell.classic"]
 
 
@@ -179,6 +189,22 @@ def check_program(tiny, source):
     tiny.file.write_text(SUITE)
 
 
+def check_program_method(tiny):
+    """An archive is kept with the same content of a method's program only."""
+    program, methods, archive = (tiny.folder / name for name in ("own.py", "own.toml", "own/column.classic.h5"))
+    methods.write_text(f"[method.own]\ncommand = ['{sys.executable}', '-B', '{program}']\n")
+    words = ["--plants", "column", "--families", "classic", "--methods", "sse,own", "--method-file", methods, "--quiet"]
+    contents = []
+    for threshold in 1.0, 1.0, 100.0:
+        program.write_text(OWN_METHOD.replace("THRESHOLD", str(threshold)))
+        tiny.run("own", *words)
+        contents.append((archive.stat().st_ino, archive.read_bytes()))
+    assert contents[0] == contents[1], "run again"
+    assert contents[1] != contents[2], "kept"
+    own = next(method for method in json.loads(tiny.board("own"))["methods"] if method["name"] == "own")
+    assert own["all"]["rates"]["detected"]["hits"] == 0, own["all"]["rates"]["detected"]
+
+
 def check_refusals(tiny):
     for words, message in ((["--methods", "botelo"], "botelo"), (["--families", "clasic"], "nearest: 'classic'")):
         error = tiny.run("refused", *words, code=2)
@@ -195,6 +221,7 @@ def main():
         check_kept(tiny, shown)
         check_interrupted(tiny, shown)
         check_program(tiny, source)
+        check_program_method(tiny)
         check_refusals(tiny)
 
 

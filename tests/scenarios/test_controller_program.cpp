@@ -152,6 +152,21 @@ TEST_CASE("controller program: what it says of itself", "[controller-program]") 
   CHECK(loop_of(missing).failure == LoopFailure::controller);
 }
 
+TEST_CASE("controller program: what the study says of it", "[controller-program]") {
+  const auto message = [](const std::string& keys) {
+    return refusal(replaced(small_study(), "[controller.mv.hot]",
+                            "[controller.program]\n" + keys + "\n[controller.mv.hot]"));
+  };
+  CHECK(message("command = ['mpc']") == "accepted");
+  CHECK_THAT(message(""), Contains("controller.program.command: found nothing; allowed: a list of texts"));
+  CHECK_THAT(message("command = 'mpc'"), Contains("controller.program.command: found 'mpc'"));
+  CHECK_THAT(message("command = ['']"), Contains("the program and its arguments"));
+  CHECK_THAT(message("command = ['mpc']\ntime_limit = 0"),
+             Contains("controller.program.time_limit: found 0"));
+  CHECK_THAT(message("command = ['mpc']\ntime_limit = 1e6"), Contains("at most 86400"));
+  CHECK_THAT(message("command = ['mpc']\nsettle = 1"), Contains("unknown key 'settle'"));
+}
+
 TEST_CASE("controller program: a forked process has programs of its own", "[controller-program]") {
   const Study study = odd_study("fine");
   const Trajectory here = loop_of(study);  // its program waits for the next loop
