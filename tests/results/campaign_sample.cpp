@@ -90,8 +90,9 @@ Campaign campaign_sample() {
     campaign.records.push_back(runner.run(i, i < 2 ? StorePolicy::all : StorePolicy::none));
   make_awkward(campaign.records);
   add_made_up_answers(campaign);
-  campaign.info = {"0.1.0", "abcdef", "2026-01-01T00:00:00Z", "mpmbench run chapter6", "active-set", 1.5, 2,
-                   0.25,    0.5};
+  campaign.info = {
+      "0.1.0", "abcdef", "2026-01-01T00:00:00Z", "mpmbench run chapter6", "", "active-set", 1.5, 2,
+      0.25,    0.5};
   campaign.audit = {{2, 7, {true, 1e-11, 2e-9}, {true, 3e-7, 4e-9}, 5e-11},
                     {5, 301, {true, 0.0, 0.0}, {false, std::nan(""), std::nan("")}, 6e-11}};
   return campaign;

@@ -393,8 +393,16 @@ Campaign made_up_campaign() {
   campaign.study =
       parse_study(with_setpoint(small_study()) + kReplications + kS0Perturbation + kMethods, "small");
   campaign.study.seed = 18446744073709551615U;  // not the one in the text, and above the signed range
-  campaign.info = {"1.2.3", "abc+", "2015-04-01T12:00:00Z", "mpmbench run \xC3\xBC.toml", "ipopt", 0.1, 3,
-                   0.25,    0.7};
+  campaign.info = {"1.2.3",
+                   "abc+",
+                   "2015-04-01T12:00:00Z",
+                   "mpmbench run \xC3\xBC.toml",
+                   "plant.fmu a.fmu 01",
+                   "ipopt",
+                   0.1,
+                   3,
+                   0.25,
+                   0.7};
   add_methods(campaign);
   campaign.basis =
       basis_case(numbers, campaign.study, {{1, ConstraintKind::upper_limit}, {0, ConstraintKind::setpoint}});
@@ -425,7 +433,8 @@ Campaign faultless_campaign() {
   text.insert(text.find(noise) + noise.size(), "noise = {factor = {uniform = [0.5, 2]}}\n");
   Campaign campaign;
   campaign.study = parse_study(text + kReplications + kMethods, "small");
-  campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
+  campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "", "ipopt", 0.1, 3,
+                   0.0,     0.0};
   add_methods(campaign);
   campaign.basis = basis_case(numbers, campaign.study, {{1, ConstraintKind::upper_limit}});
   for (std::int64_t index = 0; index < 48; ++index)
@@ -447,7 +456,8 @@ Campaign rich_campaign() {
       "[monitoring]\nwindow = 24\nstride = 3\n";
   Campaign campaign;
   campaign.study = parse_study(text + kReplications + kMethods, "small");
-  campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
+  campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "", "ipopt", 0.1, 3,
+                   0.0,     0.0};
   add_methods(campaign);
   campaign.basis = basis_case(numbers, campaign.study, {{1, ConstraintKind::upper_limit}});
   for (std::int64_t index = 0; index < 48; ++index) {
@@ -486,7 +496,8 @@ Campaign scenario_campaign() {
   Campaign campaign;
   campaign.study =
       parse_study(text + "[sensitivity]\nform = 'box-jenkins'\n" + kMethods + kScenarios, "small");
-  campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "ipopt", 0.1, 3, 0.0, 0.0};
+  campaign.info = {"1.2.3", "abc", "2015-04-01T12:00:00Z", "mpmbench run x.toml", "", "ipopt", 0.1, 3,
+                   0.0,     0.0};
   add_methods(campaign);
   campaign.basis = basis_case(numbers, campaign.study, {{1, ConstraintKind::upper_limit}});
   campaign.basis.sensitivity_direct = campaign.basis.sensitivity;
