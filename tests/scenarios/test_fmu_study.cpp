@@ -105,7 +105,8 @@ parameter = [{name = "cd 1", value = 3.145}]
   CHECK(model.parameters == std::vector<NonlinearModel::Parameter>{{"cd 1", 3.145}});
   CHECK(model.foreign->options().settle == 100);
   CHECK(model.foreign->output_count() == 4);
-  CHECK_THAT(refusal(text("[]")), Contains("plant.program.command: found") && Contains("the program and its"));
+  CHECK_THAT(refusal(text("[]")),
+             Contains("plant.program.command: found") && Contains("the program and its"));
   CHECK_THAT(refusal(text("[\"sh\", 1]")), Contains("plant.program.command: found"));
   CHECK_THAT(refusal(text("\"sh\"")), Contains("plant.program.command: found"));
   CHECK_THAT(refusal(text("['a']\n[plant.fmu]\nfile = 'b'\n[plant.program.more]")),

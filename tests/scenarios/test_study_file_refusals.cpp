@@ -52,7 +52,8 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
        "study: found unknown key 'sed' (nearest: 'seed'); allowed: name, title, seed"},
       {"sample_time = 1", "sampletime = 1", "sampletime",
        "controller: found unknown key 'sampletime' (nearest: 'sample_time'); allowed: sample_time, "
-       "prediction_horizon, control_horizon, weight_convention, slack, target_violation_cost, mv, cv, program"},
+       "prediction_horizon, control_horizon, weight_convention, slack, target_violation_cost, mv, cv, "
+       "program"},
       {"cost = 6", "cost = 6\nzzz = 1", "zzz",
        "controller.mv.cold: found unknown key 'zzz'; allowed: cost, move_suppression, target_weight, hard"},
       {"level = -0.25", "level = -0.25\nmv = 'hot'", "mv = 'hot'",
