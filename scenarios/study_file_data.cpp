@@ -103,7 +103,8 @@ DataOptions read_data(const TomlTable& document, const Study& study) {
                                                {"anywhere", RecordStart::anywhere}},
                                               options.start);
   options.most_missing = read_number_or(data, "most_missing", NumberRule::inside(0, 1), options.most_missing);
-  options.candidates = read_texts_or(data, "candidates", "columns", options.candidates);
+  if (data.has("candidates"))
+    options.candidates = read_texts_or(data, "candidates", "columns", {});
   options.fill = read_gap_fill_or(data, "fill", options.fill);
   options.period = read_period(data, "period");
   options.benchmark = read_benchmark_period(data);

@@ -51,8 +51,9 @@ void add_variants(const fs::path& table_file, std::vector<Study>& studies) {
       document.table("table", {"chapter", "number", "figure", "title", "study", "note"});
   const Study base = read_base_study(heading, table_file.parent_path());
   const toml::table text = parse_toml(base.source, name);
-  for (const TomlTable& variant : document.tables("variant", {"name", "remove", "set"}))
-    studies.push_back(read_study_variant(variant, text, name));
+  for (const TomlTable& variant : document.tables("variant", {"name", "study", "remove", "set"}))
+    if (!variant.has("study"))  // another shipped study, which is here anyway
+      studies.push_back(read_study_variant(variant, text, name));
 }
 
 /// Every study that the program comes with.
