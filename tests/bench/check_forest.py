@@ -33,7 +33,7 @@ study = "wood-berry"
 [[plant]]
 name = "others"
 study = "wood-berry"
-set.plant.name = "one that nobody trained for"
+set.plant.name = "untrained"
 [[family]]
 name = "classic"
 title = "as in the study"

@@ -134,11 +134,14 @@ TEST_CASE("comparison of a study with a calibration: its rates, thresholds, and 
     CHECK_THAT(text, Contains(std::string("\n") + info.title));
   CHECK_THAT(text, Contains("thresholds on 30 healthy loops and 100 with a disturbance of seed 77"));
   CHECK_THAT(text, Contains("no threshold_01 of botelho: 30 calibration loops with a verdict are too few"));
-  CHECK_THAT(text, Contains("no threshold_05 of badwe2009: 0 calibration loops"));
+  CHECK_THAT(text, Contains("badwe2009: no verdict on any calibration loop, and so no rate at"));
+  CHECK_THAT(text, !Contains("no threshold_05 of badwe2009"));
   CHECK_THAT(text, !Contains("no threshold_05 of sun"));
   const Json json = Json::parse(comparison_json(campaign, findings));
   CHECK(json["calibration"]["seed"] == 77);
   CHECK(json["calibration"]["loops"] == 30);
+  CHECK(json["methods"][2]["unanswered"].contains("calibration"));
+  CHECK(json["methods"][0]["unanswered"].empty());
   const Json& first = json["methods"][0];  // every score is 0.5: above 0.25, and above no 0.5
   CHECK(first["thresholds"]["threshold_05"]["value"] == 0.25);
   CHECK(first["thresholds"]["threshold_01"]["value"].is_null());
