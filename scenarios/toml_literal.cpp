@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kNumbersOnLine = 50;  // parse_toml() takes kMaxDotsOnLine dots
+constexpr std::size_t kNumbersOnLine = 50;  // parse_toml() takes kMaxDotsInKey dots
 
 bool may_stand_in_bare_key(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
@@ -69,7 +69,7 @@ std::string toml_literal(bool value) {
 
 std::string toml_literal(std::string_view text) {
   // A text of several lines may have more dots than parse_toml() takes on one.
-  const bool too_many_dots = std::count(text.begin(), text.end(), '.') > kMaxDotsOnLine;
+  const bool too_many_dots = std::count(text.begin(), text.end(), '.') > kMaxDotsInKey;
   std::string quoted = "\"";
   for (const char c : text) {
     const auto code = static_cast<unsigned char>(c);

@@ -17,15 +17,28 @@ constexpr std::size_t kQuotedLength = 40;
   throw InputError(fmt::format("{}:{}: TOML", file_name, line), found, allowed);
 }
 
+/// Most dots between two commas, equals signs or braces of a line, as in a list of numbers. A quoted part of
+/// a key may have commas of its own: a line with quotes counts as one piece.
+std::ptrdiff_t most_dots(std::string_view line) {
+  const bool quoted = line.find_first_of("\"'") != std::string_view::npos;
+  std::ptrdiff_t most = 0, dots = 0;
+  for (const char c : line) {
+    if (!quoted && (c == ',' || c == '=' || c == '{' || c == '['))
+      dots = 0;
+    dots += c == '.' ? 1 : 0;
+    most = std::max(most, dots);
+  }
+  return most;
+}
+
 void refuse_deep_keys(std::string_view text, const std::string& file_name) {
   std::size_t number = 1;
   for (std::size_t begin = 0; begin < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    const std::ptrdiff_t dots = std::count(line.begin(), line.end(), '.');
-    if (dots > kMaxDotsOnLine) {
-      refuse(file_name, number, fmt::format("{} dots on one line", dots),
-             fmt::format("at most {}", kMaxDotsOnLine));
+    const std::ptrdiff_t dots = most_dots(text.substr(begin, end - begin));
+    if (dots > kMaxDotsInKey) {
+      refuse(file_name, number, fmt::format("{} dots in one key, or in a line with quotes", dots),
+             fmt::format("at most {}", kMaxDotsInKey));
     }
     begin = end + 1;
   }

@@ -11,16 +11,16 @@ namespace mpm {
 /// Largest TOML text that is read, in bytes. Study files have some thousand.
 inline constexpr std::size_t kMaxTomlBytes = std::size_t{1} << 20;
 
-/// Most dots that a line of a TOML text may have. The parser builds, and destroys by recursion, one table a
+/// Most dots that one key of a TOML text may have. The parser builds, and destroys by recursion, one table a
 /// part of a dotted key, without a limit of its own up to version 3.3: some 50 000 dots overflow the stack.
 /// The limit here, together with the parser's own one on nested values (256), keeps a factor of several away
 /// from that.
-inline constexpr std::ptrdiff_t kMaxDotsOnLine = 64;
+inline constexpr std::ptrdiff_t kMaxDotsInKey = 64;
 
 /// Parses `text`; `file_name` is for messages.
 ///
 /// Errors: InputError "FILE:LINE: TOML: found ...; allowed: ..." for a text that is no TOML (with the
-/// parser's message), is longer than kMaxTomlBytes, or has so many dots on one line that keys could nest too
+/// parser's message), is longer than kMaxTomlBytes, or has a key with so many dots that tables would nest too
 /// deeply.
 toml::table parse_toml(std::string_view text, const std::string& file_name);
 

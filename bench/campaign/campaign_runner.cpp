@@ -125,6 +125,8 @@ Campaign run_campaign(Study study, const RunOptions& options, const CampaignHook
                           (calibration ? calibration->series.earlier_seconds() : 0.0);
   campaign.methods = methods_of(campaign.study, "");
   outcomes.move_into(campaign);
+  if (hooks.on_end)
+    hooks.on_end(campaign);
   return campaign;
 }
 

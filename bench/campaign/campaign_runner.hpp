@@ -25,6 +25,8 @@ struct CampaignHooks {
   std::function<void(const ExperimentRecord&)> on_done = {};
   /// Called with a text that the user must see.
   std::function<void(const std::string&)> on_warning = {};
+  /// Called with the whole campaign while its shards are still locked: the place to write its archive.
+  std::function<void(Campaign&)> on_end = {};
 };
 
 /// The basis case of the study failed its self-check: its verdicts would mean nothing.

@@ -30,7 +30,7 @@ std::int64_t compared_loops(const Campaign& campaign, const std::optional<std::i
 bool has_answers(const Campaign& campaign, const std::string& method,
                  const std::optional<std::int64_t>& experiments);
 
-/// Has methods assess the experiments with status ok, in OpenMP threads; the same answer for any number of
+/// Has methods assess the experiments with status ok, in threads; the same answer for any number of
 /// them, but for the processor times. They stand behind the other methods that the campaign has; answers that
 /// it has of one of them, such as on its first experiments only, are replaced. A loop that was not stored is
 /// run again by the solver of the campaign, where that is Ipopt one at a time: its linear solver does not

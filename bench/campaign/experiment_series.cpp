@@ -42,7 +42,7 @@ OutcomeCollection ExperimentSeries::run(const BasisCase& basis, Execution execut
       outcomes.add(std::move(outcome));
   };
   if (!missing_.empty())
-    execute({study_, basis, options_, missing_}, hooks.stop, take);
+    execute({study_, basis, options_, missing_, hooks.on_warning}, hooks.stop, take);
   if (shards_)
     shards_->flush();
   if (left > 0)

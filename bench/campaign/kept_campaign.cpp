@@ -67,11 +67,13 @@ std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& stud
   }
 }
 
-Campaign run_and_keep(const fs::path& archive, const Study& study, RunOptions options,
-                      const CampaignHooks& hooks, const std::string& command) {
+Campaign run_and_keep(const fs::path& archive, const Study& study, RunOptions options, CampaignHooks hooks,
+                      const std::string& command) {
+  hooks.on_end = [&](Campaign& campaign) {
+    note_command(campaign, command);
+    write_archive(archive, campaign, findings_of(campaign));
+  };
   Campaign campaign = resumed(archive, study, std::move(options), hooks);
-  note_command(campaign, command);
-  write_archive(archive, campaign, findings_of(campaign));
   remove_shards(archive);
   return campaign;
 }

@@ -18,6 +18,6 @@ std::optional<Campaign> kept_campaign(const std::filesystem::path& archive, cons
 /// Runs the study, going on with the shards that an interrupted run has left unless they are of another study
 /// or program, and writes the archive. Errors: as run_campaign() and write_archive().
 Campaign run_and_keep(const std::filesystem::path& archive, const Study& study, RunOptions options,
-                      const CampaignHooks& hooks, const std::string& command);
+                      CampaignHooks hooks, const std::string& command);
 
 }  // namespace mpm

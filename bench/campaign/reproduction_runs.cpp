@@ -1,10 +1,10 @@
 #include "bench/campaign/reproduction_runs.hpp"
 
-#include <exception>
 #include <optional>
 #include <utility>
 
 #include "analysis/reproduction/seeded_reproduction.hpp"
+#include "bench/execution/thread_loop.hpp"
 
 namespace mpm {
 
@@ -15,18 +15,9 @@ std::vector<ReproducedTable> run_seed(const std::vector<ThesisTable>& tables, st
                                       const QpSolverFactory& factory, int jobs) {
   BasisCases basis_cases(factory);
   std::vector<ReproducedTable> done(tables.size());
-  std::vector<std::exception_ptr> failures(tables.size());  // none may leave a thread
-#pragma omp parallel for schedule(dynamic) num_threads(jobs)
-  for (std::size_t table = 0; table < tables.size(); ++table) {
-    try {
-      done[table] = reproduce(with_seed_offset(tables[table], offset), factory, basis_cases);
-    } catch (...) {
-      failures[table] = std::current_exception();
-    }
-  }
-  for (const std::exception_ptr& failure : failures)
-    if (failure)
-      std::rethrow_exception(failure);
+  for_each_in_threads(tables.size(), jobs, [&](std::size_t table, std::size_t) {
+    done[table] = reproduce(with_seed_offset(tables[table], offset), factory, basis_cases);
+  });
   return done;
 }
 

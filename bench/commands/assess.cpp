@@ -19,6 +19,7 @@
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
@@ -268,10 +269,10 @@ void add_assess(CommandSet& commands) {
   add_path(app, "-o,--output", options->page, "Page to write (HTML)");
   app.add_option("--window", options->window, "Samples of a window that moves over the record");
   app.add_option("--stride", options->stride, "Samples from one window to the next")
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1, 1000000000));
   app.add_option("--trials", options->trials,
                  "Simulated loops like the record that show how far to trust the verdict; 0: none")
-      ->check(CLI::Range(0, 1000000))
+      ->check(whole_number(0, 1000000))
       ->capture_default_str();
   add_path(app, "--calibration", options->calibration,
            "Archive of these loops, made when it is not there; by default DATA.calibration.h5");

@@ -2,18 +2,39 @@
 
 #include <algorithm>
 #include <cassert>
+#include <new>
+#include <stdexcept>
 
 #include <CLI/CLI.hpp>
 
 namespace mpm {
+
+std::string what_happened(const std::exception& error) {
+  const bool too_much =
+      dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+      dynamic_cast<const std::length_error*>(&error) != nullptr;  // beyond any address space
+  return too_much ? "not enough memory" : error.what();
+}
 
 CommandSet::CommandSet(CLI::App& program, std::string command_line)
     : program_(program), command_line_(std::move(command_line)) {}
 
 CLI::App& CommandSet::add(const std::string& name, const std::string& description, Work work) {
   CLI::App* const app = program_.add_subcommand(name, description);
+  app->group(task_);
   commands_.emplace_back(app, std::move(work));
   return *app;
+}
+
+std::vector<std::string> CommandSet::names() const {
+  std::vector<std::string> names;
+  for (const auto& command : commands_)
+    names.push_back(command.first->get_name());
+  return names;
+}
+
+bool CommandSet::has_work() const {
+  return !program_.get_subcommands().empty();
 }
 
 ExitCode CommandSet::work() const {

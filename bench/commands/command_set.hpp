@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <string>
 #include <utility>
@@ -19,6 +20,9 @@ enum class ExitCode : int {
   not_finished = 3,       ///< the run could not be finished
 };
 
+/// What an exception says to a user: that of the standard library for too little memory says nothing.
+std::string what_happened(const std::exception& error);
+
 /// The commands of the program, and what each of them does.
 class CommandSet {
  public:
@@ -29,6 +33,9 @@ class CommandSet {
   /// `program` must outlive it. `command_line` is what the user has typed.
   CommandSet(CLI::App& program, std::string command_line);
 
+  /// The task under which the help lists the commands that are added from here on.
+  void begin_task(std::string task) { task_ = std::move(task); }
+
   /// One more command; its options are to be declared in what is returned.
   CLI::App& add(const std::string& name, const std::string& description, Work work);
 
@@ -38,12 +45,18 @@ class CommandSet {
   /// What the user has typed, as a shell reads it back; goes into archives.
   const std::string& command_line() const { return command_line_; }
 
+  /// The names of all commands.
+  std::vector<std::string> names() const;
+
+  /// Whether the user has named a command.
+  bool has_work() const;
+
   /// Does the command that the user has named; there must be one.
   ExitCode work() const;
 
  private:
   CLI::App& program_;
-  std::string command_line_;
+  std::string command_line_, task_;
   std::vector<std::pair<const CLI::App*, Work>> commands_;
 };
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <vector>
+
 #include "bench/commands/command_set.hpp"
 
 namespace mpm {
 
-/// Adds a command to the program. A new command is a file commands/NAME.cpp and a line here.
+/// Adds a command to the program. A new command is a file commands/NAME.cpp and a line here, and a
+/// place in one of the tasks below.
 using AddCommand = void(CommandSet& commands);
 
 AddCommand add_run;         // runs a study and writes its archive
@@ -26,10 +29,17 @@ AddCommand add_list;        // the shipped studies
 AddCommand add_manual;      // the manual page, from the declarations of all commands
 AddCommand add_completion;  // what completes them in a shell
 
-/// In the order of the help.
-inline constexpr AddCommand* kCommands[] = {
-    add_run,    add_validate,  add_identify, add_replay, add_summary, add_suite,
-    add_sweep,  add_check,     add_report,   add_plot,   add_compare, add_assess,
-    add_repair, add_reproduce, add_export,   add_list,   add_manual,  add_completion};
+/// Commands that serve one task, in the order of the help.
+struct Task {
+  const char* name;
+  std::vector<AddCommand*> commands;
+};
+
+inline std::vector<Task> tasks() {
+  return {{"Test methods on simulated loops", {add_validate, add_run, add_sweep, add_suite, add_compare}},
+          {"See what was found", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
+          {"Assess the records of a plant", {add_assess, add_identify, add_repair}},
+          {"What there is", {add_list, add_reproduce, add_manual, add_completion}}};
+}
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #include "bench/commands/common_options.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -9,11 +10,17 @@
 
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/outside_program.hpp"
+#include "bench/commands/option_checks.hpp"
 #include "bench/files/outside_files.hpp"
 #include "scenarios/method_file.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {
+namespace {
+
+constexpr std::uint64_t kMostExperiments = 1'000'000'000;  // what indices of experiments are counted up to
+
+}  // namespace
 
 CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path,
                       const std::string& description) {
@@ -22,22 +29,29 @@ CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path,
   });
 }
 
+void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& description) {
+  app.add_option("--seed", seed, description)
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
+}
+
 void add_archive(CLI::App& app, std::string& archive) {
   add_path(app, "ARCHIVE", archive, "Archive")->required();
 }
 
 void add_index(CLI::App& app, std::int64_t& index) {
-  app.add_option("INDEX", index, "Index of the experiment")->required()->check(CLI::NonNegativeNumber);
+  app.add_option("INDEX", index, "Index of the experiment")
+      ->required()
+      ->check(whole_number(0, kMostExperiments));
 }
 
 void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments,
                      const std::string& description) {
-  app.add_option("--experiments", experiments, description)->check(CLI::PositiveNumber);
+  app.add_option("--experiments", experiments, description)->check(whole_number(1, kMostExperiments));
 }
 
 void add_jobs(CLI::App& app, int& jobs, const std::string& description) {
   jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  app.add_option("--jobs", jobs, description)->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--jobs", jobs, description)->check(whole_number(1, 1024))->capture_default_str();
 }
 
 void add_solver(CLI::App& app, std::string& solver) {

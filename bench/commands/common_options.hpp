@@ -17,6 +17,8 @@ namespace mpm {
 /// An option or argument that names a file or a folder, and is not empty.
 CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path,
                       const std::string& description);
+/// The master seed of a study or a suite.
+void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& description);
 void add_archive(CLI::App& app, std::string& archive);
 void add_index(CLI::App& app, std::int64_t& index);
 void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments, const std::string& description);

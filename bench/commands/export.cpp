@@ -13,6 +13,7 @@
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
@@ -96,7 +97,7 @@ void add_export(CommandSet& commands) {
                  "experiments, findings, loops (those that were kept), or a method")
       ->capture_default_str();
   app.add_option("--index", options->index, "One experiment only; not of the findings")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, 1000000000));
   CLI::Option* const blind = app.add_flag(
       "--blind", options->blind,
       "Write the loops without the truth into the folder OUTPUT, for somebody who is to assess them");

@@ -14,6 +14,7 @@
 #include "analysis/identification/step_test.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "plants/error.hpp"
@@ -259,7 +260,7 @@ void add_identify(CommandSet& commands) {
       "largest step of an MD in the study");
   app.add_option("--samples", options->samples,
                  "Samples of a step response; by default sensitivity.samples of the study")
-      ->check(CLI::Range(8, 1000000));
+      ->check(whole_number(8, 1000000));
   app.add_flag("--noise", options->noise, "With the measurement noise of the study");
   add_json(app, options->json);
   add_quiet(app, options->quiet, "No warnings");

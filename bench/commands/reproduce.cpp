@@ -11,6 +11,7 @@
 #include "bench/campaign/reproduction_runs.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/version.hpp"
@@ -95,7 +96,7 @@ void add_reproduce(CommandSet& commands) {
       ->allow_extra_args(false);
   app.add_option("--seeds", options->seeds,
                  "Run each table with N seeds, and report medians and the share of seeds that agree")
-      ->check(CLI::Range(1, 100000));
+      ->check(whole_number(1, 100000));
   add_jobs(app, options->run.jobs, "How many tables run at once, with --solver active-set");
 }
 

@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -14,6 +13,7 @@
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
@@ -69,10 +69,13 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
     warn_of(of_run, basis, progress);
   };
   try {
-    Campaign campaign = run_campaign(study, run_options, hooks, shard_folder_of(options.output));
-    note_command(campaign, command_line);
-    const StudyFindings findings = findings_of(campaign);
-    write_archive(options.output, campaign, findings);
+    StudyFindings findings;
+    hooks.on_end = [&](Campaign& campaign) {
+      note_command(campaign, command_line);
+      findings = findings_of(campaign);
+      write_archive(options.output, campaign, findings);
+    };
+    const Campaign campaign = run_campaign(study, run_options, hooks, shard_folder_of(options.output));
     remove_shards(options.output);
     if (!options.quiet)
       print_result(summary_text(campaign, findings, options.output));
@@ -81,34 +84,32 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
   } catch (const Interrupted& error) {
     throw std::runtime_error(progress.explain(error) + how_to_go_on(options, command_line));
   } catch (const std::exception& error) {
-    throw std::runtime_error(error.what() + how_to_go_on(options, command_line));
+    throw std::runtime_error(what_happened(error) + how_to_go_on(options, command_line));
   }
   return ExitCode::done;
 }
 
 void add_parallel(CLI::App& app, Parallel& parallel) {
-  const std::map<std::string, Parallel> ways{
-      {"by-solver", Parallel::by_solver}, {"threads", Parallel::threads}, {"processes", Parallel::processes}};
-  app.add_option("--parallel", parallel,
-                 "Run experiments in threads (auto, active-set only) or in worker processes (all solvers)")
-      ->transform(CLI::CheckedTransformer(ways))
-      ->default_str("by-solver");
+  add_choice<Parallel>(
+      app, "--parallel", parallel,
+      {{"by-solver", Parallel::by_solver},
+       {"threads", Parallel::threads},
+       {"processes", Parallel::processes}},
+      "Run experiments in threads (auto, active-set only) or in worker processes (all solvers)");
 }
 
 void add_audit(CLI::App& app, double& share) {
   app.add_option("--audit", share,
                  "Share of the steps whose problems Ipopt solves once more, with the solver auto")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(number_between(0.0, 1.0))
       ->capture_default_str();
 }
 
 void add_store(CLI::App& app, StorePolicy& store) {
-  const std::map<std::string, StorePolicy> policies{
-      {"none", StorePolicy::none}, {"flagged", StorePolicy::flagged}, {"all", StorePolicy::all}};
-  app.add_option("--store", store,
-                 "Keep the loop data of no experiment, of those with a wrong verdict, of all")
-      ->transform(CLI::CheckedTransformer(policies))
-      ->default_str("flagged");
+  add_choice<StorePolicy>(
+      app, "--store", store,
+      {{"none", StorePolicy::none}, {"flagged", StorePolicy::flagged}, {"all", StorePolicy::all}},
+      "Keep the loop data of no experiment, of those with a wrong verdict, of all");
 }
 
 /// `run` must live until the command line is read.
@@ -123,7 +124,7 @@ void add_interruption(CLI::App& app, RunOptions& run) {
   app.add_option(
          "--shard-interval", run.shard_interval,
          "Seconds between two shards, which keep what is finished: as much is lost when a run is killed")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_between(0.0, 1e9))
       ->capture_default_str();
 }
 
@@ -136,7 +137,7 @@ void add_run(CommandSet& commands) {
   add_path(app, "STUDY", options->study, "Study file, or name of a shipped study")->required();
   add_path(app, "-o,--output", options->output, "Archive to write (HDF5)")->required();
   add_experiments(app, options->run.experiments, "Run the first N experiments; any N keeps the proportions");
-  app.add_option("--seed", options->run.seed, "Master seed instead of the study's");
+  add_seed(app, options->run.seed, "Master seed instead of the study's");
   add_methods_option(app, options->run.methods,
                      "Methods that assess the loops, separated by commas, or all; in place of the study's");
   add_method_files(app, options->method_files);

@@ -97,7 +97,7 @@ void add_suite(CommandSet& commands) {
   add_path(app, "-o,--output", options->output,
            "Folder for the archives and the leaderboard; what it has of this suite is kept")
       ->required();
-  app.add_option("--seed", options->choice.seed, "Seed of the suite instead of its own: a private suite");
+  add_seed(app, options->choice.seed, "Seed of the suite instead of its own: a private suite");
   app.add_option("--plants", options->choice.plants, "These plants only, separated by commas")
       ->delimiter(',');
   app.add_option("--families", options->choice.families, "These families only, separated by commas")

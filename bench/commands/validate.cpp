@@ -47,7 +47,7 @@ void append(std::vector<StudyWarning> more, std::vector<StudyWarning>& warnings)
 
 /// The basis case, and a pilot of the study where the basis case runs to its end.
 Validation validated(const ValidateArguments& arguments, Progress& progress) {
-  using Clock = std::chrono::steady_clock;
+  using PilotClock = std::chrono::steady_clock;
   Study study = find_study(arguments.study);
   const int calibration_loops = study.calibration ? study.calibration->healthy + study.calibration->ud : 0;
   study.calibration.reset();  // the pilot needs none
@@ -60,9 +60,9 @@ Validation validated(const ValidateArguments& arguments, Progress& progress) {
   options.audit_share = 0.0;
   options.allow_unhealthy_basis = true;
   CampaignHooks hooks = hooks_of(progress);
-  Clock::time_point start;
+  PilotClock::time_point start;
   hooks.on_start = [&, begin = hooks.on_start](std::int64_t done, std::int64_t count) {
-    start = Clock::now();
+    start = PilotClock::now();
     begin(done, count);
   };
   try {
@@ -72,7 +72,7 @@ Validation validated(const ValidateArguments& arguments, Progress& progress) {
       progress.warn(fmt::format("warning: {}", to_string(warning)));
     throw;
   }
-  const double loops = std::chrono::duration<double>(Clock::now() - start).count();
+  const double loops = std::chrono::duration<double>(PilotClock::now() - start).count();
   append(basis_warnings(found.pilot.study, found.pilot.basis), found.warnings);
   found.forecast = forecast(found.pilot.study, found.pilot.records);
   append(forecast_warnings(found.pilot.study, found.forecast, found.pilot.records), found.warnings);
@@ -173,7 +173,7 @@ void add_validate(CommandSet& commands) {
                    [options] { return validate(*options); });
   app.add_option("STUDY", options->study, "Study file, or name of a shipped study")->required();
   add_experiments(app, options->run.experiments, "Experiments of the pilot; 20 without it");
-  app.add_option("--seed", options->run.seed, "Master seed instead of the study's");
+  add_seed(app, options->run.seed, "Master seed instead of the study's");
   add_methods_option(app, options->run.methods,
                      "Methods that assess the loops, separated by commas, or all; in place of the study's");
   add_jobs(app, options->run.jobs, "How many experiments run at once");

@@ -25,7 +25,7 @@ A replay differs from its archive, or a gate is not kept.
 Wrong usage, or a file that is not what it should be; the message names file, key, what was found, what is allowed.
 .TP
 3
-Not finished: interrupted, or something went wrong. What was done is kept, and \-\-resume goes on.
+Not finished: interrupted, something went wrong, or output on stdout was lost. What was done is kept, and \-\-resume goes on.
 .SH ENVIRONMENT
 .TP
 MPMBENCH_STUDIES

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "bench/execution/run_options.hpp"
@@ -15,7 +16,8 @@ struct ExecutionPlan {
   const Study& study;
   const BasisCase& basis;
   const RunOptions& options;
-  std::vector<std::int64_t> indices;  ///< each once
+  std::vector<std::int64_t> indices;                  ///< each once
+  std::function<void(const std::string&)> warn = {};  ///< of what was lost and is done again; none when empty
 };
 
 /// Takes the outcome of each experiment, its audits done, in the order in which they come; one call at a
@@ -33,7 +35,7 @@ bool needs_ipopt(const ExperimentRecord& record);
 /// only. The process must have no other thread.
 void execute_in_processes(const ExecutionPlan& plan, const StopRequest& stop, const OutcomeSink& deliver);
 
-/// Runs the experiments in `options.jobs` OpenMP threads by the active-set method. Only the solvers `auto`
+/// Runs the experiments in `options.jobs` threads by the active-set method. Only the solvers `auto`
 /// and `active-set` can run so. What needs Ipopt goes to worker processes, which are forked before the first
 /// thread starts: audits, and with `auto` the experiments in which some answer was not certified, as a whole.
 /// The outcomes are those of execute_in_processes(), bit for bit.

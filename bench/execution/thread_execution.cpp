@@ -2,15 +2,15 @@
 #include <chrono>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include <omp.h>
-
 #include "bench/execution/experiment_execution.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "bench/execution/ipopt_processes.hpp"
+#include "bench/execution/thread_loop.hpp"
 #include "solvers/certified_solver.hpp"
 
 namespace mpm {
@@ -57,18 +57,20 @@ using ThreadWork = std::vector<std::unique_ptr<ExperimentWork>>;  // one for eac
 /// one of `deliver` is kept until they have ended.
 void run_threads(const ThreadWork& work, IndexQueue& queue, const OutcomeSink& deliver) {
   std::exception_ptr failure;
-#pragma omp parallel num_threads(static_cast <int>(work.size()))
-  while (const std::optional<std::int64_t> index = queue.take()) {
-    ExperimentOutcome outcome = work[static_cast<std::size_t>(omp_get_thread_num())]->run(*index);
-#pragma omp critical(mpm_deliver)
-    try {
-      if (!failure)
-        deliver(std::move(outcome));
-    } catch (...) {
-      failure = std::current_exception();
-      queue.close();
+  std::mutex delivery;
+  in_threads(static_cast<int>(work.size()), [&](std::size_t thread) {
+    while (const std::optional<std::int64_t> index = queue.take()) {
+      ExperimentOutcome outcome = work[thread]->run(*index);
+      const std::lock_guard one_at_a_time(delivery);
+      try {
+        if (!failure)
+          deliver(std::move(outcome));
+      } catch (...) {
+        failure = std::current_exception();
+        queue.close();
+      }
     }
-  }
+  });
   if (failure)
     std::rethrow_exception(failure);
 }

@@ -5,7 +5,11 @@
 
 namespace mpm {
 
-/// Calls body(index, thread) for each index below `count` in `threads` OpenMP threads, in any order; `thread`
+/// Calls body(thread) at once in `threads` threads, of which this is one; it must not throw. Throws
+/// std::runtime_error, and calls nothing, when so many threads cannot be made.
+void in_threads(int threads, const std::function<void(std::size_t thread)>& body);
+
+/// Calls body(index, thread) for each index below `count` in `threads` threads, in any order; `thread`
 /// is below `threads`. Throws the exception of the first index whose call throws, as a loop in one thread
 /// would, and then makes no more calls behind it.
 void for_each_in_threads(std::size_t count, int threads,

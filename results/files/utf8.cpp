@@ -36,4 +36,13 @@ std::string plain_text(std::string_view text) {
   });
 }
 
+std::string_view cut_utf8(std::string_view text, std::size_t most) {
+  if (text.size() <= most)
+    return text;
+  constexpr unsigned kKind = 0xC0, kContinuation = 0x80;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & kKind) == kContinuation)
+    --most;
+  return text.substr(0, most);
+}
+
 }  // namespace mpm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -13,5 +14,8 @@ std::string proper_utf8(std::string_view text);
 /// line feed, and each of the non-characters U+FFFE and U+FFFF, is replaced by U+FFFD. No escape of XML can
 /// stand for these.
 std::string plain_text(std::string_view text);
+
+/// The first `most` bytes of `text`, less what would be half a character of UTF-8.
+std::string_view cut_utf8(std::string_view text, std::size_t most);
 
 }  // namespace mpm

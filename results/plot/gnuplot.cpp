@@ -2,17 +2,24 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "results/files/utf8.hpp"
 
 namespace mpm {
 namespace {
@@ -81,21 +88,52 @@ class Redirection {
   posix_spawn_file_actions_t actions_{};
 };
 
+/// The environment without what gnuplot takes from the user: GNUTERM names a terminal that it may not have.
+std::vector<char*> plain_environment() {
+  std::vector<char*> kept;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (!std::string_view(*variable).starts_with("GNUTERM="))
+      kept.push_back(*variable);
+  kept.push_back(nullptr);
+  return kept;
+}
+
+/// The wait status of a child, which is killed when it has not ended by then.
+int end_of(pid_t child, const std::string& program, std::chrono::milliseconds patience) {
+  constexpr std::chrono::milliseconds kLook(5);
+  const auto until = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    int status = 0;
+    const pid_t ended = ::waitpid(child, &status, WNOHANG);
+    if (ended == child)
+      return status;
+    if (ended < 0 && errno != EINTR)
+      throw GnuplotError(fmt::format("cannot wait for {}: {}", program, error_text(errno)));
+    if (std::chrono::steady_clock::now() >= until)
+      break;
+    std::this_thread::sleep_for(kLook);
+  }
+  ::kill(child, SIGKILL);
+  while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  throw GnuplotError(fmt::format("{} had not drawn a figure after {} s", program,
+                                 std::chrono::duration<double>(patience).count()));
+}
+
 /// Starts the program and waits for its end; its wait status.
-int run(std::string program, std::string script, const Redirection& streams) {
+int run(std::string program, std::string script, const Redirection& streams,
+        std::chrono::milliseconds patience) {
   std::string defaults = "-d";
   const std::array<char*, 4> words{program.data(), defaults.data(), script.data(), nullptr};
+  const std::vector<char*> environment = plain_environment();
   pid_t child = 0;
-  const int failure = ::posix_spawnp(&child, program.c_str(), streams.get(), nullptr, words.data(), environ);
+  const int failure =
+      ::posix_spawnp(&child, program.c_str(), streams.get(), nullptr, words.data(), environment.data());
   if (failure != 0)
     throw GnuplotError(fmt::format(
         "cannot start {}: {}; figures need it: install gnuplot (Debian: apt-get install gnuplot-nox)",
         program, error_text(failure)));
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR)
-      throw GnuplotError(fmt::format("cannot wait for {}: {}", program, error_text(errno)));
-  return status;
+  return end_of(child, program, patience);
 }
 
 /// What gnuplot says of its script, without the folder that is gone by the time somebody reads it.
@@ -103,18 +141,19 @@ std::string complaint(std::string text) {
   constexpr std::size_t kMost = 500;
   text.erase(text.find_last_not_of(" \n") + 1);
   text.erase(0, text.find_first_not_of(" \n"));
-  return text.size() > kMost ? text.substr(0, kMost) + " ..." : text;
+  return text.size() > kMost ? fmt::format("{} ...", cut_utf8(text, kMost)) : text;
 }
 
 }  // namespace
 
-std::string run_gnuplot(const std::string& script, const std::string& program) {
+std::string run_gnuplot(const std::string& script, const std::string& program,
+                        std::chrono::milliseconds patience) {
   const TemporaryFolder folder;
   const std::string script_file = folder / "script";
   const std::string out = folder / "out";
   const std::string error = folder / "error";
   write(script_file, script);
-  const int status = run(program, script_file, Redirection(out, error));
+  const int status = run(program, script_file, Redirection(out, error), patience);
   if (!WIFEXITED(status))
     throw GnuplotError(fmt::format("{} was ended by signal {}", program, WTERMSIG(status)));
   std::string drawing = content(out);

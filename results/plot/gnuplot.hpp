@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <stdexcept>
 #include <string>
 
@@ -18,7 +19,9 @@ class GnuplotError : public std::runtime_error {
 /// The script must hold foreign text in single quotes or data blocks only (plot_text.hpp): elsewhere gnuplot
 /// runs what stands in backquotes.
 ///
-/// Errors: GnuplotError when the program cannot be started, ends with another code than 0 or writes nothing.
-std::string run_gnuplot(const std::string& script, const std::string& program = "gnuplot");
+/// Errors: GnuplotError when the program cannot be started, ends with another code than 0 or writes
+/// nothing, or has not ended after `patience`; it is killed then.
+std::string run_gnuplot(const std::string& script, const std::string& program = "gnuplot",
+                        std::chrono::milliseconds patience = std::chrono::minutes(2));
 
 }  // namespace mpm

@@ -18,6 +18,7 @@
 #include "plants/error.hpp"
 #include "plants/input_file.hpp"
 #include "plants/non_finite.hpp"
+#include "results/files/utf8.hpp"
 #include "results/records/csv_columns.hpp"
 #include "results/records/netcdf_columns.hpp"
 #include "results/records/record_columns.hpp"
@@ -120,7 +121,7 @@ class RecordReader {
       filled += cell.empty() ? 0 : 1;
     }
     const std::string name = file_.names[column];
-    const std::string text = texts == 0 ? "" : file_.columns[column][first_text].substr(0, 40);
+    const std::string_view text = texts == 0 ? "" : cut_utf8(file_.columns[column][first_text], 40);
     if (texts == filled)
       throw InputError(fmt::format("{}: column '{}', for {}", file_.file, name, variable),
                        texts == 0 ? std::string("no value") : fmt::format("no number, but '{}'", text),
@@ -154,7 +155,7 @@ class RecordReader {
     if (bad == signal.size())
       throw InputError(
           where("quality", variable),
-          fmt::format("no row of good quality, but '{}'", file_.columns[column].front().substr(0, 40)),
+          fmt::format("no row of good quality, but '{}'", cut_utf8(file_.columns[column].front(), 40)),
           fmt::format("one of data.good_quality: {}", fmt::join(data_.good_quality, ", ")));
   }
 
@@ -441,7 +442,7 @@ class RecordReader {
     if (off == 1.0)
       throw InputError(
           file_.file + ": data.controller_on",
-          fmt::format("'{}' throughout", file_.columns[column].front().substr(0, 40)),
+          fmt::format("'{}' throughout", cut_utf8(file_.columns[column].front(), 40)),
           fmt::format("a period with one of data.on_values: {}", fmt::join(data_.on_values, ", ")));
     if (off > 0.0)
       record_.warnings.push_back(

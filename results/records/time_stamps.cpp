@@ -13,6 +13,7 @@
 
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
+#include "results/files/utf8.hpp"
 
 namespace mpm {
 namespace {
@@ -107,7 +108,7 @@ std::optional<double> days_of(const WrittenDate& date, DateOrder order) {
 
 [[noreturn]] void refuse_stamp(const StampSource& source, std::size_t row, const char* allowed) {
   throw InputError(fmt::format("{}, line {}", source.where, source.lines[row]),
-                   fmt::format("'{}'", source.cells[row].substr(0, 40)), allowed);
+                   fmt::format("'{}'", cut_utf8(source.cells[row], 40)), allowed);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@ usage: check_files_and_streams.py MPMBENCH
 import fcntl
 import os
 import pathlib
+import resource
 import subprocess
 import sys
 import tempfile
@@ -100,6 +101,26 @@ def check_abandoned(run, folder, archive):
     assert sorted(path.name for path in folder.glob("t.csv*")) == ["t.csv"]
 
 
+def check_threads(run, folder):
+    """Exit code 1 is a gate that fails: threads that cannot be made are a run that was not finished."""
+    if os.geteuid() != 0:
+        return  # no limit can be set for this test alone
+    folder = folder / "nobody's"
+    folder.mkdir()
+    os.chmod(folder, 0o777)
+    folder.parent.chmod(0o755)
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))
+        os.setuid(65534)
+
+    words = [*map(str, RUN[:-3]), "3", "--solver", "active-set", "--quiet", "-o", str(folder / "a.h5")]
+    ended = subprocess.run([run.program, *words], preexec_fn=limit, capture_output=True, text=True, timeout=PATIENCE)
+    assert ended.returncode == 3 and "threads could be made" in ended.stderr, ended
+    small = {**os.environ, "OMP_STACKSIZE": "64k"}
+    run(*RUN, "-o", folder / "b.h5", env=small)
+
+
 def check_terminal(run, folder):
     """Control characters in names and paths do not reach the terminal."""
     for name in ("a\x1b[31mb", "a\x9b31mb", "a\x07b"):
@@ -117,6 +138,7 @@ def main(program):
         check_inputs(run, folder / "pipe")
         check_streams(run, folder, archive)
         check_abandoned(run, folder, archive)
+        check_threads(run, folder)
         check_terminal(run, folder)
 
 

@@ -1,11 +1,19 @@
 #include <atomic>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "analysis/methods/method_table.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/campaign/serial_campaign.hpp"
+#include "bench/shards/shard_folder.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
 #include "scenarios/study_change.hpp"
@@ -204,6 +212,68 @@ TEST_CASE("campaign: stopped and resumed until it is done, it is what the serial
   CHECK(done < 14);
   check_same(resumed, serial, 14);
   check_same_audit(resumed, serial);
+}
+
+/// Whether another process may use the folder of shards.
+bool is_free_for_others(const fs::path& shards) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    try {
+      const ShardFolder folder(shards);
+      ::_exit(0);
+    } catch (const InputError&) {
+      ::_exit(1);
+    }
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+TEST_CASE("campaign: its shards are locked until its archive is written") {
+  const TemporaryFolder folder;
+  const fs::path shards = folder / "s";
+  RunOptions options = fourteen();
+  options.experiments = 2;
+  bool was_free = true;
+  const CampaignHooks hooks{.on_end = [&](Campaign& campaign) {
+    CHECK(campaign.records.size() == 2);
+    was_free = is_free_for_others(shards);
+  }};
+  run_campaign(find_study("wood-berry"), options, hooks, shards);
+  CHECK_FALSE(was_free);
+  CHECK(is_free_for_others(shards));
+}
+
+/// The processes that this one has forked.
+std::vector<pid_t> children() {
+  std::ifstream file("/proc/thread-self/children");
+  return {std::istream_iterator<pid_t>(file), {}};
+}
+
+TEST_CASE("campaign: the audit of a killed worker is said and done again, and found no disagreement") {
+  const Study study = find_study("wood-berry");
+  RunOptions options = fourteen();
+  options.jobs = 1;
+  options.parallel = Parallel::threads;
+  const Campaign serial = run_serially(study, options);
+  std::vector<std::string> warnings;
+  std::size_t kills = GENERATE(1U, 1000U);  // once, and whenever an outcome comes
+  const auto kill_one = [&](const ExperimentRecord&) {
+    if (kills-- > 0)
+      for (const pid_t worker : children())
+        ::kill(worker, SIGKILL);
+  };
+  const CampaignHooks hooks{.on_done = kill_one,
+                            .on_warning = [&](const std::string& text) { warnings.push_back(text); }};
+  const Campaign campaign = run_campaign(study, options, hooks);
+  REQUIRE_FALSE(warnings.empty());
+  CHECK_THAT(warnings.front(),
+             Contains("was lost: worker process ended by signal 9") && Contains("audited again"));
+  CHECK(summarise(campaign.audit).disagreements == 0);
+  check_same(campaign, serial, 14);
+  if (warnings.size() == 1)
+    check_same_audit(campaign, serial);
 }
 
 TEST_CASE("campaign: a stop does not wait for the basis case, and keeps what is in shards") {

@@ -149,8 +149,9 @@ TEST_CASE("command line: what cannot be written is no wrong input") {
 TEST_CASE("command line: wrong usage names what is wrong") {
   const Words run{"run", "chapter6", "-o", "x"};
   const std::vector<std::pair<Words, std::string>> wrong{
-      {{}, "subcommand is required"},
-      {{"dance"}, "subcommand is required"},
+      {{}, "Test methods on simulated loops"},
+      {{"dance"}, "command: found 'dance'; allowed: validate, run"},
+      {{"sumary", "--help"}, "command: found 'sumary' (nearest: 'summary')"},
       {{"run", "chapter6"}, "--output is required"},
       {run + Words{"--jobs", "0"}, "--jobs"},
       {run + Words{"--experiments", "-4"}, "--experiments"},
@@ -159,6 +160,15 @@ TEST_CASE("command line: wrong usage names what is wrong") {
       {run + Words{"--parallel", "both"}, "--parallel"},
       {run + Words{"--store", "some"}, "--store"},
       {run + Words{"--shard-interval", "-1"}, "--shard-interval"},
+      {run + Words{"--shard-interval", "nan"}, "found nan; allowed: a number from 0 to"},
+      {run + Words{"--audit", "nan"}, "--audit"},
+      {run + Words{"--experiments", "0"}, "found 0; allowed: a whole number from 1 to 1000000000"},
+      {run + Words{"--seed", "-1"}, "found -1; allowed: a whole number from 0 to 18446744073709551615"},
+      {run + Words{"--seed", "18446744073709551616"}, "found 18446744073709551616"},
+      {run + Words{"--seed", "010"}, "found 010"},
+      {run + Words{"-o", ""}, "--output"},
+      {{"suite", "quick", "-o", "x", "--seed", "0x10"}, "found 0x10"},
+      {{"validate", "chapter6", "--seed", "1e3"}, "found 1e3"},
       {{"sweep", "chapter6"}, "--output is required"},
       {{"sweep", "chapter6", "-o", "x", "--seed", "3"}, "--seed"},
       {{"reproduce", "2.5", "--seeds", "0"}, "--seeds"},
@@ -182,8 +192,10 @@ TEST_CASE("command line: help names every command, and the defaults of each") {
     CHECK_THAT(help.message, Contains(std::string("\n  ") + name + " "));
     CHECK(typed({name, "--help"}).code == ExitCode::done);
   }
+  CHECK_THAT(help.message, Contains("Exit codes: 0 done, 1 "));
+  CHECK_THAT(typed({"run", "--help"}).message, !Contains("->"));
   CHECK_THAT(typed({"run", "--help"}).message,
-             Contains("}=auto") && Contains("]=0.001") && Contains("}=flagged"));
+             Contains("}=auto") && Contains("0 to 1=0.001") && Contains("}=flagged"));
   CHECK_THAT(typed({"--version"}).message, Contains("mpmbench"));
 }
 

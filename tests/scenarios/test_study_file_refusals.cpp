@@ -37,7 +37,15 @@ TEST_CASE("texts that would cost too much are refused", "[study_file]") {
   for (int i = 0; i < 200000; ++i) {
     deep += ".a";  // each dot is one more table in the table
   }
-  CHECK(refusal(deep + " = 1") == "s.toml:2: TOML: found 200000 dots on one line; allowed: at most 64");
+  CHECK(refusal(deep + " = 1") ==
+        "s.toml:2: TOML: found 200000 dots in one key, or in a line with quotes; allowed: at most 64");
+}
+
+TEST_CASE("a list of many numbers is no deep key", "[study_file]") {
+  std::string noise = "noise = {cv0 = 0.5";
+  for (int cv = 1; cv < 200; ++cv)
+    noise += ", cv" + std::to_string(cv) + " = 0.5";
+  CHECK(parse_toml(noise + "}", "s.toml")["noise"].as_table()->size() == 200);
 }
 
 TEST_CASE("unknown keys and tables are refused with the nearest and all allowed ones", "[study_file]") {

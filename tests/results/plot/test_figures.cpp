@@ -1,4 +1,6 @@
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -130,6 +132,14 @@ TEST_CASE("gnuplot: a missing program, a wrong script and a silent one are error
                     Contains("cannot start no-such-gnuplot") && Contains("install gnuplot"));
   CHECK_THROWS_WITH(run_gnuplot("set terminal svg\nplot nonsense +\n"), Contains("could not draw"));
   CHECK_THROWS_WITH(run_gnuplot("x = 1\n"), Contains("could not draw"));
+  ::setenv("GNUTERM", "no-such-terminal", 1);
+  CHECK_THAT(run_gnuplot("set terminal svg\nplot 1\n"), Contains("<svg"));
+  ::unsetenv("GNUTERM");
+  const TemporaryFolder folder;
+  make_file(folder / "hangs", "#!/bin/sh\nexec sleep 1000\n");
+  std::filesystem::permissions(folder / "hangs", std::filesystem::perms::owner_all);
+  CHECK_THROWS_WITH(run_gnuplot("", folder / "hangs", std::chrono::milliseconds(50)),
+                    Contains("had not drawn a figure after 0.05 s"));
   CHECK_THROWS_AS(svg_element("no drawing", {}), GnuplotError);
   CHECK_THROWS_AS(svg_element("<svg viewBox='0 0 1 1'><g>", {}), GnuplotError);
   CHECK_THROWS_AS(svg_element("<g viewBox='0 0 1 1'/>", {}), GnuplotError);
