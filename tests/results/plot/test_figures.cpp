@@ -11,6 +11,8 @@
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/svg_text.hpp"
+#include "results/plot/trajectory_figure.hpp"
+#include "scenarios/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {
@@ -33,6 +35,20 @@ Panel small_panel(const std::string& name, const std::string& title) {
                {colour::kBlue, Dash::none, Mark::dot});
   panel.upright_whiskers({{1, 2, 1, 3, "a mean"}}, {colour::kGreen, Dash::solid, Mark::square});
   return panel.finish("A small panel & its description.");
+}
+
+TEST_CASE("figures: a loop is drawn to its own scale, with the limits that are near") {
+  const Study study = find_study("wood-berry");  // xD: soft [0, 1], hard [-4, 4]
+  Trajectory loop;
+  loop.samples_done = 3;
+  loop.y = (Eigen::MatrixXd(2, 3) << -0.1, 0.0, 0.1, -3.0, 0.0, 1.0).finished();
+  loop.u = loop.u_target = Eigen::MatrixXd::Zero(2, 3);
+  loop.d = Eigen::MatrixXd::Zero(1, 3);
+  const Figure figure = trajectory_figure(study, loop, {loop.y, loop.y, loop.y}, "loop");
+  const auto limits = [&](std::size_t panel) { return count(figure.panels.at(panel).commands, "set arrow"); };
+  CHECK(limits(0) == 1);  // xD from -0.1 to 0.1: its lower soft limit 0; the upper one is far off
+  CHECK(limits(1) == 4);  // xB from -3 to 1: all four
+  CHECK(limits(2) == 2);  // R stands still: nothing tells what is near
 }
 
 TEST_CASE("figures: every point names itself without a script, and what cannot be shown is left out") {
