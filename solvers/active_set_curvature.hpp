@@ -6,6 +6,7 @@
 
 #include "solvers/active_set_problem.hpp"
 #include "solvers/active_set_springs.hpp"
+#include "solvers/lanes/lane_vector.hpp"
 
 namespace mpm {
 
@@ -24,31 +25,21 @@ class ActiveSetCurvature {
   /// Brings M up to the springs' present forces; false when that changed nothing.
   bool synchronise(const std::vector<LimitSprings>& families);
 
-  /// M in its lower triangle.
-  const Eigen::MatrixXd& matrix() const { return matrix_; }
+  /// M in its lower triangle, beside it columns of the unit matrix up to the stride. What stands above is
+  /// arbitrary.
+  const LaneMatrix& matrix() const { return matrix_; }
 
  private:
-  struct Term {
-    const double* row;
-    double weight;
-  };
-
-  struct Change {
-    std::size_t family;
-    Eigen::Index row;
-  };
-
-  void find_changes(const std::vector<LimitSprings>& families);
-  void add(const LimitSprings& springs, Eigen::Index i, double weight);
-  void flush();
+  std::size_t find_changes(const std::vector<LimitSprings>& families);
+  void add(const LimitSprings& springs, std::size_t family);
 
   const ActiveSetProblem& problem_;
-  Eigen::MatrixXd matrix_;
-  std::vector<std::vector<unsigned char>> included_;  ///< one flag a family and row
-  std::vector<bool> touched_;                         ///< families with springs in M, at any time
-  std::vector<Change> changes_;                       ///< springs that M does not have as they are
+  LaneMatrix matrix_;
+  std::vector<std::vector<unsigned char>> included_;  ///< of a family and eight rows: one bit a row
+  std::vector<std::vector<int>> changes_;  ///< of a family: springs that M does not have as they are
+  std::vector<double> weights_;
+  LaneVector scratch_;
   std::size_t stretched_ = 0;
-  std::vector<Term> pending_;  ///< terms that wait to be added together
 };
 
 }  // namespace mpm

@@ -29,7 +29,7 @@ DualActiveSet::DualActiveSet(const ActiveSetProblem& problem)
   linear_.setZero(problem.variable_count());
   z_.setZero(problem.variable_count());
   step_.setZero(problem.variable_count());
-  row_value_.setZero(problem.structure->row_count());
+  row_value_ = LaneVector(problem.structure->row_count());
   ray_.setZero(problem.structure->row_count());
   used_.setConstant(std::max(problem.variable_count(), problem.structure->row_count()), 5, false);
 }
@@ -38,14 +38,14 @@ bool& DualActiveSet::in_use(const LimitSide& side) {
   return used_(side.index, static_cast<Eigen::Index>(side.kind));
 }
 
-DualOutcome DualActiveSet::solve(const QpData& data, const Eigen::VectorXd& linear, double tolerance,
-                                 int& iterations) {
+DualOutcome DualActiveSet::solve(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& linear,
+                                 double tolerance, int& iterations) {
   linear_ = linear;
   warm_start(data);
   const int limit = iterations + 20 * static_cast<int>(problem_.variable_count() + row_value_.size());
   find_point();
   for (bool refined = false;;) {
-    row_value_.noalias() = problem_.structure->rows * z_.head(problem_.structure->variable_count());
+    problem_.lanes->multiply_rows(z_.data(), row_value_);
     LimitSide worst;
     if (find_violated(data, tolerance, worst)) {
       if (iterations >= limit)

@@ -7,6 +7,7 @@
 #include "solvers/active_set_limits.hpp"
 #include "solvers/active_set_problem.hpp"
 #include "solvers/active_set_schur.hpp"
+#include "solvers/lanes/lane_vector.hpp"
 #include "solvers/qp.hpp"
 
 namespace mpm {
@@ -26,7 +27,8 @@ class DualActiveSet {
   void reset() { working_.clear(); }
 
   /// `linear` is c of the problem in z. `infeasible` only says that the method found a ray, see `ray`.
-  DualOutcome solve(const QpData& data, const Eigen::VectorXd& linear, double tolerance, int& iterations);
+  DualOutcome solve(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& linear, double tolerance,
+                    int& iterations);
 
   /// Writes x, the slacks and the multipliers.
   void report(QpResult& result) const;
@@ -54,7 +56,8 @@ class DualActiveSet {
   Eigen::Index rigid_ = 0;      ///< limits of the working set without softness: no more than variables
   Eigen::VectorXd multiplier_;  ///< >= 0 in the direction of `side`, in the order of `working_`
   Eigen::VectorXd products_, direction_;
-  Eigen::VectorXd linear_, z_, step_, row_value_, ray_;
+  Eigen::VectorXd linear_, z_, step_, ray_;
+  LaneVector row_value_;
   Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> used_;  ///< limits in the working set: index x kind
 };
 

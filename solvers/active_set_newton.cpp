@@ -1,7 +1,6 @@
 #include "solvers/active_set_newton.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "plants/non_finite.hpp"
@@ -22,19 +21,19 @@ ActiveSetNewton::ActiveSetNewton(const ActiveSetProblem& problem, std::size_t fa
     : problem_(problem), curvature_(problem, family_count), factor_(problem.variable_count()) {
   const Eigen::Index size = problem.variable_count();
   const Eigen::Index rows = problem.structure->row_count();
-  for (Eigen::VectorXd* vector : {&z, &centre, &linear, &gradient, &direction_, &step_, &target_})
-    vector->setZero(size);
-  lower.setConstant(size, 0.0);
-  upper.setConstant(size, kInfinity);
-  for (Eigen::VectorXd* vector : {&row_value, &row_step_, &row_force_})
-    vector->setZero(rows);
+  for (LaneVector* vector :
+       {&z, &centre, &linear, &lower, &upper, &gradient, &direction_, &step_, &target_, &scratch_})
+    *vector = LaneVector(size);
+  upper.vector().setConstant(kInfinity);
+  for (LaneVector* vector : {&row_value, &row_step_})
+    *vector = LaneVector(rows);
   free_.reserve(static_cast<std::size_t>(size));
   next_free_.reserve(static_cast<std::size_t>(size));
 }
 
 void ActiveSetNewton::reset() {
-  z.setZero();
-  centre.setZero();
+  z.vector().setZero();
+  centre.vector().setZero();
   forget_curvature();
 }
 
@@ -46,8 +45,8 @@ void ActiveSetNewton::forget_curvature() {
 void ActiveSetNewton::start(std::vector<LimitSprings>& families) {
   if (factored_)
     predict(families);
-  z = z.cwiseMax(lower).cwiseMin(upper);
-  row_value.noalias() = problem_.structure->rows * z.head(problem_.structure->variable_count());
+  z.vector() = z.vector().cwiseMax(lower.vector()).cwiseMin(upper.vector());
+  problem_.lanes->multiply_rows(z.data(), row_value);
   for (LimitSprings& springs : families)
     if (springs.enabled)
       springs.place(problem_, row_value, z);
@@ -65,11 +64,8 @@ void ActiveSetNewton::predict(std::vector<LimitSprings>& families) {
     springs.pull_stretched();
   }
   find_gradient(families);
-  direction_.setZero();
-  for (const int j : free_)
-    direction_(j) = -gradient(j);
-  factor_.solve_in_place(direction_);
-  z += direction_;
+  solve_for_direction();
+  z.vector() += direction_.vector();
 }
 
 // A variable that was held at a limit follows it.
@@ -88,7 +84,7 @@ void ActiveSetNewton::follow_limits() {
     }
   }
   if (moved)
-    row_value.noalias() = problem_.structure->rows * z.head(problem_.structure->variable_count());
+    problem_.lanes->multiply_rows(z.data(), row_value);
 }
 
 bool ActiveSetNewton::held(Eigen::Index j) const {
@@ -126,12 +122,12 @@ NewtonOutcome ActiveSetNewton::minimise(std::vector<LimitSprings>& families, dou
     for (LimitSprings& springs : families)
       if (springs.enabled && springs.find_changing())
         same = false;
-    const double t = same ? 1.0 : line_search(families, gradient.dot(step_));
+    const double t = same ? 1.0 : line_search(families, gradient.vector().dot(step_.vector()));
     if (t == 1.0)
-      z = target_;  // exactly on the limits that are met
+      z.vector() = target_.vector();  // exactly on the limits that are met
     else
-      z = (z + t * step_).cwiseMax(lower).cwiseMin(upper);
-    row_value += t * row_step_;
+      z.vector() = (z.vector() + t * step_.vector()).cwiseMax(lower.vector()).cwiseMin(upper.vector());
+    row_value.vector() += t * row_step_.vector();
     for (LimitSprings& springs : families)
       if (springs.enabled)
         springs.advance(t, same);
@@ -141,45 +137,23 @@ NewtonOutcome ActiveSetNewton::minimise(std::vector<LimitSprings>& families, dou
 void ActiveSetNewton::find_gradient(const std::vector<LimitSprings>& families) {
   const Eigen::Index n = problem_.structure->variable_count();
   const Eigen::Index kept = z.size() - n;
-  gradient = linear;
-  gradient.array() += problem_.proximal.array() * (z - centre).array();
-  gradient.head(n).noalias() += problem_.quadratic.topLeftCorner(n, n) * z.head(n);
-  gradient.tail(kept).array() += problem_.quadratic.diagonal().tail(kept).array() * z.tail(kept).array();
+  gradient.vector() = linear.vector();
+  gradient.vector().array() += problem_.proximal.array() * (z.vector() - centre.vector()).array();
+  problem_.lanes->add_hessian(z.data(), gradient);
+  gradient.vector().tail(kept).array() +=
+      problem_.quadratic.diagonal().tail(kept).array() * z.vector().tail(kept).array();
   for (const LimitSprings& springs : families)
     if (springs.enabled)
       add_row_forces(springs);
 }
 
-// Four rows at a time: the gradient is read and written a quarter as often.
 void ActiveSetNewton::add_row_forces(const LimitSprings& springs) {
-  const Eigen::Index n = problem_.structure->variable_count();
-  const RowMajorMatrix& rows = problem_.structure->rows;
-  std::array<const double*, 4> row{};
-  std::array<double, 4> force{};
-  std::size_t waiting = 0;
-  const auto flush = [&] {
-    double* sum = gradient.data();
-    for (Eigen::Index j = 0; j < n; ++j)
-      sum[j] += force[0] * row[0][j] + force[1] * row[1][j] + force[2] * row[2][j] + force[3] * row[3][j];
-    waiting = 0;
-  };
-  for (Eigen::Index i = 0; i < springs.size(); ++i) {
-    if (!springs.stretched(i))
-      continue;
-    row[waiting] = rows.row(i).data();
-    force[waiting] = springs.force(i);
-    if (const int column = problem_.slack_column(i); springs.slack_sign != 0.0 && column >= 0)
-      gradient(column) += springs.slack_sign * springs.force(i);
-    if (++waiting == row.size())
-      flush();
-  }
-  if (waiting == 0)
+  problem_.lanes->add_rows(springs.stretched_rows(), springs.force.data(), gradient);
+  if (springs.slack_sign == 0.0)
     return;
-  for (std::size_t k = waiting; k < row.size(); ++k) {
-    row[k] = row[0];
-    force[k] = 0.0;
-  }
-  flush();
+  for (const int i : springs.stretched_rows())
+    if (const int column = problem_.slack_column(i); column >= 0)
+      gradient(column) += springs.slack_sign * springs.force(i);
 }
 
 // The variables that may move; returns the largest gradient among them.
@@ -203,11 +177,17 @@ bool ActiveSetNewton::find_direction(const std::vector<LimitSprings>& families) 
     if (!factored_)
       return false;
   }
-  direction_.setZero();
+  solve_for_direction();
+  return true;
+}
+
+// The Newton step of the free variables; against the gradient where there is no factor.
+void ActiveSetNewton::solve_for_direction() {
+  direction_.vector().setZero();
   for (const int j : free_)
     direction_(j) = -gradient(j);
-  factor_.solve_in_place(direction_);
-  return true;
+  if (factored_)
+    factor_.solve_in_place(direction_);
 }
 
 // The step to the nearest point of the box to the Newton point; false when that is hardly downhill.
@@ -219,7 +199,7 @@ bool ActiveSetNewton::aim_projected() {
     if (target_(j) != aim)
       step_(j) = target_(j) - z(j);  // elsewhere the step keeps the digits that z cannot hold
   }
-  return gradient.dot(step_) <= kDownhill * gradient.dot(direction_);
+  return gradient.vector().dot(step_.vector()) <= kDownhill * gradient.vector().dot(direction_.vector());
 }
 
 // The step towards the Newton point up to the first limit.
@@ -231,15 +211,15 @@ void ActiveSetNewton::aim_truncated() {
       longest = std::min(longest, (upper(j) - z(j)) / d);
     else if (d < 0.0)
       longest = std::min(longest, (lower(j) - z(j)) / d);
-  step_ = longest * direction_;
-  target_ = z + step_;
+  step_.vector() = longest * direction_.vector();
+  target_.vector() = z.vector() + step_.vector();
   for (const int j : free_)
     if (const double d = direction_(j); d != 0.0 && longest < 1.0) {
       const double limit = d > 0.0 ? upper(j) : lower(j);
       if ((limit - z(j)) / d <= longest)
         target_(j) = limit;
     }
-  target_ = target_.cwiseMax(lower).cwiseMin(upper);
+  target_.vector() = target_.vector().cwiseMax(lower.vector()).cwiseMin(upper.vector());
 }
 
 // A variable on a limit that the Newton step would push across it is taken out of the step. The gradient
@@ -255,34 +235,36 @@ void ActiveSetNewton::freeze_blocked() {
       return;
     free_.erase(kept, free_.end());
     factored_ = factor_.compute(curvature_.matrix(), free_);
-    direction_.setZero();
-    for (const int j : free_)
-      direction_(j) = -gradient(j);
-    if (factored_)
-      factor_.solve_in_place(direction_);
+    solve_for_direction();
   }
 }
 
 void ActiveSetNewton::aim_springs(std::vector<LimitSprings>& families) {
-  row_step_.noalias() = problem_.structure->rows * step_.head(problem_.structure->variable_count());
+  problem_.lanes->multiply_rows(step_.data(), row_step_);
   for (LimitSprings& springs : families)
     if (springs.enabled)
       springs.aim(problem_, row_step_, step_);
 }
 
-// The root of the derivative of theta along the step, a rising piecewise linear function of t: Newton's
-// method within a bracket. The whole step when theta falls all along it.
-double ActiveSetNewton::line_search(const std::vector<LimitSprings>& families, double slope) const {
+// Second derivative of theta along the step, without the springs that change.
+double ActiveSetNewton::steady_curvature(std::vector<LimitSprings>& families) {
   const Eigen::Index n = problem_.structure->variable_count();
   const Eigen::Index kept = z.size() - n;
-  double steady = problem_.quadratic.diagonal().tail(kept).dot(step_.tail(kept).cwiseAbs2()) +
-                  problem_.proximal.dot(step_.cwiseAbs2());
-  for (Eigen::Index j = 0; j < n; ++j)
-    steady += step_(j) * problem_.quadratic.col(j).head(n).dot(step_.head(n));
-  for (const LimitSprings& springs : families)
+  scratch_.vector() = problem_.proximal.cwiseProduct(step_.vector());
+  scratch_.vector().tail(kept) +=
+      problem_.quadratic.diagonal().tail(kept).cwiseProduct(step_.vector().tail(kept));
+  problem_.lanes->add_hessian(step_.data(), scratch_);
+  double result = scratch_.vector().dot(step_.vector());
+  for (LimitSprings& springs : families)
     if (springs.enabled)
-      steady += springs.steady_curvature();
+      result += springs.steady_curvature();
+  return result;
+}
 
+// The root of the derivative of theta along the step, a rising piecewise linear function of t: Newton's
+// method within a bracket. The whole step when theta falls all along it.
+double ActiveSetNewton::line_search(std::vector<LimitSprings>& families, double slope) {
+  const double steady = steady_curvature(families);
   double low = 0.0;
   double high = 1.0;
   double t = 1.0;

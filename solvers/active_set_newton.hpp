@@ -8,6 +8,7 @@
 #include "solvers/active_set_factor.hpp"
 #include "solvers/active_set_problem.hpp"
 #include "solvers/active_set_springs.hpp"
+#include "solvers/lanes/lane_vector.hpp"
 
 namespace mpm {
 
@@ -40,10 +41,10 @@ class ActiveSetNewton {
   /// The largest |sigma_j (z_j - centre_j)|: what the proximal term still adds to the gradient.
   double proximal_force() const;
 
-  Eigen::VectorXd z, centre;
-  Eigen::VectorXd linear, lower, upper;  ///< c and the box, set by the caller before `start`
-  Eigen::VectorXd gradient;              ///< of theta at z, after `minimise`
-  Eigen::VectorXd row_value;             ///< A x
+  LaneVector z, centre;
+  LaneVector linear, lower, upper;  ///< c and the box, set by the caller before `start`
+  LaneVector gradient;              ///< of theta at z, after `minimise`
+  LaneVector row_value;             ///< A x
 
   /// True when variable j rests on a limit, which its gradient pushes it against.
   bool held(Eigen::Index j) const;
@@ -55,19 +56,20 @@ class ActiveSetNewton {
   void add_row_forces(const LimitSprings& springs);
   double find_free();
   bool find_direction(const std::vector<LimitSprings>& families);
+  void solve_for_direction();
   bool aim_projected();
   void aim_truncated();
   void freeze_blocked();
+  double steady_curvature(std::vector<LimitSprings>& families);
   void aim_springs(std::vector<LimitSprings>& families);
-  double line_search(const std::vector<LimitSprings>& families, double slope) const;
+  double line_search(std::vector<LimitSprings>& families, double slope);
 
   const ActiveSetProblem& problem_;
   ActiveSetCurvature curvature_;
   ActiveSetFactor factor_;
   bool factored_ = false;
   std::vector<int> free_, next_free_;
-  Eigen::VectorXd direction_, step_, target_, row_step_;
-  Eigen::VectorXd row_force_;  ///< forces of one family, for A'F
+  LaneVector direction_, step_, target_, row_step_, scratch_;
 };
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "solvers/active_set_factor.hpp"
 
@@ -19,8 +20,13 @@ constexpr double kStiffness = 0.1;
 bool is_definite(const Eigen::MatrixXd& hessian) {
   if (hessian.rows() == 0)
     return true;
-  Eigen::MatrixXd shifted = hessian;
-  shifted.diagonal().array() -= kDefinite * hessian.diagonal().cwiseAbs().maxCoeff();
+  const double shift = kDefinite * hessian.diagonal().cwiseAbs().maxCoeff();
+  LaneMatrix shifted(hessian.rows(), padded(hessian.rows()));
+  for (Eigen::Index j = 0; j < shifted.columns(); ++j) {
+    if (j < hessian.rows())
+      std::copy_n(hessian.col(j).data(), hessian.rows(), shifted.column(j));
+    shifted(j, j) = j < hessian.rows() ? hessian(j, j) - shift : 1.0;
+  }
   std::vector<int> all(static_cast<std::size_t>(hessian.rows()));
   std::iota(all.begin(), all.end(), 0);
   return ActiveSetFactor(hessian.rows()).compute(shifted, all);
@@ -37,7 +43,11 @@ std::vector<int> slack_users(const QpStructure& structure) {
 
 }  // namespace
 
-ActiveSetProblem::ActiveSetProblem(const QpStructure& qp) : structure(&qp) {
+ActiveSetProblem::ActiveSetProblem(const QpStructure& qp)
+    : ActiveSetProblem(qp, std::make_shared<const LaneProgram>(qp.hessian, qp.rows)) {}
+
+ActiveSetProblem::ActiveSetProblem(const QpStructure& qp, std::shared_ptr<const LaneProgram> shared)
+    : structure(&qp), lanes(std::move(shared)) {
   const Eigen::Index n = qp.variable_count();
   const std::vector<int> users = slack_users(qp);
   std::vector<int> column(users.size(), -1);

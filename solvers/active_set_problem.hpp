@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "solvers/lanes/lane_program.hpp"
 #include "solvers/qp.hpp"
 
 namespace mpm {
@@ -22,8 +24,11 @@ namespace mpm {
 /// |         | slack_column       | m     | index in z of the kept slack of row i, -1: none               |
 /// |         | softness           | m     | 2 w of the eliminated slack of row i, 0: none                 |
 /// |         | limit_stiffness    | m     | penalty of the method of multipliers on a limit of row i      |
+/// | H, A    | lanes              |       | for the kernels                                               |
 struct ActiveSetProblem {
   explicit ActiveSetProblem(const QpStructure& structure);
+  /// With what others use, too: `lanes` of the structure.
+  ActiveSetProblem(const QpStructure& structure, std::shared_ptr<const LaneProgram> lanes);
 
   Eigen::Index variable_count() const { return quadratic.rows(); }
   /// True when some z_j needs the proximal term: the minimiser of Q alone is not unique or does not exist.
@@ -36,6 +41,7 @@ struct ActiveSetProblem {
   Eigen::VectorXi slack_column;
   Eigen::VectorXd softness;
   Eigen::VectorXd limit_stiffness;
+  std::shared_ptr<const LaneProgram> lanes;
 };
 
 }  // namespace mpm

@@ -9,6 +9,7 @@
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
 #include "solvers/active_set_certificate.hpp"
+#include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {
 namespace {
@@ -63,10 +64,9 @@ ActiveSetSolver::ActiveSetSolver(std::shared_ptr<const QpStructure> structure,
                                  const ActiveSetOptions& options)
     : QpSolver(std::move(structure)),
       options_(options),
-      problem_(this->structure()),
+      problem_(this->structure(), lanes()),
       families_(make_families(problem_)),
-      newton_(problem_, families_.size()),
-      workspace_(this->structure()) {
+      newton_(problem_, families_.size()) {
   options_.validate();
   certificate_.setZero(this->structure().row_count());
   change_.setZero(this->structure().row_count());
@@ -84,8 +84,8 @@ void ActiveSetSolver::do_reset() {
 void ActiveSetSolver::reset_newton() {
   newton_.reset();
   for (LimitSprings& springs : families_) {
-    springs.multiplier.setZero();
-    springs.force.setZero();
+    springs.multiplier.vector().setZero();
+    springs.release();
   }
 }
 
@@ -109,7 +109,8 @@ void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
 }
 
 bool ActiveSetSolver::solve_by_dual(const QpData& data, QpResult& result) {
-  const DualOutcome outcome = dual_->solve(data, newton_.linear, options_.tolerance, result.iterations);
+  const DualOutcome outcome =
+      dual_->solve(data, newton_.linear.vector(), options_.tolerance, result.iterations);
   if (outcome == DualOutcome::solved) {
     result.status = QpStatus::solved;
     dual_->report(result);
@@ -135,30 +136,32 @@ void ActiveSetSolver::solve_by_newton(const QpData& data, QpResult& result) {
 // Huge multipliers, of a problem at the edge of having no answer, can hide from the tests of a method that
 // its answer is none.
 bool ActiveSetSolver::is_certified(const QpData& data, const QpResult& result) {
-  return kkt_residual(structure(), data, result, workspace_) <= kCertified;
+  return kkt_residual(structure(), data, result, workspace()) <= kCertified;
 }
 
 void ActiveSetSolver::bind(const QpData& data) {
   const Eigen::Index n = structure().variable_count();
-  newton_.linear.head(n) = data.gradient;
-  newton_.lower.head(n) = data.lower;
-  newton_.upper.head(n) = data.upper;
+  newton_.linear.vector().head(n) = data.gradient;
+  newton_.lower.vector().head(n) = data.lower;
+  newton_.upper.vector().head(n) = data.upper;
   for (std::size_t k = 0; k < problem_.kept_slacks.size(); ++k)
     newton_.linear(n + static_cast<Eigen::Index>(k)) = structure().slack_linear(problem_.kept_slacks[k]);
-  newton_.centre.setZero();
+  newton_.centre.vector().setZero();
   if (stiffening_ != 1.0)
     stiffen(1.0 / stiffening_);
   // Hard limits are seldom active: they come in when the warm start has one, or when the answer breaks one.
   LimitSprings& hard = families_[kHard];
-  hard.enabled = !hard.multiplier.isZero(0.0);
+  hard.enabled = !hard.multiplier.vector().isZero(0.0);
   if (!hard.enabled)
-    hard.force.setZero();
+    hard.release();
   set_limits(data);
 }
 
 void ActiveSetSolver::set_limits(const QpData& data) {
   for (std::size_t f = 0; f < families_.size(); ++f)
-    if (f == kHard)
+    if (!families_[f].enabled)
+      continue;
+    else if (f == kHard)
       families_[f].set_limits(data.hard_lower, data.hard_upper);
     else
       families_[f].set_limits(data.soft_lower, data.soft_upper);
@@ -175,6 +178,7 @@ QpStatus ActiveSetSolver::iterate(const QpData& data, int& iterations) {
       return status_of(outcome);
     if (!hard.enabled && !hard_limits_kept(data)) {
       hard.enabled = true;
+      set_limits(data);
       hard.place(problem_, newton_.row_value, newton_.z);
       continue;
     }
@@ -190,7 +194,7 @@ QpStatus ActiveSetSolver::iterate(const QpData& data, int& iterations) {
     }
     if (newton_.proximal_force() <= options_.tolerance * scale)
       return QpStatus::solved;
-    newton_.centre = newton_.z;
+    newton_.centre.vector() = newton_.z.vector();
   }
   return QpStatus::iteration_limit;
 }
@@ -201,20 +205,23 @@ void ActiveSetSolver::stiffen(double factor) {
     return;
   stiffening_ = factor * stiffening_;
   for (std::size_t f = kHard; f < families_.size(); ++f)
-    families_[f].stiffness *= factor;
+    families_[f].stiffness.vector() *= factor;
   newton_.forget_curvature();
 }
 
 bool ActiveSetSolver::hard_limits_kept(const QpData& data) const {
-  const auto value = newton_.row_value.array();
-  return ((value - data.hard_upper.array()).max(data.hard_lower.array() - value) <= options_.tolerance).all();
+  return lane_kernels().violation({.count = structure().row_count(),
+                                   .value = newton_.row_value.data(),
+                                   .lower = data.hard_lower.data(),
+                                   .upper = data.hard_upper.data(),
+                                   .dual = nullptr}) <= options_.tolerance;
 }
 
 // The method of multipliers: the forces become the multipliers. Returns how far that is from a solution: the
 // largest violation of a limit, or force times distance to its limit relative to `scale`.
 double ActiveSetSolver::update_multipliers(double scale) {
   double residual = 0.0;
-  change_ = families_[kHard].force - families_[kHard].multiplier;
+  change_ = families_[kHard].force.vector() - families_[kHard].multiplier.vector();
   for (std::size_t f = kHard; f < families_.size(); ++f) {
     LimitSprings& springs = families_[f];
     if (!springs.enabled)
@@ -249,20 +256,19 @@ bool ActiveSetSolver::proves_infeasible(const QpData& data, const Eigen::VectorX
 
 void ActiveSetSolver::report(QpResult& result) const {
   const Eigen::Index n = structure().variable_count();
-  result.x = newton_.z.head(n);
+  result.x = newton_.z.vector().head(n);
   for (Eigen::Index j = 0; j < n; ++j)
     result.bound_dual(j) = newton_.held(j) ? -newton_.gradient(j) : 0.0;
-  result.hard_dual = families_[kHard].force;
-  result.soft_dual = families_[kSoft].force;
+  result.hard_dual = families_[kHard].force.vector();
+  result.soft_dual = families_[kSoft].force.vector();
   for (std::size_t f = kSlackUpper; f < families_.size(); ++f)
-    result.soft_dual += families_[f].force;
+    result.soft_dual += families_[f].force.vector();
 
   result.slack.setZero();
   for (std::size_t k = 0; k < problem_.kept_slacks.size(); ++k)
     result.slack(problem_.kept_slacks[k]) = newton_.z(n + static_cast<Eigen::Index>(k));
-  for (Eigen::Index i = 0; i < structure().row_count(); ++i)
-    if (const double softness = problem_.softness(i); softness > 0.0)
-      result.slack(structure().slack_of_row(i)) = std::abs(families_[kSoft].force(i)) / softness;
+  for (const int i : families_[kSoft].stretched_rows())
+    result.slack(structure().slack_of_row(i)) = std::abs(families_[kSoft].force(i)) / problem_.softness(i);
 }
 
 }  // namespace mpm

@@ -77,7 +77,6 @@ class ActiveSetSolver final : public QpSolver {
   Eigen::VectorXd certificate_;
   Eigen::VectorXd change_;  ///< of the multipliers of the hard rows in the last round
   Eigen::VectorXd scratch_;
-  KktWorkspace workspace_;
   double stiffening_ = 1.0;  ///< of the springs with multipliers, in this solve
 };
 

@@ -1,26 +1,51 @@
 #include "solvers/active_set_springs.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <bit>
 
 #include "plants/non_finite.hpp"
+#include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {
 
-LimitSprings::LimitSprings(double sign, Eigen::VectorXd k) : slack_sign(sign), stiffness(std::move(k)) {
-  const double infinity = kInfinity;
-  lower.setConstant(size(), -infinity);
-  upper.setConstant(size(), infinity);
-  multiplier.setZero(size());
-  value.setZero(size());
-  step.setZero(size());
-  force.setZero(size());
-  changing_.reserve(static_cast<std::size_t>(size()));
+LimitSprings::LimitSprings(double sign, const Eigen::VectorXd& k)
+    : slack_sign(sign),
+      stiffness(k),
+      lower(k.size()),
+      upper(k.size()),
+      multiplier(k.size()),
+      value(k.size()),
+      step(k.size()),
+      force(k.size()),
+      everywhere_((k.array() > 0.0).all()),
+      stretched_bits_(static_cast<std::size_t>(padded(k.size()) / 8), 0),
+      changing_(static_cast<std::size_t>(padded(k.size()))) {
+  lower.vector().setConstant(-kInfinity);
+  upper.vector().setConstant(kInfinity);
+  stretched_rows_.reserve(changing_.size());
 }
 
-void LimitSprings::assign(Eigen::VectorXd& to, const ActiveSetProblem& problem, const Eigen::VectorXd& rows,
-                          const Eigen::VectorXd& z) const {
-  to = rows;
+SpringArrays LimitSprings::arrays() {
+  return {.blocks = padded(size()) / 8,
+          .stiffness = stiffness.data(),
+          .lower = lower.data(),
+          .upper = upper.data(),
+          .step = step.data(),
+          .value = value.data(),
+          .force = force.data(),
+          .stretched = stretched_bits_.data()};
+}
+
+void LimitSprings::list_stretched() {
+  stretched_rows_.clear();
+  for (std::size_t e = 0; e < stretched_bits_.size(); ++e)
+    for (unsigned left = stretched_bits_[e]; left != 0; left &= left - 1)
+      stretched_rows_.push_back(static_cast<int>(8 * e) + std::countr_zero(left));
+}
+
+void LimitSprings::assign(LaneVector& to, const ActiveSetProblem& problem, const LaneVector& rows,
+                          const LaneVector& z) const {
+  to.vector() = rows.vector();
   if (slack_sign == 0.0)
     return;
   for (Eigen::Index i = 0; i < size(); ++i)
@@ -28,17 +53,20 @@ void LimitSprings::assign(Eigen::VectorXd& to, const ActiveSetProblem& problem, 
       to(i) += slack_sign * z(column);
 }
 
-void LimitSprings::place(const ActiveSetProblem& problem, const Eigen::VectorXd& row_value,
-                         const Eigen::VectorXd& z) {
+void LimitSprings::place(const ActiveSetProblem& problem, const LaneVector& row_value, const LaneVector& z) {
   assign(value, problem, row_value, z);
 }
 
-void LimitSprings::aim(const ActiveSetProblem& problem, const Eigen::VectorXd& row_step,
-                       const Eigen::VectorXd& p) {
+void LimitSprings::aim(const ActiveSetProblem& problem, const LaneVector& row_step, const LaneVector& p) {
   assign(step, problem, row_step, p);
 }
 
 void LimitSprings::set_limits(const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper) {
+  if (everywhere_ && slack_sign == 0.0 && multiplier.vector().isZero(0.0)) {
+    lower.vector() = row_lower;
+    upper.vector() = row_upper;
+    return;
+  }
   for (Eigen::Index i = 0; i < size(); ++i) {
     if (stiffness(i) == 0.0)
       continue;  // its limits stay infinite
@@ -51,48 +79,45 @@ void LimitSprings::set_limits(const Eigen::VectorXd& row_lower, const Eigen::Vec
 }
 
 void LimitSprings::pull() {
-  force = stiffness.array() * (value.array() - value.array().max(lower.array()).min(upper.array()));
+  lane_kernels().pull(arrays());
+  list_stretched();
 }
 
 void LimitSprings::pull_stretched() {
-  for (Eigen::Index i = 0; i < size(); ++i)
-    if (force(i) != 0.0)
-      force(i) = stiffness(i) * (value(i) - (force(i) > 0.0 ? upper(i) : lower(i)));
+  lane_kernels().pull_stretched(arrays());
+  list_stretched();
+}
+
+void LimitSprings::release() {
+  force.vector().setZero();
+  std::fill(stretched_bits_.begin(), stretched_bits_.end(), static_cast<unsigned char>(0));
+  stretched_rows_.clear();
 }
 
 bool LimitSprings::find_changing() {
-  changing_.clear();
-  for (Eigen::Index i = 0; i < size(); ++i) {
-    const double moved = value(i) + step(i);
-    // A spring that goes from one end to the other changes, too.
-    if ((moved > upper(i)) != (force(i) > 0.0) || (moved < lower(i)) != (force(i) < 0.0))
-      changing_.push_back(i);
-  }
-  return !changing_.empty();
+  changing_count_ = static_cast<std::size_t>(lane_kernels().find_changing(arrays(), changing_.data()));
+  return changing_count_ > 0;
 }
 
 void LimitSprings::advance(double t, bool same) {
-  if (same) {
-    for (Eigen::Index i = 0; i < size(); ++i)
-      force(i) = force(i) != 0.0 ? force(i) + stiffness(i) * step(i) : 0.0;
-    value += step;
-    return;
-  }
-  value += t * step;
-  pull();
+  if (same)
+    lane_kernels().advance_within(arrays());
+  else
+    lane_kernels().advance(arrays(), t);
+  list_stretched();
 }
 
-double LimitSprings::steady_curvature() const {
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < size(); ++i)
-    sum += force(i) != 0.0 ? stiffness(i) * step(i) * step(i) : 0.0;
-  for (const Eigen::Index i : changing_)
-    sum -= force(i) != 0.0 ? stiffness(i) * step(i) * step(i) : 0.0;
+double LimitSprings::steady_curvature() {
+  double sum = lane_kernels().curvature(arrays());
+  for (std::size_t k = 0; k < changing_count_; ++k)
+    if (const int i = changing_[k]; force(i) != 0.0)
+      sum -= stiffness(i) * step(i) * step(i);
   return std::max(0.0, sum);
 }
 
 void LimitSprings::add_changing(double t, double& first, double& second) const {
-  for (const Eigen::Index i : changing_) {
+  for (std::size_t k = 0; k < changing_count_; ++k) {
+    const int i = changing_[k];
     const double moved = value(i) + t * step(i);
     const double stretch = moved - std::min(std::max(moved, lower(i)), upper(i));
     first += step(i) * (stiffness(i) * stretch - force(i));

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "solvers/active_set_problem.hpp"
+#include "solvers/lanes/lane_kernels.hpp"
+#include "solvers/lanes/lane_vector.hpp"
 
 namespace mpm {
 
@@ -21,7 +24,7 @@ namespace mpm {
 /// | e      | slack_sign | 0; -1: upper limit with a kept slack; +1: lower limit with one |
 /// | k      | stiffness  | 0: no spring                                                   |
 struct LimitSprings {
-  LimitSprings(double slack_sign, Eigen::VectorXd stiffness);
+  LimitSprings(double slack_sign, const Eigen::VectorXd& stiffness);
 
   Eigen::Index size() const { return stiffness.size(); }
   bool stretched(Eigen::Index i) const { return force(i) != 0.0; }
@@ -30,20 +33,27 @@ struct LimitSprings {
   void set_limits(const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper);
 
   /// Sets `value` for the row values A x and z.
-  void place(const ActiveSetProblem& problem, const Eigen::VectorXd& row_value, const Eigen::VectorXd& z);
+  void place(const ActiveSetProblem& problem, const LaneVector& row_value, const LaneVector& z);
   /// Sets `step`, the change of `value` along a direction.
-  void aim(const ActiveSetProblem& problem, const Eigen::VectorXd& row_step, const Eigen::VectorXd& p);
+  void aim(const ActiveSetProblem& problem, const LaneVector& row_step, const LaneVector& p);
 
   /// Sets `force` from `value`.
   void pull();
   /// The force of the springs that are stretched, at the same ends, as if they could push, too.
   void pull_stretched();
+  /// Force zero, wherever the springs are.
+  void release();
+  /// The stretched springs, in increasing order.
+  const std::vector<int>& stretched_rows() const { return stretched_rows_; }
+  /// The same as bits: of eight springs a byte.
+  const std::vector<unsigned char>& stretched_bits() const { return stretched_bits_; }
+
   /// Finds the springs that a whole step would stretch, release or take to their other end; false when there
   /// is none: then the penalty is one quadratic all along the step.
   bool find_changing();
   /// Second derivative along `step` of the penalty of the springs that do not change, the same all along it:
   /// a spring that is stretched (or not) at both ends of the step is so in between.
-  double steady_curvature() const;
+  double steady_curvature();
   /// Adds, for the changing springs, the derivative of the penalty along `step` at t less that at 0, and the
   /// second derivative at t.
   void add_changing(double t, double& first, double& second) const;
@@ -54,14 +64,20 @@ struct LimitSprings {
 
   double slack_sign;
   bool enabled = true;  ///< a family that is not is left out: its force is zero
-  Eigen::VectorXd stiffness, lower, upper, multiplier;
-  Eigen::VectorXd value, step, force;
+  LaneVector stiffness, lower, upper, multiplier;
+  LaneVector value, step, force;
 
  private:
-  void assign(Eigen::VectorXd& to, const ActiveSetProblem& problem, const Eigen::VectorXd& rows,
-              const Eigen::VectorXd& z) const;
+  void assign(LaneVector& to, const ActiveSetProblem& problem, const LaneVector& rows,
+              const LaneVector& z) const;
+  SpringArrays arrays();
+  void list_stretched();
 
-  std::vector<Eigen::Index> changing_;
+  bool everywhere_;                            ///< every row has a spring
+  std::vector<unsigned char> stretched_bits_;  ///< follow from `force`
+  std::vector<int> stretched_rows_;
+  std::vector<int> changing_;  ///< as long as there are rows, of which the first `changing_count_` count
+  std::size_t changing_count_ = 0;
 };
 
 }  // namespace mpm

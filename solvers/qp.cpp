@@ -8,6 +8,7 @@
 
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
+#include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {
 namespace {
@@ -25,22 +26,9 @@ void require_ordered(const char* name, const Eigen::VectorXd& lower, const Eigen
                        "lower <= upper, no NaN, an absent limit is -inf below and inf above");
 }
 
-// A multiplier belongs to its upper limit when positive and to its lower one when negative. Its part of the
-// complementarity is |multiplier| times the distance to that limit; at an absent limit nothing may push.
-double complementarity(double dual, double value, double lower, double upper) {
-  if (dual == 0.0)
-    return 0.0;
-  const double limit = dual > 0.0 ? upper : lower;
-  return std::isinf(limit) ? std::abs(dual) : std::abs(dual * (limit - value));
-}
-
 bool all_finite(const QpResult& result) {
   return result.x.allFinite() && result.slack.allFinite() && result.bound_dual.allFinite() &&
          result.hard_dual.allFinite() && result.soft_dual.allFinite();
-}
-
-double violation(double value, double lower, double upper) {
-  return std::max({0.0, lower - value, value - upper});
 }
 
 }  // namespace
@@ -127,10 +115,15 @@ double objective(const QpStructure& structure, const QpData& data, const QpResul
 }
 
 KktWorkspace::KktWorkspace(const QpStructure& structure)
-    : row_dual(structure.row_count()),
+    : lanes(std::make_shared<const LaneProgram>(structure.hessian, structure.rows)),
       row_value(structure.row_count()),
+      row_dual(structure.row_count()),
+      soft_lower(structure.row_count()),
+      soft_upper(structure.row_count()),
       stationarity(structure.variable_count()),
-      slack_force(structure.slack_count()) {}
+      slack_force(structure.slack_count()) {
+  pushing.reserve(static_cast<std::size_t>(structure.row_count()));
+}
 
 double kkt_residual(const QpStructure& structure, const QpData& data, const QpResult& result) {
   KktWorkspace workspace(structure);
@@ -141,46 +134,44 @@ double kkt_residual(const QpStructure& structure, const QpData& data, const QpRe
                     KktWorkspace& workspace) {
   if (!all_finite(result))  // comparisons below would let NaN pass
     return kInfinity;
-  const Eigen::VectorXd& x = result.x;
-  auto& [row_dual, row_value, stationarity, slack_force] = workspace;
-  row_dual = result.hard_dual + result.soft_dual;
-  row_value.noalias() = structure.rows * x;
-
-  stationarity = data.gradient + result.bound_dual;
-  stationarity.noalias() += structure.hessian * x;
-  for (Eigen::Index i = 0; i < row_dual.size(); ++i)  // most rows do not push
-    if (row_dual(i) != 0.0)
-      stationarity += row_dual(i) * structure.rows.row(i).transpose();
-  const double scale = std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>());
-
-  double scaled = stationarity.lpNorm<Eigen::Infinity>();
-  double absolute = 0.0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    absolute = std::max(absolute, violation(x(i), data.lower(i), data.upper(i)));
-    scaled = std::max(scaled, complementarity(result.bound_dual(i), x(i), data.lower(i), data.upper(i)));
-  }
-
-  slack_force = structure.slack_linear;
-  slack_force.array() += 2.0 * structure.slack_quadratic.array() * result.slack.array();
-  for (Eigen::Index i = 0; i < row_value.size(); ++i) {
+  KktWorkspace& w = workspace;
+  w.lanes->multiply_rows(result.x.data(), w.row_value);
+  w.slack_force = structure.slack_linear;
+  w.slack_force.array() += 2.0 * structure.slack_quadratic.array() * result.slack.array();
+  w.row_dual = result.hard_dual + result.soft_dual;
+  w.pushing.clear();
+  for (Eigen::Index i = 0; i < w.row_dual.size(); ++i) {
+    if (w.row_dual(i) != 0.0)
+      w.pushing.push_back(static_cast<int>(i));
     const int q = structure.slack_of_row(i);
-    const double s = q < 0 ? 0.0 : result.slack(q);
-    absolute = std::max(absolute, violation(row_value(i), data.hard_lower(i), data.hard_upper(i)));
-    scaled = std::max(
-        scaled, complementarity(result.hard_dual(i), row_value(i), data.hard_lower(i), data.hard_upper(i)));
-    if (q < 0)
-      continue;
-    absolute = std::max(absolute, violation(row_value(i), data.soft_lower(i) - s, data.soft_upper(i) + s));
-    scaled = std::max(scaled, complementarity(result.soft_dual(i), row_value(i), data.soft_lower(i) - s,
-                                              data.soft_upper(i) + s));
-    slack_force(q) -= std::abs(result.soft_dual(i));
+    const double s = q < 0 ? kInfinity : result.slack(q);  // without a slack there are no soft limits
+    w.soft_lower(i) = data.soft_lower(i) - s;
+    w.soft_upper(i) = data.soft_upper(i) + s;
+    if (q >= 0)
+      w.slack_force(q) -= std::abs(result.soft_dual(i));
   }
-  for (Eigen::Index q = 0; q < slack_force.size(); ++q) {
+  w.stationarity.vector() = data.gradient + result.bound_dual;
+  w.lanes->add_hessian(result.x.data(), w.stationarity);
+  w.lanes->add_rows(w.pushing, w.row_dual.data(), w.stationarity);
+
+  const LaneKernels& kernels = lane_kernels();
+  double scaled = w.stationarity.vector().lpNorm<Eigen::Infinity>();
+  double absolute = 0.0;
+  const auto look = [&](const double* value, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
+                        const Eigen::VectorXd& dual) {
+    const LimitArrays limits{dual.size(), value, lower.data(), upper.data(), dual.data()};
+    absolute = std::max(absolute, kernels.violation(limits));
+    scaled = std::max(scaled, kernels.complementarity(limits));
+  };
+  look(result.x.data(), data.lower, data.upper, result.bound_dual);
+  look(w.row_value.data(), data.hard_lower, data.hard_upper, result.hard_dual);
+  look(w.row_value.data(), w.soft_lower, w.soft_upper, result.soft_dual);
+  for (Eigen::Index q = 0; q < w.slack_force.size(); ++q) {
     absolute = std::max(absolute, -result.slack(q));
     // What is left of the force is the multiplier of s >= 0: not negative, and zero where s > 0.
-    scaled = std::max({scaled, -slack_force(q), std::abs(slack_force(q) * result.slack(q))});
+    scaled = std::max({scaled, -w.slack_force(q), std::abs(w.slack_force(q) * result.slack(q))});
   }
-  return std::max(absolute, scaled / scale);
+  return std::max(absolute, scaled / std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>()));
 }
 
 }  // namespace mpm

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
+
+#include "solvers/lanes/lane_program.hpp"
+#include "solvers/lanes/lane_vector.hpp"
 
 namespace mpm {
 
@@ -95,9 +100,12 @@ double kkt_residual(const QpStructure& structure, const QpData& data, const QpRe
 struct KktWorkspace {
   explicit KktWorkspace(const QpStructure& structure);
 
-  Eigen::VectorXd row_dual, row_value;  ///< m
-  Eigen::VectorXd stationarity;         ///< n
-  Eigen::VectorXd slack_force;          ///< q
+  std::shared_ptr<const LaneProgram> lanes;
+  LaneVector row_value;                              ///< m
+  Eigen::VectorXd row_dual, soft_lower, soft_upper;  ///< limits with the slacks, m
+  std::vector<int> pushing;                          ///< rows with a multiplier
+  LaneVector stationarity;                           ///< n
+  Eigen::VectorXd slack_force;                       ///< q
 };
 
 /// The same, with memory that the caller keeps: allocates nothing.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "solvers/lanes/lane_program.hpp"
 #include "solvers/qp.hpp"
 
 namespace mpm {
@@ -36,6 +37,11 @@ class QpSolver {
 
   /// The answer of the last solve.
   const QpResult& result() const { return result_; }
+
+ protected:
+  /// The structure for the kernels.
+  const std::shared_ptr<const LaneProgram>& lanes() const { return workspace_->lanes; }
+  KktWorkspace& workspace() { return *workspace_; }
 
  private:
   /// Fills status, x, slack, multipliers and iterations of `result`, which holds the previous answer.

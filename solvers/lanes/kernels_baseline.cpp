@@ -1,0 +1,3 @@
+#define MPM_KERNELS kBaselineKernels
+#define MPM_KERNELS_NAME "baseline"
+#include "solvers/lanes/kernels.inc"

@@ -1,0 +1,68 @@
+#pragma once
+
+namespace mpm {
+
+/// Springs of a family (LimitSprings) as the kernels see them: padded vectors of 8 `blocks` numbers.
+struct SpringArrays {
+  long blocks;
+  const double *stiffness, *lower, *upper, *step;
+  double *value, *force;
+  unsigned char* stretched;  ///< one bit a row (force != 0), eight rows a byte
+};
+
+/// What a residual is made of for the limits of rows or variables: vectors of `count` numbers, not padded.
+struct LimitArrays {
+  long count;
+  const double *value, *lower, *upper, *dual;
+};
+
+/// The inner loops of the active-set method and of its certificate. They work on eight numbers side by side
+/// in an order that is the same for every instruction set, without fused operations: the bits of the result
+/// do not depend on the processor.
+///
+/// All pointers but those of LimitArrays are multiples of 64 bytes, strides multiples of 8, and what is
+/// padded is zero where nothing else is said (LaneVector). A matrix with a `stride` has its columns (rows, in
+/// `rows`) that far apart. `blocks` of rows are the rows in groups of eight, a group column by column
+/// (LaneProgram).
+struct LaneKernels {
+  const char* name;  ///< "baseline", "avx2", "avx512"
+  bool (*runs_here)();
+
+  /// out = A x, for the blocks of eight rows and `columns` numbers x.
+  void (*multiply)(const double* blocks, long columns, long block_count, const double* x, double* out);
+  /// out += M x, M of `columns` columns.
+  void (*add_product)(const double* matrix, long stride, long columns, const double* x, double* out);
+  /// out += sum over the listed rows i of factor_i a_i.
+  void (*add_rows)(const double* rows, long stride, const int* list, long count, const double* factor,
+                   double* out);
+  /// M += sum over the listed rows of weight_k a_k a_k' in the lower triangle; what is above it is arbitrary.
+  /// `scratch`: kOuterRows * stride numbers. The matrix has `matrix_stride` >= stride.
+  void (*add_outer)(const double* rows, long stride, const int* list, long count, const double* weight,
+                    double* scratch, double* matrix, long matrix_stride);
+  static constexpr long kOuterRows = 32;
+
+  /// S = L L' from the lower triangle of S, of `size` rows, a multiple of 8. L is written below its diagonal,
+  /// zero elsewhere in the blocks on it; the reciprocal of its diagonal goes to `inverse`. False when a pivot
+  /// is not above `smallest` times its diagonal in S. `scratch`: 4 * stride numbers.
+  bool (*factor)(const double* matrix, long stride, long size, double smallest, double* lower,
+                 double* inverse, double* scratch);
+  /// Solves L L' x = b in place, for `size` numbers.
+  void (*solve)(const double* lower, long stride, long size, const double* inverse, double* x);
+
+  double (*dot)(const double* a, const double* b, long size);  ///< `size` a multiple of 8
+
+  void (*pull)(const SpringArrays& springs);                      ///< LimitSprings::pull
+  void (*pull_stretched)(const SpringArrays& springs);            ///< LimitSprings::pull_stretched
+  void (*advance)(const SpringArrays& springs, double t);         ///< value += t step, then `pull`
+  void (*advance_within)(const SpringArrays& springs);            ///< value += step, no spring changes
+  long (*find_changing)(const SpringArrays& springs, int* rows);  ///< LimitSprings::find_changing
+  double (*curvature)(const SpringArrays& springs);               ///< of the stretched springs along `step`
+
+  /// The largest distance of a value beyond its limits, and 0 at least.
+  double (*violation)(const LimitArrays& limits);
+  /// The largest |dual| times distance to its limit, the upper one of a positive and the lower one of a
+  /// negative dual. At an absent limit nothing may push: |dual|.
+  double (*complementarity)(const LimitArrays& limits);
+};
+
+}  // namespace mpm

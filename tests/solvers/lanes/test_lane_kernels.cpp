@@ -1,0 +1,238 @@
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <catch2/catch.hpp>
+
+#include "plants/non_finite.hpp"
+#include "solvers/lanes/kernel_choice.hpp"
+#include "solvers/lanes/lane_kernels.hpp"
+#include "solvers/lanes/lane_vector.hpp"
+
+// Every set of kernels that this machine can run against Eigen, and against the bits of the first set. On a machine
+// without the wider registers the comparison of bits has nothing to compare; the values are checked all the same.
+
+namespace mpm {
+namespace {
+
+// Sums of a few hundred products of numbers of the size of 1.
+constexpr double kSumRounding = 1e-12;
+
+class Numbers {
+ public:
+  explicit Numbers(unsigned seed) : generator_(seed) {}
+  double next() { return static_cast<double>(generator_()) / 2147483648.0 - 1.0; }
+  LaneVector vector(Eigen::Index size) {
+    LaneVector result(size);
+    for (Eigen::Index i = 0; i < size; ++i)
+      result(i) = next();
+    return result;
+  }
+  LaneMatrix matrix(Eigen::Index rows, Eigen::Index columns) {
+    LaneMatrix result(rows, columns);
+    for (Eigen::Index j = 0; j < columns; ++j)
+      for (Eigen::Index i = 0; i < rows; ++i)
+        result(i, j) = next();
+    return result;
+  }
+  std::vector<int> some_of(int count) {
+    std::vector<int> result;
+    for (int i = 0; i < count; ++i)
+      if (next() > -0.3)
+        result.push_back(i);
+    return result;
+  }
+
+ private:
+  std::mt19937 generator_;
+};
+
+Eigen::Map<const Eigen::MatrixXd> all_of(const LaneMatrix& matrix) {
+  return {matrix.data(), matrix.stride(), matrix.columns()};
+}
+
+// The bits of what the kernels of each set computed, in the order of the sets.
+class SameBits {
+ public:
+  void add(const Eigen::Ref<const Eigen::VectorXd>& values) {
+    if (first_.size() == 0)
+      first_ = values;
+    REQUIRE(first_.size() == values.size());
+    CHECK(std::memcmp(first_.data(), values.data(), sizeof(double) * static_cast<std::size_t>(values.size())) == 0);
+  }
+
+ private:
+  Eigen::VectorXd first_;
+};
+
+struct Sizes {
+  Eigen::Index variables, rows;
+};
+
+Sizes sizes() {
+  return GENERATE(Sizes{1, 1}, Sizes{3, 7}, Sizes{8, 8}, Sizes{13, 65}, Sizes{45, 525}, Sizes{70, 41});
+}
+
+}  // namespace
+
+TEST_CASE("products with rows and columns are those of Eigen, with the same bits from all kernels", "[lanes]") {
+  const auto [n, m] = sizes();
+  Numbers numbers(1);
+  const LaneMatrix rows = numbers.matrix(n, m);  // a row a column
+  const LaneVector x = numbers.vector(n);
+  const LaneVector factor = numbers.vector(m);
+  const std::vector<int> list = numbers.some_of(static_cast<int>(m));
+  LaneMatrix blocks(8 * n, padded(m) / 8);
+  for (Eigen::Index i = 0; i < m; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      blocks(8 * j + i % 8, i / 8) = rows(j, i);
+  Eigen::VectorXd listed = Eigen::VectorXd::Zero(m);
+  for (const int i : list)
+    listed(i) = factor(i);
+
+  SameBits products, sums, columns, dots;
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name);
+    LaneVector product(m);
+    kernels->multiply(blocks.data(), n, padded(m) / 8, x.data(), product.data());
+    CHECK((product.vector() - all_of(rows).topRows(n).transpose() * x.vector()).norm() <= kSumRounding);
+    products.add(product.vector());
+
+    LaneVector sum = x;
+    kernels->add_rows(rows.data(), rows.stride(), list.data(), static_cast<long>(list.size()), factor.data(),
+                      sum.data());
+    CHECK((sum.vector() - x.vector() - all_of(rows).topRows(n) * listed).norm() <= kSumRounding);
+    sums.add(sum.vector());
+
+    LaneVector column_sum = x;
+    kernels->add_product(rows.data(), rows.stride(), m, factor.data(), column_sum.data());
+    CHECK((column_sum.vector() - x.vector() - all_of(rows).topRows(n) * factor.vector()).norm() <= kSumRounding);
+    columns.add(column_sum.vector());
+
+    const double dot = kernels->dot(product.data(), factor.data(), padded(m));
+    CHECK(std::abs(dot - product.vector().dot(factor.vector())) <= kSumRounding);
+    dots.add(Eigen::VectorXd::Constant(1, dot));
+  }
+}
+
+TEST_CASE("outer products, factor and solution are those of Eigen, with the same bits from all kernels", "[lanes]") {
+  const auto [n, m] = sizes();
+  Numbers numbers(2);
+  const LaneMatrix rows = numbers.matrix(n, m);
+  const std::vector<int> list = numbers.some_of(static_cast<int>(m));
+  const LaneVector weight = numbers.vector(m);
+  const LaneVector right = numbers.vector(n);
+  const Eigen::Index stride = padded(n);
+
+  SameBits matrices, solutions;
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name);
+    LaneMatrix matrix(n, stride);
+    for (Eigen::Index j = 0; j < stride; ++j)
+      matrix(j, j) = j < n ? 1e3 : 1.0;
+    Eigen::MatrixXd expected = 1e3 * Eigen::MatrixXd::Identity(n, n);
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const auto row = all_of(rows).col(list[k]).head(n);
+      expected += weight(static_cast<Eigen::Index>(k)) * row * row.transpose();
+    }
+    LaneVector scratch(LaneKernels::kOuterRows * stride);
+    kernels->add_outer(rows.data(), rows.stride(), list.data(), static_cast<long>(list.size()), weight.data(),
+                       scratch.data(), matrix.data(), stride);
+    const Eigen::MatrixXd lower = all_of(matrix).topLeftCorner(n, n).triangularView<Eigen::Lower>();
+    CHECK((lower - Eigen::MatrixXd(expected.triangularView<Eigen::Lower>())).norm() <=
+          kSumRounding * expected.norm());
+    matrices.add(lower.reshaped());
+
+    LaneMatrix factor(n, stride);
+    LaneVector inverse(n);
+    LaneVector x = right;
+    LaneVector panel(4 * stride);
+    REQUIRE(kernels->factor(matrix.data(), stride, stride, 1e-15, factor.data(), inverse.data(), panel.data()));
+    kernels->solve(factor.data(), stride, stride, inverse.data(), x.data());
+    CHECK((x.vector() - expected.llt().solve(right.vector())).norm() <= kSumRounding);
+    solutions.add(x.vector());
+  }
+}
+
+TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
+  const Eigen::Index m = sizes().rows;
+  Numbers numbers(3);
+  const LaneVector stiffness = [&] {
+    LaneVector result = numbers.vector(m);
+    result.vector() = result.vector().cwiseAbs();
+    return result;
+  }();
+  const LaneVector start = numbers.vector(m);
+  const LaneVector step = numbers.vector(m);
+  LaneVector lower(m), upper(m);
+  lower.vector().setConstant(-0.3);
+  upper.vector().setConstant(0.4);
+  lower(0) = -kInfinity;
+
+  SameBits forces;
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name);
+    LaneVector value = start;
+    LaneVector force(m);
+    std::vector<unsigned char> stretched(static_cast<std::size_t>(padded(m) / 8));
+    const SpringArrays springs{padded(m) / 8, stiffness.data(), lower.data(), upper.data(),
+                               step.data(),   value.data(),     force.data(), stretched.data()};
+    kernels->pull(springs);
+    double curvature = 0.0;
+    std::vector<int> expected_changes;
+    for (Eigen::Index i = 0; i < m; ++i) {
+      const auto pulled = [&](double v) { return stiffness(i) * (v - std::min(std::max(v, lower(i)), upper(i))); };
+      CHECK(force(i) == pulled(start(i)));
+      CHECK((stretched[static_cast<std::size_t>(i / 8)] >> (i % 8) & 1) == (force(i) != 0.0));
+      if (force(i) != 0.0)
+        curvature += stiffness(i) * step(i) * step(i);
+      const double moved = pulled(start(i) + step(i));
+      if ((moved > 0.0) != (force(i) > 0.0) || (moved < 0.0) != (force(i) < 0.0))
+        expected_changes.push_back(static_cast<int>(i));
+    }
+    CHECK(std::abs(kernels->curvature(springs) - curvature) <= kSumRounding);
+    std::vector<int> changes(static_cast<std::size_t>(padded(m)));
+    changes.resize(static_cast<std::size_t>(kernels->find_changing(springs, changes.data())));
+    CHECK(changes == expected_changes);
+
+    kernels->advance_within(springs);
+    forces.add(force.vector());
+    kernels->pull_stretched(springs);
+    forces.add(force.vector());
+    kernels->advance(springs, 0.25);
+    forces.add(force.vector());
+    CHECK((value.vector() - (start.vector() + 1.25 * step.vector())).norm() <= kSumRounding);
+
+    const LimitArrays limits{m, value.data(), lower.data(), upper.data(), force.data()};
+    double violation = 0.0;
+    double complementarity = 0.0;
+    for (Eigen::Index i = 0; i < m; ++i) {
+      violation = std::max({violation, lower(i) - value(i), value(i) - upper(i)});
+      const double limit = force(i) > 0.0 ? upper(i) : lower(i);
+      complementarity = std::max(complementarity, std::abs(force(i) * (limit - value(i))));
+    }
+    CHECK(kernels->violation(limits) == violation);
+    CHECK(kernels->complementarity(limits) == complementarity);
+    force(0) = -2.0;  // pushes at a limit that is not there
+    CHECK(kernels->complementarity(limits) == std::max(2.0, complementarity));
+  }
+}
+
+TEST_CASE("a matrix that is not definite has no factor in any kernel", "[lanes]") {
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name);
+    LaneMatrix matrix(10, 16), factor(10, 16);
+    LaneVector inverse(10), scratch(64);
+    for (Eigen::Index j = 0; j < 16; ++j)
+      matrix(j, j) = 1.0;
+    CHECK(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data(), scratch.data()));
+    matrix(9, 3) = 1.0;  // rows 3 and 9 are the same
+    CHECK_FALSE(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data(), scratch.data()));
+    matrix(9, 3) = kNaN;
+    CHECK_FALSE(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data(), scratch.data()));
+  }
+}
+
+}  // namespace mpm
