@@ -19,16 +19,21 @@ enum class DualOutcome { solved, infeasible, failed };
 ///
 /// It meets one limit after another, and leaves one when its multiplier reaches zero. Nearly parallel limits,
 /// which the method of multipliers separates slowly, cost it nothing; its work grows with the square of the
-/// number of active limits. For problems with Q positive definite. `solve` allocates nothing.
+/// number of active limits. Where Q is only semidefinite, it has the proximal term 1/2 sigma_j z_j^2 beside
+/// it, whose centre the caller moves. `solve` allocates nothing.
 class DualActiveSet {
  public:
   explicit DualActiveSet(const ActiveSetProblem& problem);
 
   void reset() { working_.clear(); }
 
-  /// `linear` is c of the problem in z. `infeasible` only says that the method found a ray, see `ray`.
+  /// `linear` is c of the problem in z, less sigma times the centre. `infeasible` only says that the method
+  /// found a ray, see `ray`.
   DualOutcome solve(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& linear, double tolerance,
                     int& iterations);
+
+  /// z of the last answer.
+  const Eigen::VectorXd& point() const { return z_; }
 
   /// Writes x, the slacks and the multipliers.
   void report(QpResult& result) const;

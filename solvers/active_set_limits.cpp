@@ -9,12 +9,14 @@ LimitGeometry::LimitGeometry(const ActiveSetProblem& problem) : problem_(problem
   const QpStructure& structure = *problem.structure;
   const Eigen::Index n = structure.variable_count();
   const Eigen::Index m = structure.row_count();
-  factor_ = structure.hessian.llt().matrixL();
+  Eigen::MatrixXd quadratic = structure.hessian;
+  quadratic.diagonal() += problem.proximal.head(n);
+  factor_ = quadratic.llt().matrixL();
   Eigen::MatrixXd columns(n, m + n);
   columns << structure.rows.transpose(), Eigen::MatrixXd::Identity(n, n);
   factor_.triangularView<Eigen::Lower>().solveInPlace(columns);
   scaled_ = columns.transpose();
-  slack_ = problem.quadratic.diagonal().tail(problem.variable_count() - n);
+  slack_ = (problem.quadratic.diagonal() + problem.proximal).tail(problem.variable_count() - n);
 }
 
 bool LimitGeometry::has_row(const LimitSide& side) const {

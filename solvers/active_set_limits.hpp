@@ -25,10 +25,10 @@ struct LimitSide {
   double side = 1.0;
 };
 
-/// The limits of one QP in the metric of Q = diag(H, 2w): products b' inv(Q) b, values, distances.
+/// The limits of one QP in the metric of Q = diag(H, 2w) + diag(sigma): products b' inv(Q) b, values,
+/// distances.
 class LimitGeometry {
  public:
-  /// Q must be positive definite.
   explicit LimitGeometry(const ActiveSetProblem& problem);
 
   /// b_1' inv(Q) b_2, plus the softness when both are the same limit.
@@ -52,9 +52,9 @@ class LimitGeometry {
   bool has_row(const LimitSide& side) const;
 
   const ActiveSetProblem& problem_;
-  Eigen::MatrixXd factor_;  ///< L, H = L L'
+  Eigen::MatrixXd factor_;  ///< L, H + diag(sigma) = L L'
   RowMajorMatrix scaled_;   ///< rows L^-1 a_i, then L^-1 e_j
-  Eigen::VectorXd slack_;   ///< 2w of the kept slacks
+  Eigen::VectorXd slack_;   ///< 2w + sigma of the kept slacks
 };
 
 }  // namespace mpm

@@ -66,19 +66,19 @@ ActiveSetSolver::ActiveSetSolver(std::shared_ptr<const QpStructure> structure,
       options_(options),
       problem_(this->structure(), lanes()),
       families_(make_families(problem_)),
-      newton_(problem_, families_.size()) {
+      newton_(problem_, families_.size()),
+      dual_(problem_),
+      centre_(problem_.variable_count()),
+      dual_linear_(problem_.variable_count()) {
   options_.validate();
   certificate_.setZero(this->structure().row_count());
   change_.setZero(this->structure().row_count());
   scratch_.setZero(this->structure().variable_count());
-  if (!problem_.needs_proximal())
-    dual_.emplace(problem_);
 }
 
 void ActiveSetSolver::do_reset() {
   reset_newton();
-  if (dual_)
-    dual_->reset();
+  dual_.reset();
 }
 
 void ActiveSetSolver::reset_newton() {
@@ -94,14 +94,14 @@ void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
   result.iterations = 0;
   bind(data);
   // Few limits are active where slacks are shared, and those nearly parallel: the dual method's case.
-  const bool dual_first = dual_ && !problem_.kept_slacks.empty();
+  const bool dual_first = !problem_.needs_proximal() && !problem_.kept_slacks.empty();
   if (dual_first && solve_by_dual(data, result))
     return;
   solve_by_newton(data, result);
   if (result.status == QpStatus::solved)
     return;
   reset_newton();  // the next problem starts from nothing rather than from a failure
-  if (result.status == QpStatus::infeasible || !dual_ || dual_first)
+  if (result.status == QpStatus::infeasible || dual_first)
     return;
   const QpStatus status = result.status;
   if (!solve_by_dual(data, result))
@@ -109,19 +109,35 @@ void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
 }
 
 bool ActiveSetSolver::solve_by_dual(const QpData& data, QpResult& result) {
-  const DualOutcome outcome =
-      dual_->solve(data, newton_.linear.vector(), options_.tolerance, result.iterations);
+  const DualOutcome outcome = iterate_dual(data, result.iterations);
   if (outcome == DualOutcome::solved) {
     result.status = QpStatus::solved;
-    dual_->report(result);
+    dual_.report(result);
     return is_certified(data, result);
   }
-  if (outcome == DualOutcome::infeasible && proves_infeasible(data, dual_->ray())) {
+  if (outcome == DualOutcome::infeasible && proves_infeasible(data, dual_.ray())) {
     result.status = QpStatus::infeasible;
-    dual_->reset();
+    dual_.reset();
     return true;
   }
   return false;
+}
+
+// Where Q is only semidefinite: proximal terms, whose centre follows the answer until they are nothing.
+DualOutcome ActiveSetSolver::iterate_dual(const QpData& data, int& iterations) {
+  const double scale = std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>());
+  centre_.setZero();
+  for (int round = 0; round < options_.round_limit; ++round) {
+    dual_linear_ = newton_.linear.vector() - problem_.proximal.cwiseProduct(centre_);
+    const DualOutcome outcome = dual_.solve(data, dual_linear_, options_.tolerance, iterations);
+    if (outcome != DualOutcome::solved || !problem_.needs_proximal())
+      return outcome;
+    centre_ -= dual_.point();
+    if (problem_.proximal.cwiseProduct(centre_).lpNorm<Eigen::Infinity>() <= options_.tolerance * scale)
+      return outcome;
+    centre_ = dual_.point();
+  }
+  return DualOutcome::failed;
 }
 
 void ActiveSetSolver::solve_by_newton(const QpData& data, QpResult& result) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -58,6 +57,7 @@ class ActiveSetSolver final : public QpSolver {
 
   void reset_newton();
   bool solve_by_dual(const QpData& data, QpResult& result);
+  DualOutcome iterate_dual(const QpData& data, int& iterations);
   void solve_by_newton(const QpData& data, QpResult& result);
   bool is_certified(const QpData& data, const QpResult& result);
   void bind(const QpData& data);
@@ -73,7 +73,8 @@ class ActiveSetSolver final : public QpSolver {
   ActiveSetProblem problem_;
   std::vector<LimitSprings> families_;
   ActiveSetNewton newton_;
-  std::optional<DualActiveSet> dual_;  ///< where the Hessian allows it
+  DualActiveSet dual_;
+  Eigen::VectorXd centre_, dual_linear_;  ///< of the proximal term, and the costs with it, of the dual method
   Eigen::VectorXd certificate_;
   Eigen::VectorXd change_;  ///< of the multipliers of the hard rows in the last round
   Eigen::VectorXd scratch_;

@@ -22,7 +22,6 @@ constexpr double kRowTolerance = 1e-9;            // a left-out limit counts as 
 constexpr double kInfeasibilityThreshold = 1e-7;  // smallest violation that proves infeasibility
 constexpr std::size_t kManyRows = 200;            // of P1's 1 620 some 130 are in the set at a quiet step
 constexpr double kPushing = 1e-6;                 // multiplier of a limit that pushes
-constexpr double kCertifiedResidual = 1e-7;       // a point with at most this is an answer
 
 double finite_limit(double limit) {
   return std::clamp(limit, -kIpoptInfinity, kIpoptInfinity);
@@ -305,7 +304,7 @@ void IpoptSolver::solve_full(const QpData& data, QpResult& result) {
 // the certificate decides.
 void IpoptSolver::run(const QpData& data, QpResult& result) {
   result.status = implementation_->run(data, result);
-  if (result.status != QpStatus::solved && kkt_residual(structure(), data, result) <= kCertifiedResidual)
+  if (result.status != QpStatus::solved && kkt_residual(structure(), data, result) <= kSolvedKktResidual)
     result.status = QpStatus::solved;
 }
 

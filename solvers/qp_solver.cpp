@@ -56,8 +56,14 @@ const QpResult& QpSolver::solve(const QpData& data) {
 
 void QpSolver::certify(const QpData& data, QpResult& result) {
   result.objective = objective(*structure_, data, result);
-  result.kkt_residual =
-      result.status == QpStatus::solved ? kkt_residual(*structure_, data, result, *workspace_) : kInfinity;
+  result.kkt_residual = kInfinity;
+  if (result.status != QpStatus::solved)
+    return;
+  const double residual = kkt_residual(*structure_, data, result, *workspace_);
+  if (residual <= kSolvedKktResidual)
+    result.kkt_residual = residual;
+  else
+    result.status = QpStatus::numerical_error;
 }
 
 const QpResult& QpSolver::solve_from(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& x) {

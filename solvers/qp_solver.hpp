@@ -10,10 +10,14 @@
 
 namespace mpm {
 
+/// Largest KKT residual of an answer that is called `solved`, by any back end.
+inline constexpr double kSolvedKktResidual = 1e-7;
+
 /// Solves a sequence of quadratic programs that share one structure, each warm-started from the one before.
 ///
-/// The public `solve` checks its input and certifies the answer; back ends implement `do_solve` only. A
-/// solver belongs to one controller and is not shared between threads.
+/// The public `solve` checks its input and certifies the answer: one with a KKT residual above
+/// kSolvedKktResidual is a `numerical_error`, whatever the back end says. Back ends implement `do_solve`
+/// only. A solver belongs to one controller and is not shared between threads.
 class QpSolver {
  public:
   /// Throws InputError when the structure is not valid.
@@ -46,7 +50,8 @@ class QpSolver {
  private:
   /// Fills status, x, slack, multipliers and iterations of `result`, which holds the previous answer.
   virtual void do_solve(const QpData& data, QpResult& result) = 0;
-  /// Fills objective and KKT residual of `result` from its x, slack and multipliers. A back end that passes
+  /// Fills objective and KKT residual of `result` from its x, slack and multipliers, and takes `solved` back
+  /// where the residual says so. A back end that passes
   /// on the answers of other solvers, which have filled these, leaves them as they are.
   virtual void certify(const QpData& data, QpResult& result);
   virtual void do_reset() = 0;

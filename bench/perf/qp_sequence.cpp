@@ -43,16 +43,19 @@ class RecordingSolver final : public QpSolver {
   std::vector<QpData>& record_;
 };
 
-// A controller asks for the solver of its targets first and for that of its moves second.
+// Of the two problems of a controller only (6.19) is a linear program.
+std::string problem_of(const QpStructure& structure) {
+  return structure.hessian.isZero(0.0) ? "targets" : "moves";
+}
+
 std::array<QpSequence, 2> record(const Study& study, const ExperimentDraw& draw) {
   std::array<QpSequence, 2> sequences;
-  sequences[0].problem = "targets";
-  sequences[1].problem = "moves";
   const QpSolverFactory active_set = qp_solver_factory("active-set");
   std::size_t made = 0;
   simulate_experiment(study, draw, [&](const std::shared_ptr<const QpStructure>& structure) {
     QpSequence& sequence = sequences.at(made++);
     sequence.structure = structure;
+    sequence.problem = problem_of(*structure);
     return std::make_unique<RecordingSolver>(active_set(structure), structure, sequence.data);
   });
   return sequences;

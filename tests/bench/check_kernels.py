@@ -19,7 +19,7 @@ SKIPPED = 77
 def main(program, study):
     def run(kernels, archive, form="per-sample", code=0):
         variant = archive.parent / f"{form}.toml"
-        variant.write_text(study.read_text().replace("[controller]\n", f'[controller]\nslack = "{form}"\n'))
+        variant.write_text(re.sub(r'^slack = "[^"]*"', f'slack = "{form}"', study.read_text(), flags=re.MULTILINE))
         done = subprocess.run(
             [program, "run", variant, "--experiments", str(EXPERIMENTS), "--solver", "active-set", "--store", "all",
              "--quiet", "-o", archive], capture_output=True, text=True, env={**os.environ, "MPMBENCH_KERNELS": kernels})

@@ -1,5 +1,6 @@
 
 #include <cmath>
+#include <random>
 
 #include <catch2/catch.hpp>
 
@@ -34,6 +35,50 @@ TEST_CASE("the active-set answer is certified to 1e-9", "[active-set]") {
     CHECK(result.kkt_residual <= 1e-9);
     if (qp.x)  // as far as x is determined by conditions that hold to 1e-9
       CHECK((result.x - *qp.x).lpNorm<Eigen::Infinity>() <= 1e-6);
+  }
+}
+
+// Five of seven limits pass within 1e-6 of one point, so that a vertex has up to two limits more than it
+// needs, almost: problem (6.19) comes to this in chapter6, seed 99, experiment 2. The method of multipliers
+// alone leaves one in six of these without an answer.
+TEST_CASE("nearly degenerate linear programs have answers", "[active-set]") {
+  std::mt19937 generator(7);
+  const auto number = [&] { return static_cast<double>(generator()) / 2147483648.0 - 1.0; };
+  for (int k = 0; k < 200; ++k) {
+    CAPTURE(k);
+    QpBuilder builder("near", Eigen::MatrixXd::Zero(3, 3), vec(number(), number(), number()));
+    builder.box(vec(-0.5, -0.5, -0.5), vec(0.5, 0.5, 0.5));
+    const Eigen::VectorXd meeting = 0.4 * vec(number(), number(), number());
+    for (int i = 0; i < 7; ++i) {
+      const Eigen::VectorXd row = 4.0 * vec(number(), number(), number());
+      const double limit = row.dot(meeting) + (i < 5 ? 1e-6 * number() : 1.0);
+      const bool upper = number() > 0.0;
+      builder.slack(0.0, 1000.0).soft(row, i, upper ? limit - 2.0 : limit, upper ? limit : limit + 2.0);
+    }
+    const NamedQp qp = builder.build();
+    const QpResult result = solver_for(qp).solve(qp.data);
+    REQUIRE(result.status == QpStatus::solved);
+    CHECK(result.kkt_residual <= 1e-9);
+  }
+}
+
+TEST_CASE("a direction without curvature takes the answer as far as the limits allow", "[active-set]") {
+  // A Hessian of rank 3 in 30 variables, and as many limits that cross: the proximal terms have to go a long
+  // way.
+  std::mt19937 generator(11);
+  const auto number = [&] { return static_cast<double>(generator()) / 2147483648.0 - 1.0; };
+  for (int k = 0; k < 10; ++k) {
+    CAPTURE(k);
+    const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(30, 3, number);
+    QpBuilder builder("flat", root * root.transpose(), Eigen::VectorXd::NullaryExpr(30, number));
+    builder.box(Eigen::VectorXd::Constant(30, -1e3), Eigen::VectorXd::Constant(30, kInfinity));
+    builder.hard(Eigen::VectorXd::Ones(30), -kInfinity, 1e3);
+    for (int i = 0; i < 20; ++i)
+      builder.hard(Eigen::VectorXd::NullaryExpr(30, number), -10.0, 10.0);
+    const NamedQp qp = builder.build();
+    const QpResult result = solver_for(qp).solve(qp.data);
+    REQUIRE(result.status == QpStatus::solved);
+    CHECK(result.kkt_residual <= kSolvedKktResidual);
   }
 }
 
@@ -131,8 +176,15 @@ TEST_CASE("an iteration limit is reported as one", "[active-set]") {
   ActiveSetOptions options;
   options.iteration_limit = 1;
   options.round_limit = 1;
-  const NamedQp lp = samples::target_qps().front();
-  CHECK(ActiveSetSolver(lp.structure, options).solve(lp.data).status == QpStatus::iteration_limit);
+  int limited = 0;
+  for (const NamedQp& lp : samples::target_qps()) {
+    const QpResult result = ActiveSetSolver(lp.structure, options).solve(lp.data);
+    if (result.status == QpStatus::solved)  // by the dual method, which needs no second round where z = 0
+      continue;
+    CHECK(result.status == QpStatus::iteration_limit);
+    ++limited;
+  }
+  CHECK(limited > 0);
 }
 
 TEST_CASE("reset forgets: the same bits as a new solver", "[active-set]") {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <memory>
 
 #include <catch2/catch.hpp>
 
@@ -70,7 +71,34 @@ NamedQp find(const std::string& name) {
   throw InputError("test problem", name, "one of the collection");
 }
 
+/// Answers with zeros, and calls that solved.
+class HopefulSolver final : public QpSolver {
+ public:
+  using QpSolver::QpSolver;
+
+ private:
+  void do_solve(const QpData&, QpResult& result) override { result.status = QpStatus::solved; }
+  void do_reset() override {}
+};
+
 }  // namespace
+
+TEST_CASE("an answer that breaks a condition by more than the stated residual is not solved", "[back_ends]") {
+  const auto structure = std::make_shared<QpStructure>();
+  structure->hessian = Eigen::MatrixXd::Identity(1, 1);
+  structure->rows.setZero(0, 1);
+  structure->slack_of_row.resize(0);
+  structure->slack_quadratic.resize(0);
+  structure->slack_linear.resize(0);
+  QpData data = QpData::unconstrained(*structure);
+  HopefulSolver solver(structure);
+  data.gradient(0) = 0.5 * kSolvedKktResidual;
+  CHECK(solver.solve(data).status == QpStatus::solved);
+  CHECK(solver.solve(data).kkt_residual == data.gradient(0));
+  data.gradient(0) = 2.0 * kSolvedKktResidual;
+  CHECK(solver.solve(data).status == QpStatus::numerical_error);
+  CHECK(std::isinf(solver.result().kkt_residual));
+}
 
 TEST_CASE("every back end solves the collection, and they agree", "[solvers]") {
   for (const NamedQp& qp : samples::qp_collection()) {

@@ -1,5 +1,6 @@
+#include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <cstring>
 #include <random>
 #include <vector>
 
@@ -11,8 +12,9 @@
 #include "solvers/lanes/lane_kernels.hpp"
 #include "solvers/lanes/lane_vector.hpp"
 
-// Every set of kernels that this machine can run against Eigen, and against the bits of the first set. On a machine
-// without the wider registers the comparison of bits has nothing to compare; the values are checked all the same.
+// Every set of kernels that this machine can run against Eigen, and against the bits of the first set. On a
+// machine without the wider registers the comparison of bits has nothing to compare; the values are checked
+// all the same.
 
 namespace mpm {
 namespace {
@@ -60,7 +62,8 @@ class SameBits {
     if (first_.size() == 0)
       first_ = values;
     REQUIRE(first_.size() == values.size());
-    CHECK(std::memcmp(first_.data(), values.data(), sizeof(double) * static_cast<std::size_t>(values.size())) == 0);
+    CHECK(std::memcmp(first_.data(), values.data(),
+                      sizeof(double) * static_cast<std::size_t>(values.size())) == 0);
   }
 
  private:
@@ -77,7 +80,8 @@ Sizes sizes() {
 
 }  // namespace
 
-TEST_CASE("products with rows and columns are those of Eigen, with the same bits from all kernels", "[lanes]") {
+TEST_CASE("products with rows and columns are those of Eigen, with the same bits from all kernels",
+          "[lanes]") {
   const auto [n, m] = sizes();
   Numbers numbers(1);
   const LaneMatrix rows = numbers.matrix(n, m);  // a row a column
@@ -108,7 +112,8 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
 
     LaneVector column_sum = x;
     kernels->add_product(rows.data(), rows.stride(), m, factor.data(), column_sum.data());
-    CHECK((column_sum.vector() - x.vector() - all_of(rows).topRows(n) * factor.vector()).norm() <= kSumRounding);
+    CHECK((column_sum.vector() - x.vector() - all_of(rows).topRows(n) * factor.vector()).norm() <=
+          kSumRounding);
     columns.add(column_sum.vector());
 
     const double dot = kernels->dot(product.data(), factor.data(), padded(m));
@@ -117,7 +122,8 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
   }
 }
 
-TEST_CASE("outer products, factor and solution are those of Eigen, with the same bits from all kernels", "[lanes]") {
+TEST_CASE("outer products, factor and solution are those of Eigen, with the same bits from all kernels",
+          "[lanes]") {
   const auto [n, m] = sizes();
   Numbers numbers(2);
   const LaneMatrix rows = numbers.matrix(n, m);
@@ -149,7 +155,8 @@ TEST_CASE("outer products, factor and solution are those of Eigen, with the same
     LaneVector inverse(n);
     LaneVector x = right;
     LaneVector panel(4 * stride);
-    REQUIRE(kernels->factor(matrix.data(), stride, stride, 1e-15, factor.data(), inverse.data(), panel.data()));
+    REQUIRE(
+        kernels->factor(matrix.data(), stride, stride, 1e-15, factor.data(), inverse.data(), panel.data()));
     kernels->solve(factor.data(), stride, stride, inverse.data(), x.data());
     CHECK((x.vector() - expected.llt().solve(right.vector())).norm() <= kSumRounding);
     solutions.add(x.vector());
@@ -171,7 +178,7 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
   upper.vector().setConstant(0.4);
   lower(0) = -kInfinity;
 
-  SameBits forces;
+  SameBits within, stretched_again, advanced;
   for (const LaneKernels* kernels : lane_kernel_sets()) {
     CAPTURE(kernels->name);
     LaneVector value = start;
@@ -183,7 +190,9 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
     double curvature = 0.0;
     std::vector<int> expected_changes;
     for (Eigen::Index i = 0; i < m; ++i) {
-      const auto pulled = [&](double v) { return stiffness(i) * (v - std::min(std::max(v, lower(i)), upper(i))); };
+      const auto pulled = [&](double v) {
+        return stiffness(i) * (v - std::min(std::max(v, lower(i)), upper(i)));
+      };
       CHECK(force(i) == pulled(start(i)));
       CHECK((stretched[static_cast<std::size_t>(i / 8)] >> (i % 8) & 1) == (force(i) != 0.0));
       if (force(i) != 0.0)
@@ -198,11 +207,11 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
     CHECK(changes == expected_changes);
 
     kernels->advance_within(springs);
-    forces.add(force.vector());
+    within.add(force.vector());
     kernels->pull_stretched(springs);
-    forces.add(force.vector());
+    stretched_again.add(force.vector());
     kernels->advance(springs, 0.25);
-    forces.add(force.vector());
+    advanced.add(force.vector());
     CHECK((value.vector() - (start.vector() + 1.25 * step.vector())).norm() <= kSumRounding);
 
     const LimitArrays limits{m, value.data(), lower.data(), upper.data(), force.data()};
