@@ -46,7 +46,6 @@ ConstraintKind constraint_kind(std::int8_t side, const char* group, const std::s
 void write_sensitivity(Hdf5Group& group, const std::string& title, const Study& study,
                        const NominalSensitivity& sensitivity) {
   group.write_attribute("title", title);
-  group.write_attribute("known", std::int32_t{sensitivity.is_known});
   std::vector<PlantModel::Variable> active;
   std::vector<std::int8_t> side;
   std::vector<const Eigen::MatrixXd*> responses;
@@ -78,7 +77,6 @@ NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, con
   const auto lags = static_cast<Eigen::Index>(group.read_list<std::int32_t>("lag").size());
   NominalSensitivity sensitivity;
   sensitivity.cv_count = study.cv_count();
-  sensitivity.is_known = !group.has_attribute("known") || group.attribute<std::int32_t>("known") != 0;
   sensitivity.step_response.resize(active.size());
   std::vector<Eigen::MatrixXd*> responses;
   for (std::size_t a = 0; a < active.size(); ++a) {
@@ -96,10 +94,15 @@ void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity
   Hdf5Group group = root.create_group(kNominalGroup);
   write_sensitivity(group, "Nominal complementary sensitivity T0; S0 = I - T0, and T0 = 0 from other CVs",
                     study, sensitivity);
+  group.write_attribute("known", std::int32_t{sensitivity.is_known});
 }
 
 NominalSensitivity read_nominal(const Hdf5Group& root, const Study& study, const std::string& file) {
-  return read_sensitivity(root, kNominalGroup, study, file);
+  const Hdf5Group group = root.group(kNominalGroup);
+  NominalSensitivity sensitivity = read_sensitivity(root, kNominalGroup, study, file);
+  sensitivity.is_known =
+      !group.has_attribute("known") || group.attribute<std::int32_t>("known") != 0;  // from 2.1 on
+  return sensitivity;
 }
 
 void write_nominal_fixed(Hdf5Group& root, const Study& study,
