@@ -1,69 +1,18 @@
 #include "analysis/basis/basis_case.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
+#include "analysis/basis/self_check.hpp"
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "plants/error.hpp"
-#include "plants/non_finite.hpp"
 #include "scenarios/draw.hpp"
 #include "scenarios/study_controller.hpp"
 
 namespace mpm {
 namespace {
-
-/// Ivar_basis (6.22) of the basis case with noise that no experiment has. A loop that does not run to its end
-/// has none: NaN, outside of every band.
-Eigen::VectorXd repeated_indices(const Study& study, const BasisCase& basis, const QpSolverFactory& factory) {
-  ExperimentDraw again = basis_draw();
-  again.index = kRepeatIndex;
-  const Trajectory loop = simulate_experiment(study, again, factory);
-  if (loop.status != ControlStatus::ok)
-    return Eigen::VectorXd::Constant(study.cv_count(), kNaN);
-  return basis_variance_indices(study, loop.y, basis.trajectory.y);
-}
-
-void check_health(const Study& study, const QpSolverFactory& factory, BasisCase& basis) {
-  const DiagnosisOptions& options = study.diagnosis;
-  if (basis.trajectory.failure == LoopFailure::plant || basis.trajectory.failure == LoopFailure::controller) {
-    basis.explanation = fmt::format("the nominal loop fails at sample {}: {}", basis.trajectory.samples_done,
-                                    basis.trajectory.message);
-    return;
-  }
-  if (basis.trajectory.status != ControlStatus::ok) {
-    basis.explanation =
-        fmt::format("the nominal loop is {} at sample {}: its excitation is too strong for its limits",
-                    to_string(basis.trajectory.status), basis.trajectory.samples_done);
-    return;
-  }
-  if (options.self_check == SelfCheck::none) {
-    basis.healthy = true;
-    basis.explanation = "the study asks for no self-check of its basis case (diagnosis.self_check)";
-    return;
-  }
-  const bool repeated = options.self_check == SelfCheck::repeat;
-  const Eigen::VectorXd ivar = repeated ? repeated_indices(study, basis, factory) : basis.diagnosis.ivar;
-  const std::string what =
-      repeated ? "Ivar_basis of the nominal loop with other noise" : "Ivar of the nominal loop";
-  std::string why = repeated ? "the record is too short to tell an impact from chance"
-                             : "noise outweighs the excitation, and every verdict of this study would be "
-                               "unreliable";
-  if (!repeated && !study.simulation.is_excited())
-    why += "; diagnosis.self_check = \"repeat\" is the check of a study without excitation";
-  Eigen::Index worst = 0;
-  (ivar.array() - 1.0).abs().maxCoeff(&worst);
-  basis.healthy =
-      (ivar.array() >= options.self_check_lower && ivar.array() <= options.self_check_upper).all();
-  const std::string& name = study.plant.cvs[static_cast<std::size_t>(worst)].name;
-  basis.explanation =
-      basis.healthy ? fmt::format("{} lies within [{}, {}] for every CV; farthest from 1: {} with {:.3f}",
-                                  what, options.self_check_lower, options.self_check_upper, name, ivar(worst))
-                    : fmt::format("{} is {:.3f} for {}, outside [{}, {}]: {}", what, ivar(worst), name,
-                                  options.self_check_lower, options.self_check_upper, why);
-}
 
 /// A CV without an active limit has T0 = 0, which no multiplier changes.
 void require_active(const Study& study, const NominalSensitivity& sensitivity) {
@@ -104,7 +53,7 @@ void run_loop(const Study& study, const QpSolverFactory& factory, const StepObse
     if (basis.sensitivity.is_known)
       basis.diagnosis = DiagnosisChain(study).diagnose(basis.trajectory.y, basis.nominal);
   }
-  check_health(study, factory, basis);
+  check_basis(study, factory, basis);
 }
 
 }  // namespace
@@ -127,7 +76,15 @@ BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, con
   require_active(study, basis.sensitivity);
   if (!study.s0_perturbation.fixed_mvs.empty())
     basis.sensitivity_fixed = sensitivity(study, with_fixed_mvs(study, basis.point), factory, observer);
-  run_loop(study, factory, observer, basis);
+  basis.trajectory = simulate_experiment(study, basis_draw(), factory, observer);
+  require_start(basis.trajectory);
+  if (basis.trajectory.status == ControlStatus::ok) {
+    basis.nominal =
+        NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(basis.trajectory);
+    DiagnosisChain chain(study);
+    basis.diagnosis = chain.diagnose(basis.trajectory.y, basis.nominal);
+  }
+  check_basis(study, factory, basis);
   return basis;
 }
 
