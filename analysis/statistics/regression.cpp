@@ -20,6 +20,8 @@ using Signal = Eigen::Ref<const Eigen::VectorXd>;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kFewestPairs = 3.0;
+constexpr std::size_t kFewestClusters = 5;
+constexpr double kLargestCorrelation = 1.0 - 1e-15;  // where Fisher's z is still finite
 
 struct Pair {
   double x;
@@ -42,6 +44,8 @@ struct Sums {
     yy += other.yy;
     return *this;
   }
+
+  Sums operator-(const Sums& o) const { return {n - o.n, x - o.x, y - o.y, xx - o.xx, xy - o.xy, yy - o.yy}; }
 };
 
 /// The point the sums are taken about: the medians. The distance from mean to median is at most one standard
@@ -114,26 +118,118 @@ std::vector<Sums> sums_by_cluster(const std::vector<Pair>& pairs, const Centre& 
   return sums;
 }
 
-LinearFit resample(const std::vector<Sums>& clusters, const Centre& centre, RandomStream& stream) {
-  Sums sums;
-  for (std::size_t i = 0; i < clusters.size(); ++i) {
-    sums += clusters[stream.below(clusters.size())];
-  }
-  return line(sums, centre);
+/// The results of a fit in which they scatter evenly: R^2 as Fisher's z = artanh r.
+struct Results {
+  double slope, intercept, z;
+
+  bool are_finite() const { return std::isfinite(slope) && std::isfinite(intercept) && std::isfinite(z); }
+};
+
+Results results_of(const LinearFit& fit) {
+  const double r = std::copysign(std::sqrt(fit.r_squared), fit.slope);
+  return {fit.slope, fit.intercept, std::atanh(std::clamp(r, -kLargestCorrelation, kLargestCorrelation))};
 }
 
-Interval percentile_interval(std::vector<double>& values, double confidence) {
-  std::sort(values.begin(), values.end());
-  return {sorted_quantile(values, (1.0 - confidence) / 2.0),
-          sorted_quantile(values, (1.0 + confidence) / 2.0)};
+/// Standard errors of the results from the influence of each cluster on them (the infinitesimal jackknife); a
+/// cluster counts as often as it was drawn.
+///
+/// With the means mx, my, the centred sums Sxx, Sxy, Syy of all pairs, those of a cluster about mx and my in
+/// small letters, and its residuals e about the line:
+///
+///   I(slope) = (sxy - slope sxx)/Sxx,   I(intercept) = e/n - mx I(slope),
+///   I(z) = r (sxy/Sxy - sxx/(2 Sxx) - syy/(2 Syy))/(1 - r^2)
+Results standard_errors(const std::vector<Sums>& clusters, const std::vector<int>& times, const Sums& all,
+                        const Centre& centre, const LinearFit& fit) {
+  const double mx = all.x / all.n, my = all.y / all.n;
+  const double Sxx = all.xx - all.n * mx * mx, Syy = all.yy - all.n * my * my, Sxy = all.xy - all.n * mx * my;
+  const double r = Sxy / std::sqrt(Sxx * Syy);
+  Results squares{0.0, 0.0, 0.0};
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    const Sums& of = clusters[c];
+    const double xx = of.xx - 2.0 * mx * of.x + of.n * mx * mx;
+    const double yy = of.yy - 2.0 * my * of.y + of.n * my * my;
+    const double xy = of.xy - mx * of.y - my * of.x + of.n * mx * my;
+    const double e = (of.y - of.n * my) - fit.slope * (of.x - of.n * mx);
+    const double slope = (xy - fit.slope * xx) / Sxx;
+    const double intercept = e / all.n - (centre.x + mx) * slope;
+    const double z = r * (xy / Sxy - 0.5 * xx / Sxx - 0.5 * yy / Syy) / (1.0 - r * r);
+    squares.slope += times[c] * slope * slope;
+    squares.intercept += times[c] * intercept * intercept;
+    squares.z += times[c] * z * z;
+  }
+  return {std::sqrt(squares.slope), std::sqrt(squares.intercept), std::sqrt(squares.z)};
+}
+
+/// Standard errors from the fits without each cluster in turn (the jackknife), which sees more than
+/// influences do where a few clusters carry the line.
+Results jackknife_errors(const std::vector<Sums>& clusters, const Sums& all, const Centre& centre) {
+  std::vector<Results> without;
+  for (const Sums& cluster : clusters)
+    without.push_back(results_of(line(all - cluster, centre)));
+  const auto count = static_cast<double>(without.size());
+  const auto error_of = [&](double Results::*member) {
+    double sum = 0.0, squares = 0.0;
+    for (const Results& results : without)
+      sum += results.*member;
+    for (const Results& results : without)
+      squares += (results.*member - sum / count) * (results.*member - sum / count);
+    return std::sqrt(squares * (count - 1.0) / count);
+  };
+  return {error_of(&Results::slope), error_of(&Results::intercept), error_of(&Results::z)};
+}
+
+/// The studentised results of the resamples, (result of the resample - result)/standard error of the
+/// resample.
+struct Studentised {
+  std::vector<double> slope, intercept, z;
+};
+
+/// One resample, unless it has no line.
+void add_resample(const std::vector<Sums>& clusters, const Centre& centre, const Results& results,
+                  RandomStream& stream, Studentised& studentised) {
+  std::vector<int> times(clusters.size(), 0);
+  Sums all;
+  for (std::size_t i = 0; i < clusters.size(); ++i) {
+    const auto drawn = static_cast<std::size_t>(stream.below(clusters.size()));
+    ++times[drawn];
+    all += clusters[drawn];
+  }
+  const LinearFit fit = line(all, centre);
+  const Results again = results_of(fit);
+  if (!again.are_finite())
+    return;
+  const Results errors = standard_errors(clusters, times, all, centre, fit);
+  const Results t{(again.slope - results.slope) / errors.slope,
+                  (again.intercept - results.intercept) / errors.intercept, (again.z - results.z) / errors.z};
+  if (!t.are_finite())
+    return;
+  studentised.slope.push_back(t.slope);
+  studentised.intercept.push_back(t.intercept);
+  studentised.z.push_back(t.z);
+}
+
+Interval studentised_interval(double result, double error, std::vector<double>& t, double confidence) {
+  std::sort(t.begin(), t.end());
+  return {result - error * sorted_quantile(t, (1.0 + confidence) / 2.0),
+          result - error * sorted_quantile(t, (1.0 - confidence) / 2.0)};
+}
+
+/// R^2 over an interval of z.
+Interval r_squared_interval(const Interval& z) {
+  const double lower = std::tanh(z.lower), upper = std::tanh(z.upper);
+  const double least = lower <= 0.0 && upper >= 0.0 ? 0.0 : std::min(lower * lower, upper * upper);
+  return {least, std::max(lower * lower, upper * upper)};
+}
+
+Sums sum_of(const std::vector<Sums>& clusters) {
+  Sums all;
+  for (const Sums& cluster : clusters)
+    all += cluster;
+  return all;
 }
 
 LinearFit fit_all(const std::vector<Sums>& clusters, const Centre& centre, Eigen::Index given) {
-  Sums all;
-  for (const Sums& cluster : clusters) {
-    all += cluster;
-  }
-  LinearFit fit = line(all, centre);
+  LinearFit fit = line(sum_of(clusters), centre);
   fit.left_out = given - fit.pairs;
   return fit;
 }
@@ -163,24 +259,20 @@ LinearFitIntervals cluster_bootstrap(const Signal& x, const Signal& y, std::span
   const std::vector<Sums> clusters = sums_by_cluster(pairs, centre);
   result.fit = fit_all(clusters, centre, x.size());
   result.clusters = static_cast<Eigen::Index>(clusters.size());
-  if (clusters.size() < 2) {
+  const Results results = results_of(result.fit);
+  if (clusters.size() < kFewestClusters || !results.are_finite())
     return result;
-  }
 
-  std::vector<double> slopes, intercepts, r_squared;
-  for (int i = 0; i < options.replications; ++i) {
-    const LinearFit fit = resample(clusters, centre, stream);
-    if (std::isfinite(fit.slope) && std::isfinite(fit.r_squared)) {
-      slopes.push_back(fit.slope);
-      intercepts.push_back(fit.intercept);
-      r_squared.push_back(fit.r_squared);
-    }
-  }
-  result.replications_used = static_cast<int>(slopes.size());
+  Studentised t;
+  for (int i = 0; i < options.replications; ++i)
+    add_resample(clusters, centre, results, stream, t);
+  result.replications_used = static_cast<int>(t.slope.size());
   if (2 * result.replications_used >= options.replications) {
-    result.slope = percentile_interval(slopes, options.confidence);
-    result.intercept = percentile_interval(intercepts, options.confidence);
-    result.r_squared = percentile_interval(r_squared, options.confidence);
+    const Results errors = jackknife_errors(clusters, sum_of(clusters), centre);
+    result.slope = studentised_interval(results.slope, errors.slope, t.slope, options.confidence);
+    result.intercept =
+        studentised_interval(results.intercept, errors.intercept, t.intercept, options.confidence);
+    result.r_squared = r_squared_interval(studentised_interval(results.z, errors.z, t.z, options.confidence));
   }
   return result;
 }

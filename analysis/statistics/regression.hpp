@@ -41,7 +41,7 @@ struct ClusterBootstrapOptions {
   void validate() const;
 };
 
-/// A fit with percentile intervals.
+/// A fit with studentised intervals.
 struct LinearFitIntervals {
   LinearFit fit;
   Interval slope;
@@ -53,11 +53,17 @@ struct LinearFitIntervals {
   int replications_used = 0;
 };
 
-/// The line with intervals by the cluster bootstrap (Davison and Hinkley 1997, section 3.8): whole
-/// clusters are drawn with replacement, as many as there are, and the line is fitted to their pairs; the
-/// interval lies between the quantiles (1 - confidence)/2 and (1 + confidence)/2 of the results (interpolated
-/// between order statistics). Clusters are the experiments, because the controlled variables of one
-/// experiment share its mismatch and disturbance and are no independent pairs.
+/// The line with intervals by the studentised cluster bootstrap (Davison and Hinkley 1997, sections 3.8 and
+/// 5.2): whole clusters are drawn with replacement, as many as there are, and the line is fitted to their
+/// pairs. With t = (result of a resample - result)/standard error of the resample, by the influences of its
+/// clusters, and the jackknife's standard error s, the interval is
+///
+///   result - s t(1 - a/2) to result - s t(a/2),   a = 1 - confidence
+///
+/// with the quantiles t() of the resamples (interpolated between order statistics). R^2 is studentised as
+/// Fisher's z = artanh r. Percentile intervals are too short where a few experiments carry the line, as those
+/// with a large Ivar do: docs/methods.md has the coverage of both. Clusters are the experiments, because the
+/// controlled variables of one experiment share its mismatch and disturbance and are no independent pairs.
 ///
 /// The pairs of a cluster enter through their sums only, so that a resample costs O(clusters). The result
 /// depends on the numbers of `stream` and on the order of the pairs within a cluster, not on the order of the
@@ -68,7 +74,7 @@ struct LinearFitIntervals {
 /// | x, y    | pairs   | n     | any  |
 /// | cluster | number of the experiment that a pair belongs to | n | - |
 ///
-/// Resamples without a line or an R^2 are left out and counted. With fewer than 2 clusters, or when more than
+/// Resamples without a line or an R^2 are left out and counted. With fewer than 5 clusters, or when more than
 /// half of the resamples are left out, the ends of the intervals are NaN.
 /// @throws InputError when the lengths differ or the options are invalid
 LinearFitIntervals cluster_bootstrap(const Eigen::Ref<const Eigen::VectorXd>& x,

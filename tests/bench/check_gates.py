@@ -114,7 +114,7 @@ def check_refusals(check, archive):
     error, _ = check.check(archive, "[[gate\n", code=2)
     assert "gates.toml:1: TOML: found" in error, error
     assert "no such file" in check.run("check", check.folder / "no.h5", "--gates", check.folder / "gates.toml", code=2).stderr
-    assert "no.toml: found nothing" in check.run("check", archive, "--gates", check.folder / "no.toml", code=2).stderr
+    assert "no.toml: found no such file" in check.run("check", archive, "--gates", check.folder / "no.toml", code=2).stderr
     assert "--gates" in check.run("check", archive, code=2).stderr
     (check.folder / "gates.toml").write_text(GATES, encoding="utf-8")
     check.run("check", archive, "--gates", check.folder / "gates.toml", "--junit", check.folder / "no" / "a.xml", code=3)
