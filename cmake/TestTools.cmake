@@ -3,7 +3,7 @@
 #
 # A program that is not there does not stop a build (run.sh needs none of them); its tests fail and say so.
 
-foreach(tool python3 clang-format clang-tidy chromium octave-cli)
+foreach(tool python3 clang-format clang-tidy chromium octave-cli mpirun)
   string(TOUPPER "MPMBENCH_${tool}" variable)
   string(REPLACE "-" "_" variable "${variable}")
   find_program(${variable} ${tool} PATHS /usr/bin /usr/local/bin NO_DEFAULT_PATH

@@ -1,38 +1,25 @@
 #include "bench/campaign/campaign_runner.hpp"
 
 #include <chrono>
-#include <ctime>
 #include <utility>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "bench/campaign/calibration_runs.hpp"
+#include "bench/campaign/campaign_steps.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/campaign/experiment_series.hpp"
-#include "bench/files/outside_files.hpp"
-#include "bench/version.hpp"
 #include "scenarios/calibration.hpp"
 
 namespace mpm {
 namespace {
 
-void require_options(const RunOptions& options, const Study& study, std::int64_t count) {
-  if (study.names_scenarios() && count > study.experiment_count())
-    throw InputError("experiments", fmt::format("{}", count),
-                     fmt::format("at most {}, the named scenarios of the study", study.experiment_count()));
-  if (count < 1)
-    throw InputError("experiments", fmt::format("{}", count), "a whole number >= 1");
+void require_options(const RunOptions& options) {
   if (options.jobs < 1)
     throw InputError("jobs", fmt::format("{}", options.jobs), "a whole number >= 1");
   if (!(options.audit_share >= 0.0 && options.audit_share <= 1.0))
     throw InputError("audit share", fmt::format("{}", options.audit_share), "a number from 0 to 1");
-}
-
-void require_health(const BasisCase& basis, const RunOptions& options) {
-  if (basis.healthy || (options.allow_unhealthy_basis && basis.trajectory.status == ControlStatus::ok))
-    return;
-  throw UnhealthyBasis("the basis case of the study fails its self-check: " + basis.explanation);
+  qp_solver_factory(options.solver);  // refuses one that there is not
 }
 
 /// In processes also where somebody else simulates the plant or is the controller: such loops wait for other
@@ -49,85 +36,105 @@ Execution execution_of(const Study& study, const RunOptions& options) {
   return in_threads ? execute_in_threads : execute_in_processes;
 }
 
-/// The basis case; with Ipopt it takes as long as an experiment, so that a stop must not wait for it.
-BasisCase stoppable_basis_case(const Study& study, const QpSolverFactory& factory, const StopRequest& stop,
-                               const ExperimentTally& tally) {
-  return run_basis_case(study, factory, [&](const Controller&) {
-    if (requested(stop))
-      throw Interrupted(tally.done, tally.count);
-  });
-}
-
-/// How, when and by which program; without the times.
-CampaignInfo info_of(const Study& study, const RunOptions& options) {
-  CampaignInfo info;
-  info.mpmbench_version = mpmbench_version();
-  info.git_sha = source_revision();
-  info.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-  info.outside_files = outside_files(study);
-  info.solver = options.solver;
-  info.jobs = options.jobs;
-  info.audit_share = audited_share(study, options);
-  return info;
-}
-
-/// The calibration loops of a campaign.
-struct CalibrationSeries {
-  Study study;
-  ExperimentSeries series;
-
-  CalibrationSeries(const Study& of, const RunOptions& options,
-                    const std::optional<std::filesystem::path>& shards, const ShardStore::Warn& warn)
-      : study(calibration_study(of)),
-        series(study, calibration_options(options), study.experiment_count(),
-               shards ? std::optional(calibration_shard_folder(*shards)) : std::nullopt, warn) {}
-
-  Calibration run(const BasisCase& basis, Execution execute, const CampaignHooks& hooks,
-                  ExperimentTally& tally) {
-    Campaign loops;
-    series.run(basis, execute, hooks, tally).move_into(loops);
-    return calibration_of(study, loops.records);
+/// The loops of a campaign, or of a part of it: its experiments, and its calibration loops.
+class CampaignLoops {
+ public:
+  /// `study` must outlive it; the loops `part` only, where it is one.
+  CampaignLoops(const Study& study, const RunOptions& options,
+                const std::optional<std::filesystem::path>& shards, const ShardStore::Warn& warn,
+                const LoopRanges* part = nullptr)
+      : study_(study), options_(options) {
+    require_options(options);
+    execute_ = execution_of(study, options);
+    const std::int64_t count = experiment_count(study, options);
+    experiments_.emplace(study, options, wanted(part, 0, count), shards, warn);
+    if (!study.calibration)
+      return;
+    calibration_study_ = calibration_study(study);
+    calibration_.emplace(calibration_study_, calibration_options(options),
+                         wanted(part, count, count + calibration_study_.experiment_count()),
+                         shards ? std::optional(calibration_shard_folder(*shards)) : std::nullopt, warn);
   }
+
+  ExperimentTally tally() const {
+    ExperimentTally tally = experiments_->tally();
+    if (calibration_)
+      tally += calibration_->tally();
+    return tally;
+  }
+
+  double earlier_seconds() const {
+    return experiments_->earlier_seconds() + (calibration_ ? calibration_->earlier_seconds() : 0.0);
+  }
+
+  /// The basis case, and then what is missing.
+  BasisCase run(const CampaignHooks& hooks) {
+    ExperimentTally tally = this->tally();
+    BasisCase basis = checked_basis(study_, options_, hooks, tally);
+    if (hooks.on_start)
+      hooks.on_start(tally.done, tally.count);
+    experiments_->run(basis, execute_, hooks, tally);
+    if (calibration_)
+      calibration_->run(basis, execute_, hooks, tally);
+    return basis;
+  }
+
+  void move_into(Campaign& campaign) {
+    experiments_->collect().move_into(campaign);
+    if (!calibration_)
+      return;
+    Campaign loops;
+    calibration_->collect().move_into(loops);
+    campaign.calibration = calibration_of(calibration_study_, loops.records);
+  }
+
+  void compact() {
+    experiments_->compact();
+    if (calibration_)
+      calibration_->compact();
+  }
+
+ private:
+  static WantedLoops wanted(const LoopRanges* part, std::int64_t first, std::int64_t end) {
+    return {end - first,
+            part != nullptr ? indices_within(*part, first, end) : indices_within({{first, end}}, first, end)};
+  }
+
+  const Study& study_;
+  const RunOptions& options_;
+  Execution execute_ = nullptr;
+  std::optional<ExperimentSeries> experiments_;
+  Study calibration_study_;
+  std::optional<ExperimentSeries> calibration_;
 };
 
 }  // namespace
 
 Campaign run_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks,
-                      const std::optional<std::filesystem::path>& shard_folder) {
+                      const std::optional<std::filesystem::path>& shards) {
   const auto start = std::chrono::steady_clock::now();
   Campaign campaign;
   campaign.study = study_to_run(std::move(study), options);
-  const std::int64_t count = options.experiments.value_or(campaign.study.experiment_count());
-  require_options(options, campaign.study, count);
-  const QpSolverFactory factory = qp_solver_factory(options.solver);
-  const Execution execute = execution_of(campaign.study, options);
-
-  ExperimentSeries experiments(campaign.study, options, count, shard_folder, hooks.on_warning);
-  std::optional<CalibrationSeries> calibration;
-  if (campaign.study.calibration)
-    calibration.emplace(campaign.study, options, shard_folder, hooks.on_warning);
-  ExperimentTally tally = experiments.tally();
-  if (calibration)
-    tally += calibration->series.tally();
-  campaign.basis = stoppable_basis_case(campaign.study, factory, hooks.stop, tally);
-  if (hooks.on_basis)
-    hooks.on_basis(campaign.study, campaign.basis);
-  require_health(campaign.basis, options);
-  if (hooks.on_start)
-    hooks.on_start(tally.done, tally.count);
-  OutcomeCollection outcomes = experiments.run(campaign.basis, execute, hooks, tally);
-  if (calibration)
-    campaign.calibration = calibration->run(campaign.basis, execute, hooks, tally);
-
+  CampaignLoops loops(campaign.study, options, shards, hooks.on_warning);
+  campaign.basis = loops.run(hooks);
   campaign.info = info_of(campaign.study, options);
-  campaign.info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() +
-                          experiments.earlier_seconds() +
-                          (calibration ? calibration->series.earlier_seconds() : 0.0);
   campaign.methods = methods_of(campaign.study, "");
-  outcomes.move_into(campaign);
+  loops.move_into(campaign);
+  campaign.info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() +
+                          loops.earlier_seconds();
   if (hooks.on_end)
     hooks.on_end(campaign);
   return campaign;
+}
+
+std::int64_t run_part(const PartFolder& part, const CampaignHooks& hooks) {
+  CampaignLoops loops(part.study, part.options, part.path, hooks.on_warning, &part.part.loops);
+  write_part_description(part);
+  const ExperimentTally tally = loops.tally();
+  if (tally.done < tally.count)
+    loops.run(hooks);
+  loops.compact();
+  return tally.count - tally.done;
 }
 
 }  // namespace mpm

@@ -8,6 +8,7 @@
 
 #include "bench/execution/run_options.hpp"
 #include "bench/execution/stop_request.hpp"
+#include "bench/parts/part_folder.hpp"
 #include "plants/error.hpp"
 #include "results/archive/campaign.hpp"
 
@@ -48,5 +49,10 @@ class UnhealthyBasis : public InputError {
 /// std::system_error when no worker process can be made.
 Campaign run_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks = {},
                       const std::optional<std::filesystem::path>& shards = {});
+
+/// Runs those of the loops of a part that no shard in its folder has, as run_campaign() runs them, and leaves
+/// all of them there, in shards, with the description of the part. No record is kept in memory. Returns how
+/// many were run. Errors: as run_campaign().
+std::int64_t run_part(const PartFolder& part, const CampaignHooks& hooks);
 
 }  // namespace mpm

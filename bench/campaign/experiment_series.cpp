@@ -1,36 +1,39 @@
 #include "bench/campaign/experiment_series.hpp"
 
-#include <numeric>
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace mpm {
 namespace {
 
-std::vector<std::int64_t> all_of(std::int64_t count) {
-  std::vector<std::int64_t> indices(static_cast<std::size_t>(count));
-  std::iota(indices.begin(), indices.end(), 0);
-  return indices;
+/// Those that are in both; all in ascending order.
+std::vector<std::int64_t> common(const std::vector<std::int64_t>& one,
+                                 const std::vector<std::int64_t>& other) {
+  std::vector<std::int64_t> both;
+  std::set_intersection(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(both));
+  return both;
 }
 
 }  // namespace
 
-ExperimentSeries::ExperimentSeries(const Study& study, RunOptions options, std::int64_t count,
+ExperimentSeries::ExperimentSeries(const Study& study, RunOptions options, const WantedLoops& wanted,
                                    const std::optional<std::filesystem::path>& shards,
                                    const ShardStore::Warn& warn)
-    : study_(study), options_(std::move(options)), count_(count) {
-  if (shards)
-    shards_.emplace(*shards, options_, study_, count_, warn);
-  missing_ = shards_ ? shards_->missing() : all_of(count_);
+    : study_(study), options_(std::move(options)), count_(std::ssize(wanted.indices)), all_(wanted.count) {
+  if (!shards) {
+    missing_ = wanted.indices;
+    outcomes_.emplace(all_);
+    return;
+  }
+  shards_.emplace(*shards, options_, study_, all_, warn);
+  missing_ = common(shards_->missing(), wanted.indices);
+  earlier_seconds_ = shards_->seconds();
 }
 
-ExperimentTally ExperimentSeries::tally() const {
-  return {count_ - std::ssize(missing_), count_};
-}
-
-OutcomeCollection ExperimentSeries::run(const BasisCase& basis, Execution execute, const CampaignHooks& hooks,
-                                        ExperimentTally& tally) {
+void ExperimentSeries::run(const BasisCase& basis, Execution execute, const CampaignHooks& hooks,
+                           ExperimentTally& tally) {
   std::int64_t left = std::ssize(missing_);
-  OutcomeCollection outcomes(count_);
   const auto take = [&](ExperimentOutcome outcome) {
     ++tally.done;
     --left;
@@ -39,7 +42,7 @@ OutcomeCollection ExperimentSeries::run(const BasisCase& basis, Execution execut
     if (shards_)
       shards_->add(outcome);
     else
-      outcomes.add(std::move(outcome));
+      outcomes_->add(std::move(outcome));
   };
   if (!missing_.empty())
     execute({study_, basis, options_, missing_, hooks.on_warning}, hooks.stop, take);
@@ -47,9 +50,19 @@ OutcomeCollection ExperimentSeries::run(const BasisCase& basis, Execution execut
     shards_->flush();
   if (left > 0)
     throw Interrupted(tally.done, tally.count);
-  if (shards_)
-    shards_->read([&](ExperimentOutcome outcome) { outcomes.add(std::move(outcome)); });
+}
+
+OutcomeCollection ExperimentSeries::collect() {
+  if (!shards_)
+    return std::move(*outcomes_);
+  OutcomeCollection outcomes(all_);
+  shards_->read([&](ExperimentOutcome outcome) { outcomes.add(std::move(outcome)); });
   return outcomes;
+}
+
+void ExperimentSeries::compact() {
+  if (shards_)
+    shards_->compact();
 }
 
 }  // namespace mpm

@@ -26,30 +26,43 @@ struct ExperimentTally {
   }
 };
 
-/// The first experiments of one study, which are run together: those of a campaign, or its calibration loops.
-/// Without shards, outcomes wait in memory; with shards, on the disk, so that a campaign without kept loops
-/// needs no more memory the longer it is.
+/// Which experiments of a study are to be run.
+struct WantedLoops {
+  std::int64_t count = 0;             ///< of the campaign
+  std::vector<std::int64_t> indices;  ///< these of them, in ascending order
+};
+
+/// Experiments of one study that are run together: those of a campaign, or its calibration loops. Without
+/// shards, outcomes wait in memory; with shards, on the disk, so that it needs no more memory the longer it
+/// is, until they are collected.
 class ExperimentSeries {
  public:
   /// `study` must outlive it. Errors: as ShardStore.
-  ExperimentSeries(const Study& study, RunOptions options, std::int64_t count,
+  ExperimentSeries(const Study& study, RunOptions options, const WantedLoops& wanted,
                    const std::optional<std::filesystem::path>& shards, const ShardStore::Warn& warn);
 
-  /// Those that an earlier run has left are done.
-  ExperimentTally tally() const;
-  double earlier_seconds() const { return shards_ ? shards_->earlier_seconds() : 0.0; }
+  /// Of what is wanted; what an earlier run has left is done.
+  ExperimentTally tally() const { return {count_ - std::ssize(missing_), count_}; }
+  double earlier_seconds() const { return earlier_seconds_; }
 
-  /// Runs what is missing, counts it in `tally`, and brings all into order. Throws Interrupted when it was
-  /// stopped before.
-  OutcomeCollection run(const BasisCase& basis, Execution execute, const CampaignHooks& hooks,
-                        ExperimentTally& tally);
+  /// Runs what is missing, and counts it in `tally`. Throws Interrupted when it was stopped before.
+  void run(const BasisCase& basis, Execution execute, const CampaignHooks& hooks, ExperimentTally& tally);
+
+  /// Brings the outcomes into order, all of which must be there.
+  OutcomeCollection collect();
+
+  /// Makes as few shards as there can be.
+  void compact();
 
  private:
   const Study& study_;
   RunOptions options_;
-  std::int64_t count_;
+  std::int64_t count_;  ///< that are wanted
   std::optional<ShardStore> shards_;
+  std::optional<OutcomeCollection> outcomes_;  ///< without shards
+  std::int64_t all_;                           ///< experiments of the campaign
   std::vector<std::int64_t> missing_;
+  double earlier_seconds_ = 0.0;
 };
 
 }  // namespace mpm

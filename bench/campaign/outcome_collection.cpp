@@ -3,12 +3,33 @@
 #include <algorithm>
 #include <tuple>
 #include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "results/archive/columns.hpp"
 
 namespace mpm {
 namespace {
 
 bool earlier(const AuditedStep& one, const AuditedStep& other) {
   return std::tie(one.experiment, one.step) < std::tie(other.experiment, other.step);
+}
+
+/// Where two audits of one step stand side by side, one is left.
+void require_one_finding(const AuditedStep& one, const AuditedStep& other) {
+  for (const Column<AuditedStep>& column : audit_columns())
+    std::visit(
+        [&](const auto& access) {
+          const auto found = access.get(one), again = access.get(other);
+          const bool same = found == again || (found != found && again != again);  // NaN: no answer
+          if (!same)
+            throw InputError(fmt::format("experiment {}: audit of step {}: {}", one.experiment, one.step,
+                                         column.text.name),
+                             "two results in two shards", "the same, bit for bit");
+        },
+        column.access);
 }
 
 }  // namespace
@@ -21,8 +42,21 @@ void OutcomeCollection::add(ExperimentOutcome outcome) {
   records_[static_cast<std::size_t>(outcome.record.draw.index)] = std::move(outcome.record);
 }
 
+std::vector<std::string> OutcomeCollection::differences(const ExperimentOutcome& outcome,
+                                                        const RecordBytes& format) {
+  audit_.insert(audit_.end(), outcome.audited.begin(), outcome.audited.end());
+  return format.differences(records_[static_cast<std::size_t>(outcome.record.draw.index)], outcome.record);
+}
+
 void OutcomeCollection::move_into(Campaign& campaign) {
-  std::sort(audit_.begin(), audit_.end(), earlier);
+  std::stable_sort(audit_.begin(), audit_.end(), earlier);
+  const auto repeated = [](const AuditedStep& one, const AuditedStep& other) {
+    if (earlier(one, other))
+      return false;
+    require_one_finding(one, other);
+    return true;
+  };
+  audit_.erase(std::unique(audit_.begin(), audit_.end(), repeated), audit_.end());
   campaign.records = std::move(records_);
   campaign.audit = std::move(audit_);
   campaign.info.audit_seconds = audit_seconds_;

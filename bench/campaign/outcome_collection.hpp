@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "bench/outcome/experiment_outcome.hpp"
 #include "results/archive/campaign.hpp"
+#include "results/archive/record_bytes.hpp"
 
 namespace mpm {
 
@@ -15,7 +18,12 @@ class OutcomeCollection {
   /// Each experiment at most once.
   void add(ExperimentOutcome outcome);
 
+  /// Another outcome of an experiment that was added: what of its record is not the same, by name. What its
+  /// audit found is added.
+  std::vector<std::string> differences(const ExperimentOutcome& outcome, const RecordBytes& format);
+
   /// Moves the records, the audit and its time into the campaign. Every experiment must have been added.
+  /// Throws InputError when the audit of a step has found two things.
   void move_into(Campaign& campaign);
 
  private:

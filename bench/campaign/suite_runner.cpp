@@ -23,6 +23,8 @@ fs::path archive_of(const Suite& suite, const SuiteCell& cell, const SuiteRun& o
 std::vector<CellScores> run_suite(const Suite& suite, const SuiteRun& options) {
   std::vector<CellScores> scores;
   for (std::size_t place = 0; place < suite.cells.size(); ++place) {
+    if (options.is_wanted && !options.is_wanted(place))
+      continue;
     const SuiteCell& cell = suite.cells[place];
     const fs::path archive = archive_of(suite, cell, options);
     const std::optional<Campaign> kept = kept_campaign(archive, cell.study, options.run);

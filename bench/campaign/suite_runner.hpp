@@ -18,6 +18,8 @@ struct SuiteRun {
   std::filesystem::path folder;  ///< one archive a cell, PLANT.FAMILY.h5
   std::string command;           ///< goes into the archives
   CampaignHooks hooks = {};
+  /// Which cells are run, by their place; empty: all of them.
+  std::function<bool(std::size_t cell)> is_wanted = {};
   /// Called before each cell: its place, and whether its archive is there already.
   std::function<void(std::size_t cell, bool is_there)> on_cell = {};
 };
@@ -28,8 +30,8 @@ struct SuiteRun {
 /// goes on by running it again, and the scores are those of one go.
 ///
 /// A cell that cannot be run (its basis case fails the self-check, a method refuses an option of its study)
-/// has the reason in `trouble`; the others go on. Errors: Interrupted, ArchiveError as run_campaign() and
-/// write_archive().
+/// has the reason in `trouble`; the others go on. Of cells that are not wanted nothing comes back. Errors:
+/// Interrupted, ArchiveError as run_campaign() and write_archive().
 std::vector<CellScores> run_suite(const Suite& suite, const SuiteRun& options);
 
 }  // namespace mpm

@@ -11,6 +11,7 @@ namespace mpm {
 using AddCommand = void(CommandSet& commands);
 
 AddCommand add_run;         // runs a study and writes its archive
+AddCommand add_merge;       // makes the archive of parts that were run on several machines
 AddCommand add_validate;    // what is implausible in a study, what it will show and cost
 AddCommand add_identify;    // a model for the controller, from a step test on the plant
 AddCommand add_replay;      // runs one experiment of an archive again
@@ -36,7 +37,8 @@ struct Task {
 };
 
 inline std::vector<Task> tasks() {
-  return {{"Test methods on simulated loops", {add_validate, add_run, add_sweep, add_suite, add_compare}},
+  return {{"Test methods on simulated loops",
+           {add_validate, add_run, add_merge, add_sweep, add_suite, add_compare}},
           {"See what was found", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
           {"Assess the records of a plant", {add_assess, add_identify, add_repair}},
           {"What there is", {add_list, add_reproduce, add_manual, add_completion}}};

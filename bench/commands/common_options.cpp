@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <sched.h>
 
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/outside_program.hpp"
@@ -49,8 +50,21 @@ void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments,
   app.add_option("--experiments", experiments, description)->check(whole_number(1, kMostExperiments));
 }
 
+namespace {
+
+/// Cores that this process may use: launchers and batch systems leave it some of the machine.
+int usable_cores() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  return ::sched_getaffinity(0, sizeof cores, &cores) == 0
+             ? CPU_COUNT(&cores)
+             : static_cast<int>(std::thread::hardware_concurrency());
+}
+
+}  // namespace
+
 void add_jobs(CLI::App& app, int& jobs, const std::string& description) {
-  jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  jobs = std::max(1, usable_cores());
   app.add_option("--jobs", jobs, description)->check(whole_number(1, 1024))->capture_default_str();
 }
 
@@ -88,6 +102,22 @@ std::vector<std::string> with_programs(const std::vector<std::string>& named, st
     return named;
   own.insert(own.end(), programs.begin(), programs.end());
   return own;
+}
+
+void add_shard_of_studies(CLI::App& app, std::string& shard, const std::string& what) {
+  app.add_option(
+      "--shard", shard,
+      fmt::format("Run every Nth of the {} only, from the Ith on, given as I/N, or as auto or auto/N "
+                  "as `run` takes it; without it the same command shows all of them",
+                  what));
+}
+
+std::optional<ShardNumber> shard_of(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(parse_shard(text, process_environment));
+}
+
+bool is_in_shard(std::size_t place, const std::optional<ShardNumber>& shard) {
+  return !shard || static_cast<std::int64_t>(place) % shard->of == shard->number - 1;
 }
 
 void add_json(CLI::App& app, bool& json) {

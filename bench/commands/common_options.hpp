@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "bench/parts/launcher.hpp"
 
 namespace CLI {
 class App;
@@ -22,7 +25,7 @@ void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::stri
 void add_archive(CLI::App& app, std::string& archive);
 void add_index(CLI::App& app, std::int64_t& index);
 void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments, const std::string& description);
-/// As many as there are cores, unless the user says otherwise.
+/// As many as there are cores for this process, unless the user says otherwise.
 void add_jobs(CLI::App& app, int& jobs, const std::string& description);
 void add_solver(CLI::App& app, std::string& solver);
 /// Names of methods of assessment; their check is left to the command, which knows what it can be asked for.
@@ -36,6 +39,12 @@ std::vector<std::string> take_method_files(const std::vector<std::string>& files
 /// suite and the programs.
 std::vector<std::string> with_programs(const std::vector<std::string>& named, std::vector<std::string> own,
                                        const std::vector<std::string>& programs);
+/// --shard of a command that runs several studies, `what`: which of them it runs.
+void add_shard_of_studies(CLI::App& app, std::string& shard, const std::string& what);
+/// What that option says; none without it. Throws InputError.
+std::optional<ShardNumber> shard_of(const std::string& text);
+/// Is the study at this place one of them?
+bool is_in_shard(std::size_t place, const std::optional<ShardNumber>& shard);
 void add_json(CLI::App& app, bool& json);
 void add_quiet(CLI::App& app, bool& quiet, const std::string& description = "No progress");
 

@@ -1,5 +1,7 @@
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -10,13 +12,18 @@
 #include <fmt/format.h>
 
 #include "analysis/validation/study_warnings.hpp"
+#include "bench/campaign/calibration_runs.hpp"
 #include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/campaign_steps.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/parts/launcher.hpp"
+#include "bench/parts/loop_ranges.hpp"
+#include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
@@ -29,20 +36,21 @@ namespace {
 struct RunArguments {
   std::string study;
   std::string output;
+  std::string shard, range;  ///< which part is run; both empty: the whole campaign
   RunOptions run;
   std::vector<std::string> method_files;
   bool quiet = false;
 };
 
 /// The end of a message about a run that was not finished; empty when no shard is left to go on with.
-std::string how_to_go_on(const RunArguments& options, std::string command_line) {
-  if (!has_shards(options.output))
+std::string how_to_go_on(const RunArguments& options, const std::filesystem::path& shards,
+                         std::string command_line) {
+  if (shards_in(shards).empty() && shards_in(calibration_shard_folder(shards)).empty())
     return "";
   constexpr std::string_view kDiscard = " --discard";
   if (options.run.leftovers == Leftovers::discard)
     command_line.erase(command_line.rfind(kDiscard), kDiscard.size());
-  return fmt::format("\nWhat is done is kept in {}. To go on with it:\n  {}{}",
-                     shard_folder_of(options.output).string(), command_line,
+  return fmt::format("\nWhat is done is kept in {}. To go on with it:\n  {}{}", shards.string(), command_line,
                      options.run.leftovers == Leftovers::resume ? "" : " --resume");
 }
 
@@ -56,37 +64,94 @@ void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
     progress.note(fmt::format("warning: {}: {}", warning.key, warning.found));
 }
 
+void run_whole(const RunArguments& options, const Study& study, const RunOptions& run_options,
+               CampaignHooks hooks, const std::string& command_line) {
+  StudyFindings findings;
+  hooks.on_end = [&](Campaign& campaign) {
+    note_command(campaign, command_line);
+    findings = findings_of(campaign);
+    write_archive(options.output, campaign, findings);
+  };
+  const Campaign campaign = run_campaign(study, run_options, hooks, shard_folder_of(options.output));
+  remove_shards(options.output);
+  if (!options.quiet)
+    print_result(summary_text(campaign, findings, options.output));
+}
+
+/// The part of the campaign that --shard and --range name.
+PartFolder part_of(const RunArguments& options, const Study& study, const RunOptions& run_options) {
+  PartFolder part;
+  part.study = study_to_run(study, run_options);
+  part.options = run_options;
+  const std::int64_t experiments = experiment_count(part.study, run_options);
+  part.options.experiments = experiments;
+  part.loops = experiments + calibration_loops(part.study);
+  part.part.loops = {{0, part.loops}};
+  if (!options.range.empty())
+    part.part.loops = parse_loop_ranges(options.range, part.loops);
+  std::optional<ShardNumber> shard;
+  if (!options.shard.empty()) {
+    shard = parse_shard(options.shard, process_environment);
+    part.part.loops = piece_of(part.part.loops, shard->number, shard->of);
+    if (options.range.empty())
+      part.part.shard = shard;
+  }
+  part.path = parts_folder_of(options.output) / part_name(options.range, shard);
+  return part;
+}
+
+void run_one_part(const RunArguments& options, const PartFolder& part, const CampaignHooks& hooks,
+                  Progress& progress) {
+  if (part.part.shard && !part.part.shard->launcher.empty())
+    progress.note(part.part.shard->launcher);
+  make_output_folder(part.path.parent_path(), "parts");
+  const std::int64_t run = run_part(part, hooks);
+  if (!options.quiet)
+    print_result(fmt::format("{}: {} of the {} loops of {} ({}), {} of them run now\n", part.path.string(),
+                             size_of(part.part.loops), part.loops, part.study.name,
+                             part.part.loops.empty() ? "none" : to_string(part.part.loops), run));
+}
+
 ExitCode run(const RunArguments& options, const std::string& command_line) {
   const Study study = find_study(options.study);
   RunOptions run_options = options.run;
   run_options.methods =
       with_programs(options.run.methods, study.methods, take_method_files(options.method_files));
   require_output_archive(options.output, "archive");
+  std::optional<PartFolder> part;
+  if (!options.shard.empty() || !options.range.empty())
+    part = part_of(options, study, run_options);
 
   Progress progress(options.quiet);
   CampaignHooks hooks = hooks_of(progress);
   hooks.on_basis = [&progress](const Study& of_run, const BasisCase& basis) {
     warn_of(of_run, basis, progress);
   };
+  const auto go_on = [&] {
+    return how_to_go_on(options, part ? part->path : shard_folder_of(options.output), command_line);
+  };
   try {
-    StudyFindings findings;
-    hooks.on_end = [&](Campaign& campaign) {
-      note_command(campaign, command_line);
-      findings = findings_of(campaign);
-      write_archive(options.output, campaign, findings);
-    };
-    const Campaign campaign = run_campaign(study, run_options, hooks, shard_folder_of(options.output));
-    remove_shards(options.output);
-    if (!options.quiet)
-      print_result(summary_text(campaign, findings, options.output));
+    if (part)
+      run_one_part(options, *part, hooks, progress);
+    else
+      run_whole(options, study, run_options, hooks, command_line);
   } catch (const InputError&) {
     throw;
   } catch (const Interrupted& error) {
-    throw std::runtime_error(progress.explain(error) + how_to_go_on(options, command_line));
+    throw std::runtime_error(progress.explain(error) + go_on());
   } catch (const std::exception& error) {
-    throw std::runtime_error(what_happened(error) + how_to_go_on(options, command_line));
+    throw std::runtime_error(what_happened(error) + go_on());
   }
   return ExitCode::done;
+}
+
+void add_part(CLI::App& app, RunArguments& options) {
+  app.add_option("--shard", options.shard,
+                 "Run part I of N, given as I/N, into the folder OUTPUT.parts, for `merge`; auto: as srun, a "
+                 "Slurm array, mpirun or an indexed Kubernetes job says, the last with auto/N");
+  app.add_option("--range", options.range,
+                 "Run the loops A to B-1 as a part, given as A:B, or several, A:B,C:D; with --shard a part "
+                 "of these");
 }
 
 void add_parallel(CLI::App& app, Parallel& parallel) {
@@ -106,10 +171,8 @@ void add_audit(CLI::App& app, double& share) {
 }
 
 void add_store(CLI::App& app, StorePolicy& store) {
-  add_choice<StorePolicy>(
-      app, "--store", store,
-      {{"none", StorePolicy::none}, {"flagged", StorePolicy::flagged}, {"all", StorePolicy::all}},
-      "Keep the loop data of no experiment, of those with a wrong verdict, of all");
+  add_choice<StorePolicy>(app, "--store", store, store_policies(),
+                          "Keep the loop data of no experiment, of those with a wrong verdict, of all");
 }
 
 /// `run` must live until the command line is read.
@@ -148,6 +211,7 @@ void add_run(CommandSet& commands) {
   add_store(app, options->run.store);
   app.add_flag("--allow-unhealthy-basis", options->run.allow_unhealthy_basis,
                "Run although the basis case fails its self-check");
+  add_part(app, *options);
   add_interruption(app, options->run);
   add_quiet(app, options->quiet, "No progress and no summary");
 }

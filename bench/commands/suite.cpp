@@ -1,5 +1,7 @@
+#include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +16,7 @@
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/figure_format.hpp"
@@ -28,6 +31,7 @@ struct SuiteArguments {
   std::string suite;
   std::string output;
   SuiteChoice choice;
+  std::string shard;  ///< which of the cells are run; empty: all of them, and the leaderboard
   RunOptions run;
   std::vector<std::string> method_files;
   bool json = false;
@@ -53,6 +57,8 @@ ExitCode run_suite_command(const SuiteArguments& options, const std::string& com
       with_programs(options.run.methods, suite.methods, take_method_files(options.method_files));
   run.run.methods = known_methods(run.run.methods.empty() ? suite.methods : run.run.methods,
                                   run.run.methods.empty() ? "suite.methods" : "--methods");
+  const std::optional<ShardNumber> shard = shard_of(options.shard);
+  run.is_wanted = [&](std::size_t cell) { return is_in_shard(cell, shard); };
   make_output_folder(run.folder, "archives");
 
   Progress progress(options.quiet);
@@ -75,6 +81,11 @@ ExitCode run_suite_command(const SuiteArguments& options, const std::string& com
       progress.warn(fmt::format("{}.{}: {}", suite.plants[cell.plant].name, suite.families[cell.family].name,
                                 cell.trouble));
 
+  if (shard) {
+    print_result(fmt::format("{}: {} of {} cells, part {} of {}\n", options.output, cells.size(),
+                             suite.cells.size(), shard->number, shard->of));
+    return ExitCode::done;
+  }
   const Leaderboard board = make_leaderboard(suite, run.run.methods, mpmbench_version(), std::move(cells));
   const std::string json = leaderboard_json(board);
   write_text(run.folder / "leaderboard.json", json);
@@ -102,6 +113,7 @@ void add_suite(CommandSet& commands) {
       ->delimiter(',');
   app.add_option("--families", options->choice.families, "These families only, separated by commas")
       ->delimiter(',');
+  add_shard_of_studies(app, options->shard, "cells");
   add_experiments(app, options->run.experiments, "Run the first N experiments of each cell");
   add_methods_option(app, options->run.methods,
                      "Methods that assess the loops, separated by commas, or all; in place of the suite's");

@@ -1,19 +1,24 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
-#include "results/archive/archive.hpp"
+#include "bench/parts/launcher.hpp"
+#include "bench/shards/shard_folder.hpp"
+#include "plants/error.hpp"
 #include "results/summary/sweep_table.hpp"
 #include "scenarios/sweep_file.hpp"
 
@@ -25,6 +30,7 @@ namespace fs = std::filesystem;
 struct SweepArguments {
   std::string sweep;
   std::string output;
+  std::string shard;  ///< which of the studies are run; empty: all of them, and the table
   RunOptions run;
   bool quiet = false;
 };
@@ -33,33 +39,57 @@ std::string label(const SweepVariant& variant) {
   return variant.choice.empty() ? "as shipped" : fmt::format("{} = {}", variant.choice, variant.value);
 }
 
-/// Runs a study of the sweep; `name` says which one.
-Campaign run_variant(const SweepVariant& variant, const std::string& name, const RunOptions& options,
-                     Progress& progress) {
-  progress.note(name);
+/// What its archive says where it is there and of this study and program, and otherwise the study, which is
+/// run and kept. A study that cannot be run has the reason in its row.
+SweepRow row_of(const SweepVariant& variant, const fs::path& archive, const RunOptions& options,
+                const CampaignHooks& hooks, const std::string& command_line) {
+  SweepRow row{
+      .choice = variant.choice, .value = variant.value, .healthy = true, .trouble = "", .findings = {}};
   try {
-    return run_campaign(variant.study, options, hooks_of(progress));
-  } catch (const Interrupted& error) {
-    throw std::runtime_error(fmt::format("{}, in {}", progress.explain(error), name));
+    std::optional<Campaign> campaign = kept_campaign(archive, variant.study, options);
+    if (!campaign)
+      campaign = run_and_keep(archive, variant.study, options, hooks, command_line);
+    remove_shards(archive);  // also of a run that was killed between archive and clean-up
+    row.healthy = campaign->basis.healthy;
+    row.findings = findings_of(*campaign).rows;
+  } catch (const InputError& error) {
+    remove_shards(archive);
+    std::error_code no_file;
+    fs::remove(archive, no_file);  // of another study: the table says that there is none
+    row.trouble = error.what();
   }
+  return row;
 }
 
 /// Runs every study and writes its archive, one after the other, and at the end the table of all of them
-/// (`sweep.md`, and on stdout).
+/// (`sweep.md`, and on stdout). A part of the studies leaves its archives only, which another call finds.
 ExitCode run_sweep(const SweepArguments& options, const std::string& command_line) {
   const Sweep sweep = find_sweep(options.sweep);
+  const std::optional<ShardNumber> shard = shard_of(options.shard);
   const fs::path folder = options.output;
   make_output_folder(folder, "archives");
   Progress progress(options.quiet);
   std::vector<SweepRow> rows;
   for (std::size_t i = 0; i < sweep.variants.size(); ++i) {
+    if (!is_in_shard(i, shard))
+      continue;
     const SweepVariant& variant = sweep.variants[i];
     const std::string name = fmt::format("study {} of {}: {}", i + 1, sweep.variants.size(), label(variant));
-    Campaign campaign = run_variant(variant, name, options.run, progress);
-    note_command(campaign, command_line);
-    StudyFindings findings = findings_of(campaign);
-    write_archive(folder / fmt::format("{:02}.h5", i), campaign, findings);
-    rows.push_back({variant.choice, variant.value, campaign.basis.healthy, std::move(findings.rows)});
+    progress.note(name);
+    try {
+      rows.push_back(row_of(variant, folder / fmt::format("{:02}.h5", i), options.run, hooks_of(progress),
+                            command_line));
+    } catch (const Interrupted& error) {
+      throw std::runtime_error(fmt::format("{}, in {}\nWhat is done is kept in {}. To go on with it:\n  {}",
+                                           progress.explain(error), name, options.output, command_line));
+    }
+    if (!rows.back().trouble.empty())
+      progress.warn(fmt::format("{}: {}", name, rows.back().trouble));
+  }
+  if (shard) {
+    print_result(fmt::format("{}: {} of {} studies, part {} of {}\n", options.output, rows.size(),
+                             sweep.variants.size(), shard->number, shard->of));
+    return ExitCode::done;
   }
   const std::string table = sweep_table(rows);
   write_text(folder / "sweep.md", table);
@@ -77,8 +107,11 @@ void add_sweep(CommandSet& commands) {
   CLI::App& app = commands.add("sweep", "Run a study once for each value of its open choices, and tabulate",
                                [options, &commands] { return run_sweep(*options, commands.command_line()); });
   add_path(app, "SWEEP", options->sweep, "Sweep file, or name of a shipped sweep")->required();
-  add_path(app, "-o,--output", options->output, "Folder for the archives and the table")->required();
+  add_path(app, "-o,--output", options->output,
+           "Folder for the archives and the table; what it has of this sweep is kept")
+      ->required();
   add_experiments(app, options->run.experiments, "Run the first N experiments of each study");
+  add_shard_of_studies(app, options->shard, "studies");
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
   add_quiet(app, options->quiet);

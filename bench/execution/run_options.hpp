@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "analysis/experiment/experiment.hpp"
 
@@ -12,6 +13,12 @@ namespace mpm {
 /// experiments take milliseconds; processes for the others, because Ipopt with sequential MUMPS is not
 /// thread-safe.
 enum class Parallel { by_solver, threads, processes };
+
+/// The names of the choices of which loops are kept.
+const std::vector<std::pair<std::string, StorePolicy>>& store_policies();
+const std::string& name_of(StorePolicy store);
+/// The reverse. Throws InputError for another name.
+StorePolicy store_policy(const std::string& name);
 
 /// What becomes of the shards of an interrupted run.
 enum class Leftovers { refuse, resume, discard };

@@ -81,7 +81,7 @@ void ShardFolder::lock() {
 }
 
 std::vector<fs::path> ShardFolder::shards() const {
-  return files_in(path_, kExtension);
+  return shards_in(path_);
 }
 
 fs::path ShardFolder::next() {
@@ -92,6 +92,10 @@ void ShardFolder::clear() {
   for (const char* extension : {kExtension, ".tmp"})
     for (const fs::path& file : files_in(path_, extension))
       fs::remove(file);
+}
+
+std::vector<fs::path> shards_in(const fs::path& folder) {
+  return files_in(folder, kExtension);
 }
 
 fs::path shard_folder_of(const fs::path& output) {
@@ -110,7 +114,7 @@ void remove_shards(const fs::path& output) {
 }
 
 bool has_shards(const fs::path& output) {
-  return !files_in(shard_folder_of(output), kExtension).empty();
+  return !shards_in(shard_folder_of(output)).empty();
 }
 
 }  // namespace mpm

@@ -35,6 +35,9 @@ class ShardFolder {
   int last_ = 0;  ///< number of the last shard
 };
 
+/// The shards in a folder, whole or not, in the order in which they were written; none when it is not there.
+std::vector<std::filesystem::path> shards_in(const std::filesystem::path& folder);
+
 /// Where the shards of an output lie: beside it.
 std::filesystem::path shard_folder_of(const std::filesystem::path& output);
 

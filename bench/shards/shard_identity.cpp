@@ -38,18 +38,6 @@ std::string study_text(const Study& study) {
                      outside);
 }
 
-std::string_view name_of(StorePolicy store) {
-  switch (store) {
-    case StorePolicy::none:
-      return "none";
-    case StorePolicy::flagged:
-      return "flagged";
-    case StorePolicy::all:
-      return "all";
-  }
-  return "";
-}
-
 }  // namespace
 
 ShardIdentity shard_identity(const Study& study, const RunOptions& options) {
@@ -59,7 +47,7 @@ ShardIdentity shard_identity(const Study& study, const RunOptions& options) {
           {"methods", methods_text(study)},
           {"solver", options.solver},
           {"audit", fmt::format("{}", audited_share(study, options))},
-          {"store", std::string(name_of(options.store))}};
+          {"store", name_of(options.store)}};
 }
 
 void require_same(const ShardIdentity& found, const ShardIdentity& expected, const std::string& found_in) {

@@ -1,68 +1,40 @@
 #include "bench/shards/shard_store.hpp"
 
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
-#include "results/files/archive_error.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+constexpr std::size_t kPackedBytes = std::size_t{4} << 20;  // whoever reads a shard has all of it in memory
+
+std::uintmax_t bytes_of(const std::vector<std::filesystem::path>& files) {
+  std::uintmax_t bytes = 0;
+  for (const std::filesystem::path& file : files)
+    bytes += std::filesystem::file_size(file);
+  return bytes;
+}
 
 }  // namespace
 
 ShardStore::ShardStore(const std::filesystem::path& folder, const RunOptions& options, const Study& study,
                        std::int64_t count, const Warn& warn)
-    : folder_(folder),
-      identity_(shard_identity(study, options)),
-      format_(study),
-      interval_(options.shard_interval),
-      done_(static_cast<std::size_t>(count)) {
+    : folder_(folder), set_(options, study, count), interval_(options.shard_interval) {
   if (options.leftovers == Leftovers::discard)
     folder_.clear();
   const std::size_t shards = folder_.shards().size();
   if (options.leftovers == Leftovers::refuse && shards > 0)
-    throw InputError(folder_.path().string(), fmt::format("{} shards of an interrupted run", shards),
+    throw InputError(folder_.path().string(), fmt::format("{} shards of an earlier run", shards),
                      "--resume to go on with it, or --discard to delete what it has done");
-  take_stock(warn);
-}
-
-void ShardStore::take_stock(const Warn& warn) {
-  for (const std::filesystem::path& path : folder_.shards()) {
-    const std::optional<Shard> shard = read_shard(path, identity_, format_);
-    if (!shard) {
-      if (warn)
-        warn(fmt::format("{}: cut off or damaged, its checksum does not fit; its experiments are run again",
-                         path.string()));
-      continue;
-    }
-    for (const ExperimentOutcome& outcome : shard->outcomes) {
-      const auto index = static_cast<std::size_t>(outcome.record.draw.index);
-      if (index >= done_.size())
-        throw InputError("--experiments", fmt::format("{}", done_.size()),
-                         fmt::format("{} or more, since {} holds experiment {}; or --discard to start anew",
-                                     index + 1, path.string(), index));
-      done_[index] = true;
-    }
-    shards_.push_back(path);
-    earlier_seconds_ += shard->seconds;
-  }
-}
-
-std::vector<std::int64_t> ShardStore::missing() const {
-  std::vector<std::int64_t> indices;
-  for (std::size_t i = 0; i < done_.size(); ++i)
-    if (!done_[i])
-      indices.push_back(static_cast<std::int64_t>(i));
-  return indices;
+  set_.take_stock(folder_.shards(), warn);
 }
 
 void ShardStore::add(const ExperimentOutcome& outcome) {
-  waiting_.add(format_.to_bytes(outcome));
+  waiting_.add(set_.format().to_bytes(outcome));
   if (Clock::now() - written_ >= interval_ || waiting_.size() >= kMostBytes)
     flush();
 }
@@ -72,24 +44,33 @@ void ShardStore::flush() {
     return;
   const std::filesystem::path path = folder_.next();
   const Clock::time_point now = Clock::now();
-  waiting_.write(path, identity_, std::chrono::duration<double>(now - written_).count());
-  shards_.push_back(path);
+  const double seconds = std::chrono::duration<double>(now - written_).count();
+  waiting_.write(path, set_.identity(), seconds);
+  set_.add_written(path, seconds);
   written_ = now;
 }
 
-void ShardStore::read(const std::function<void(ExperimentOutcome)>& take) const {
-  std::vector<bool> taken(done_.size());
-  for (const std::filesystem::path& path : shards_) {
-    std::optional<Shard> shard = read_shard(path, identity_, format_);
-    if (!shard)
-      throw ArchiveError(fmt::format("{}: cut off or damaged since it was written", path.string()));
-    for (ExperimentOutcome& outcome : shard->outcomes) {
-      const auto index = static_cast<std::size_t>(outcome.record.draw.index);
-      if (!taken[index])
-        take(std::move(outcome));
-      taken[index] = true;
-    }
-  }
+void ShardStore::compact() {
+  const std::vector<std::filesystem::path> before = folder_.shards();
+  if (before.size() <= 1 + bytes_of(before) / kPackedBytes)
+    return;
+  ShardBytes packed;
+  std::vector<std::filesystem::path> after;
+  double seconds = set_.seconds();  // all of it in the first one
+  const auto write = [&] {
+    after.push_back(folder_.next());
+    packed.write(after.back(), set_.identity(), std::exchange(seconds, 0.0));
+  };
+  set_.read([&](const ExperimentOutcome& outcome) {
+    packed.add(set_.format().to_bytes(outcome));
+    if (packed.size() >= kPackedBytes)
+      write();
+  });
+  if (!packed.empty())
+    write();
+  set_.replace_shards(std::move(after));
+  for (const std::filesystem::path& shard : before)
+    std::filesystem::remove(shard);
 }
 
 }  // namespace mpm

@@ -3,13 +3,11 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <string>
 #include <vector>
 
 #include "bench/execution/run_options.hpp"
-#include "bench/shards/shard.hpp"
 #include "bench/shards/shard_folder.hpp"
+#include "bench/shards/shard_set.hpp"
 
 namespace mpm {
 
@@ -17,7 +15,7 @@ namespace mpm {
 /// written when 64 MiB are waiting, so that stored loops do not fill the memory.
 class ShardStore {
  public:
-  using Warn = std::function<void(const std::string&)>;
+  using Warn = ShardSet::Warn;
 
   /// Opens the folder and reads the shards in it; `options` say what becomes of them, and how often one more
   /// is written. `study` must outlive it. `count` is the number of experiments of the campaign. A damaged
@@ -29,30 +27,29 @@ class ShardStore {
              std::int64_t count, const Warn& warn);
 
   /// The experiments that no shard has, in the order of their index.
-  std::vector<std::int64_t> missing() const;
-  /// Wall-clock time that the experiments of the earlier runs took, in s.
-  double earlier_seconds() const { return earlier_seconds_; }
+  std::vector<std::int64_t> missing() const { return set_.missing(); }
+  /// Wall-clock time that the experiments in the shards took, in s: those of earlier runs until one is added.
+  double seconds() const { return set_.seconds(); }
 
   /// Takes an outcome, and writes a shard when it is time. Throws ArchiveError when that fails.
   void add(const ExperimentOutcome& outcome);
   /// Writes what is still waiting.
   void flush();
 
+  /// Puts what is in the shards, which were all flushed, into as few of them as there can be: many small
+  /// files are a burden where they are kept. Damaged ones are removed. Killed in the middle it leaves
+  /// experiments in two shards. Throws ArchiveError.
+  void compact();
+
   /// Gives each outcome once, shard by shard. Throws ArchiveError when a shard can no longer be read.
-  void read(const std::function<void(ExperimentOutcome)>& take) const;
+  void read(const ShardSet::Take& take) const { set_.read(take); }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void take_stock(const Warn& warn);
-
   ShardFolder folder_;
-  ShardIdentity identity_;
-  OutcomeBytes format_;
+  ShardSet set_;
   std::chrono::duration<double> interval_;
-  std::vector<bool> done_;                     ///< by index
-  std::vector<std::filesystem::path> shards_;  ///< that are whole
-  double earlier_seconds_ = 0.0;
   ShardBytes waiting_;
   Clock::time_point written_ = Clock::now();
 };

@@ -1,5 +1,6 @@
 #include "results/summary/sweep_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,11 +11,13 @@
 namespace mpm {
 namespace {
 
-/// The headline findings of the first study: later ones have the same.
+/// The headline findings of the first study that was run: later ones have the same.
 std::vector<Finding> columns_of(const std::vector<SweepRow>& rows) {
   std::vector<Finding> columns;
-  if (!rows.empty())
-    for (const Finding& finding : rows.front().findings)
+  const auto first =
+      std::find_if(rows.begin(), rows.end(), [](const SweepRow& row) { return row.trouble.empty(); });
+  if (first != rows.end())
+    for (const Finding& finding : first->findings)
       if (finding.prominence == Prominence::headline)
         columns.push_back(finding);
   return columns;
@@ -34,6 +37,17 @@ std::string cell(const Finding& column, const std::vector<Finding>& findings) {
   if (column.is_share())
     return fmt::format("{:.1f} ({:.0f} to {:.0f})", 100 * found->value, 100 * lower, 100 * upper);
   return fmt::format("{:.2f} ({:.2f} to {:.2f})", found->value, lower, upper);
+}
+
+/// Why studies could not be run.
+std::string troubles(const std::vector<SweepRow>& rows) {
+  std::string text;
+  for (const SweepRow& row : rows)
+    if (!row.trouble.empty())
+      text += fmt::format("\nnot run: {}: {}\n",
+                          row.choice.empty() ? "as shipped" : fmt::format("{} = {}", row.choice, row.value),
+                          row.trouble);
+  return text;
 }
 
 }  // namespace
@@ -57,7 +71,7 @@ std::string sweep_table(const std::vector<SweepRow>& rows) {
     text += '\n';
     last_choice = &row.choice;
   }
-  return text;
+  return text + troubles(rows);
 }
 
 }  // namespace mpm

@@ -57,12 +57,28 @@ def main(program, chapter6):
         assert sorted(p.name for p in (folder / "swept").iterdir()) == ["00.h5", "01.h5", "sweep.md"]
         assert "bit-identical" in run("replay", folder / "swept" / "01.h5", 1).stdout
 
+        # In parts: each leaves its archives, and the sweep without --shard finds them. A study that cannot be run (its
+        # basis case does not reach its end) costs its row, not the table.
+        with open(sweep, "a") as file:
+            file.write('[[variant]]\nchoice = "noise"\nvalue = "wild"\nset.simulation.noise_standard_deviation = 1e6\n')
+        parts = folder / "parts"
+        said = run("sweep", sweep, "-o", parts, "--experiments", 2, "--quiet", "--shard", "2/2").stdout
+        assert "1 of 3 studies, part 2 of 2" in said and [p.name for p in parts.iterdir()] == ["01.h5"], said
+        kept = (parts / "01.h5").read_bytes()
+        result = run("sweep", sweep, "-o", parts, "--experiments", 2, "--quiet")
+        assert result.stdout.splitlines()[1:5] == table.splitlines()[1:5] and "not run: noise = wild" in result.stdout, (
+            result.stdout, table)
+        assert "study 3 of 3: noise = wild" in result.stderr, result.stderr
+        assert (parts / "01.h5").read_bytes() == kept
+        assert sorted(p.name for p in parts.iterdir()) == ["00.h5", "01.h5", "sweep.md"]
+
         # Signals end long commands in order; what was finished stays, and nothing is half-written.
         error = stopped(signal.SIGINT, program, "sweep", sweep, "-o", folder / "half", "--experiments", 4000)
-        assert re.search(r"SIGINT: stopped when \d+ of 4000 experiments were done, in study 1 of 2: as shipped$", error,
+        assert re.search(r"SIGINT: stopped when \d+ of 4000 experiments were done, in study 1 of 3: as shipped$", error,
                          re.MULTILINE), error
-        assert "study 1 of 2: as shipped\n" in error, error
-        assert not list((folder / "half").iterdir())
+        assert "study 1 of 3: as shipped\n" in error, error
+        assert error.splitlines()[-1].startswith(f"  mpmbench sweep {sweep}"), error
+        assert not list((folder / "half").glob("*.h5"))
         error = stopped(signal.SIGTERM, program, "compare", archive, "-o", folder / "b.h5", "--jobs", 1)
         assert re.search(r"SIGTERM: stopped when [1-5] of \d experiments were done$", error, re.MULTILINE), error
         assert "bit-identical" in run("replay", archive, 3).stdout
@@ -81,7 +97,7 @@ def main(program, chapter6):
         run("summary", folder / "none.h5", code=2)
         run("run", "chapter6", "-o", folder / "none" / "b.h5", code=3)
         left = sorted(p.name for p in folder.iterdir())
-        assert left == ["a.h5", "broken.toml", "half", "sweep.toml", "swept", "weak.toml"], left
+        assert left == ["a.h5", "broken.toml", "half", "parts", "sweep.toml", "swept", "weak.toml"], left
 
 
 if __name__ == "__main__":

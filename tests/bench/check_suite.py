@@ -189,6 +189,19 @@ def check_program(tiny, source):
     tiny.file.write_text(SUITE)
 
 
+def check_parts(tiny, shown):
+    """Parts leave archives only; the suite without --shard finds them, and shows the leaderboard of one go."""
+    for number in 1, 2:
+        said = tiny.run("parts", "--jobs", 1, "--quiet", "--shard", f"{number}/2")
+        assert f"2 of 4 cells, part {number} of 2" in said, said
+    before = tiny.archives("parts")
+    assert sorted(before) == sorted(f"{cell}.h5" for cell in CELLS)
+    assert not (tiny.folder / "parts" / "leaderboard.json").exists()
+    assert tiny.run("parts", "--jobs", 2, "--quiet", "--json") == shown
+    assert tiny.archives("parts") == before
+    assert "--shard" in tiny.run("refused", "--shard", "3/2", code=2)
+
+
 def check_program_method(tiny):
     """An archive is kept with the same content of a method's program only."""
     program, methods, archive = (tiny.folder / name for name in ("own.py", "own.toml", "own/column.classic.h5"))
@@ -220,6 +233,7 @@ def main():
         check_texts(tiny)
         check_kept(tiny, shown)
         check_interrupted(tiny, shown)
+        check_parts(tiny, shown)
         check_program(tiny, source)
         check_program_method(tiny)
         check_refusals(tiny)

@@ -6,8 +6,11 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "analysis/methods/method_table.hpp"
+#include "bench/campaign/outcome_collection.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "bench/outcome/outcome_bytes.hpp"
+#include "bench/shards/shard_set.hpp"
 #include "bench/shards/shard_store.hpp"
 #include "plants/error.hpp"
 #include "results/archive/record_bytes.hpp"
@@ -156,7 +159,7 @@ TEST_CASE("shard store: what an earlier run has left is not missing, and is give
   leave_behind(folder / "s", {4, 1});
   ShardStore store = store_of(folder / "s", Leftovers::resume);
   CHECK(store.missing() == Indices{0, 2, 3});
-  CHECK(store.earlier_seconds() > 0.0);
+  CHECK(store.seconds() > 0.0);
   for (const std::int64_t index : {3, 0, 1, 2})  // 1 a second time
     store.add(outcome_of(index));
   store.flush();
@@ -200,6 +203,70 @@ TEST_CASE("shard store: shards are refused unless told otherwise, and stay until
   CHECK(store_of(folder / "s", Leftovers::discard).missing().size() == 5);
   CHECK_FALSE(fs::exists(folder / "s"));  // nothing was added
   CHECK(store_of(folder / "s", Leftovers::refuse).missing().size() == 5);
+}
+
+TEST_CASE("shard store: packed, the same experiments and seconds lie in one shard") {
+  const TemporaryFolder folder;
+  leave_behind(folder / "s", {4, 1, 3});
+  make_file(folder / "s" / "00000002.shard", "damaged");
+  double seconds = 0.0;
+  {
+    ShardStore store = store_of(folder / "s", Leftovers::resume);
+    store.add(outcome_of(1));
+    store.flush();
+    seconds = store.seconds();
+    store.compact();
+    CHECK(indices_in(store) == Indices{4, 3, 1});
+    CHECK(shards_in(folder / "s") == std::vector<fs::path>{folder / "s" / "00000005.shard"});
+    store.compact();  // nothing to do
+    CHECK(shards_in(folder / "s").size() == 1);
+  }
+  const ShardStore again = store_of(folder / "s", Leftovers::resume);
+  CHECK(again.missing() == Indices{0, 2});
+  CHECK(again.seconds() == seconds);
+  CHECK(indices_in(again) == Indices{4, 3, 1});
+}
+
+/// One shard more in a folder, of this outcome.
+void leave_another(const fs::path& folder, const ExperimentOutcome& outcome) {
+  ShardStore store = store_of(folder, Leftovers::resume);
+  store.add(outcome);
+  store.flush();
+}
+
+/// All outcomes of these folders as a campaign of five experiments.
+Campaign merged(const std::vector<fs::path>& folders) {
+  ShardSet set(RunOptions(), study(), 5);
+  for (const fs::path& one : folders)
+    set.take_stock(shards_in(one), {});
+  OutcomeCollection outcomes(5);
+  const RecordBytes records(study(), assessment_forms(study(), study_methods(study())));
+  set.read([&](ExperimentOutcome outcome) { outcomes.add(std::move(outcome)); },
+           [&](const ExperimentOutcome& outcome) { return outcomes.differences(outcome, records); });
+  Campaign campaign;
+  outcomes.move_into(campaign);
+  return campaign;
+}
+
+TEST_CASE("shard set: an experiment in two shards counts once, and is refused when they differ") {
+  const TemporaryFolder folder;
+  leave_behind(folder / "one", {4, 1});
+  leave_behind(folder / "two", {1, 0});
+  const Campaign campaign = merged({folder / "one", folder / "two"});
+  CHECK(campaign.records[1].message == "experiment 1");
+  CHECK(campaign.audit.size() == 3);  // each audit has a step of experiment 0 too
+
+  ExperimentOutcome other = outcome_of(1);
+  other.audited.back().ipopt_kkt_residual = 1e-9;
+  leave_another(folder / "audit", other);
+  CHECK_THROWS_WITH(merged({folder / "one", folder / "audit"}),
+                    Contains("experiment 1: audit of step 0: ipopt_kkt_residual"));
+  other = outcome_of(1);
+  other.record.solver.iterations = 7;
+  leave_another(folder / "record", other);
+  CHECK_THROWS_WITH(merged({folder / "one", folder / "two", folder / "record"}),
+                    Contains((folder / "record" / "00000001.shard").string() + ": experiment 1") &&
+                        Contains("another solver_iterations than in " + (folder / "one").string()));
 }
 
 TEST_CASE("shard store: a folder that cannot be made is an error, and files of others stay") {

@@ -17,7 +17,7 @@ FOLDERS = {
     "results": ["files", "archive", "records", "blind", "text", "plot", "summary", "gates", "report", "assess",
                 "reproduction", "suite"],
     "bench": ["version.hpp", "files", "outcome", "byte_stream.hpp", "record_bytes.hpp", "outcome_bytes.hpp", "execution",
-              "shards", "campaign", "comparison_runner.hpp", "console", "commands", "perf"],
+              "shards", "parts", "campaign", "comparison_runner.hpp", "console", "commands", "perf"],
 }
 
 # At the root: what .gitignore names and what tools leave there.

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/campaign/campaign_runner.hpp"
+#include "bench/parts/part_folder.hpp"
+#include "bench/shards/shard_set.hpp"
+
+namespace mpm {
+
+/// The pieces into which a campaign was split that are not finished.
+struct MissingPieces {
+  std::int64_t of = 1;                ///< pieces
+  std::vector<std::int64_t> numbers;  ///< in ascending order, from 1 on
+
+  /// As job arrays are asked for: "3,7-9".
+  std::string array() const;
+};
+
+/// The parts of one campaign, put together again.
+class PartMerge {
+ public:
+  /// Looks at the shards of all parts in these folders. A damaged shard is passed over with a warning, what
+  /// it holds is missing. Throws InputError for a folder without parts, and for parts that were not run by
+  /// this program, or not with the study, seed, methods, solver, audit share and store of the first one;
+  /// the number of experiments may differ, the largest one counts.
+  PartMerge(const std::vector<std::string>& folders, const ShardSet::Warn& warn);
+
+  const Study& study() const { return first_.study; }
+  std::int64_t experiments() const { return *first_.options.experiments; }
+  /// Of the whole campaign.
+  std::int64_t loops() const { return first_.loops; }
+  std::size_t part_count() const { return part_count_; }
+
+  /// The loops that no part has.
+  LoopRanges missing() const;
+  /// The same in pieces, as long as some part is a piece of the whole campaign, and all of these are of
+  /// equally many.
+  std::optional<MissingPieces> missing_pieces() const;
+
+  /// The campaign: basis case, records and audit are those of run_campaign() in one go, bit for bit. Nothing
+  /// may be missing. `hooks` see the basis case, and may stop it.
+  ///
+  /// Throws InputError when two parts have the same experiment with another result, UnhealthyBasis,
+  /// Interrupted and ArchiveError as run_campaign().
+  Campaign merge(const CampaignHooks& hooks) const;
+
+ private:
+  void take_part(const std::filesystem::path& folder);
+
+  PartFolder first_;  ///< with the largest number of experiments
+  std::size_t part_count_ = 0;
+  std::vector<PartFolder> pieces_;
+  std::optional<ShardSet> experiments_;
+  Study calibration_study_;
+  std::optional<ShardSet> calibration_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,116 @@
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/campaign/part_merge.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/commands/common_options.hpp"
+#include "bench/console/output.hpp"
+#include "bench/console/progress.hpp"
+#include "bench/files/output_file.hpp"
+#include "bench/parts/loop_ranges.hpp"
+#include "bench/parts/part_folder.hpp"
+#include "results/archive/archive.hpp"
+#include "results/summary/summary.hpp"
+
+namespace mpm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MergeArguments {
+  std::string output;
+  std::vector<std::string> parts;  ///< empty: those beside the output
+  std::vector<std::string> method_files;
+  bool missing = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+std::string missing_text(const PartMerge& parts) {
+  const LoopRanges missing = parts.missing();
+  std::string text = fmt::format("{}, seed {}: {} of {} loops in {} part{}\n", parts.study().name,
+                                 parts.study().seed, parts.loops() - size_of(missing), parts.loops(),
+                                 parts.part_count(), parts.part_count() == 1 ? "" : "s");
+  if (missing.empty())
+    return text;
+  text += fmt::format("missing: --range {}\n", to_string(missing));
+  if (const std::optional<MissingPieces> pieces = parts.missing_pieces())
+    text += fmt::format("missing of {} parts: --array={}\n", pieces->of, pieces->array());
+  return text;
+}
+
+std::string missing_json(const PartMerge& parts) {
+  const LoopRanges missing = parts.missing();
+  Json ranges = Json::array();
+  for (const LoopRange& range : missing)
+    ranges.push_back({range.first, range.end});
+  Json json{{"study", parts.study().name},        {"seed", parts.study().seed},
+            {"experiments", parts.experiments()}, {"loops", parts.loops()},
+            {"parts", parts.part_count()},        {"missing", size_of(missing)},
+            {"missing_ranges", ranges},           {"range", to_string(missing)}};
+  if (const std::optional<MissingPieces> pieces = parts.missing_pieces())
+    json["pieces"] = Json{{"of", pieces->of}, {"missing", pieces->numbers}, {"array", pieces->array()}};
+  return json.dump(2) + '\n';
+}
+
+/// Writes the archive. Throws std::runtime_error when something is missing: the other parts may be under way.
+void write_merged(const MergeArguments& options, const PartMerge& parts, Progress& progress,
+                  const std::string& command_line) {
+  Campaign campaign;
+  try {
+    campaign = parts.merge(hooks_of(progress));
+  } catch (const Interrupted& error) {
+    throw std::runtime_error(progress.explain(error));
+  }
+  note_command(campaign, command_line);
+  const StudyFindings findings = findings_of(campaign);
+  write_archive(options.output, campaign, findings);
+  if (!options.quiet && !options.json)
+    print_result(summary_text(campaign, findings, options.output));
+}
+
+ExitCode merge(const MergeArguments& options, const std::string& command_line) {
+  if (!options.missing)
+    require_output_archive(options.output, "archive");
+  take_method_files(options.method_files);
+  Progress progress(options.quiet);
+  const PartMerge parts(
+      options.parts.empty() ? std::vector{parts_folder_of(options.output).string()} : options.parts,
+      [&progress](const std::string& text) { progress.warn(text); });
+  const bool complete = parts.missing().empty();
+  if (complete && !options.missing)
+    write_merged(options, parts, progress, command_line);
+  if (options.json)
+    print_result(missing_json(parts));
+  else if (options.missing)
+    print_result(missing_text(parts));
+  else if (!complete)
+    throw std::runtime_error(
+        fmt::format("{}: not written, parts are missing\n{}", options.output, missing_text(parts)));
+  return complete ? ExitCode::done : ExitCode::not_finished;
+}
+
+}  // namespace
+
+void add_merge(CommandSet& commands) {
+  const auto options = std::make_shared<MergeArguments>();
+  CLI::App& app =
+      commands.add("merge", "Make the archive of parts that `run --shard` and `run --range` have left",
+                   [options, &commands] { return merge(*options, commands.command_line()); });
+  add_path(app, "OUTPUT", options->output, "Archive to write (HDF5)")->required();
+  app.add_option("PARTS", options->parts, "Folders with parts, at any depth; OUTPUT.parts without any");
+  app.add_flag("--missing", options->missing,
+               "Write nothing, and say what no part has: exit code 0 when nothing is missing, else 3");
+  add_method_files(app, options->method_files);
+  add_json(app, options->json);
+  add_quiet(app, options->quiet, "No summary");
+}
+
+}  // namespace mpm

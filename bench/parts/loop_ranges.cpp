@@ -1,0 +1,106 @@
+#include "bench/parts/loop_ranges.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+std::optional<std::int64_t> whole_number(std::string_view text) {
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+std::optional<LoopRange> range_in(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos)
+    return std::nullopt;
+  const auto first = whole_number(text.substr(0, colon)), end = whole_number(text.substr(colon + 1));
+  return first && end ? std::optional(LoopRange{*first, *end}) : std::nullopt;
+}
+
+/// Puts a range behind others, as one with the last where they touch.
+void append(LoopRanges& ranges, const LoopRange& next) {
+  if (!ranges.empty() && ranges.back().end == next.first)
+    ranges.back().end = next.end;
+  else
+    ranges.push_back(next);
+}
+
+}  // namespace
+
+LoopRanges parse_loop_ranges(std::string_view text, std::int64_t count) {
+  LoopRanges ranges;
+  std::int64_t least = 0;
+  for (std::string_view rest = text, word; rest.data() != nullptr;) {
+    const std::size_t comma = rest.find(',');
+    word = rest.substr(0, comma);
+    rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
+    const std::optional<LoopRange> range = range_in(word);
+    if (!range || range->first < least || range->end <= range->first || range->end > count)
+      throw InputError(
+          "--range", fmt::format("'{}'", text),
+          fmt::format("A:B for the loops A to B - 1, or several in ascending order, A:B,C:D, with "
+                      "numbers from 0 to {}, the number of loops of the campaign",
+                      count));
+    least = range->end;
+    append(ranges, *range);
+  }
+  return ranges;
+}
+
+std::string to_string(const LoopRanges& ranges) {
+  std::string text;
+  for (const LoopRange& range : ranges)
+    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", range.first, range.end);
+  return text;
+}
+
+LoopRanges ranges_of(const std::vector<std::int64_t>& indices) {
+  LoopRanges ranges;
+  for (const std::int64_t index : indices)
+    append(ranges, {index, index + 1});
+  return ranges;
+}
+
+std::int64_t size_of(const LoopRanges& ranges) {
+  std::int64_t size = 0;
+  for (const LoopRange& range : ranges)
+    size += range.end - range.first;
+  return size;
+}
+
+LoopRanges piece_of(const LoopRanges& ranges, std::int64_t number, std::int64_t of) {
+  const std::int64_t size = size_of(ranges);
+  const auto bound = [&](std::int64_t k) {  // size * k / of, which may be more than a number holds
+    return size / of * k + size % of * k / of;
+  };
+  std::int64_t skip = bound(number - 1), left = bound(number) - skip;
+  LoopRanges piece;
+  for (const LoopRange& range : ranges) {
+    const std::int64_t first = range.first + std::min(skip, range.end - range.first);
+    const std::int64_t end = first + std::min(left, range.end - first);
+    skip -= first - range.first;
+    left -= end - first;
+    if (end > first)
+      piece.push_back({first, end});
+  }
+  return piece;
+}
+
+std::vector<std::int64_t> indices_within(const LoopRanges& ranges, std::int64_t first, std::int64_t end) {
+  std::vector<std::int64_t> indices;
+  for (const LoopRange& range : ranges)
+    for (std::int64_t index = std::max(range.first, first); index < std::min(range.end, end); ++index)
+      indices.push_back(index - first);
+  return indices;
+}
+
+}  // namespace mpm

@@ -1,0 +1,129 @@
+#include "bench/parts/part_folder.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <span>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/files/outside_files.hpp"
+#include "plants/error.hpp"
+#include "results/files/atomic_file.hpp"
+#include "scenarios/study_file.hpp"
+
+namespace mpm {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kDescription = "campaign.json";
+constexpr const char* kPartType = "mpmbench part";
+
+CampaignPart part_in(const Json& json, std::int64_t loops) {
+  CampaignPart part;
+  if (const auto text = json.at("loops").get<std::string>(); !text.empty())
+    part.loops = parse_loop_ranges(text, loops);
+  if (json.contains("shard"))
+    part.shard = {json.at("shard").at("number").get<std::int64_t>(),
+                  json.at("shard").at("of").get<std::int64_t>(), ""};
+  return part;
+}
+
+PartFolder part_folder_in(const Json& json, const fs::path& folder, const std::string& file) {
+  if (json.at("filetype") != kPartType)
+    throw InputError(fmt::format("{}: filetype", file), json.at("filetype").dump(), kPartType);
+  PartFolder part;
+  part.path = folder;
+  part.study = parse_study(json.at("scenario").get<std::string>(), file);
+  part.study.seed = json.at("seed").get<std::uint64_t>();
+  part.study.methods = json.at("methods").get<std::vector<std::string>>();
+  RunOptions& options = part.options;
+  options.experiments = json.at("experiments").get<std::int64_t>();
+  options.seed = part.study.seed;
+  options.methods = part.study.methods;
+  options.solver = json.at("solver").get<std::string>();
+  options.audit_share = json.at("audit_share").get<double>();
+  options.store = store_policy(json.at("store").get<std::string>());
+  options.allow_unhealthy_basis = json.at("allow_unhealthy_basis").get<bool>();
+  part.loops = json.at("campaign_loops").get<std::int64_t>();
+  part.part = part_in(json, part.loops);
+  return part;
+}
+
+}  // namespace
+
+fs::path parts_folder_of(const fs::path& output) {
+  return output.string() + ".parts";
+}
+
+std::string part_name(const std::string& range, const std::optional<ShardNumber>& shard) {
+  std::string name = range;
+  std::replace(name.begin(), name.end(), ':', '-');
+  std::replace(name.begin(), name.end(), ',', '+');
+  constexpr std::size_t kLongest = 100;  // of a name of a file, with room for the rest
+  if (name.size() > kLongest)
+    name = fmt::format("{}-{}", name.substr(0, name.find('+')), digest_of(range));
+  if (shard)
+    name += fmt::format("{}{}-of-{}", name.empty() ? "" : "_", shard->number, shard->of);
+  return name;
+}
+
+void write_part_description(const PartFolder& part) {
+  Json json{{"filetype", kPartType},
+            {"loops", to_string(part.part.loops)},
+            {"campaign_loops", part.loops},
+            {"experiments", *part.options.experiments},
+            {"seed", part.study.seed},
+            {"methods", part.study.methods},
+            {"solver", part.options.solver},
+            {"audit_share", part.options.audit_share},
+            {"store", name_of(part.options.store)},
+            {"allow_unhealthy_basis", part.options.allow_unhealthy_basis},
+            {"scenario", part.study.source}};
+  if (part.part.shard)
+    json["shard"] = Json{{"number", part.part.shard->number}, {"of", part.part.shard->of}};
+  const std::string text = json.dump(2) + '\n';
+  write_file_atomically(part.path / kDescription, std::as_bytes(std::span(text)));
+}
+
+PartFolder read_part(const fs::path& folder) {
+  const std::string file = (folder / kDescription).string();
+  std::ifstream stream(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  try {
+    return part_folder_in(Json::parse(text), folder, file);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(file, fmt::format("no description of a part ({})", error.what()),
+                     "what `mpmbench run --shard` writes");
+  }
+}
+
+std::vector<fs::path> find_parts(const std::vector<std::string>& folders) {
+  std::set<fs::path> found;
+  for (const std::string& folder : folders) {
+    const std::size_t before = found.size();
+    std::error_code error;
+    if (fs::exists(fs::path(folder) / kDescription, error))
+      found.insert(fs::path(folder).lexically_normal());
+    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error))
+      if (entry->path().filename() == kDescription)
+        found.insert(entry->path().parent_path().lexically_normal());
+    if (error)
+      throw InputError(folder, error.message(), "a folder with parts of a campaign");
+    if (found.size() == before && !fs::exists(fs::path(folder) / kDescription))
+      throw InputError(folder, "no part of a campaign",
+                       fmt::format("folders with {}, which `mpmbench run --shard` makes", kDescription));
+  }
+  return {found.begin(), found.end()};
+}
+
+}  // namespace mpm

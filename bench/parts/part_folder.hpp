@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/execution/run_options.hpp"
+#include "bench/parts/launcher.hpp"
+#include "bench/parts/loop_ranges.hpp"
+
+namespace mpm {
+
+/// A part of a campaign.
+struct CampaignPart {
+  LoopRanges loops;
+  std::optional<ShardNumber> shard = {};  ///< which piece it is of all loops of the campaign
+};
+
+/// The folder of a part: its shards, and `campaign.json`, which says of what it is a part, so that parts
+/// alone make an archive (docs/scale.md).
+struct PartFolder {
+  std::filesystem::path path;
+  Study study;             ///< as study_to_run() gave it
+  RunOptions options;      ///< what decides the results; `experiments` is always there
+  std::int64_t loops = 0;  ///< of the campaign
+  CampaignPart part;
+};
+
+/// Where the parts of an archive lie: beside it.
+std::filesystem::path parts_folder_of(const std::filesystem::path& output);
+
+/// The name of the folder of a part that is said by the options --range and --shard, either of which may be
+/// missing: "3-of-8", "100-150", "100-150_3-of-8".
+std::string part_name(const std::string& range, const std::optional<ShardNumber>& shard);
+
+/// Writes `campaign.json` of a part, whose folder is there. Throws ArchiveError.
+void write_part_description(const PartFolder& part);
+
+/// Reads it. Throws InputError, which names the file, for one that is missing or not what this program
+/// writes.
+PartFolder read_part(const std::filesystem::path& folder);
+
+/// The folders of parts among these folders and everything in them, sorted, each once. Throws InputError for
+/// a folder that is not there or without a part.
+std::vector<std::filesystem::path> find_parts(const std::vector<std::string>& folders);
+
+}  // namespace mpm
