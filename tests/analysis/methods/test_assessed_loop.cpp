@@ -74,6 +74,8 @@ PlantRecord record_of(const Trajectory& loop, Eigen::Index first) {
           .lower = none(loop.y.rows()),
           .upper = none(loop.y.rows()),
           .y_sim = none(loop.y.rows()),
+          .candidates = none(0),
+          .candidate_names = {},
           .stamps = {},
           .warnings = {}};
 }
