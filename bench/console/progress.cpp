@@ -78,8 +78,8 @@ void Progress::show() {
   if (terminal_) {
     constexpr int kWidth = 30;
     const auto filled = static_cast<int>(kWidth * done_ / std::max<std::int64_t>(total_, 1));
-    const std::string line = fmt::format("\\r[{:<{}}] {}\\033[K",
-                                         std::string(static_cast<std::size_t>(filled), '#'), kWidth, text);
+    const std::string line =
+        fmt::format("\r[{:<{}}] {}\033[K", std::string(static_cast<std::size_t>(filled), '#'), kWidth, text);
     std::fputs(line.c_str(), stderr);  // with the control characters that rewrite a line
     std::fflush(stderr);
     in_line_ = true;

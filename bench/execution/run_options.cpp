@@ -21,11 +21,11 @@ const std::string& name_of(StorePolicy store) {
       ->first;
 }
 
-StorePolicy store_policy(const std::string& name) {
+StorePolicy store_policy(const std::string& name, const std::string& place) {
   for (const auto& [known, policy] : store_policies())
     if (known == name)
       return policy;
-  throw InputError("store", name, "none, flagged or all");
+  throw InputError(place, name, "none, flagged or all");
 }
 
 Study study_to_run(Study study, const RunOptions& options) {

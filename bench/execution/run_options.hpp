@@ -17,8 +17,8 @@ enum class Parallel { by_solver, threads, processes };
 /// The names of the choices of which loops are kept.
 const std::vector<std::pair<std::string, StorePolicy>>& store_policies();
 const std::string& name_of(StorePolicy store);
-/// The reverse. Throws InputError for another name.
-StorePolicy store_policy(const std::string& name);
+/// The reverse. Throws InputError for another name, found in `place`.
+StorePolicy store_policy(const std::string& name, const std::string& place);
 
 /// What becomes of the shards of an interrupted run.
 enum class Leftovers { refuse, resume, discard };

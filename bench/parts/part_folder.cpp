@@ -49,7 +49,7 @@ PartFolder part_folder_in(const Json& json, const fs::path& folder, const std::s
   options.methods = part.study.methods;
   options.solver = json.at("solver").get<std::string>();
   options.audit_share = json.at("audit_share").get<double>();
-  options.store = store_policy(json.at("store").get<std::string>());
+  options.store = store_policy(json.at("store").get<std::string>(), file + ": store");
   options.allow_unhealthy_basis = json.at("allow_unhealthy_basis").get<bool>();
   part.loops = json.at("campaign_loops").get<std::int64_t>();
   part.part = part_in(json, part.loops);

@@ -18,6 +18,7 @@ from archives import check_same
 
 EXPERIMENTS, CALIBRATION = 24, 10
 LOOPS = EXPERIMENTS + CALIBRATION
+STOPPED = 300  # experiments of a campaign that is to be stopped before its end
 OPTIONS = {"--experiments": EXPERIMENTS, "--jobs": 1, "--audit": 0.002, "--methods": "botelho,sse"}
 PATIENCE = 300  # s, for a machine that is busy with other things
 LAUNCHERS = ("OMPI_", "PMI_", "PMIX_", "SLURM_", "JOB_COMPLETION_INDEX")
@@ -180,7 +181,7 @@ def check_stopped(trial, reference, command, name):
     said = process.communicate(timeout=PATIENCE)[0]
     assert process.returncode not in (0, 2), (name, process.returncode, said)
     missing = trial.missing()["missing"]
-    assert 0 < missing < LOOPS, (name, missing)
+    assert 0 < missing < STOPPED + CALIBRATION, (name, missing)
     trial.call([*command, "--resume"])
     trial.check(reference)
     return process.returncode, said
@@ -201,17 +202,17 @@ def check_launchers(trial, reference):
     assert (trial.parts / "3-of-3").is_dir()
 
 
-def check_mpirun(trial, reference, mpirun):
+def check_mpirun(trial, reference, stopped_reference, mpirun):
     """Two ranks of a real launcher, to the end and stopped in the middle."""
     assert mpirun, "no mpirun: package openmpi-bin (.ci/packages.txt)"
     launcher = [mpirun, *(["--allow-run-as-root"] if os.getuid() == 0 else []), "--oversubscribe", "-n", "2"]
-    command = [*launcher, *trial.command("--shard", "auto", "--quiet")]
-    trial.call(command)
+    words = ["--shard", "auto", "--quiet"]
+    trial.call([*launcher, *trial.command(*words)])
     assert sorted(part.name for part in trial.parts.iterdir()) == ["1-of-2", "2-of-2"]
     trial.check(reference)
     shutil.rmtree(trial.parts)
     trial.archive.unlink()
-    check_stopped(trial, reference, command, "mpirun")
+    check_stopped(trial, stopped_reference, [*launcher, *trial.command(*words, "--experiments", STOPPED)], "mpirun")
 
 
 def main(program, study_file, mpirun):
@@ -226,11 +227,14 @@ def main(program, study_file, mpirun):
         check_any_split(Trial(program, study, folder / "split"), reference)
         check_missing(Trial(program, study, folder / "missing"), reference)
         check_refusals(Trial(program, study, folder / "refused"), reference)
+        long = Trial(program, study, folder / "long")
+        long.run("--quiet", "--experiments", STOPPED, "--jobs", 2)
         stopped = Trial(program, study, folder / "stopped")
-        code, said = check_stopped(stopped, reference, stopped.command("--range", f"0:{LOOPS}"), "run")
+        command = stopped.command("--range", f"0:{STOPPED + CALIBRATION}", "--experiments", STOPPED)
+        code, said = check_stopped(stopped, long.archive, command, "run")
         assert code == 3 and "--resume" in said.splitlines()[-1] and f"-o {stopped.archive}" in said, (code, said)
         check_launchers(Trial(program, study, folder / "launched"), reference)
-        check_mpirun(Trial(program, study, folder / "mpirun"), reference, mpirun)
+        check_mpirun(Trial(program, study, folder / "mpirun"), reference, long.archive, mpirun)
 
 
 main(*sys.argv[1:])

@@ -25,7 +25,8 @@ READ_OF = {"/s0_perturbation": {"perturbed", "ivar_diag_time_constant", "ivar_di
            "/scenarios": set(), "/findings": set()}
 OF_EVERY_METHOD = {"cv", "mv", "lag", "lag_time"}
 FOR_PEOPLE_ATTRIBUTES = {"/Conventions", "/title", "/study_resolved", "/basis/title", "/calibration/title",
-                         "/calibration/false_alarms"}
+                         "/calibration/false_alarms",
+                         "/outside_files"}  # which archives before 2.1 do not have
 READ_ATTRIBUTES_OF_METHODS = {"description", "milliseconds", "mpmbench_version", "git_sha", "command"}
 
 
