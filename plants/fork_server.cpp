@@ -22,13 +22,6 @@ namespace {
 
 constexpr std::size_t kLongestSetting = 64;  // numbers, the time limit among them
 
-std::array<int, 2> socket_pair(int type, const char* what) {
-  std::array<int, 2> ends{};
-  if (::socketpair(AF_UNIX, type | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    throw std::system_error(errno, std::generic_category(), what);
-  return ends;
-}
-
 /// A datagram with numbers and the right to use a socket: whoever asks the server sends it one end of a pair
 /// and needs no answer, so that threads and processes can ask it at the same time.
 class ServiceOrder {
@@ -95,14 +88,14 @@ void mediate(int socket, const ForkedService::Serve& serve, double time_limit) {
   }
 }
 
-[[noreturn]] void make_services(int socket, const ForkServer::MakeService& make) {
+void make_services(int socket, const ForkServer::MakeService& make) {
   ::signal(SIGCHLD, SIG_IGN);  // nobody asks how a mediator ended
   std::vector<double> setting;
   for (;;) {
     ServiceOrder order;
     const std::optional<int> user = order.receive(socket, setting);
     if (!user)
-      ::_exit(0);  // not exit(): destructors and buffers belong to the parent
+      return;
     if (::fork() == 0) {
       const int own = leave_parent(*user);
       const double time_limit = setting.back();
@@ -117,17 +110,9 @@ void mediate(int socket, const ForkedService::Serve& serve, double time_limit) {
 }  // namespace
 
 ForkServer::ForkServer(const MakeService& make) : owner_(::getpid()) {
-  const std::array<int, 2> ends = socket_pair(SOCK_SEQPACKET, "no socket for simulations");
-  pid_ = ::fork();
-  if (pid_ == 0)
-    make_services(leave_parent(ends[1]), make);
-  const int error = errno;
-  ::close(ends[1]);
-  socket_ = ends[0];
-  if (pid_ < 0) {
-    ::close(socket_);
-    throw std::system_error(error, std::generic_category(), "no process for simulations");
-  }
+  const ForkedProcess made = fork_process(SOCK_SEQPACKET, [&](int socket) { make_services(socket, make); });
+  pid_ = made.pid;
+  socket_ = made.socket;
 }
 
 ForkServer::~ForkServer() {

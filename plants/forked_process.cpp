@@ -1,11 +1,14 @@
 #include "plants/forked_process.hpp"
 
+#include <cerrno>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
+#include <system_error>
 
 #include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 namespace mpm {
@@ -38,6 +41,29 @@ int leave_parent(int socket) {
   ::dup2(own, kSocket);
   ::close_range(kSocket + 1, ~0U, 0);
   return kSocket;
+}
+
+std::array<int, 2> socket_pair(int type, const char* what) {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, type | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw std::system_error(errno, std::generic_category(), what);
+  return ends;
+}
+
+ForkedProcess fork_process(int socket_type, const std::function<void(int)>& work) {
+  const std::array<int, 2> ends = socket_pair(socket_type, "no socket for simulations");
+  const pid_t pid = ::fork();
+  if (pid == 0) {
+    work(leave_parent(ends[1]));
+    ::_exit(0);  // not exit(): destructors and buffers belong to the parent
+  }
+  const int error = errno;
+  ::close(ends[1]);
+  if (pid < 0) {
+    ::close(ends[0]);
+    throw std::system_error(error, std::generic_category(), "no process for simulations");
+  }
+  return {pid, ends[0]};
 }
 
 bool send_numbers(int socket, const std::vector<double>& numbers) {

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <array>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include <sys/types.h>
 
 #include "plants/socket_bytes.hpp"
 
@@ -13,6 +17,21 @@ namespace mpm {
 /// SIGINT left to the parent, no core, standard streams that lead nowhere, and of all files `socket` alone.
 /// Returns the number that the socket has from now on.
 int leave_parent(int socket);
+
+/// Two sockets that are connected, of a type such as SOCK_STREAM; a new program inherits neither. Throws
+/// std::system_error with the text `what`.
+std::array<int, 2> socket_pair(int type, const char* what);
+
+/// A process that was forked off, and the socket to it.
+struct ForkedProcess {
+  pid_t pid = -1;
+  int socket = -1;
+};
+
+/// Forks a process off, which has left its parent when `work` begins with the socket to the parent, and ends
+/// with it. For a process without other threads: a process that another one forks meanwhile would hold an
+/// end of this one's socket, and its end would not show. Throws std::system_error.
+ForkedProcess fork_process(int socket_type, const std::function<void(int)>& work);
 
 /// A message of numbers, or the text of a failure in their place. False when the other end is gone.
 bool send_numbers(int socket, const std::vector<double>& numbers);

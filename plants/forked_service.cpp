@@ -1,12 +1,10 @@
 #include "plants/forked_service.hpp"
 
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
 #include <exception>
-#include <mutex>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -24,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-[[noreturn]] void serve_until_closed(int socket, const ForkedService::Serve& serve) {
+void serve_until_closed(int socket, const ForkedService::Serve& serve) {
   std::vector<double> numbers;
   std::string failure;
   bool open = true;
@@ -35,39 +33,19 @@ using Clock = std::chrono::steady_clock;
       open = send_failure(socket, error.what());
     }
   }
-  // Not exit(): destructors and buffers belong to the parent.
-  ::_exit(0);
-}
-
-/// One process is made at a time: another one that was copied in between would hold an end of this one's
-/// socket, and its end would not show.
-std::mutex& fork_mutex() {
-  static std::mutex mutex;
-  return mutex;
 }
 
 }  // namespace
 
 ForkedService::ForkedService(const Serve& serve, double time_limit) : time_limit_(time_limit) {
-  const std::lock_guard lock(fork_mutex());
-  std::array<int, 2> ends{};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    throw std::system_error(errno, std::generic_category(), "no socket for a simulation");
   const pid_t parent = ::getpid();
-  pid_ = ::fork();
-  if (pid_ == 0) {
+  const ForkedProcess made = fork_process(SOCK_STREAM, [&](int socket) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent)
-      ::_exit(0);  // the parent died before the line above
-    serve_until_closed(leave_parent(ends[1]), serve);
-  }
-  const int error = errno;
-  ::close(ends[1]);
-  socket_ = ends[0];
-  if (pid_ < 0) {
-    ::close(socket_);
-    throw std::system_error(error, std::generic_category(), "no process for a simulation");
-  }
+    if (::getppid() == parent)  // else it died before the line above
+      serve_until_closed(socket, serve);
+  });
+  pid_ = made.pid;
+  socket_ = made.socket;
 }
 
 ForkedService::~ForkedService() {

@@ -17,8 +17,8 @@ class ForeignFailure : public std::runtime_error {
 /// A function at work in a process of its own, so that a crash of what it calls, a call that never comes back
 /// and what it leaves in memory end with this process.
 ///
-/// The process is a copy of this one; what it prints goes nowhere, and it writes no core. It may be made in
-/// any thread and is to be used in the one that made it.
+/// The process is a copy of this one; what it prints goes nowhere, and it writes no core. It is to be made
+/// where there are no other threads (fork_process); where there are, a ForkServer makes it.
 class ForkedService {
  public:
   /// Numbers in, numbers out; its exceptions become those of ask().

@@ -1,29 +1,22 @@
 #include "bench/parts/launcher.hpp"
 
-#include <charconv>
 #include <cstdlib>
 #include <limits>
-#include <system_error>
 
 #include <fmt/format.h>
 
+#include "bench/parts/whole_number.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
 namespace {
-
-std::optional<std::int64_t> number_in(std::string_view text) {
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
-}
 
 /// The number in a variable; none when it is not set. Throws InputError when it is something else.
 std::optional<std::int64_t> number_of(const Environment& environment, const char* name) {
   const std::optional<std::string> text = environment(name);
   if (!text)
     return std::nullopt;
-  const std::optional<std::int64_t> number = number_in(*text);
+  const std::optional<std::int64_t> number = whole_number_in(*text);
   if (!number)
     throw InputError(fmt::format("--shard auto: environment variable {}", name), fmt::format("'{}'", *text),
                      "a whole number");
@@ -128,12 +121,12 @@ ShardNumber parse_shard(std::string_view text, const Environment& environment) {
   const std::size_t slash = text.find('/');
   if (slash == std::string_view::npos)
     refuse(text);
-  const std::optional<std::int64_t> of = number_in(text.substr(slash + 1));
+  const std::optional<std::int64_t> of = whole_number_in(text.substr(slash + 1));
   if (!of || *of < 1 || *of > kMostTasks)
     refuse(text);
   if (text.substr(0, slash) == kAuto)
     return launched(environment, of);
-  const std::optional<std::int64_t> number = number_in(text.substr(0, slash));
+  const std::optional<std::int64_t> number = whole_number_in(text.substr(0, slash));
   if (!number || *number < 1 || *number > *of)
     refuse(text);
   return {*number, *of, ""};

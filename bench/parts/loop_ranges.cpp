@@ -1,28 +1,21 @@
 #include "bench/parts/loop_ranges.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
-#include <system_error>
 
 #include <fmt/format.h>
 
+#include "bench/parts/whole_number.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
 namespace {
 
-std::optional<std::int64_t> whole_number(std::string_view text) {
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
-}
-
 std::optional<LoopRange> range_in(std::string_view text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos)
     return std::nullopt;
-  const auto first = whole_number(text.substr(0, colon)), end = whole_number(text.substr(colon + 1));
+  const auto first = whole_number_in(text.substr(0, colon)), end = whole_number_in(text.substr(colon + 1));
   return first && end ? std::optional(LoopRange{*first, *end}) : std::nullopt;
 }
 
