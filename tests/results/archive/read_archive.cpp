@@ -1,24 +1,32 @@
-// usage: read_archive FILE: reads an archive and summarises it, or says why not (exit code 2).
+// Reads the archives whose names come on standard input, one a line, and summarises each. A line of the answer says
+// "read", or why not.
 
-#include <cstdio>
+#include <iostream>
+#include <string>
 
 #include "results/archive/archive.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/summary/comparison.hpp"
 #include "results/summary/summary.hpp"
 
-int main(int argc, char** argv) {
-  if (argc != 2)
-    return 1;
+namespace {
+
+std::string answer(const std::string& path) {
   try {
-    const mpm::Campaign campaign = mpm::read_archive(argv[1]);
+    const mpm::Campaign campaign = mpm::read_archive(path);
     const mpm::StudyFindings findings = mpm::findings_of(campaign);
-    std::printf("%s", mpm::summary_text(campaign, findings, argv[1]).c_str());
-    std::printf("%s", mpm::summary_json(campaign, findings).c_str());
-    std::printf("%s", mpm::comparison_json(campaign, findings).c_str());
-    return 0;
+    const bool said = !mpm::summary_text(campaign, findings, path).empty() &&
+                      !mpm::summary_json(campaign, findings).empty() &&
+                      !mpm::comparison_json(campaign, findings).empty();
+    return said ? "read" : "no summary";
   } catch (const mpm::ArchiveError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
+    return error.what();
   }
+}
+
+} // namespace
+
+int main() {
+  for (std::string path; std::getline(std::cin, path);)
+    std::cout << answer(path) << std::endl;
 }
