@@ -13,10 +13,7 @@ function(mpm_room name)
     PRIVATE "$<BUILD_INTERFACE:mpm_build_flags>" ${ROOM_PRIVATE})
   target_compile_definitions(mpm_${name} PUBLIC EIGEN_DONT_PARALLELIZE)
   target_compile_features(mpm_${name} PUBLIC cxx_std_20)
-  # clang-tidy reads the files that CMake writes (tests/structure), and they include sources.
-  set_target_properties(mpm_${name} PROPERTIES
-    UNITY_BUILD_CODE_BEFORE_INCLUDE "// NOLINTNEXTLINE(bugprone-suspicious-include)"
-    EXPORT_NAME ${name})
+  set_target_properties(mpm_${name} PROPERTIES EXPORT_NAME ${name})
   install(TARGETS mpm_${name} EXPORT mpmbench COMPONENT development)
   install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" DESTINATION "${MPMBENCH_INSTALLED_HEADERS}" COMPONENT development
     FILES_MATCHING PATTERN "*.hpp" PATTERN perf EXCLUDE)

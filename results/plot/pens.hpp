@@ -18,4 +18,7 @@ Pen method_pen(std::size_t method);
 /// A threshold of the study, or an edge of its band.
 inline const Pen kThreshold{colour::kBlack, Dash::dashed, Mark::none, 1.2};
 
+/// What guessing would give.
+inline const Pen kChance{colour::kGrey, Dash::dotted, Mark::none, 1.2};
+
 }  // namespace mpm

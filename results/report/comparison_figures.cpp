@@ -12,8 +12,6 @@
 namespace mpm {
 namespace {
 
-const Pen kChance{colour::kGrey, Dash::dotted, Mark::none, 1.2};
-
 using Methods = std::vector<MethodFindings>;
 
 /// A curve in the pen of its method.

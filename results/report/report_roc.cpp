@@ -6,6 +6,7 @@
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/statistics/roc.hpp"
 #include "results/plot/panel_script.hpp"
+#include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
 #include "results/report/report_sections.hpp"
@@ -15,7 +16,6 @@ namespace mpm {
 namespace {
 
 const Pen kCurve{colour::kBlue, Dash::solid, Mark::none, 2.0};
-const Pen kChance{colour::kGrey, Dash::dotted, Mark::none, 1.2};
 const Pen kBest{colour::kVermillion, Dash::none, Mark::diamond, 1.0, 1.0};
 const Pen kStudy{colour::kBlack, Dash::none, Mark::circle, 1.0, 1.4};
 

@@ -1,5 +1,5 @@
-// Reads the archives whose names come on standard input, one a line, and summarises each. A line of the answer says
-// "read", or why not.
+// Reads the archives whose names come on standard input, one a line, and summarises each. A line of the
+// answer says "read", or why not.
 
 #include <iostream>
 #include <string>
@@ -24,7 +24,7 @@ std::string answer(const std::string& path) {
   }
 }
 
-} // namespace
+}  // namespace
 
 int main() {
   for (std::string path; std::getline(std::cin, path);)
