@@ -174,9 +174,12 @@ struct MonitoringOptions {
 struct ReportedValue {
   std::string name;
   double value;
+  std::int64_t of = 0;     ///< experiments behind a share; 0: not told
   std::string where = {};  ///< "FILE:LINE: KEY", for an error; no part of what is reported
 
-  bool operator==(const ReportedValue& other) const { return name == other.name && value == other.value; }
+  bool operator==(const ReportedValue& other) const {
+    return name == other.name && value == other.value && of == other.of;
+  }
 };
 
 /// The nonlinear plant that is simulated in place of the linear model; the controller and y_sim keep the

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -148,8 +149,18 @@ std::vector<ReportedValue> read_reported(const TomlTable& document) {
       names.emplace_back(name.str());
   const TomlTable table = document.table_or_empty("reference", names);
   std::vector<ReportedValue> values;
-  for (const std::string& name : names)
-    values.push_back({name, read_number_or(table, name, NumberRule{}, 0.0), table.where(name)});
+  for (const std::string& name : names) {
+    ReportedValue value{.name = name, .value = 0.0, .where = table.where(name)};
+    if (const toml::node* const node = table.find(name); node != nullptr && node->is_table()) {
+      const TomlTable share = table.table(name, study_file_keys("reference.FINDING"));
+      value.value = read_number(share, "value",
+                                NumberRule{.low = 0, .high = 1, .low_included = true, .high_included = true});
+      value.of = read_whole(share, "of", 1, std::numeric_limits<std::int32_t>::max());
+    } else {
+      value.value = read_number_or(table, name, NumberRule{}, 0.0);
+    }
+    values.push_back(std::move(value));
+  }
   return values;
 }
 

@@ -113,6 +113,7 @@ const std::vector<StudyFileTable>& study_file_tables() {
                 "on_values",  "cv_resampling", "start",           "most_missing",
                 "candidates", "fill",          "period",          "benchmark"}},
       {"reference", {"FINDING"}},
+      {"reference.FINDING", {"value", "of"}},
       {"DISTRIBUTION", {"constant", "uniform", "log_uniform", "normal"}},
   };
   return tables;

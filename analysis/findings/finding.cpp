@@ -1,6 +1,7 @@
 #include "analysis/findings/finding.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "plants/non_finite.hpp"
@@ -24,6 +25,14 @@ Finding Finding::with(double number, const Interval& ends, std::int64_t behind) 
   finding.interval = ends;
   finding.count = behind;
   return finding;
+}
+
+std::optional<bool> Finding::agrees(double confidence) const {
+  if (!has_reported() || std::isnan(interval.lower))
+    return std::nullopt;
+  if (!is_share() || reported_of == 0 || hits < 0)
+    return interval.contains(reported);
+  return difference_interval(rate(hits, count, confidence), reported, reported_of, confidence).contains(0.0);
 }
 
 Finding counted(Finding like, std::int64_t experiments) {

@@ -54,12 +54,17 @@ struct Finding {
   bool has_interval = true;                 ///< can it have one? Least and largest values never do
   double value = kNaN;
   Interval interval{kNaN, kNaN};
-  std::int64_t count = 0;  ///< experiments, pairs or loops behind it
-  std::int64_t hits = -1;  ///< of a share, those that count; -1: no share
-  double reported = kNaN;  ///< by others, as the study says; NaN: nothing
+  std::int64_t count = 0;        ///< experiments, pairs or loops behind it
+  std::int64_t hits = -1;        ///< of a share, those that count; -1: no share
+  double reported = kNaN;        ///< by others, as the study says; NaN: nothing
+  std::int64_t reported_of = 0;  ///< experiments that it is a share of; 0: not told
 
   bool is_share() const { return form == FindingForm::share; }
   bool has_reported() const { return reported == reported; }
+  /// Can the measured and the reported number be the same truth? Of two shares of so many experiments, when
+  /// the interval of their difference holds 0 (difference_interval()); of any other number, when its interval
+  /// holds the reported one, which is taken for exact. None without an interval or a reported number.
+  std::optional<bool> agrees(double confidence) const;
 
   /// The finding with this value.
   Finding with(const Rate& rate) const;

@@ -104,8 +104,10 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
   findings.rows = all_rows(study, findings);
   for (Finding& row : findings.rows)
     for (const ReportedValue& reported : study.reported)
-      if (reported.name == row.name)
+      if (reported.name == row.name) {
         row.reported = reported.value;
+        row.reported_of = reported.of;
+      }
   return findings;
 }
 

@@ -22,6 +22,19 @@ void require_counts(std::int64_t hits, std::int64_t total) {
   }
 }
 
+/// Wilson's interval of the share p of n trials, [0, 1] of none.
+Interval score_interval(double p, double n, double confidence) {
+  const double z = two_sided_normal_quantile(confidence);
+  if (n == 0.0)
+    return {0.0, 1.0};
+  const double zz = z * z / n;
+  const double middle = (p + zz / 2.0) / (1.0 + zz);
+  const double half_width = std::sqrt(zz * p * (1.0 - p) + zz * zz / 4.0) / (1.0 + zz);
+  // At the ends the formula gives 0 or 1 only to rounding.
+  return {p == 0.0 ? 0.0 : std::max(0.0, middle - half_width),
+          p == 1.0 ? 1.0 : std::min(1.0, middle + half_width)};
+}
+
 }  // namespace
 
 double two_sided_normal_quantile(double confidence) {
@@ -32,24 +45,28 @@ double two_sided_normal_quantile(double confidence) {
 
 Interval wilson_interval(std::int64_t hits, std::int64_t total, double confidence) {
   require_counts(hits, total);
-  const double z = two_sided_normal_quantile(confidence);
-  if (total == 0) {
-    return {0.0, 1.0};
-  }
-  const double n = static_cast<double>(total);
-  const double p = static_cast<double>(hits) / n;
-  const double zz = z * z / n;
-  const double middle = (p + zz / 2.0) / (1.0 + zz);
-  const double half_width = std::sqrt(zz * p * (1.0 - p) + zz * zz / 4.0) / (1.0 + zz);
-  // At the ends the formula gives 0 or 1 only to rounding.
-  return {hits == 0 ? 0.0 : std::max(0.0, middle - half_width),
-          hits == total ? 1.0 : std::min(1.0, middle + half_width)};
+  return total == 0 ? score_interval(0.5, 0.0, confidence)
+                    : score_interval(static_cast<double>(hits) / static_cast<double>(total),
+                                     static_cast<double>(total), confidence);
 }
 
 Rate rate(std::int64_t hits, std::int64_t total, double confidence) {
   const Interval interval = wilson_interval(hits, total, confidence);
   const double value = total > 0 ? static_cast<double>(hits) / static_cast<double>(total) : kNaN;
   return {hits, total, value, interval};
+}
+
+Interval difference_interval(const Rate& first, double second, std::int64_t total, double confidence) {
+  if (!(second >= 0.0 && second <= 1.0))
+    throw InputError("share", fmt::format("{}", second), "0 to 1");
+  require_counts(0, total);
+  if (first.total == 0 || total == 0)
+    return {kNaN, kNaN};
+  const Interval one = wilson_interval(first.hits, first.total, confidence);
+  const Interval two = score_interval(second, static_cast<double>(total), confidence);
+  const double difference = first.value - second;
+  return {difference - std::hypot(first.value - one.lower, two.upper - second),
+          difference + std::hypot(one.upper - first.value, second - two.lower)};
 }
 
 }  // namespace mpm

@@ -39,4 +39,14 @@ struct Rate {
 /// @throws InputError unless 0 <= hits <= total and 0 < confidence < 1
 Rate rate(std::int64_t hits, std::int64_t total, double confidence = 0.95);
 
+/// The difference p1 - p2 of two shares of independent trials, by the hybrid of their score intervals
+/// (Newcombe 1998, method 10), with d = p1 - p2 and Wilson's (l1, u1), (l2, u2):
+///
+///   d - sqrt((p1 - l1)^2 + (u2 - p2)^2)   to   d + sqrt((u1 - p1)^2 + (p2 - l2)^2)
+///
+/// NaN to NaN without trials. `second` is a share of `total` trials whose hits need not be whole: it was
+/// rounded.
+/// @throws InputError unless 0 <= second <= 1, total >= 0 and 0 < confidence < 1
+Interval difference_interval(const Rate& first, double second, std::int64_t total, double confidence = 0.95);
+
 }  // namespace mpm

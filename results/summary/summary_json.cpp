@@ -97,9 +97,10 @@ Json kinds_json(const std::vector<KindCount>& counts) {
   return kinds;
 }
 
-Json findings_json(const std::vector<Finding>& rows) {
+Json findings_json(const std::vector<Finding>& rows, double confidence) {
   Json list = Json::array();
-  for (const Finding& row : rows)
+  for (const Finding& row : rows) {
+    const std::optional<bool> agrees = row.agrees(confidence);
     list.push_back({{"name", row.name},
                     {"meaning", row.meaning},
                     {"form", to_string(row.form)},
@@ -107,7 +108,10 @@ Json findings_json(const std::vector<Finding>& rows) {
                     {"lower", row.interval.lower},
                     {"upper", row.interval.upper},
                     {"count", row.count},
-                    {"reported", row.reported}});
+                    {"reported", row.reported},
+                    {"reported_of", row.reported_of > 0 ? Json(row.reported_of) : Json()},
+                    {"agrees", agrees ? Json(*agrees) : Json()}});
+  }
   return list;
 }
 
@@ -241,7 +245,7 @@ std::string summary_json(const Campaign& campaign, const StudyFindings& total) {
       {"run", run_json(campaign.info)},
       {"confidence", campaign.study.aggregate.confidence},
       {"methods", method_names(campaign)},
-      {"findings", findings_json(total.rows)},
+      {"findings", findings_json(total.rows, campaign.study.aggregate.confidence)},
       {"scenarios", scenarios_json(campaign)},
       {"dominance", dominance_json(total.dominance)},
       {"s0_perturbation", s0_perturbation_json(campaign.study, parts)},

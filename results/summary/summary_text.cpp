@@ -112,14 +112,15 @@ void add_compared(SummaryLines& text, const Study& study, const std::vector<Find
     if (!row.has_reported())
       continue;
     const bool share = row.is_share();
-    const char* agree = std::isnan(row.interval.lower)        ? "-"
-                        : row.interval.contains(row.reported) ? "yes"
-                                                              : "no";
+    const std::optional<bool> agrees = row.agrees(study.aggregate.confidence);
+    const char* agree = !agrees ? "-" : *agrees ? "yes" : "no";
     text.line("{:<{}}  {:>10}  {:>18}  {:>8}  {:>10}  {}", row.name, kNameWidth,
               number_text(row.value, share), interval_text(row.interval, share), row.count,
               number_text(row.reported, share), agree);
   }
-  text.line("(agree: the interval contains the reported number)");
+  text.line(
+      "(agree: a share with the sampling error of both, where the study tells that of the reported one;");
+  text.line(" any other number when the interval contains the reported one)");
 }
 
 /// What has no table of its own: bins of dominance, and methods, when there are several.

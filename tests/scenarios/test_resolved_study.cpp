@@ -111,6 +111,7 @@ std::string random_study_text() {
       "period = ['0', '9']\nbenchmark = ['1', '4']\n[reference]\n";
   for (const std::string& key : study_file_keys("reference"))
     text += "\"" + key + "\" = 0.123\n";
+  text += "share = {value = 0.5, of = 7}\n";
   return text;
 }
 

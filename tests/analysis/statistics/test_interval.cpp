@@ -116,6 +116,19 @@ TEST_CASE("a rate is a share with Wilson's interval") {
   CHECK(nothing.interval.upper == 1.0);
 }
 
+TEST_CASE("the interval of a difference is that of Newcombe's example") {
+  // 56 of 70 against 48 of 80 (Newcombe 1998, table II, method 10).
+  const Interval difference = mpm::difference_interval(mpm::rate(56, 70), 0.6, 80);
+  CHECK(difference.lower == Approx(0.0524).margin(5e-5));
+  CHECK(difference.upper == Approx(0.3339).margin(5e-5));
+  // One miss in 68 says nothing against 100 % of 150, and much against 100 % for certain.
+  CHECK(mpm::difference_interval(mpm::rate(67, 68), 1.0, 150).contains(0.0));
+  CHECK_FALSE(mpm::rate(67, 68).interval.contains(1.0));
+  CHECK_FALSE(mpm::difference_interval(mpm::rate(60, 68), 1.0, 150).contains(0.0));
+  CHECK(std::isnan(mpm::difference_interval(mpm::rate(0, 0), 0.5, 10).lower));
+  CHECK_THROWS_AS(mpm::difference_interval(mpm::rate(1, 2), 1.5, 10), mpm::InputError);
+}
+
 TEST_CASE("intervals refuse impossible counts and confidences") {
   using mpm::InputError;
   CHECK_THROWS_AS(wilson_interval(-1, 5), InputError);
