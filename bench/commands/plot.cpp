@@ -1,15 +1,12 @@
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "analysis/basis/tuned_basis.hpp"
-#include "analysis/sensitivity/nominal_estimator.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/experiment_loop.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 #include "plants/error.hpp"
@@ -26,25 +23,6 @@ struct PlotArguments {
   std::int64_t index = 0;
   std::string output;  ///< its extension names the format
 };
-
-/// The loop that was diagnosed: the one in the archive, or the same once more.
-LoopRecord loop_of(const Campaign& campaign, const ExperimentRecord& record) {
-  if (record.loop)
-    return *record.loop;
-  ExperimentRunner runner(campaign.study, campaign.basis, {}, qp_solver_factory(campaign.info.solver));
-  return std::move(*runner.run(record.draw.index, StorePolicy::all).loop);
-}
-
-/// y0 of the loop, from the S0 by which it was diagnosed. A loop without one of its own gets that of the
-/// study.
-NominalOutputs nominal_of(const Campaign& campaign, const ExperimentRecord& record, const LoopRecord& loop) {
-  const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
-  const std::optional<TunedBasis> own = tuned_basis(campaign.study, record.draw, factory);
-  const bool takes_own = own && own->basis.trajectory.status == ControlStatus::ok;
-  const Study& study = takes_own ? own->study : campaign.study;
-  const BasisCase& basis = takes_own ? own->basis : campaign.basis;
-  return NominalEstimator(study, basis.point, basis.sensitivity, factory).estimate(loop.trajectory);
-}
 
 ExitCode plot(const PlotArguments& options) {
   const FigureFormat format = figure_format_of(options.output);

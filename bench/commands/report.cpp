@@ -3,12 +3,15 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/experiment_loop.hpp"
 #include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
@@ -23,6 +26,21 @@ struct ReportArguments {
   std::string format = "svg";
 };
 
+/// The loops that the page draws. What is not in the archive is simulated again, unless that would start
+/// somebody's program.
+std::vector<LoopView> shown_loops(const Campaign& campaign) {
+  std::vector<LoopView> views;
+  for (const std::int64_t index : loops_to_show(campaign)) {
+    const ExperimentRecord& record = experiment_of(campaign, index);
+    if (!record.loop && !campaign.info.outside_files.empty())
+      continue;
+    LoopRecord loop = loop_of(campaign, record);
+    NominalOutputs nominal = nominal_of(campaign, record, loop);
+    views.push_back({index, std::move(loop.trajectory), std::move(nominal)});
+  }
+  return views;
+}
+
 ExitCode report(const ReportArguments& options) {
   const FigureFormat format = figure_format(options.format);
   if (!options.output.empty())
@@ -30,7 +48,7 @@ ExitCode report(const ReportArguments& options) {
   const Campaign campaign = read_input(options.archive);
   const StudyFindings findings = findings_of(campaign);
   if (!options.output.empty()) {
-    write_text(options.output, report_html(campaign, findings, options.archive));
+    write_text(options.output, report_html(campaign, findings, options.archive, shown_loops(campaign)));
     print_result(fmt::format("{}\n", options.output));
   }
   if (!options.figures.empty())

@@ -49,12 +49,13 @@ struct LegendEntry {
 
 /// One plot: made by PanelScript, drawn by draw_panel() and draw_figure().
 struct Panel {
-  std::string title;                         ///< label
-  std::string description;                   ///< what it shows, for people who do not see it
-  double height = 300;                       ///< pixels, for a width of kPanelWidth
-  std::string data;                          ///< data blocks of gnuplot
-  std::string commands;                      ///< the plot itself, in gnuplot's language
-  std::map<std::string, std::string> names;  ///< of points, by their hypertext in `data`
+  std::string title;                                ///< label
+  std::string description;                          ///< what it shows, for people who do not see it
+  double height = 300;                              ///< pixels, for a width of kPanelWidth
+  std::string data;                                 ///< data blocks of gnuplot
+  std::string commands;                             ///< the plot itself, in gnuplot's language
+  std::map<std::string, std::string> names;         ///< of points, by their hypertext in `data`
+  std::map<std::string, std::string> anchors = {};  ///< where points of a page lead, in the same way
 };
 
 inline constexpr double kPanelWidth = 420;  ///< pixels; text is 12 pixels high

@@ -163,7 +163,7 @@ std::string described(const Figure& figure) {
 std::string draw_panel(const Panel& panel, const std::string& id) {
   const std::string svg = run_gnuplot(terminal(FigureFormat::svg, kPanelWidth, panel.height) + kHouseStyle +
                                       panel.data + panel.commands);
-  return svg_element(svg, {id, panel.description, panel.names});
+  return svg_element(svg, {id, panel.description, panel.names, panel.anchors});
 }
 
 std::string draw_figure(const Figure& figure, FigureFormat format) {

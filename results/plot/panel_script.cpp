@@ -83,9 +83,11 @@ void PanelScript::steps(const std::vector<double>& x, const std::vector<double>&
   curve(x, y, pen, "steps");
 }
 
-std::string PanelScript::name_point(const std::string& name) {
+std::string PanelScript::name_point(const std::string& name, const std::string& anchor) {
   std::string key = fmt::format("#{}:{}", name_, panel_.names.size());
   panel_.names.emplace(key, name);
+  if (!anchor.empty())
+    panel_.anchors.emplace(key, anchor);
   return '"' + key + '"';
 }
 
@@ -103,7 +105,8 @@ void PanelScript::points(const std::vector<NamedPoint>& points, const Pen& pen) 
       continue;
     see(x_, x_extent_, point.x);
     see(y_, y_extent_, point.y);
-    rows += fmt::format("{} {} {}\n", plot_number(point.x), plot_number(point.y), name_point(point.name));
+    rows += fmt::format("{} {} {}\n", plot_number(point.x), plot_number(point.y),
+                        name_point(point.name, point.anchor));
   }
   draw_marks(rows, pen);
 }

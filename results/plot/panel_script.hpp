@@ -11,10 +11,11 @@
 
 namespace mpm {
 
-/// A point that says what it is when a mouse rests on it.
+/// A point that says what it is when a mouse rests on it, and on a page leads to where more is said of it.
 struct NamedPoint {
   double x, y;
   std::string name;
+  std::string anchor = {};  ///< of an element of the page; empty: it leads nowhere
 };
 
 /// A value with an interval, at the place `at` of the other axis.
@@ -61,7 +62,7 @@ class PanelScript {
   bool shows(double x, double y) const;
   std::string block(const std::string& rows);
   void curve(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen, const char* style);
-  std::string name_point(const std::string& name);
+  std::string name_point(const std::string& name, const std::string& anchor = {});
   void draw_marks(const std::string& rows, const Pen& pen);
   void plot(const std::string& item);
 

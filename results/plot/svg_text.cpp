@@ -36,14 +36,26 @@ std::string hypertext(std::string_view call) {
   return begin == end ? std::string() : std::string(call.substr(begin + 1, end - begin - 1));
 }
 
-void name_points(const pugi::xml_document& drawing, const std::map<std::string, std::string>& names) {
+/// Makes what is in the point a link. By the keyboard its row is reached in the table, not over hundreds of
+/// points.
+void link_point(pugi::xml_node point, const std::string& anchor) {
+  pugi::xml_node link = point.append_child("a");
+  link.append_attribute("href") = ("#" + anchor).c_str();
+  link.append_attribute("tabindex") = "-1";
+  while (point.first_child() != link)
+    link.append_move(point.first_child());
+}
+
+void name_points(const pugi::xml_document& drawing, const SvgText& text) {
   for (const pugi::xpath_node& found : drawing.select_nodes("//g[@onmousemove]")) {
     pugi::xml_node point = found.node();
     const std::string key = hypertext(point.attribute("onmousemove").value());
-    const auto name = names.find(key);
+    const auto name = text.names.find(key);
     point.remove_attributes();
     point.append_attribute("class") = "point";
-    point.prepend_child("title").text() = shown_text(name == names.end() ? key : name->second).c_str();
+    point.prepend_child("title").text() = shown_text(name == text.names.end() ? key : name->second).c_str();
+    if (const auto anchor = text.anchors.find(key); anchor != text.anchors.end())
+      link_point(point, anchor->second);
   }
 }
 
@@ -76,7 +88,7 @@ std::string svg_element(const std::string& drawing, const SvgText& text) {
 
   remove_waste(document);
   put_before_ids(document, text.id);
-  name_points(document, text.names);
+  name_points(document, text);
   describe(svg, text.description);
   std::ostringstream element;
   svg.print(element, "", pugi::format_raw, pugi::encoding_utf8);

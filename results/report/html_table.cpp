@@ -63,8 +63,8 @@ std::string html_interval(const Interval& interval, bool share) {
 HtmlTable::HtmlTable(std::string caption, std::vector<Column> columns)
     : caption_(std::move(caption)), columns_(std::move(columns)) {}
 
-void HtmlTable::row(const std::vector<std::string>& cells) {
-  rows_ += "<tr>";
+void HtmlTable::row(const std::vector<std::string>& cells, const std::string& anchor) {
+  rows_ += anchor.empty() ? "<tr>" : fmt::format("<tr id=\"{}\">", anchor);
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const std::string cell = i < cells.size() ? cells[i] : "";
     rows_ += i == 0 ? fmt::format("<th scope=\"row\"{}>{}</th>", class_of(columns_[i].align), cell)

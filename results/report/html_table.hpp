@@ -31,7 +31,8 @@ class HtmlTable {
   HtmlTable(std::string caption, std::vector<Column> columns);
 
   /// One cell a column; the first is the heading of its row. Fewer cells leave the last ones empty.
-  void row(const std::vector<std::string>& cells);
+  /// `anchor`: by which links find the row; empty: none.
+  void row(const std::vector<std::string>& cells, const std::string& anchor = {});
   /// A heading across all columns.
   void group(const std::string& title);
   std::string html() const;

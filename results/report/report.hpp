@@ -1,24 +1,40 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "analysis/sensitivity/nominal_output.hpp"
 #include "results/archive/campaign.hpp"
 #include "results/plot/figure_format.hpp"
+#include "scenarios/closed_loop.hpp"
 
 namespace mpm {
 
-/// What a campaign found as one HTML page that needs nothing else: no script, no network, figures as SVG
+/// A closed loop of an experiment, for the page to draw.
+struct LoopView {
+  std::int64_t index;
+  Trajectory trajectory;
+  NominalOutputs nominal;  ///< y0 and its parts, shapes as the trajectory
+};
+
+/// The experiments whose loops the page draws: one with a fault and a right verdict and a healthy one, each
+/// in the middle of its like by what the fault costs, and the costliest with a wrong verdict. None of named
+/// scenarios, which have figures of their own, and none where the chain of the thesis was not asked.
+std::vector<std::int64_t> loops_to_show(const Campaign& campaign);
+
+/// What a campaign found as one HTML page that needs nothing else: no network, figures as SVG
 /// (docs/report.md). `file` is the archive, for the commands that replay experiments; only its name is shown.
-/// The bytes depend on the campaign, the name and the version of gnuplot only.
+/// Of the loops that are not in `loops` the page draws none. The bytes depend on the campaign, the name and
+/// the version of gnuplot only.
 ///
 /// Errors: GnuplotError.
 std::string report_html(const Campaign& campaign, const StudyFindings& findings,
-                        const std::filesystem::path& file);
+                        const std::filesystem::path& file, const std::vector<LoopView>& loops);
 
-/// Writes the same figures, and the confusion matrices as heat maps, into `folder`, one file a figure, and
-/// returns their paths. The folder is made when its parent exists.
+/// Writes the same figures but those of loops, and the confusion matrices as heat maps, into `folder`, one
+/// file a figure, and returns their paths. The folder is made when its parent exists.
 ///
 /// Errors: GnuplotError; ArchiveError when a file cannot be written.
 std::vector<std::filesystem::path> write_figures(const Campaign& campaign, const StudyFindings& findings,

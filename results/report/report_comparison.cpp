@@ -10,6 +10,7 @@
 #include "results/plot/plot_text.hpp"
 #include "results/report/comparison_figures.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 
 namespace mpm {
@@ -185,12 +186,13 @@ std::string methods_table(const Methods& methods) {
 
 ReportSection comparison_section(const ReportInput& input) {
   const Campaign& campaign = input.campaign;
-  ReportSection section{"comparison", "Assessment methods compared", {}};
+  ReportSection section{"comparison", "Which method is right most often?", {}};
   const StudyFindings& summary = input.findings();
   if (assessed_loops(campaign) == 0) {
     section.leave_out("it needs an experiment that ran to its end; there is none.");
     return section;
   }
+  section.answer = comparison_answer(input);
   section.add(introduction(campaign));
   Figure rates = comparison_rates_figure(campaign.study, summary.methods);
   if (!rates.panels.empty())

@@ -7,6 +7,7 @@
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -46,7 +47,8 @@ Panel group_panel(const Campaign& campaign, const FalseAlarms& group) {
       }
       return {x, value,
               fmt::format("{}; {} of {} {:.3g}", experiment_line(study, record), index, cv_name(study, cv),
-                          value)};
+                          value),
+              experiment_anchor(campaign, record)};
     };
     costs.push_back(farthest("Ivar_basis", record.ivar_basis));
     (chain.impactful ? alarms : quiet).push_back(farthest("Ivar", chain.ivar));
@@ -102,6 +104,7 @@ std::string sensitivity_sentence(const Study& study) {
 ReportSection false_alarm_section(const ReportInput& input) {
   ReportSection section{"false-alarms", "Are there alarms where the model is right?", {}};
   const std::vector<FalseAlarms>& groups = input.false_alarms();
+  section.answer = false_alarm_answer(input);
   Figure figure;
   figure.name = "false-alarms";
   figure.caption =

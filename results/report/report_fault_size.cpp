@@ -5,6 +5,7 @@
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -63,15 +64,16 @@ void add_curve(PanelScript& panel, const std::vector<Whisker>& list, const Pen& 
   panel.upright_whiskers(list, pen);
 }
 
-Panel size_panel(const Study& study, FaultSize size, const std::vector<SizedFault>& faults) {
+Panel size_panel(const Campaign& campaign, FaultSize size, const std::vector<SizedFault>& faults) {
+  const Study& study = campaign.study;
   constexpr double kMissedRow = -7, kWrongRow = -15;  // below the shares, one mark an experiment
   const std::vector<SizeBin> bins = size_bins(faults, kBins, study.aggregate.confidence);
   std::vector<NamedPoint> missed, wrong;
   for (const SizedFault& fault : faults)
     if (!fault.diagnosed)
       (fault.flagged ? wrong : missed)
-          .push_back(
-              {fault.size, fault.flagged ? kWrongRow : kMissedRow, experiment_line(study, *fault.record)});
+          .push_back({fault.size, fault.flagged ? kWrongRow : kMissedRow,
+                      experiment_line(study, *fault.record), experiment_anchor(campaign, *fault.record)});
   const Labels text = labels(size, study);
   PanelScript panel(std::string(to_string(size)),
                     fmt::format("{}: {} experiments", text.title, faults.size()), {.label = text.axis},
@@ -107,13 +109,16 @@ ReportSection fault_size_section(const ReportInput& input) {
                    {"without impact", kMissed},
                    {"wrong verdict", kWrongVerdict},
                    {"no fault", kNoFault}};
+  std::vector<SizedFault> all;
   for (const FaultSize size : {FaultSize::gain_factor, FaultSize::time_constant_factor,
                                FaultSize::dead_time_shift, FaultSize::disturbance_deviation}) {
     const std::vector<SizedFault> faults =
         faults_by_size(study, chain_place(input.campaign), input.campaign.records, size);
     if (!faults.empty())
-      figure.panels.push_back(size_panel(study, size, faults));
+      figure.panels.push_back(size_panel(input.campaign, size, faults));
+    all.insert(all.end(), faults.begin(), faults.end());
   }
+  section.answer = fault_size_answer(all, study.aggregate.confidence);
   if (figure.panels.empty())
     section.leave_out("there is no feasible experiment with a single fault.");
   else

@@ -8,6 +8,7 @@
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -50,7 +51,8 @@ Panel kind_panel(const Campaign& campaign, const KindFindings& kind) {
       continue;
     const Judgement judgement = judge(study, record, *record.by(kChainMethod));
     (judgement.source() == Correctness::right ? right : wrong)
-        .push_back({static_cast<double>(record.draw.index), i_mpm, experiment_line(study, record)});
+        .push_back({static_cast<double>(record.draw.index), i_mpm, experiment_line(study, record),
+                    experiment_anchor(campaign, record)});
   }
   const Rate& rate = kind.source_recognised;
   PanelScript panel(fmt::format("impm_{}", to_string(kind.kind)),
@@ -70,8 +72,9 @@ Panel dominance_panel(const Campaign& campaign, const std::vector<DominanceBin>&
     if (const double i_mpm = judged_indicator(study, record);
         record.draw.kind == ExperimentKind::mpm_ud && std::isfinite(i_mpm)) {
       const double dominance = record.by(kChainMethod)->number("dominance_mpm");
-      points.push_back(
-          {dominance, i_mpm, experiment_line(study, record) + fmt::format(", dominance {:.2f}", dominance)});
+      points.push_back({dominance, i_mpm,
+                        experiment_line(study, record) + fmt::format(", dominance {:.2f}", dominance),
+                        experiment_anchor(campaign, record)});
     }
   std::vector<Whisker> means;
   for (const DominanceBin& bin : bins)
@@ -123,6 +126,7 @@ ReportSection indicator_section(const ReportInput& input) {
     section.leave_out("no experiment with a single fault has an I_MPM to judge.");
   else
     section.add(std::move(figure));
+  section.answer = indicator_answer(input);
   return section;
 }
 
@@ -137,6 +141,7 @@ ReportSection dominance_section(const ReportInput& input) {
     section.leave_out("no experiment with both faults has a dominance and an I_MPM.");
     return section;
   }
+  section.answer = dominance_answer(input);
   Figure figure;
   figure.name = "dominance";
   figure.caption = fmt::format(

@@ -7,6 +7,7 @@
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -78,6 +79,7 @@ ReportSection interaction_section(const ReportInput& input) {
                                               : "T_0 has numbers that are not finite.");
     return section;
   }
+  section.answer = interaction_answer(input, interaction);
   Figure figure;
   figure.name = "interaction";
   figure.caption =

@@ -6,6 +6,7 @@
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -94,6 +95,7 @@ Panel matrix_panel(const Study& study, const KindFindings& kind) {
 ReportSection location_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
   ReportSection section{"location", "Is the right CV found?", {}};
+  section.answer = location_answer(input);
   std::string tables;
   std::string without;
   Figure figure;

@@ -10,6 +10,8 @@
 #include "results/report/figure_html.hpp"
 #include "results/report/html_page.hpp"
 #include "results/report/report.hpp"
+#include "results/report/report_answers.hpp"
+#include "results/report/report_glossary.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -21,6 +23,8 @@ std::string section_html(const ReportSection& section, std::size_t number) {
       "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\"><span "
       "class=\"index\">{1}</span>{2}</h2>\n",
       section.id, number, html_label(section.title));
+  if (!section.answer.empty())
+    html += "<p class=\"answer\">" + section.answer + "</p>\n";
   for (const auto& piece : section.content)
     html += std::holds_alternative<Html>(piece) ? std::get<Html>(piece).text
                                                 : figure_html(std::get<Figure>(piece));
@@ -47,9 +51,10 @@ std::vector<Figure> all_figures(const ReportSection& section) {
 }  // namespace
 
 std::string report_html(const Campaign& campaign, const StudyFindings& findings,
-                        const std::filesystem::path& file) {
+                        const std::filesystem::path& file, const std::vector<LoopView>& loops) {
   const SummaryContent parts = summary_content(campaign, findings);
-  const std::vector<ReportSection> sections = report_sections({campaign, parts, file.filename().string()});
+  const ReportInput input{campaign, parts, file.filename().string(), loops};
+  const std::vector<ReportSection> sections = report_sections(input);
   std::string body;
   for (std::size_t i = 0; i < sections.size(); ++i)
     body += section_html(sections[i], i + 1);
@@ -57,15 +62,15 @@ std::string report_html(const Campaign& campaign, const StudyFindings& findings,
   const std::string study = html_text(campaign.study.name);
   return html_page(
       {campaign.study.name, html_text(campaign.study.title),
-       fmt::format(
-           "<p>Study <strong>{}</strong>, archive <code>{}</code>. <span class=\"hint\">Rest a mouse on "
-           "a point to see its experiment.</span></p>\n{}",
-           study, file_name, contents_html(sections)),
+       fmt::format("<p>Study <strong>{}</strong>, archive <code>{}</code>. <span class=\"hint\">Rest a mouse "
+                   "on a point to "
+                   "see its experiment, press it to get there.</span></p>\n{}{}",
+                   study, file_name, verdict_html(input), contents_html(sections)),
        fmt::format("Made by <code>mpmbench report</code> from {}; written by mpmbench {}. Intervals have a "
                    "confidence level of {:g}&nbsp;%.",
                    file_name, html_text(campaign.info.mpmbench_version),
                    100.0 * campaign.study.aggregate.confidence),
-       campaign.info.mpmbench_version},
+       campaign.info.mpmbench_version, glossary_html(findings.chain() != nullptr)},
       body);
 }
 
@@ -78,7 +83,7 @@ std::vector<std::filesystem::path> write_figures(const Campaign& campaign, const
                                    error ? ": " : "", error ? error.message() : ""));
   const SummaryContent parts = summary_content(campaign, findings);
   std::vector<std::filesystem::path> files;
-  for (const ReportSection& section : report_sections({campaign, parts, ""}))
+  for (const ReportSection& section : report_sections({campaign, parts, "", {}}))
     for (const Figure& figure : all_figures(section)) {
       files.push_back(folder / fmt::format("{}.{}", figure.name, to_string(format)));
       const std::string drawing = draw_figure(figure, format);

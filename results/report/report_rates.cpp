@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -18,17 +20,23 @@ namespace {
 const Pen kMeasured{colour::kBlue, Dash::solid, Mark::dot, 2.5, 0.8};
 const Pen kReported{colour::kVermillion, Dash::none, Mark::hollow_diamond, 1.0, 1.3};
 
-std::string agreement(const Finding& finding) {
-  if (!finding.has_reported() || std::isnan(finding.interval.lower))
+std::string agreement(const Finding& finding, double confidence) {
+  const std::optional<bool> agrees = finding.agrees(confidence);
+  if (!agrees)
     return "";
-  return finding.interval.contains(finding.reported) ? "<span class=\"yes\">yes</span>"
-                                                     : "<span class=\"no\">no</span>";
+  return *agrees ? "<span class=\"yes\">yes</span>" : "<span class=\"no\">no</span>";
 }
 
-void add_row(HtmlTable& table, const Finding& finding) {
+/// The reported value, and of how many experiments it is a share.
+std::string reported_cell(const Finding& finding) {
+  return html_number(finding.reported, finding.is_share()) +
+         (finding.reported_of > 0 ? fmt::format("<br><small>of {}</small>", finding.reported_of) : "");
+}
+
+void add_row(HtmlTable& table, const Finding& finding, double confidence) {
   const bool share = finding.is_share();
   table.row({html_label(finding.label), html_number(finding.value, share),
-             html_interval(finding.interval, share), html_number(finding.reported, share), agreement(finding),
+             html_interval(finding.interval, share), reported_cell(finding), agreement(finding, confidence),
              fmt::format("{}", finding.count)});
 }
 
@@ -42,15 +50,18 @@ std::string rates_table(const ReportInput& input) {
   const std::vector<Finding>& rows = input.findings().rows;
   const bool any =
       std::any_of(rows.begin(), rows.end(), [](const Finding& finding) { return finding.has_reported(); });
-  HtmlTable table(any ? "Measured values beside those that the study names as reported, and whether the "
-                        "reported value lies in the interval."
-                      : "Measured values; the study names no reported ones.",
-                  {{"Quantity", HtmlTable::Align::left},
-                   {"Measured"},
-                   {interval_title(input.campaign.study)},
-                   {"Reported"},
-                   {"In interval", HtmlTable::Align::left},
-                   {"Count"}});
+  HtmlTable table(
+      any ? "Measured values beside those that the study names as reported. They agree when both can "
+            "be the same truth: a share with the sampling error of both, where the number of "
+            "experiments behind the reported one is known; any other number when the "
+            "interval holds the reported one."
+          : "Measured values; the study names no reported ones.",
+      {{"Quantity", HtmlTable::Align::left},
+       {"Measured"},
+       {interval_title(input.campaign.study)},
+       {"Reported"},
+       {"Agree", HtmlTable::Align::left},
+       {"Count"}});
   const auto group =
       [&](
           const std::string& heading, FindingGroup of,
@@ -62,7 +73,7 @@ std::string rates_table(const ReportInput& input) {
           if (first)
             table.group(heading);
           first = false;
-          add_row(table, finding);
+          add_row(table, finding, input.campaign.study.aggregate.confidence);
         }
       };
   group("All experiments", FindingGroup::study);
@@ -141,11 +152,12 @@ Figure headline_figure(const ReportInput& input) {
 }  // namespace
 
 ReportSection rates_section(const ReportInput& input) {
-  ReportSection section{"rates", "Headline rates", {}};
+  ReportSection section{"rates", "How often is the diagnosis right?", {}};
   if (input.findings().experiments == 0) {
     section.leave_out("the archive has no experiments.");
     return section;
   }
+  section.answer = rates_answer(input);
   section.add(headline_figure(input));
   section.add(rates_table(input));
   return section;

@@ -9,6 +9,7 @@
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -144,6 +145,7 @@ ReportSection roc_section(const ReportInput& input) {
                     roc.curve.positives, roc.curve.negatives));
     return section;
   }
+  section.answer = roc_answer(roc.curve, roc.area, roc.at_study);
   Figure figure;
   figure.name = "roc";
   figure.caption =

@@ -22,18 +22,30 @@ std::string plant_text(const PlantModel& plant) {
                      variables(plant.cvs, "CV"), variables(plant.mvs, "MV"), variables(plant.mds, "MD"));
 }
 
+/// What the controller holds its CVs to.
+std::string controller_name(const Study& study) {
+  if (study.controller_program)
+    return fmt::format("program <code>{}</code>",
+                       html_text(fmt::format("{}", fmt::join(study.controller_program->command(), " "))));
+  const MpcOptions& controller = study.controller;
+  const std::string holds =
+      controller.has_setpoints()
+          ? controller.has_soft_limits() ? "MPC with setpoints and ranges" : "setpoint MPC"
+          : "range MPC";
+  return holds + (controller.has_targets() ? " with target optimizer" : "");
+}
+
 std::string controller_text(const Study& study) {
-  return fmt::format(
-      "range MPC with target optimizer<br><small>sample time {:g} {}, prediction horizon {}, control horizon "
-      "{}</small>",
-      study.controller.sample_time, html_text(unit_text(study.plant.time_unit)),
-      study.controller.prediction_horizon, study.controller.control_horizon);
+  return fmt::format("{}<br><small>sample time {:g} {}, prediction horizon {}, control horizon {}</small>",
+                     controller_name(study), study.controller.sample_time,
+                     html_text(unit_text(study.plant.time_unit)), study.controller.prediction_horizon,
+                     study.controller.control_horizon);
 }
 
 std::string experiments_text(const ReportInput& input) {
   const StudyFindings& total = input.findings();
-  return fmt::format("{} of {} samples<br><small>{}; {} infeasible, {} failed</small>", total.experiments,
-                     input.campaign.study.simulation.samples, kinds_text(input.campaign),
+  return fmt::format("{}, each a loop of {} samples<br><small>{}; {} infeasible, {} failed</small>",
+                     total.experiments, input.campaign.study.simulation.samples, kinds_text(input.campaign),
                      total.infeasible.hits, total.failed);
 }
 

@@ -6,6 +6,7 @@
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -189,6 +190,7 @@ ReportSection s0_perturbation_section(const ReportInput& input) {
     section.leave_out("the study does not perturb S0 (s0_perturbation).");
     return section;
   }
+  section.answer = s0_answer(input);
   if (input.parts.s0_curves.empty())
     section.leave_out("there is no feasible experiment whose fault is on a CV at a soft limit.");
   else

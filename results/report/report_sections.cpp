@@ -30,6 +30,8 @@ std::vector<ReportSection> report_sections(const ReportInput& input) {
   };
   if (!named)
     add({rates_section});
+  if (chain && !named)
+    add({loops_section});
   if (!input.false_alarms().empty())
     add({false_alarm_section});
   if (chain && named)
@@ -41,7 +43,7 @@ std::vector<ReportSection> report_sections(const ReportInput& input) {
     add({comparison_section});
   add({sensitivity_section, interaction_section, s0_perturbation_section, basis_section, solver_section});
   if (chain && !named)
-    add({wrong_verdict_section});
+    add({wrong_verdict_section, experiments_section});
   return sections;
 }
 

@@ -6,6 +6,7 @@
 
 #include "results/archive/campaign.hpp"
 #include "results/plot/figure.hpp"
+#include "results/report/report.hpp"
 #include "results/summary/summary_content.hpp"
 
 namespace mpm {
@@ -14,14 +15,21 @@ namespace mpm {
 struct ReportInput {
   const Campaign& campaign;
   const SummaryContent& parts;
-  std::string file;  ///< name of the archive
+  std::string file;             ///< name of the archive
+  std::vector<LoopView> loops;  ///< those that can be drawn
 
   const StudyFindings& findings() const { return parts.findings; }
   /// What the chain of the thesis shows of each kind, and where model and plant agree; nothing in a study
   /// that does not run it.
   const std::vector<KindFindings>& kinds() const;
   const std::vector<FalseAlarms>& false_alarms() const;
+  /// Is the loop of this experiment drawn?
+  bool shows_loop(std::int64_t index) const;
 };
+
+/// Where points lead that stand for this experiment: its row in experiments_section(); empty when it has
+/// none.
+std::string experiment_anchor(const Campaign& campaign, const ExperimentRecord& record);
 
 /// A piece of HTML.
 struct Html {
@@ -33,6 +41,7 @@ struct ReportSection {
   std::string id;  ///< its anchor
   std::string title;
   std::vector<std::variant<Html, Figure>> content;
+  std::string answer = {};                ///< HTML: a sentence below the title
   std::vector<Figure> file_figures = {};  ///< drawn into files only: the page shows a table in their place
 
   void add(std::string html) { content.emplace_back(Html{std::move(html)}); }
@@ -46,6 +55,8 @@ struct ReportSection {
 ReportSection run_section(const ReportInput& input);              ///< what was run, and its self-check
 ReportSection scenarios_section(const ReportInput& input);        ///< named scenarios (6.11 to 6.13, 6.15)
 ReportSection rates_section(const ReportInput& input);            ///< the headline rates
+ReportSection loops_section(const ReportInput& input);            ///< a faulty loop and a healthy one
+ReportSection experiments_section(const ReportInput& input);      ///< all experiments, a row each
 ReportSection false_alarm_section(const ReportInput& input);      ///< verdicts where model and plant agree
 ReportSection variance_section(const ReportInput& input);         ///< Ivar_basis against Ivar (6.18, 6.22)
 ReportSection location_section(const ReportInput& input);         ///< confusion matrices (6.20, 6.23)
@@ -60,6 +71,9 @@ ReportSection basis_section(const ReportInput& input);            ///< the basis
 ReportSection solver_section(const ReportInput& input);           ///< effort and accuracy of the QP solver
 ReportSection comparison_section(const ReportInput& input);       ///< methods of assessment, side by side
 ReportSection wrong_verdict_section(const ReportInput& input);    ///< wrong verdicts and failures, one by one
+
+/// The loops behind wrong verdicts, those of them that can be drawn.
+void add_wrong_loops(ReportSection& section, const ReportInput& input);
 
 /// Those that the study can have: rates and what belongs to them for random experiments, false alarms after
 /// the rates where model and plant agree in some of them, and `scenarios` in their place for named ones;

@@ -6,6 +6,7 @@
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/html_table.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -22,7 +23,8 @@ struct Pairs {
   double least = INFINITY, largest = -INFINITY;  ///< Ivar
   double least_basis = INFINITY;                 ///< Ivar_basis
 
-  void add(const Study& study, const ExperimentRecord& record) {
+  void add(const Campaign& campaign, const ExperimentRecord& record) {
+    const Study& study = campaign.study;
     const Diagnosis chain = record.chain();
     for (Eigen::Index cv = 0; cv < chain.ivar.size(); ++cv) {
       const double x = chain.ivar(cv);
@@ -35,7 +37,8 @@ struct Pairs {
       (cv == record.draw.true_cv() ? affected : others)
           .push_back({x, y,
                       fmt::format("experiment {} ({}), {}: Ivar {:.3g}, Ivar_basis {:.3g}", record.draw.index,
-                                  kind_name(record.draw.kind), cv_name(study, cv), x, y)});
+                                  kind_name(record.draw.kind), cv_name(study, cv), x, y),
+                      experiment_anchor(campaign, record)});
     }
   }
   bool empty() const { return affected.empty() && others.empty(); }
@@ -45,7 +48,7 @@ Pairs pairs_of(const Campaign& campaign, ExperimentKind kind) {
   Pairs pairs;
   for (const ExperimentRecord& record : campaign.records)
     if (record.draw.kind == kind && record.status == ExperimentStatus::ok)
-      pairs.add(campaign.study, record);
+      pairs.add(campaign, record);
   return pairs;
 }
 
@@ -130,6 +133,7 @@ ReportSection variance_section(const ReportInput& input) {
     section.leave_out("no experiment has variance indices.");
     return section;
   }
+  section.answer = variance_answer(input);
   section.add(std::move(figure));
   section.add(regression_table(input));
   return section;

@@ -54,15 +54,18 @@ std::string wrong_table(const ReportInput& input) {
     const Diagnosis verdict = record.chain();
     const Judgement judgement = judge(study, record, *record.by(kChainMethod));
     const bool faultless = is_faultless(record.draw.kind);
-    table.row({fmt::format("{}", record.draw.index), kind_name(record.draw.kind), fault_cell(input, record),
-               html_text(cv_name(study, record.draw.true_cv())),
-               marked(html_text(cv_name(study, verdict.predicted_cv)),
-                      faultless ? Correctness::wrong : judgement.predicted_cv),
-               marked(source_name(verdict.predicted_source),
-                      faultless ? Correctness::wrong : judgement.predicted_source),
-               html_number(verdict.indicator.i_mpm), of_cv(verdict.ivar, record.draw.true_cv()),
-               of_cv(verdict.ivar_diag, record.draw.true_cv()),
-               of_cv(verdict.ivar_diag, verdict.predicted_cv), html_number(verdict.alone.dominance_mpm)});
+    const std::string number = fmt::format("{}", record.draw.index);
+    table.row(
+        {input.shows_loop(record.draw.index) ? fmt::format("<a href=\"#loop-{0}\">{0}</a>", number) : number,
+         kind_name(record.draw.kind), fault_cell(input, record),
+         html_text(cv_name(study, record.draw.true_cv())),
+         marked(html_text(cv_name(study, verdict.predicted_cv)),
+                faultless ? Correctness::wrong : judgement.predicted_cv),
+         marked(source_name(verdict.predicted_source),
+                faultless ? Correctness::wrong : judgement.predicted_source),
+         html_number(verdict.indicator.i_mpm), of_cv(verdict.ivar, record.draw.true_cv()),
+         of_cv(verdict.ivar_diag, record.draw.true_cv()), of_cv(verdict.ivar_diag, verdict.predicted_cv),
+         html_number(verdict.alone.dominance_mpm)});
   }
   std::string html = table.html();
   if (wrong.size() > kMostRows)
@@ -103,6 +106,7 @@ ReportSection wrong_verdict_section(const ReportInput& input) {
                   "FILE.svg</code> draws the closed loop of one.</p>\n",
                   input.parts.wrong.size(), impactful, html_text(input.file)));
   section.add(wrong_table(input));
+  add_wrong_loops(section, input);
   return section;
 }
 

@@ -158,7 +158,7 @@ def check_other_commands(compare, archive, later):
     page = compare.folder / "page.html"
     for path, there in ((later, True), (archive, False)):
         compare.run("report", path, "-o", page)
-        assert ("Assessment methods compared" in page.read_text(encoding="utf-8")) == there
+        assert ("Which method is right most often?" in page.read_text(encoding="utf-8")) == there
     gates = compare.folder / "gates.toml"
     gates.write_text('[[gate]]\naggregate = "compare.sse.answered"\nminimum = 1\n', encoding="utf-8")
     assert "compare.sse.answered" in compare.run("check", later, "--gates", gates)

@@ -5,8 +5,9 @@ usage: check_report.py MPMBENCH WRITE_SAMPLE_ARCHIVE [CHROMIUM]
 Without a Chromium the page is checked as text only and the exit code is 77: skipped.
 """
 
+import base64
+import hashlib
 import html.parser
-import json
 import os
 import pathlib
 import re
@@ -14,40 +15,33 @@ import subprocess
 import sys
 import tempfile
 
+from browser import Browser
+
 SKIPPED = 77
-SECTIONS = ["run", "rates", "variance", "location", "indicator", "dominance", "roc", "fault-size", "comparison",
-            "sensitivity", "interaction", "s0-perturbation", "basis", "solver", "wrong-verdicts"]
+SECTIONS = ["run", "rates", "loops", "variance", "location", "indicator", "dominance", "roc", "fault-size", "comparison",
+            "sensitivity", "interaction", "s0-perturbation", "basis", "solver", "wrong-verdicts",
+            "experiments"]
 FIGURES = ["headline-rates", "ivar", "i-mpm", "dominance", "roc", "fault-size", "comparison-rates",
            "comparison-roc-impact", "t0", "interaction", "s0-perturbation", "s0-structure", "basis-case"]
+# Loops are drawn on the page only; a file of one is what `plot` writes.
+LOOPS_ON_PAGE = [FIGURES[0], "loop-7", *FIGURES[1:]]
 SCENARIO_SECTIONS = ["run", "scenarios", "comparison", "sensitivity", "interaction", "s0-perturbation", "basis",
                      "solver"]
 SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "scenario-ellipses", "scenario-acf-basis", "scenario-acf-0",
                     "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "comparison-roc-impact", "t0",
                     "basis-case"]
-PHONE, DESKTOP = 390, 1280  # pixels
+WIDTHS = [1280, 390, 320]  # pixels: a desk and two phones
 
-# The page in a frame of either width, which a script can look into because it has the same origin.
-PROBE = """<!DOCTYPE html><meta charset="utf-8"><body><pre id="result">no result</pre><script>
-const page = %s, result = [];
-let left = 2;
-for (const width of [%d, %d]) {
-  const frame = document.createElement("iframe");
-  frame.style.cssText = "border:0;height:900px;width:" + width + "px";
-  frame.srcdoc = page;
-  frame.onload = () => {
-    const inside = frame.contentDocument, figures = [...inside.querySelectorAll("figure")];
-    const drawn = figures.filter(f => [...f.querySelectorAll(".panels svg")].every(
-      s => s.getBoundingClientRect().width > 150 && s.getBoundingClientRect().height > 100
-           && s.querySelectorAll("path").length > 3));
-    const lines = [...inside.querySelectorAll("svg text")].map(t => t.getBoundingClientRect().height);
-    result.push(["width", width, "overflow", inside.documentElement.scrollWidth - inside.documentElement.clientWidth,
-                 "figures", figures.map(f => f.id).join(","), "drawn", drawn.length,
-                 "smallest-text", Math.min(...lines).toFixed(1)].join(" "));
-    if (--left === 0) document.getElementById("result").textContent = "RESULT\\n" + result.join("\\n") + "\\nEND";
-  };
-  document.body.append(frame);
-}
-</script>"""
+# What a reader of the page would notice.
+LOOK = """(() => {
+  const figures = [...document.querySelectorAll("figure")];
+  const drawn = figures.filter(f => [...f.querySelectorAll(".panels svg")].every(
+    s => s.getBoundingClientRect().width > 150 && s.getBoundingClientRect().height > 70
+         && s.querySelectorAll("path").length > 3));
+  const lines = [...document.querySelectorAll("svg text")].map(t => t.getBoundingClientRect().height);
+  return {overflow: document.documentElement.scrollWidth - document.documentElement.clientWidth,
+          figures: figures.map(f => f.id), drawn: drawn.length, smallest: Math.min(...lines)};
+})()"""
 
 
 class Page(html.parser.HTMLParser):
@@ -91,7 +85,10 @@ def check_text(text, sections, figures):
     for reference in page.references:
         assert reference == "data:," or reference[0] == "#" and reference[1:] in page.ids, reference
     assert not page.loads, page.loads
-    assert "<script" not in text and "@import" not in text and "url(" not in text
+    assert text.count("<script") == 1 and "@import" not in text and "url(" not in text
+    script = re.search(r"<script>(.*?)</script>", text, re.DOTALL)[1]
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"default-src 'none'; style-src 'unsafe-inline'; img-src data:; script-src 'sha256-{digest}'" in text
     assert 'name="viewport"' in text and "@media print" in text
     assert [a["id"] for tag, a in page.elements if tag == "section"] == sections
     assert [a["id"] for tag, a in page.elements if tag == "figure"] == ["figure-" + name for name in figures]
@@ -100,41 +97,72 @@ def check_text(text, sections, figures):
             assert attributes.get("role") == "img" and attributes.get("aria-label"), attributes
 
 
-def run_chromium(chromium, folder, *options):
-    """Its standard output; an error on the console is a failure."""
-    result = subprocess.run(
-        [chromium, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
-         f"--user-data-dir={folder / 'profile'}", "--enable-logging=stderr", "--virtual-time-budget=20000", *options],
-        capture_output=True, text=True, timeout=300, env={**os.environ, "HOME": str(folder)})
-    assert result.returncode == 0, (result.returncode, result.stderr)
-    console = [line for line in result.stderr.splitlines() if "CONSOLE" in line]
-    assert not console, console
-    return result.stdout
+def check_points(browser):
+    """A point that is clicked leads to the row of its experiment, one that is nearly hit by a finger, too."""
+    place = """(() => {
+      const point = document.querySelector(".point a"), box = point.getBoundingClientRect();
+      return {x: box.x + box.width / 2, y: box.y + box.height / 2, row: point.getAttribute("href").slice(1)};
+    })()"""
+    for miss in 0, 9:
+        browser.evaluate('document.activeElement.blur(); history.replaceState(null, "", "#"); '
+                         'document.querySelector(".point a").scrollIntoView({block: "center", behavior: "instant"})')
+        at = browser.evaluate(place)
+        browser.click(at["x"] + miss, at["y"])
+        browser.wait_for("location.hash.startsWith('#experiment-')")
+        row = browser.evaluate("location.hash.slice(1)") if miss else at["row"]
+        browser.wait_for(f"document.activeElement.id === '{row}'")
+        browser.wait_for(f"""(() => {{ const box = document.getElementById('{row}').getBoundingClientRect();
+                                       return box.top >= 0 && box.bottom <= innerHeight; }})()""")
 
 
-def check_in_browser(chromium, folder, file, figures):
-    text = file.read_text(encoding="utf-8")
-    run_chromium(chromium, folder, f"--window-size={DESKTOP},3000", f"--screenshot={folder / 'page.png'}",
-                 file.as_uri())
-    assert (folder / "page.png").stat().st_size > 50_000
+def check_table(browser):
+    """The table of the experiments sorts by the keyboard alone and filters; a row that is filtered out is shown when
+    somebody comes for it."""
+    numbers = "[...document.querySelectorAll('#experiments tbody tr')].filter(r => !r.hidden).map(r => +r.cells[0].innerText)"
+    browser.evaluate("document.querySelector('#experiments thead button').focus()")
+    before = browser.evaluate(numbers)
+    for order in sorted(before), sorted(before, reverse=True):
+        browser.press("Enter", 13)
+        assert browser.evaluate(numbers) == order, browser.evaluate(numbers)
+    browser.press("Tab", 9)
+    assert browser.evaluate("document.activeElement.innerText") == "Kind"
+    if len(before) > 12:
+        browser.evaluate("""(() => { const field = document.querySelector('#experiments .filter input');
+                             field.value = 'ud y'; field.dispatchEvent(new Event('input')); })()""")
+        assert 0 < len(browser.evaluate(numbers)) < len(before)
+        hidden = browser.evaluate("document.querySelector('#experiments tr[hidden]').id")
+        browser.evaluate(f"location.hash = '{hidden}'")
+        browser.wait_for(f"document.activeElement.id === '{hidden}'")
+        assert len(browser.evaluate(numbers)) == len(before)
 
-    # The policy of the page forbids scripts, and a frame inherits the policy of the probe: leave it out there.
-    free = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", text)
-    assert free != text
-    probe = folder / "probe.html"
-    probe.write_text(PROBE % (json.dumps(free).replace("</", "<\\/"), PHONE, DESKTOP), encoding="utf-8")
-    dom = run_chromium(chromium, folder, f"--window-size={DESKTOP + 100},2000", "--dump-dom", probe.as_uri())
-    found = re.search(r"RESULT\n(.*?)\nEND", dom, re.DOTALL)
-    assert found, dom[-2000:]
-    lines = sorted(found[1].splitlines())
-    assert len(lines) == 2, lines
-    for line in lines:
-        words = line.split()
-        values = dict(zip(words[::2], words[1::2]))
-        assert int(values["overflow"]) <= 0, line  # nothing sticks out of the screen
-        assert values["figures"] == ",".join("figure-" + name for name in figures), line
-        assert int(values["drawn"]) == len(figures), line
-        assert float(values["smallest-text"]) >= 7, line  # subscripts on a phone
+
+def check_theme(browser, address):
+    ground = "getComputedStyle(document.body).backgroundColor"
+    browser.open(address, 1280)
+    light = browser.evaluate(ground)
+    browser.open(address, 1280, dark=True)
+    dark = browser.evaluate(ground)
+    assert light != dark
+    browser.evaluate("document.querySelector('.theme').click()")
+    assert browser.evaluate(ground) == light
+
+
+def check_in_browser(browser, file, figures, random):
+    for width in WIDTHS:
+        browser.open(file.as_uri(), width)
+        look = browser.evaluate(LOOK)
+        assert look["overflow"] <= 0, (width, look)  # nothing sticks out of the screen
+        assert look["figures"] == ["figure-" + name for name in figures], look
+        assert look["drawn"] == len(figures), (width, look)
+        assert look["smallest"] >= (7 if width > 320 else 5.5), (width, look)  # subscripts on a phone
+        if random:
+            check_points(browser)
+            check_table(browser)
+    assert len(browser.pdf()) > 50_000
+    check_theme(browser, file.as_uri())
+    assert not browser.complaints, browser.complaints
+    assert {address.split("#")[0] for address in browser.requests} <= {file.as_uri(), "data:,"}, browser.requests
+    browser.requests.clear()
 
 
 def main(program, write_sample_archive, chromium=""):
@@ -150,7 +178,7 @@ def main(program, write_sample_archive, chromium=""):
         subprocess.run([write_sample_archive, archive], check=True, timeout=300)
         assert run("report", archive, "-o", page).strip() == str(page)
         text = page.read_text(encoding="utf-8")
-        check_text(text, SECTIONS, FIGURES)
+        check_text(text, SECTIONS, LOOPS_ON_PAGE)
         assert re.search(r"<title>experiment \d+ \(UD\): disturbance on y", text)
         assert re.search(r"<title>experiment \d+ \(MPM\): \w+", text)
 
@@ -198,8 +226,9 @@ def main(program, write_sample_archive, chromium=""):
         if not chromium:
             print("skipped: chromium is not installed (.ci/packages.txt), so the page was not opened in a browser")
             return SKIPPED
-        check_in_browser(chromium, folder, page, FIGURES)
-        check_in_browser(chromium, folder, named, SCENARIO_FIGURES)
+        with Browser(chromium, folder) as browser:
+            check_in_browser(browser, page, LOOPS_ON_PAGE, random=True)
+            check_in_browser(browser, named, SCENARIO_FIGURES, random=False)
     return 0
 
 

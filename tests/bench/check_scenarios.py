@@ -67,7 +67,7 @@ def main(program):
         assert "disturbance on y2" in (folder / "9.svg").read_text(encoding="utf-8")
         run("report", whole, "-o", folder / "whole.html")
         page = (folder / "whole.html").read_text(encoding="utf-8")
-        assert "Named scenarios" in page and "Headline rates" not in page
+        assert "Named scenarios" in page and "How often is the diagnosis right?" not in page
 
         gates = folder / "gates.toml"
         shutil.copy(whole, folder / "baseline.h5")

@@ -100,7 +100,7 @@ TEST_CASE("foreign method: it is in findings, summary, comparison, report and ta
   const nlohmann::json json = nlohmann::json::parse(comparison_json(campaign, findings));
   CHECK(json["methods"].back()["title"] == "Somebody (2031)");
   CHECK(nlohmann::json::parse(summary_json(campaign, findings))["methods"].back() == "foreign");
-  CHECK_THAT(report_html(campaign, findings, "a.h5"),
+  CHECK_THAT(report_html(campaign, findings, "a.h5", {}),
              Contains("Somebody (2031)") && Contains("something &lt;new&gt; is wrong"));
   CHECK_THAT(csv_table(campaign, "foreign"), Contains("novelty") && Contains("very_bad"));
 }
@@ -120,7 +120,7 @@ TEST_CASE("foreign method: alone in an archive it needs nothing of the methods t
   const StudyFindings findings = findings_of(read);
   CHECK(findings.chain() == nullptr);
   CHECK_THAT(summary_text(read, findings, "a.h5"), Contains("compare") || Contains("experiments"));
-  CHECK_THAT(report_html(read, findings, "a.h5"), Contains("Assessment methods compared"));
+  CHECK_THAT(report_html(read, findings, "a.h5", {}), Contains("Which method is right most often?"));
 }
 
 }  // namespace

@@ -1,0 +1,305 @@
+#include "results/report/report_answers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/methods/chain_numbers.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+/// Rates of experiments that have none in common, as one.
+Rate together(const std::vector<Rate>& rates, double confidence) {
+  std::int64_t hits = 0, total = 0;
+  for (const Rate& one : rates) {
+    hits += one.hits;
+    total += one.total;
+  }
+  return rate(hits, total, confidence);
+}
+
+double confidence_of(const ReportInput& input) {
+  return input.campaign.study.aggregate.confidence;
+}
+
+/// A rate of the chain over the experiments of all kinds with a fault.
+Rate of_all_kinds(const ReportInput& input, Rate KindFindings::*member) {
+  std::vector<Rate> rates;
+  for (const KindFindings& kind : input.kinds())
+    rates.push_back(kind.*member);
+  return together(rates, confidence_of(input));
+}
+
+/// Named scenarios with a verdict of the chain, and those whose every CV is judged rightly.
+Rate right_scenarios(const ReportInput& input) {
+  std::int64_t right = 0, judged = 0;
+  for (const ExperimentRecord& record : input.campaign.records)
+    if (const AssessmentRecord* const chain = record.by(kChainMethod);
+        chain != nullptr && chain->answered()) {
+      ++judged;
+      right += judge(input.campaign.study, record, *chain).wrong() ? 0 : 1;
+    }
+  return rate(right, judged, confidence_of(input));
+}
+
+/// The method that is right most often; null when none was judged. The first one wins a tie.
+const MethodFindings* best_method(const ReportInput& input, Rate MethodRates::*member) {
+  const MethodFindings* best = nullptr;
+  for (const MethodFindings& method : input.findings().methods)
+    if ((method.rates.*member).total > 0 &&
+        (best == nullptr || (method.rates.*member).value > (best->rates.*member).value))
+      best = &method;
+  return best;
+}
+
+/// A method whose interval for the right source lies above that of the chain; null when there is none.
+const MethodFindings* better_than_the_chain(const ReportInput& input) {
+  const MethodFindings* const best = best_method(input, &MethodRates::source);
+  const MethodFindings* const chain = input.findings().chain();
+  return best != nullptr && chain != nullptr && best != chain &&
+                 best->rates.source.interval.lower > chain->rates.source.interval.upper
+             ? best
+             : nullptr;
+}
+
+std::string asked(const ReportInput& input) {
+  const Study& study = input.campaign.study;
+  const std::size_t methods = input.findings().methods.size();
+  return fmt::format(
+      "<strong>Asked:</strong> when loops of this plant ({}) run badly, {} which <a href=\"#term-cv\">CV</a> "
+      "is "
+      "hurt, and whether a wrong model (<a href=\"#term-mpm\">MPM</a>) or an unmeasured disturbance "
+      "(<a href=\"#term-ud\">UD</a>) does it? {} closed loops, {}.",
+      html_text(study.plant.title),
+      methods == 1 ? fmt::format("does the method <code>{}</code> tell",
+                                 html_text(input.findings().methods.front().name()))
+                   : fmt::format("do {} methods tell", methods),
+      input.findings().experiments, kinds_text(input.campaign));
+}
+
+std::string found(const ReportInput& input) {
+  if (input.campaign.study.names_scenarios()) {
+    const Rate right = right_scenarios(input);
+    return right.total == 0
+               ? "no scenario has a verdict."
+               : fmt::format("in {} of {} scenarios with a verdict every CV and every source is right.",
+                             right.hits, right.total);
+  }
+  std::string text;
+  if (const Rate located = of_all_kinds(input, &KindFindings::located); located.total > 0)
+    text =
+        fmt::format("of the {} loops in which the chain of the thesis sees an impact it finds the CV in {}",
+                    located.total, share_words(located));
+  if (const Rate source = of_all_kinds(input, &KindFindings::source_recognised); source.total > 0)
+    text += fmt::format("{}the source of a single fault in {}",
+                        text.empty() ? "the chain of the thesis names " : " and ", share_words(source));
+  if (const MethodFindings* const best = best_method(input, &MethodRates::source);
+      best != nullptr && best != input.findings().chain())
+    text += fmt::format("{}<code>{}</code> names the source most often, in {} of those that it flags",
+                        text.empty() ? "" : "; ", html_text(best->name()), share_words(best->rates.source));
+  return text.empty() ? "no loop has a verdict that could be right or wrong." : text + ".";
+}
+
+/// What a plant would do with such a result. The limits are those of a tool that is right nine times in ten.
+std::string advice(const ReportInput& input) {
+  constexpr double kReliable = 0.9;
+  if (!input.campaign.basis.healthy)
+    return "nothing with these numbers, for the basis case failed its self-check: mend the study first.";
+  if (input.campaign.study.names_scenarios())
+    return "read the scenarios that went wrong, one by one.";
+  if (input.kinds().empty())
+    return "compare detection and false alarms of the methods below before you choose one.";
+  const Rate located = of_all_kinds(input, &KindFindings::located);
+  const Rate source = of_all_kinds(input, &KindFindings::source_recognised);
+  if (located.total == 0)
+    return "draw larger faults: none of these has an impact that the chain sees.";
+  if (located.interval.lower < kReliable)
+    return "do not re-identify a channel on the word of this chain alone: it may be the wrong CV.";
+  if (source.total > 0 && source.interval.lower >= kReliable)
+    return "act on both, the CV and the source that it names.";
+  const MethodFindings* const better = better_than_the_chain(input);
+  return "look at the CV that it names, but ask further before a re-identification: the source that it names "
+         "is not "
+         "safe enough" +
+         (better == nullptr
+              ? std::string(".")
+              : fmt::format("; <code>{}</code> is right more often.", html_text(better->name())));
+}
+
+/// "MPM 71.0 % (60.0 to 80.0), UD 85 % (...)": of the kinds that have any.
+std::string by_kind(const ReportInput& input, Rate KindFindings::*member) {
+  std::string text;
+  for (const KindFindings& kind : input.kinds())
+    if ((kind.*member).total > 0)
+      text +=
+          fmt::format("{}{} {}", text.empty() ? "" : ", ", kind_name(kind.kind), share_words(kind.*member));
+  return text;
+}
+
+}  // namespace
+
+std::string share_words(const Rate& rate) {
+  return fmt::format("{:.1f}&nbsp;% ({:.1f} to {:.1f})", 100.0 * rate.value, 100.0 * rate.interval.lower,
+                     100.0 * rate.interval.upper);
+}
+
+std::string verdict_html(const ReportInput& input) {
+  return fmt::format(
+      "<div class=\"verdict\">\n<p>{}</p>\n<p><strong>Found:</strong> {}</p>\n<p><strong>To do:</strong> "
+      "{}</p>\n</div>\n",
+      asked(input), found(input), advice(input));
+}
+
+std::string rates_answer(const ReportInput& input) {
+  const std::vector<Finding>& rows = input.findings().rows;
+  std::int64_t compared = 0, agree = 0;
+  for (const Finding& row : rows)
+    if (const std::optional<bool> agrees = row.agrees(confidence_of(input))) {
+      ++compared;
+      agree += *agrees ? 1 : 0;
+    }
+  const Rate located = of_all_kinds(input, &KindFindings::located);
+  const Rate source = of_all_kinds(input, &KindFindings::source_recognised);
+  std::string text;
+  if (located.total > 0)
+    text = fmt::format("The CV is right in {} of {} loops, the source in {} of {}. ", share_words(located),
+                       located.total, share_words(source), source.total);
+  if (compared > 0)
+    text += fmt::format("{} of {} numbers agree with what is reported.", agree, compared);
+  return text;
+}
+
+std::string false_alarm_answer(const ReportInput& input) {
+  std::vector<Rate> rates;
+  for (const FalseAlarms& group : input.false_alarms())
+    if (!group.parameter)
+      rates.push_back(group.false_alarm);
+  const Rate all = together(rates, confidence_of(input));
+  return all.total == 0
+             ? ""
+             : fmt::format("In {} of the {} loops without any fault the chain sees a modelling error.",
+                           share_words(all), all.total);
+}
+
+std::string variance_answer(const ReportInput& input) {
+  std::string text;
+  double least = 1.0, largest = 0.0;
+  for (const KindFindings& kind : input.kinds()) {
+    const LinearFitIntervals& fit = kind.regression;
+    if (!std::isfinite(fit.fit.r_squared) || !std::isfinite(fit.r_squared.lower))
+      continue;
+    least = std::min(least, fit.r_squared.lower);
+    largest = std::max(largest, fit.r_squared.upper);
+    text += fmt::format("{}{:.2f} ({:.2f} to {:.2f}) for {}", text.empty() ? "" : ", ", fit.fit.r_squared,
+                        fit.r_squared.lower, fit.r_squared.upper, kind_name(kind.kind));
+  }
+  if (text.empty())
+    return "";
+  const char* const word = least > 0.7 ? "Yes" : largest < 0.5 ? "Hardly" : "In part";
+  return fmt::format(
+      "{}: a straight line in Ivar explains this share of the variance of Ivar<sub>basis</sub>, R&sup2; "
+      "= {}.",
+      word, text);
+}
+
+std::string location_answer(const ReportInput& input) {
+  const std::string kinds = by_kind(input, &KindFindings::located);
+  return kinds.empty() ? "" : "The CV with the fault is the one that is located in: " + kinds + ".";
+}
+
+std::string indicator_answer(const ReportInput& input) {
+  const std::string kinds = by_kind(input, &KindFindings::source_recognised);
+  return kinds.empty() ? ""
+                       : fmt::format("With the threshold {:g} the source is named rightly in: {}.",
+                                     input.campaign.study.diagnosis.mpm_threshold, kinds);
+}
+
+std::string dominance_answer(const ReportInput& input) {
+  const std::vector<DominanceBin>& bins = input.findings().dominance;
+  if (bins.empty() || bins.front().i_mpm.count == 0 || bins.back().i_mpm.count == 0)
+    return "";
+  const auto words = [](const DominanceBin& bin) {
+    return fmt::format("{} where the mismatch has a share from {:g} to {:g}",
+                       share_words(bin.above_threshold), bin.lower, bin.upper);
+  };
+  const bool apart = bins.front().above_threshold.interval.upper < bins.back().above_threshold.interval.lower;
+  return fmt::format("{}: I<sub>MPM</sub> calls the loop a mismatch in {}, and in {}.",
+                     apart ? "At the one that dominates" : "At the one that dominates, if at all",
+                     words(bins.front()), words(bins.back()));
+}
+
+std::string roc_answer(const RocCurve& curve, const Interval& area, const RocPoint& at_study) {
+  return fmt::format(
+      "Of a mismatch and a disturbance, drawn at random, the mismatch has the larger I<sub>MPM</sub> in "
+      "{:.1f}&nbsp;% ({:.1f} to {:.1f}) of pairs; the best threshold has a J of {:.2f}, that of the "
+      "study {:.2f}.",
+      100.0 * curve.area, 100.0 * area.lower, 100.0 * area.upper, curve.points[curve.best].youden(),
+      at_study.youden());
+}
+
+std::string fault_size_answer(const std::vector<SizedFault>& faults, double confidence) {
+  std::int64_t missed = 0, wrong = 0;
+  for (const SizedFault& fault : faults) {
+    missed += fault.flagged ? 0 : 1;
+    wrong += fault.flagged && !fault.diagnosed ? 1 : 0;
+  }
+  const auto total = static_cast<std::int64_t>(faults.size());
+  return faults.empty()
+             ? ""
+             : fmt::format(
+                   "Of {} single faults {} are too small to have an impact that is seen, and {} are "
+                   "seen and given a wrong CV or source.",
+                   total, share_words(rate(missed, total, confidence)),
+                   share_words(rate(wrong, total, confidence)));
+}
+
+std::string comparison_answer(const ReportInput& input) {
+  std::string text;
+  const auto best = [&](const char* what, Rate MethodRates::*member) {
+    if (const MethodFindings* const method = best_method(input, member))
+      text += fmt::format("{}{} by <code>{}</code>, {}", text.empty() ? "" : "; ", what,
+                          html_text(method->name()), share_words(method->rates.*member));
+  };
+  best("the CV is found most often", &MethodRates::located);
+  best("the source", &MethodRates::source);
+  best("the channel", &MethodRates::channel);
+  if (text.empty())
+    return "";
+  text.front() = 'T';
+  return text + ". The table has what each pays for it in false alarms.";
+}
+
+std::string s0_answer(const ReportInput& input) {
+  const std::optional<S0Changes>& changes = input.findings().s0_changes;
+  if (!changes || !std::isfinite(changes->time_constant.largest))
+    return "";
+  const S0PerturbationOptions& options = input.campaign.study.s0_perturbation;
+  return fmt::format(
+      "With a time constant from {:g} to {:g} times the true one Ivar<sub>diag</sub> changes by "
+      "{:.1f}&nbsp;% "
+      "at most and stays in the band of impact in {} of loops; with such a damping, by {:.1f}&nbsp;% and "
+      "in {}.",
+      options.tolerance_lower, options.tolerance_upper, 100.0 * changes->time_constant.largest,
+      share_words(changes->time_constant.within_band), 100.0 * changes->damping.largest,
+      share_words(changes->damping.within_band));
+}
+
+std::string interaction_answer(const ReportInput& input, const LoopInteraction& interaction) {
+  std::string gains;
+  if (interaction.relative_gain_at_maximum.rows() == interaction.relative_gain_at_maximum.cols())
+    for (Eigen::Index i = 0; i < interaction.relative_gain_at_maximum.rows(); ++i)
+      gains += fmt::format("{}{:.2f}", gains.empty() ? "" : ", ", interaction.relative_gain_at_maximum(i, i));
+  return fmt::format(
+      "RPN is largest, {:.2f}, at {:.3g} rad/{}{}.", interaction.rpn_maximum, interaction.rpn_frequency,
+      html_text(input.campaign.study.plant.time_unit),
+      gains.empty() ? ""
+                    : ", where the diagonal of the RGA has the magnitudes " + gains + " (1: no interaction)");
+}
+
+}  // namespace mpm

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/findings/fault_size.hpp"
+#include "analysis/sensitivity/loop_interaction.hpp"
+#include "analysis/statistics/interval.hpp"
+#include "analysis/statistics/roc.hpp"
+#include "results/report/report_sections.hpp"
+
+// What the page says in words: the verdict on top, and below each question a sentence made from the numbers,
+// with their uncertainty. HTML. Each gives an empty text where the numbers are missing.
+
+namespace mpm {
+
+/// "97.1 % (94.5 to 98.5)", the interval with the confidence of the study.
+std::string share_words(const Rate& rate);
+
+/// The first three sentences of the page: what was asked, what came out, and what to do.
+std::string verdict_html(const ReportInput& input);
+
+std::string rates_answer(const ReportInput& input);
+std::string false_alarm_answer(const ReportInput& input);
+std::string variance_answer(const ReportInput& input);
+std::string location_answer(const ReportInput& input);
+std::string indicator_answer(const ReportInput& input);
+std::string dominance_answer(const ReportInput& input);
+std::string roc_answer(const RocCurve& curve, const Interval& area, const RocPoint& at_study);
+/// `faults`: all experiments with a single fault, whatever its size is measured by.
+std::string fault_size_answer(const std::vector<SizedFault>& faults, double confidence);
+std::string comparison_answer(const ReportInput& input);
+std::string s0_answer(const ReportInput& input);
+std::string interaction_answer(const ReportInput& input, const LoopInteraction& interaction);
+
+}  // namespace mpm

@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/methods/chain_numbers.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/report/html_table.hpp"
+#include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::size_t kMostListed = 1000;
+
+/// "right", "wrong", or why it was not judged.
+std::string outcome_cell(const Study& study, const ExperimentRecord& record) {
+  if (record.status != ExperimentStatus::ok)
+    return std::string(to_string(record.status));
+  const AssessmentRecord& chain = *record.by(kChainMethod);
+  if (!chain.flagged)
+    return is_faultless(record.draw.kind) ? "right" : "no impact";
+  return judge(study, record, chain).wrong() ? "<span class=\"no\">wrong</span>" : "right";
+}
+
+/// The index of the true CV; without a fault, the one that is farthest from 1.
+double index_of(const Study& study, const ExperimentRecord& record, const Eigen::VectorXd& values) {
+  const Eigen::Index cv = record.draw.true_cv() >= 0
+                              ? record.draw.true_cv()
+                              : farthest_from_one(values, study.diagnosis.location_distance);
+  return cv >= 0 && cv < values.size() ? values(cv) : NAN;
+}
+
+}  // namespace
+
+std::string experiment_anchor(const Campaign& campaign, const ExperimentRecord& record) {
+  const std::vector<ExperimentRecord>& records = campaign.records;
+  const bool listed = records.size() <= kMostListed || record.draw.index < records[kMostListed].draw.index;
+  return listed && chain_place(campaign) < campaign.methods.size() && !campaign.study.names_scenarios()
+             ? fmt::format("experiment-{}", record.draw.index)
+             : "";
+}
+
+ReportSection experiments_section(const ReportInput& input) {
+  const Campaign& campaign = input.campaign;
+  const Study& study = campaign.study;
+  ReportSection section{"experiments", "Experiments, one by one", {}};
+  if (campaign.records.empty()) {
+    section.leave_out("the archive has no experiments.");
+    return section;
+  }
+  HtmlTable table(
+      "What was wrong in each loop, and what the chain of the thesis says of it. Ivar, Ivar<sub>diag</sub> "
+      "and "
+      "Ivar<sub>basis</sub> are those of the CV with the fault.",
+      {{"No."},
+       {"Kind", HtmlTable::Align::left},
+       {"Fault", HtmlTable::Align::text},
+       {"True CV", HtmlTable::Align::left},
+       {"Located", HtmlTable::Align::left},
+       {"Source", HtmlTable::Align::left},
+       {"Verdict", HtmlTable::Align::left},
+       {"I<sub>MPM</sub>"},
+       {"Ivar"},
+       {"Ivar<sub>diag</sub>"},
+       {"Ivar<sub>basis</sub>"}});
+  for (std::size_t i = 0; i < std::min(campaign.records.size(), kMostListed); ++i) {
+    const ExperimentRecord& record = campaign.records[i];
+    const Diagnosis chain = record.chain();
+    const std::string number = fmt::format("{}", record.draw.index);
+    table.row(
+        {input.shows_loop(record.draw.index) ? fmt::format("<a href=\"#loop-{0}\">{0}</a>", number) : number,
+         kind_name(record.draw.kind), html_text(fault_text(study, record.draw)),
+         html_text(cv_name(study, record.draw.true_cv())),
+         chain.impactful ? html_text(cv_name(study, chain.predicted_cv)) : html_number(NAN),
+         chain.impactful ? source_name(chain.predicted_source) : html_number(NAN),
+         outcome_cell(study, record), html_number(chain.impactful ? chain.indicator.i_mpm : NAN),
+         html_number(index_of(study, record, chain.ivar)),
+         html_number(index_of(study, record, chain.ivar_diag)),
+         html_number(index_of(study, record, record.ivar_basis))},
+        experiment_anchor(campaign, record));
+  }
+  if (campaign.records.size() > kMostListed)
+    section.add(fmt::format(
+        "<p>The first {} of {}; <code>mpmbench export {} --table experiments</code> writes all.</p>\n",
+        kMostListed, campaign.records.size(), html_text(input.file)));
+  section.add(table.html());
+  return section;
+}
+
+}  // namespace mpm
