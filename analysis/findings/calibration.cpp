@@ -22,14 +22,14 @@ double calibration_score(const AssessmentRecord& said) {
   return std::isnan(said.score) ? -kInfinity : said.score;
 }
 
-Calibration calibration_of(const Study& loops, std::span<const ExperimentRecord> records) {
+Calibration calibration_of(const Study& loops, const RecordRange& records) {
   Calibration calibration{loops.seed, {}};
-  for (const ExperimentRecord& record : records) {
+  records.each([&](const ExperimentRecord& record) {
     CalibrationLoop loop{record.draw.kind, {}};
     for (const AssessmentRecord& said : record.assessments)
       loop.scores.push_back(calibration_score(said));
     calibration.loops.push_back(std::move(loop));
-  }
+  });
   return calibration;
 }
 

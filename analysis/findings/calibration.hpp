@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/record_range.hpp"
 
 // Thresholds that give every method the same rate of false alarms, so that methods can be compared by what
 // they detect at it. They are computed from the scores of loops of another seed than that of the study.
@@ -29,7 +30,7 @@ struct Calibration {
 double calibration_score(const AssessmentRecord& said);
 
 /// The scores of these experiments of calibration_study().
-Calibration calibration_of(const Study& loops, std::span<const ExperimentRecord> records);
+Calibration calibration_of(const Study& loops, const RecordRange& records);
 
 /// A threshold on the score of a method: loops above it are flagged.
 struct CalibratedThreshold {

@@ -2,35 +2,64 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace mpm {
 namespace {
 
-FalseAlarms count_alarms(FalseAlarms group, std::size_t method, std::span<const ExperimentRecord> records,
-                         double confidence) {
+/// The experiments of one group.
+struct AlarmCounts {
+  FalseAlarms group;
   std::int64_t verdicts = 0, flagged = 0, mpm = 0, ud = 0;
-  for (const ExperimentRecord& record : records) {
+
+  void add(const ExperimentRecord& record, const AssessmentRecord& said) {
     if (!group.has(record.draw))
-      continue;
+      return;
     group.add(record.status);
-    const AssessmentRecord& said = record.assessments[method];
     if (!said.answered())
-      continue;
+      return;
     ++verdicts;
     if (!said.flagged)
-      continue;
+      return;
     ++flagged;
     mpm += said.predicted_source == FaultSource::mpm ? 1 : 0;
     ud += said.predicted_source == FaultSource::ud ? 1 : 0;
   }
-  group.finish(confidence);
-  group.false_alarm = rate(flagged, verdicts, confidence);
-  group.false_mpm = rate(mpm, verdicts, confidence);
-  group.false_ud = rate(ud, verdicts, confidence);
-  return group;
-}
+
+  FalseAlarms result(double confidence) const {
+    FalseAlarms found = group;
+    found.finish(confidence);
+    found.false_alarm = rate(flagged, verdicts, confidence);
+    found.false_mpm = rate(mpm, verdicts, confidence);
+    found.false_ud = rate(ud, verdicts, confidence);
+    return found;
+  }
+};
+
+struct AllAlarmCounts {
+  std::size_t method;
+  double confidence;
+  std::vector<AlarmCounts> groups = {};
+
+  void add_group(ExperimentKind kind, std::optional<TuningParameter> parameter) {
+    FalseAlarms group;
+    group.kind = kind;
+    group.parameter = parameter;
+    groups.push_back({group});
+  }
+  void add(const ExperimentRecord& record) {
+    for (AlarmCounts& group : groups)
+      group.add(record, record.assessments[method]);
+  }
+  std::vector<FalseAlarms> result() const {
+    std::vector<FalseAlarms> found;
+    for (const AlarmCounts& group : groups)
+      found.push_back(group.result(confidence));
+    return found;
+  }
+};
 
 std::string with_blanks(std::string text) {
   std::replace(text.begin(), text.end(), '_', ' ');
@@ -53,25 +82,18 @@ bool FalseAlarms::has(const ExperimentDraw& draw) const {
          (!parameter || (draw.tuning && draw.tuning->parameter == *parameter));
 }
 
-std::vector<FalseAlarms> false_alarms(const Study& study, std::size_t method,
-                                      std::span<const ExperimentRecord> records) {
-  std::vector<FalseAlarms> groups;
-  const auto add = [&](ExperimentKind kind, std::optional<TuningParameter> parameter) {
-    FalseAlarms group;
-    group.kind = kind;
-    group.parameter = parameter;
-    groups.push_back(count_alarms(group, method, records, study.aggregate.confidence));
-  };
+Collector<std::vector<FalseAlarms>> false_alarm_collector(const Study& study, std::size_t method) {
+  AllAlarmCounts counts{method, study.aggregate.confidence};
   if (study.experiments.healthy > 0)
-    add(ExperimentKind::healthy, std::nullopt);
+    counts.add_group(ExperimentKind::healthy, std::nullopt);
   if (study.experiments.tuning == 0)
-    return groups;
-  add(ExperimentKind::tuning, std::nullopt);
+    return collector_of(std::move(counts));
+  counts.add_group(ExperimentKind::tuning, std::nullopt);
   const std::array<double, 4> weights = study.tuning.weights_for(study.controller);
   for (std::size_t p = 0; p < weights.size(); ++p)
     if (weights[p] > 0.0)
-      add(ExperimentKind::tuning, kTuningParameters[p]);
-  return groups;
+      counts.add_group(ExperimentKind::tuning, kTuningParameters[p]);
+  return collector_of(std::move(counts));
 }
 
 std::vector<Finding> rows_of(const FalseAlarms& group, const std::string& method) {

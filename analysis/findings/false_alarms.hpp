@@ -2,11 +2,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/collector.hpp"
 #include "analysis/findings/endings.hpp"
 #include "analysis/findings/finding.hpp"
 #include "analysis/statistics/interval.hpp"
@@ -32,8 +32,7 @@ struct FalseAlarms : Endings {
 
 /// The kinds without a fault that the study has, and after `tuning` each parameter that it may draw. `method`
 /// is the place of the method in the assessments of each record.
-std::vector<FalseAlarms> false_alarms(const Study& study, std::size_t method,
-                                      std::span<const ExperimentRecord> records);
+Collector<std::vector<FalseAlarms>> false_alarm_collector(const Study& study, std::size_t method);
 
 /// Its rows: all shares of a kind, of one parameter that was changed the false alarms only.
 std::vector<Finding> rows_of(const FalseAlarms& group, const std::string& method);

@@ -1,7 +1,7 @@
 #include "analysis/findings/kind_findings.hpp"
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,18 +13,28 @@ namespace {
 
 constexpr std::array<double, 5> kDominanceEdges{0.0, 0.3, 0.5, 0.7, 1.0};
 
-/// Pairs (estimate, Ivar_basis) of the CVs [first, last) of the experiments, experiment by experiment.
+/// Pairs (estimate, Ivar_basis) of all CVs of the experiments, experiment by experiment.
 struct IvarPairs {
   std::vector<double> x, y;
   std::vector<std::int64_t> experiment;
 
-  void add(const ExperimentRecord& record, const Eigen::MatrixXd& estimate, Eigen::Index first,
-           Eigen::Index last) {
-    for (Eigen::Index cv = first; cv < last; ++cv) {
+  void add(const ExperimentRecord& record, const Eigen::MatrixXd& estimate) {
+    for (Eigen::Index cv = 0; cv < estimate.rows(); ++cv) {
       x.push_back(estimate(cv));
       y.push_back(record.ivar_basis(cv));
       experiment.push_back(record.draw.index);
     }
+  }
+
+  /// Those of one of `ny` CVs.
+  IvarPairs of_cv(std::size_t cv, std::size_t ny) const {
+    IvarPairs pairs;
+    for (std::size_t i = cv; i < x.size(); i += ny) {
+      pairs.x.push_back(x[i]);
+      pairs.y.push_back(y[i]);
+      pairs.experiment.push_back(experiment[i]);
+    }
+    return pairs;
   }
 
   LinearFitIntervals fit(const Study& study, std::uint64_t which) const {
@@ -44,66 +54,129 @@ std::string estimate_name(const AssessmentForm& form) {
   return {};
 }
 
-void fit_regressions(const Study& study, const AssessmentForm& form, std::size_t method,
-                     std::span<const ExperimentRecord> records, KindFindings& result) {
-  const std::string estimate = estimate_name(form);
-  if (estimate.empty())
-    return;
-  const Eigen::Index ny = study.cv_count();
-  IvarPairs all;
-  std::vector<IvarPairs> of_cv(static_cast<std::size_t>(ny));
-  for (const ExperimentRecord& record : records) {
-    if (record.draw.kind != result.kind || !record.assessments[method].answered())
-      continue;
-    const Eigen::MatrixXd values = record.assessments[method].values(estimate);
-    all.add(record, values, 0, ny);
-    for (Eigen::Index cv = 0; cv < ny; ++cv)
-      of_cv[static_cast<std::size_t>(cv)].add(record, values, cv, cv + 1);
+/// The experiments of one kind.
+class KindCounts {
+ public:
+  KindCounts(const Study& study, const AssessmentForm& form, std::size_t method, ExperimentKind kind)
+      : study_(study),
+        method_(method),
+        estimate_(estimate_name(form)),
+        numbers_(summarised_numbers(form)),
+        values_(numbers_.size()) {
+    found_.kind = kind;
+    found_.confusion = ConfusionMatrix(study.cv_count());
   }
-  // A bootstrap stream of its own for every fit, so that no fit depends on which others are made.
-  const auto first = static_cast<std::uint64_t>(result.kind) * static_cast<std::uint64_t>(ny + 1);
-  result.regression = all.fit(study, first);
-  for (Eigen::Index cv = 0; cv < ny; ++cv)
-    result.regression_of_cv.push_back(
-        of_cv[static_cast<std::size_t>(cv)].fit(study, first + 1 + static_cast<std::uint64_t>(cv)));
-}
 
-KindFindings findings_of(const Study& study, const AssessmentForm& form, std::size_t method,
-                         std::span<const ExperimentRecord> records, ExperimentKind kind) {
-  const double confidence = study.aggregate.confidence;
-  const std::vector<const AssessmentNumberInfo*> numbers = summarised_numbers(form);
-  KindFindings result;
-  result.kind = kind;
-  result.confusion = ConfusionMatrix(study.cv_count());
-  std::int64_t verdicts = 0, flagged = 0, judged = 0, recognised = 0;
-  std::vector<std::vector<double>> values(numbers.size());
-  for (const ExperimentRecord& record : records) {
-    if (record.draw.kind != kind)
-      continue;
-    result.add(record.status);
-    const AssessmentRecord& said = record.assessments[method];
+  void add(const ExperimentRecord& record) {
+    if (record.draw.kind != found_.kind)
+      return;
+    found_.add(record.status);
+    const AssessmentRecord& said = record.assessments[method_];
     if (!said.answered())
-      continue;
-    ++verdicts;
-    flagged += said.flagged ? 1 : 0;
-    const Judgement judgement = judge(study, record, said);
+      return;
+    ++verdicts_;
+    flagged_ += said.flagged ? 1 : 0;
+    const Judgement judgement = judge(study_, record, said);
     if (judgement.predicted_cv != Correctness::not_judged)
-      result.confusion.add(record.draw.true_cv(), said.predicted_cv);
-    judged += judgement.source() == Correctness::not_judged ? 0 : 1;
-    recognised += judgement.source() == Correctness::right ? 1 : 0;
-    if (in_source_population(study, said))
-      for (std::size_t n = 0; n < numbers.size(); ++n)
-        values[n].push_back(said.number(numbers[n]->name));
+      found_.confusion.add(record.draw.true_cv(), said.predicted_cv);
+    judged_ += judgement.source() == Correctness::not_judged ? 0 : 1;
+    recognised_ += judgement.source() == Correctness::right ? 1 : 0;
+    if (in_source_population(study_, said))
+      for (std::size_t n = 0; n < numbers_.size(); ++n)
+        values_[n].push_back(said.number(numbers_[n]->name));
+    if (!estimate_.empty())
+      pairs_.add(record, said.values(estimate_));
   }
-  result.finish(confidence);
-  result.flagged = rate(flagged, verdicts, confidence);
-  result.located = result.confusion.accuracy(confidence);
-  result.source_recognised = rate(recognised, judged, confidence);
-  for (const std::vector<double>& of_number : values)
-    result.summaries.push_back(summarise(of_number, confidence));
-  fit_regressions(study, form, method, records, result);
-  return result;
-}
+
+  KindFindings result() const {
+    const double confidence = study_.aggregate.confidence;
+    KindFindings result = found_;
+    result.finish(confidence);
+    result.flagged = rate(flagged_, verdicts_, confidence);
+    result.located = result.confusion.accuracy(confidence);
+    result.source_recognised = rate(recognised_, judged_, confidence);
+    for (const std::vector<double>& of_number : values_)
+      result.summaries.push_back(summarise(of_number, confidence));
+    if (!estimate_.empty())
+      fit_regressions(result);
+    return result;
+  }
+
+ private:
+  void fit_regressions(KindFindings& result) const {
+    const auto ny = static_cast<std::size_t>(study_.cv_count());
+    // A bootstrap stream of its own for every fit, so that no fit depends on which others are made.
+    const std::uint64_t first = static_cast<std::uint64_t>(result.kind) * (ny + 1);
+    result.regression = pairs_.fit(study_, first);
+    for (std::size_t cv = 0; cv < ny; ++cv)
+      result.regression_of_cv.push_back(pairs_.of_cv(cv, ny).fit(study_, first + 1 + cv));
+  }
+
+  const Study& study_;
+  std::size_t method_;
+  std::string estimate_;
+  std::vector<const AssessmentNumberInfo*> numbers_;
+  KindFindings found_;
+  std::int64_t verdicts_ = 0, flagged_ = 0, judged_ = 0, recognised_ = 0;
+  std::vector<std::vector<double>> values_;
+  IvarPairs pairs_;
+};
+
+struct AllKindCounts {
+  std::vector<KindCounts> kinds;
+
+  void add(const ExperimentRecord& record) {
+    for (KindCounts& kind : kinds)
+      kind.add(record);
+  }
+  std::vector<KindFindings> result() const {
+    std::vector<KindFindings> findings;
+    for (const KindCounts& kind : kinds)
+      findings.push_back(kind.result());
+    return findings;
+  }
+};
+
+/// I_MPM of the experiments with both faults, by bin.
+class DominanceCounts {
+ public:
+  DominanceCounts(const Study& study, std::size_t method) : study_(study), method_(method) {}
+
+  void add(const ExperimentRecord& record) {
+    const AssessmentRecord& said = record.assessments[method_];
+    if (record.draw.kind != ExperimentKind::mpm_ud || !in_source_population(study_, said))
+      return;
+    const double dominance = said.number("dominance_mpm");
+    for (std::size_t b = 0; b < i_mpm_.size(); ++b)
+      if (is_in(b, dominance))
+        i_mpm_[b].push_back(said.number("i_mpm"));
+  }
+
+  std::vector<DominanceBin> result() const {
+    std::vector<DominanceBin> bins;
+    if (study_.experiments.mpm_ud == 0)
+      return bins;
+    const double confidence = study_.aggregate.confidence;
+    for (std::size_t b = 0; b < i_mpm_.size(); ++b) {
+      const auto above = std::count_if(i_mpm_[b].begin(), i_mpm_[b].end(),
+                                       [&](double i_mpm) { return i_mpm > study_.diagnosis.mpm_threshold; });
+      bins.push_back({kDominanceEdges[b], kDominanceEdges[b + 1], summarise(i_mpm_[b], confidence),
+                      rate(above, std::ssize(i_mpm_[b]), confidence)});
+    }
+    return bins;
+  }
+
+ private:
+  bool is_in(std::size_t bin, double dominance) const {
+    const bool last = bin + 1 == i_mpm_.size();
+    const double upper = kDominanceEdges[bin + 1];
+    return dominance >= kDominanceEdges[bin] && (dominance < upper || (last && dominance <= upper));
+  }
+
+  const Study& study_;
+  std::size_t method_;
+  std::array<std::vector<double>, kDominanceEdges.size() - 1> i_mpm_;
+};
 
 void append_regression(const LinearFitIntervals& fit, const Finding& like, const std::string& prefix,
                        const std::string& over, std::vector<Finding>& rows) {
@@ -129,13 +202,13 @@ std::string without_marks(std::string label) {
 
 }  // namespace
 
-std::vector<KindFindings> kind_findings(const Study& study, const AssessmentForm& form, std::size_t method,
-                                        std::span<const ExperimentRecord> records) {
-  std::vector<KindFindings> kinds;
+Collector<std::vector<KindFindings>> kind_collector(const Study& study, const AssessmentForm& form,
+                                                    std::size_t method) {
+  AllKindCounts counts;
   for (const ExperimentKind kind : {ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud})
     if (study.experiments.of(kind) > 0)
-      kinds.push_back(findings_of(study, form, method, records, kind));
-  return kinds;
+      counts.kinds.emplace_back(study, form, method, kind);
+  return collector_of(std::move(counts));
 }
 
 std::vector<const AssessmentNumberInfo*> summarised_numbers(const AssessmentForm& form) {
@@ -202,31 +275,8 @@ std::vector<Finding> rows_of(const KindFindings& kind, const Study& study, const
   return rows;
 }
 
-std::vector<DominanceBin> dominance_bins(const Study& study, std::size_t method,
-                                         std::span<const ExperimentRecord> records) {
-  std::vector<DominanceBin> bins;
-  if (study.experiments.mpm_ud == 0)
-    return bins;
-  for (std::size_t b = 0; b + 1 < kDominanceEdges.size(); ++b) {
-    const double lower = kDominanceEdges[b];
-    const double upper = kDominanceEdges[b + 1];
-    const bool last = b + 2 == kDominanceEdges.size();
-    std::vector<double> i_mpm;
-    std::int64_t above = 0;
-    for (const ExperimentRecord& record : records) {
-      const AssessmentRecord& said = record.assessments[method];
-      if (record.draw.kind != ExperimentKind::mpm_ud || !in_source_population(study, said))
-        continue;
-      const double dominance = said.number("dominance_mpm");
-      if (!(dominance >= lower && (dominance < upper || (last && dominance <= upper))))
-        continue;
-      i_mpm.push_back(said.number("i_mpm"));
-      above += i_mpm.back() > study.diagnosis.mpm_threshold ? 1 : 0;
-    }
-    bins.push_back({lower, upper, summarise(i_mpm, study.aggregate.confidence),
-                    rate(above, static_cast<std::int64_t>(i_mpm.size()), study.aggregate.confidence)});
-  }
-  return bins;
+Collector<std::vector<DominanceBin>> dominance_collector(const Study& study, std::size_t method) {
+  return collector_of(DominanceCounts(study, method));
 }
 
 std::vector<Finding> rows_of(const std::vector<DominanceBin>& bins) {

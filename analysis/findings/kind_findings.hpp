@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/collector.hpp"
 #include "analysis/findings/endings.hpp"
 #include "analysis/findings/finding.hpp"
 #include "analysis/statistics/confusion_matrix.hpp"
@@ -33,9 +33,10 @@ struct KindFindings : Endings {
 };
 
 /// The kinds with a fault that the study has: mpm, ud, mpm_ud. `method` is the place of the method in the
-/// assessments of each record; the order of `records` does not matter beyond the last bits.
-std::vector<KindFindings> kind_findings(const Study& study, const AssessmentForm& form, std::size_t method,
-                                        std::span<const ExperimentRecord> records);
+/// assessments of each record; the order of the records does not matter beyond the last bits.
+/// `study` and `form` must outlive the collector.
+Collector<std::vector<KindFindings>> kind_collector(const Study& study, const AssessmentForm& form,
+                                                    std::size_t method);
 
 /// Its rows; names begin with `prefix`.
 std::vector<Finding> rows_of(const KindFindings& kind, const Study& study, const AssessmentForm& form,
@@ -52,8 +53,8 @@ struct DominanceBin {
 };
 
 /// Edges 0, 0.3, 0.5, 0.7, 1; empty without experiments of both faults. `method` is the place of the chain.
-std::vector<DominanceBin> dominance_bins(const Study& study, std::size_t method,
-                                         std::span<const ExperimentRecord> records);
+/// `study` must outlive the collector.
+Collector<std::vector<DominanceBin>> dominance_collector(const Study& study, std::size_t method);
 
 std::vector<Finding> rows_of(const std::vector<DominanceBin>& bins);
 

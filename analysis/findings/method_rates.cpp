@@ -277,6 +277,74 @@ Estimate alarms_a_day(const Study& study, const Counts& counts) {
   return alarms;
 }
 
+/// The loops that one method has looked at.
+class RateCounts {
+ public:
+  RateCounts(const Study& study, std::size_t method, const Calibration& calibration)
+      : study_(study), method_(method) {
+    if (study.calibration)
+      counts_.thresholds = calibrated_thresholds(study, calibration, method);
+  }
+
+  void add(const ExperimentRecord& record) {
+    const AssessmentRecord& said = record.assessments[method_];
+    if (said.status == AssessmentStatus::not_assessed)
+      return;
+    counts_.add(study_, record, said);
+    if (reason_.empty())
+      reason_ = said.reason;
+  }
+
+  MethodRates result() const {
+    const double confidence = study_.aggregate.confidence;
+    MethodRates rates{.reason = reason_,
+                      .answered = counts_.answered.rate(confidence),
+                      .detected = counts_.detected.rate(confidence),
+                      .detected_mpm = counts_.detected_mpm.rate(confidence),
+                      .detected_ud = counts_.detected_ud.rate(confidence),
+                      .detected_impact = counts_.detected_impact.rate(confidence),
+                      .flagged_without_impact = counts_.flagged_without_impact.rate(confidence),
+                      .false_alarm_healthy = counts_.false_alarm_healthy.rate(confidence),
+                      .false_alarm_tuning = counts_.false_alarm_tuning.rate(confidence),
+                      .located = counts_.located.rate(confidence),
+                      .source = counts_.source.rate(confidence),
+                      .channel = counts_.channel.rate(confidence),
+                      .channel_impact = counts_.channel_impact.rate(confidence),
+                      .parameter_impact = counts_.parameter_impact.rate(confidence),
+                      .size_covered = counts_.size_covered.rate(confidence),
+                      .candidate = counts_.candidate.rate(confidence),
+                      .source_all = counts_.source_all.rate(confidence),
+                      .abstained = counts_.abstained.rate(confidence),
+                      .false_alarm_calibrated = counts_.false_alarm_calibrated.rate(confidence),
+                      .power_01 = counts_.power_01.rate(confidence),
+                      .power_05 = counts_.power_05.rate(confidence),
+                      .power_05_impact = counts_.power_05_impact.rate(confidence),
+                      .power_05_mpm = counts_.power_05_mpm.rate(confidence),
+                      .monitored_impact = counts_.monitored_impact.rate(confidence),
+                      .detection_delay = median_estimate(counts_.delays, confidence),
+                      .false_alarms_a_day = alarms_a_day(study_, counts_),
+                      .thresholds = counts_.thresholds,
+                      .roc = {},
+                      .roc_area = {},
+                      .roc_impact = {},
+                      .roc_impact_area = {},
+                      .channels_named = mean_estimate(counts_.channels_named),
+                      .size_error = median_estimate(counts_.size_errors, confidence),
+                      .milliseconds = median_estimate(counts_.milliseconds, confidence).value};
+    std::tie(rates.roc, rates.roc_area) =
+        curve_with_area(counts_.fault_scores, counts_.healthy_scores, confidence);
+    std::tie(rates.roc_impact, rates.roc_impact_area) =
+        curve_with_area(counts_.impact_scores, counts_.no_impact_scores, confidence);
+    return rates;
+  }
+
+ private:
+  const Study& study_;
+  std::size_t method_;
+  Counts counts_;
+  std::string reason_;
+};
+
 }  // namespace
 
 std::span<const MethodRateInfo> method_rate_infos() {
@@ -305,60 +373,9 @@ std::span<const ThresholdInfo> threshold_infos() {
   return kThresholds;
 }
 
-MethodRates method_rates(const Study& study, std::size_t method, std::span<const ExperimentRecord> records,
-                         const Calibration& calibration) {
-  Counts counts;
-  if (study.calibration)
-    counts.thresholds = calibrated_thresholds(study, calibration, method);
-  std::string reason;
-  for (const ExperimentRecord& record : records) {
-    const AssessmentRecord& said = record.assessments[method];
-    if (said.status == AssessmentStatus::not_assessed)
-      continue;
-    counts.add(study, record, said);
-    if (reason.empty())
-      reason = said.reason;
-  }
-  const double confidence = study.aggregate.confidence;
-  MethodRates rates{.reason = std::move(reason),
-                    .answered = counts.answered.rate(confidence),
-                    .detected = counts.detected.rate(confidence),
-                    .detected_mpm = counts.detected_mpm.rate(confidence),
-                    .detected_ud = counts.detected_ud.rate(confidence),
-                    .detected_impact = counts.detected_impact.rate(confidence),
-                    .flagged_without_impact = counts.flagged_without_impact.rate(confidence),
-                    .false_alarm_healthy = counts.false_alarm_healthy.rate(confidence),
-                    .false_alarm_tuning = counts.false_alarm_tuning.rate(confidence),
-                    .located = counts.located.rate(confidence),
-                    .source = counts.source.rate(confidence),
-                    .channel = counts.channel.rate(confidence),
-                    .channel_impact = counts.channel_impact.rate(confidence),
-                    .parameter_impact = counts.parameter_impact.rate(confidence),
-                    .size_covered = counts.size_covered.rate(confidence),
-                    .candidate = counts.candidate.rate(confidence),
-                    .source_all = counts.source_all.rate(confidence),
-                    .abstained = counts.abstained.rate(confidence),
-                    .false_alarm_calibrated = counts.false_alarm_calibrated.rate(confidence),
-                    .power_01 = counts.power_01.rate(confidence),
-                    .power_05 = counts.power_05.rate(confidence),
-                    .power_05_impact = counts.power_05_impact.rate(confidence),
-                    .power_05_mpm = counts.power_05_mpm.rate(confidence),
-                    .monitored_impact = counts.monitored_impact.rate(confidence),
-                    .detection_delay = median_estimate(counts.delays, confidence),
-                    .false_alarms_a_day = alarms_a_day(study, counts),
-                    .thresholds = counts.thresholds,
-                    .roc = {},
-                    .roc_area = {},
-                    .roc_impact = {},
-                    .roc_impact_area = {},
-                    .channels_named = mean_estimate(counts.channels_named),
-                    .size_error = median_estimate(counts.size_errors, confidence),
-                    .milliseconds = median_estimate(counts.milliseconds, confidence).value};
-  std::tie(rates.roc, rates.roc_area) =
-      curve_with_area(counts.fault_scores, counts.healthy_scores, confidence);
-  std::tie(rates.roc_impact, rates.roc_impact_area) =
-      curve_with_area(counts.impact_scores, counts.no_impact_scores, confidence);
-  return rates;
+Collector<MethodRates> rate_collector(const Study& study, std::size_t method,
+                                      const Calibration& calibration) {
+  return collector_of(RateCounts(study, method, calibration));
 }
 
 std::vector<UnansweredPart> unanswered_parts(const Study& study, const MethodRates& rates) {
@@ -427,23 +444,27 @@ FalseAlarmMark false_alarm_mark(const MethodDescription& method, const MethodRat
 
 namespace {
 
-MethodPair paired(const Study& study, FlagTruth truth, std::size_t first, std::size_t second,
-                  std::span<const ExperimentRecord> records) {
-  MethodPair pair{truth, first, second, 0, {}, 1.0};
+struct PairCounts {
+  MethodPair pair;
   std::int64_t lost = 0, gained = 0;
-  for (const ExperimentRecord& record : records) {
-    const AssessmentRecord& a = record.assessments[first];
-    const AssessmentRecord& b = record.assessments[second];
+
+  void add(const Study& study, const ExperimentRecord& record) {
+    const AssessmentRecord& a = record.assessments[pair.first];
+    const AssessmentRecord& b = record.assessments[pair.second];
     if (!a.answered() || !b.answered())
-      continue;
-    const bool right = to_be_flagged(study, record, truth);
+      return;
+    const bool right = to_be_flagged(study, record, pair.truth);
     ++pair.loops;
     lost += a.flagged == right && b.flagged != right ? 1 : 0;
     gained += a.flagged != right && b.flagged == right ? 1 : 0;
   }
-  pair.test = mcnemar_test(lost, gained);
-  return pair;
-}
+
+  MethodPair result() const {
+    MethodPair found = pair;
+    found.test = mcnemar_test(lost, gained);
+    return found;
+  }
+};
 
 /// Corrects the p-values of the pairs of one truth. Pairs without a loop in common test nothing.
 void correct(std::span<MethodPair> pairs) {
@@ -458,19 +479,37 @@ void correct(std::span<MethodPair> pairs) {
       pair.p_holm = *next++;
 }
 
+constexpr std::array kPairTruths{FlagTruth::fault, FlagTruth::impact};
+
+/// All pairs, those of one truth after those of another.
+struct AllPairCounts {
+  const Study& study;
+  std::vector<PairCounts> pairs = {};
+
+  void add(const ExperimentRecord& record) {
+    for (PairCounts& pair : pairs)
+      pair.add(study, record);
+  }
+  std::vector<MethodPair> result() const {
+    std::vector<MethodPair> found;
+    for (const PairCounts& pair : pairs)
+      found.push_back(pair.result());
+    const std::size_t of_truth = found.size() / kPairTruths.size();
+    for (std::size_t begin = 0; begin < found.size(); begin += of_truth)
+      correct(std::span(found).subspan(begin, of_truth));
+    return found;
+  }
+};
+
 }  // namespace
 
-std::vector<MethodPair> method_pairs(const Study& study, std::size_t methods,
-                                     std::span<const ExperimentRecord> records) {
-  std::vector<MethodPair> pairs;
-  for (const FlagTruth truth : {FlagTruth::fault, FlagTruth::impact}) {
-    const std::size_t begin = pairs.size();
+Collector<std::vector<MethodPair>> pair_collector(const Study& study, std::size_t methods) {
+  AllPairCounts counts{study};
+  for (const FlagTruth truth : kPairTruths)
     for (std::size_t first = 0; first < methods; ++first)
       for (std::size_t second = first + 1; second < methods; ++second)
-        pairs.push_back(paired(study, truth, first, second, records));
-    correct(std::span(pairs).subspan(begin));
-  }
-  return pairs;
+        counts.pairs.push_back({{truth, first, second, 0, {}, 1.0}});
+  return collector_of(std::move(counts));
 }
 
 }  // namespace mpm

@@ -8,6 +8,7 @@
 
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/calibration.hpp"
+#include "analysis/findings/collector.hpp"
 #include "analysis/findings/finding.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
@@ -83,9 +84,9 @@ struct ThresholdInfo {
 std::span<const ThresholdInfo> threshold_infos();
 
 /// The rates of one method; `method` is its place in the assessments of each record and of each loop of
-/// `calibration`, which may have none.
-MethodRates method_rates(const Study& study, std::size_t method, std::span<const ExperimentRecord> records,
-                         const Calibration& calibration = {});
+/// `calibration`, which may have none. `study` must outlive the collector.
+Collector<MethodRates> rate_collector(const Study& study, std::size_t method,
+                                      const Calibration& calibration = {});
 
 /// The parts of the study on which the method gave no verdict at all, each with the rates that cannot be had
 /// without: {"calibration", "no verdict on a calibration loop: no rate at a calibrated threshold"}.
@@ -124,8 +125,7 @@ struct MethodPair {
   double p_holm = 1.0;  ///< test.p_two_sided corrected for all pairs of this truth that have loops
 };
 
-/// Every pair once for each truth, all of the first truth first.
-std::vector<MethodPair> method_pairs(const Study& study, std::size_t methods,
-                                     std::span<const ExperimentRecord> records);
+/// Every pair once for each truth, all of the first truth first. `study` must outlive the collector.
+Collector<std::vector<MethodPair>> pair_collector(const Study& study, std::size_t methods);
 
 }  // namespace mpm

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/statistics/quantile.hpp"
@@ -10,8 +12,6 @@
 namespace mpm {
 namespace {
 
-using Member = Eigen::VectorXd PerturbedIvar::*;
-
 bool is_looked_at(const Study& study, const ExperimentRecord& record) {
   const auto multipliers = static_cast<Eigen::Index>(study.s0_perturbation.multipliers.size());
   return multipliers > 0 && record.status == ExperimentStatus::ok &&
@@ -19,18 +19,21 @@ bool is_looked_at(const Study& study, const ExperimentRecord& record) {
          record.perturbed.damping.size() == multipliers && record.by(kChainMethod) != nullptr;
 }
 
-/// Ivar_diag(modified)/Ivar_diag(true), multiplier by multiplier.
-Eigen::VectorXd ratios(const ExperimentRecord& record, Member member) {
-  return record.perturbed.*member / record.by(kChainMethod)->number("ivar_diag", record.draw.true_cv());
-}
+/// Ivar_diag(modified)/Ivar_diag(true) of one experiment, multiplier by multiplier.
+struct Ratios {
+  Eigen::Index true_cv;
+  Eigen::VectorXd time_constant, damping;
+};
 
-std::vector<RatioSpread> spreads(const Study& study, const std::vector<const ExperimentRecord*>& records,
+using Member = Eigen::VectorXd Ratios::*;
+
+std::vector<RatioSpread> spreads(const Study& study, const std::vector<const Ratios*>& experiments,
                                  Member member) {
   std::vector<RatioSpread> result;
   for (std::size_t m = 0; m < study.s0_perturbation.multipliers.size(); ++m) {
     std::vector<double> values;
-    for (const ExperimentRecord* record : records) {
-      const double ratio = ratios(*record, member)(static_cast<Eigen::Index>(m));
+    for (const Ratios* experiment : experiments) {
+      const double ratio = (experiment->*member)(static_cast<Eigen::Index>(m));
       if (std::isfinite(ratio))
         values.push_back(ratio);
     }
@@ -43,12 +46,12 @@ std::vector<RatioSpread> spreads(const Study& study, const std::vector<const Exp
   return result;
 }
 
-S0Change change(const Study& study, const std::vector<const ExperimentRecord*>& records, Member member) {
+S0Change change(const Study& study, const std::vector<const Ratios*>& experiments, Member member) {
   const S0PerturbationOptions& options = study.s0_perturbation;
   S0Change result;
   std::int64_t within = 0, judged = 0;
-  for (const ExperimentRecord* record : records) {
-    const Eigen::VectorXd all = ratios(*record, member);
+  for (const Ratios* experiment : experiments) {
+    const Eigen::VectorXd& all = experiment->*member;
     bool any = false, inside = true;
     for (std::size_t m = 0; m < options.multipliers.size(); ++m) {
       const double ratio = all(static_cast<Eigen::Index>(m));
@@ -66,38 +69,68 @@ S0Change change(const Study& study, const std::vector<const ExperimentRecord*>& 
   return result;
 }
 
-std::vector<const ExperimentRecord*> looked_at(const Study& study,
-                                               std::span<const ExperimentRecord> records) {
-  std::vector<const ExperimentRecord*> chosen;
-  for (const ExperimentRecord& record : records)
-    if (is_looked_at(study, record))
-      chosen.push_back(&record);
-  return chosen;
-}
+/// The experiments that are looked at.
+class PerturbedExperiments {
+ public:
+  explicit PerturbedExperiments(const Study& study) : study_(study) {}
+
+  void add(const ExperimentRecord& record) {
+    if (!is_looked_at(study_, record))
+      return;
+    const Eigen::Index true_cv = record.draw.true_cv();
+    const double ivar_diag = record.by(kChainMethod)->number("ivar_diag", true_cv);
+    all_.push_back(
+        {true_cv, record.perturbed.time_constant / ivar_diag, record.perturbed.damping / ivar_diag});
+  }
+
+ protected:
+  /// Those whose affected CV is `cv`; of all CVs without one.
+  std::vector<const Ratios*> of(std::optional<Eigen::Index> cv) const {
+    std::vector<const Ratios*> chosen;
+    for (const Ratios& experiment : all_)
+      if (!cv || experiment.true_cv == *cv)
+        chosen.push_back(&experiment);
+    return chosen;
+  }
+
+  const Study& study_;
+
+ private:
+  std::vector<Ratios> all_;
+};
+
+struct CurveCounts : PerturbedExperiments {
+  using PerturbedExperiments::PerturbedExperiments;
+
+  std::vector<S0Curve> result() const {
+    std::vector<S0Curve> curves;
+    for (Eigen::Index cv = 0; cv < study_.cv_count(); ++cv)
+      if (const std::vector<const Ratios*> of_cv = of(cv); !of_cv.empty())
+        curves.push_back({cv, std::ssize(of_cv), spreads(study_, of_cv, &Ratios::time_constant),
+                          spreads(study_, of_cv, &Ratios::damping),
+                          change(study_, of_cv, &Ratios::time_constant),
+                          change(study_, of_cv, &Ratios::damping)});
+    return curves;
+  }
+};
+
+struct ChangeCounts : PerturbedExperiments {
+  using PerturbedExperiments::PerturbedExperiments;
+
+  S0Changes result() const {
+    const std::vector<const Ratios*> all = of(std::nullopt);
+    return {change(study_, all, &Ratios::time_constant), change(study_, all, &Ratios::damping)};
+  }
+};
 
 }  // namespace
 
-std::vector<S0Curve> s0_curves(const Study& study, std::span<const ExperimentRecord> records) {
-  const std::vector<const ExperimentRecord*> all = looked_at(study, records);
-  std::vector<S0Curve> curves;
-  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
-    std::vector<const ExperimentRecord*> of_cv;
-    for (const ExperimentRecord* record : all)
-      if (record->draw.true_cv() == cv)
-        of_cv.push_back(record);
-    if (of_cv.empty())
-      continue;
-    curves.push_back(
-        {cv, static_cast<std::int64_t>(of_cv.size()), spreads(study, of_cv, &PerturbedIvar::time_constant),
-         spreads(study, of_cv, &PerturbedIvar::damping), change(study, of_cv, &PerturbedIvar::time_constant),
-         change(study, of_cv, &PerturbedIvar::damping)});
-  }
-  return curves;
+Collector<std::vector<S0Curve>> s0_curve_collector(const Study& study) {
+  return collector_of(CurveCounts(study));
 }
 
-S0Changes s0_changes(const Study& study, std::span<const ExperimentRecord> records) {
-  const std::vector<const ExperimentRecord*> all = looked_at(study, records);
-  return {change(study, all, &PerturbedIvar::time_constant), change(study, all, &PerturbedIvar::damping)};
+Collector<S0Changes> s0_change_collector(const Study& study) {
+  return collector_of(ChangeCounts(study));
 }
 
 }  // namespace mpm

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/findings/collector.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "plants/non_finite.hpp"
 
@@ -35,12 +34,13 @@ struct S0Curve {
 
 /// The curves of the CVs with such experiments, in the order of the CVs. Ratios that are not finite are left
 /// out.
-std::vector<S0Curve> s0_curves(const Study& study, std::span<const ExperimentRecord> records);
+/// `study` must outlive the collector.
+Collector<std::vector<S0Curve>> s0_curve_collector(const Study& study);
 
 /// The same change over the experiments of all CVs.
 struct S0Changes {
   S0Change time_constant, damping;
 };
-S0Changes s0_changes(const Study& study, std::span<const ExperimentRecord> records);
+Collector<S0Changes> s0_change_collector(const Study& study);
 
 }  // namespace mpm

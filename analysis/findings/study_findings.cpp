@@ -71,6 +71,25 @@ std::vector<Finding> all_rows(const Study& study, const StudyFindings& findings)
   return rows;
 }
 
+bool looked_at(const AssessmentRecord& said) {
+  return said.status != AssessmentStatus::not_assessed;
+}
+
+struct MethodCollector {
+  Collector<std::vector<KindFindings>> kinds;
+  Collector<std::vector<FalseAlarms>> false_alarms;
+  Collector<MethodRates> rates;
+
+  void add(const ExperimentRecord& record) const {
+    kinds.add(record);
+    false_alarms.add(record);
+    rates.add(record);
+  }
+  MethodFindings findings(const std::shared_ptr<const AssessmentForm>& form) const {
+    return {form, kinds.result(), false_alarms.result(), rates.result()};
+  }
+};
+
 }  // namespace
 
 const MethodFindings* StudyFindings::of(std::string_view method) const {
@@ -83,24 +102,43 @@ const MethodFindings* StudyFindings::chain() const {
   return of(kChainMethod);
 }
 
-StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
-                             std::span<const ExperimentRecord> records, const Calibration& calibration) {
+StudyFindings study_findings(const Study& study, const AssessmentForms& forms, const RecordRange& records,
+                             const Calibration& calibration) {
   StudyFindings findings;
-  for (const ExperimentRecord& record : records)
-    findings.add(record.status);
-  findings.finish(study.aggregate.confidence);
+  std::vector<MethodCollector> methods;
+  const auto pairs = pair_collector(study, forms.size());
+  std::optional<Collector<std::vector<DominanceBin>>> dominance;
+  std::optional<Collector<S0Changes>> s0_changes;
   for (std::size_t method = 0; method < forms.size(); ++method) {
-    const AssessmentForm& form = *forms[method];
-    findings.methods.push_back({forms[method], kind_findings(study, form, method, records),
-                                false_alarms(study, method, records),
-                                method_rates(study, method, records, calibration)});
-    if (form.method().name == kChainMethod) {
-      findings.dominance = dominance_bins(study, method, records);
-      if (!study.s0_perturbation.multipliers.empty())
-        findings.s0_changes = s0_changes(study, records);
-    }
+    methods.push_back({kind_collector(study, *forms[method], method), false_alarm_collector(study, method),
+                       rate_collector(study, method, calibration)});
+    if (forms[method]->method().name != kChainMethod)
+      continue;
+    dominance = dominance_collector(study, method);
+    if (!study.s0_perturbation.multipliers.empty())
+      s0_changes = s0_change_collector(study);
   }
-  findings.pairs = method_pairs(study, forms.size(), records);
+
+  records.each([&](const ExperimentRecord& record) {
+    findings.add(record.status);
+    findings.assessed += std::any_of(record.assessments.begin(), record.assessments.end(), looked_at) ? 1 : 0;
+    for (const MethodCollector& method : methods)
+      method.add(record);
+    pairs.add(record);
+    if (dominance)
+      dominance->add(record);
+    if (s0_changes)
+      s0_changes->add(record);
+  });
+
+  findings.finish(study.aggregate.confidence);
+  for (std::size_t method = 0; method < forms.size(); ++method)
+    findings.methods.push_back(std::exchange(methods[method], {}).findings(forms[method]));
+  findings.pairs = pairs.result();
+  if (dominance)
+    findings.dominance = dominance->result();
+  if (s0_changes)
+    findings.s0_changes = s0_changes->result();
   findings.rows = all_rows(study, findings);
   for (Finding& row : findings.rows)
     for (const ReportedValue& reported : study.reported)

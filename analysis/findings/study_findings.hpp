@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "analysis/experiment/record_range.hpp"
 #include "analysis/findings/calibration.hpp"
 #include "analysis/findings/endings.hpp"
 #include "analysis/findings/false_alarms.hpp"
@@ -30,6 +30,7 @@ struct MethodFindings {
 
 /// All that a study reports, computed once, each number with its uncertainty.
 struct StudyFindings : Endings {
+  std::int64_t assessed = 0;            ///< loops that some method has looked at
   std::vector<MethodFindings> methods;  ///< in the order of the study
   std::vector<MethodPair> pairs;        ///< of all methods
   std::vector<DominanceBin> dominance;  ///< of the chain; empty without experiments of both faults
@@ -44,11 +45,12 @@ struct StudyFindings : Endings {
   const MethodFindings* chain() const;
 };
 
-/// The findings of a study from its experiments, which need not be all; the order of `records` does not
-/// matter beyond the last bits. Each record has an assessment of each of `forms`, in their order, and so has
-/// each loop of the calibration, which has loops only in a study that asks for them.
-StudyFindings study_findings(const Study& study, const AssessmentForms& forms,
-                             std::span<const ExperimentRecord> records, const Calibration& calibration = {});
+/// The findings of a study from its experiments, which need not be all; the order of `records`, which it
+/// goes through once, does not matter beyond the last bits. Each record has an assessment of each of `forms`,
+/// in their order, and so has each loop of the calibration, which has loops only in a study that asks for
+/// them.
+StudyFindings study_findings(const Study& study, const AssessmentForms& forms, const RecordRange& records,
+                             const Calibration& calibration = {});
 
 /// The names of all findings that a study of this plant can have, with any experiments and all methods.
 std::vector<std::string> finding_names(Study study);

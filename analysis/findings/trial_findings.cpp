@@ -22,7 +22,7 @@ TrialFindings trial_findings(const Study& trial, std::size_t method,
     }
   }
   const double confidence = trial.aggregate.confidence;
-  return {method_rates(trial, method, records), rate(as_high, healthy, confidence),
+  return {rate_collector(trial, method).of(records), rate(as_high, healthy, confidence),
           rate(right, same, confidence)};
 }
 

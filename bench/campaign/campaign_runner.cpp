@@ -9,6 +9,7 @@
 #include "bench/campaign/campaign_steps.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/campaign/experiment_series.hpp"
+#include "bench/campaign/streamed_records.hpp"
 #include "scenarios/calibration.hpp"
 
 namespace mpm {
@@ -88,6 +89,13 @@ class CampaignLoops {
     campaign.calibration = calibration_of(calibration_study_, loops.records);
   }
 
+  /// The same, but the records stay in the shards.
+  void stream_into(Campaign& campaign, const StopRequest& stop) {
+    take_records(campaign, experiments_->shards(), stop);
+    if (calibration_)
+      campaign.calibration = calibration_of(calibration_study_, records_in(calibration_->shards(), stop));
+  }
+
   void compact() {
     experiments_->compact();
     if (calibration_)
@@ -108,10 +116,10 @@ class CampaignLoops {
   std::optional<ExperimentSeries> calibration_;
 };
 
-}  // namespace
-
-Campaign run_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks,
-                      const std::optional<std::filesystem::path>& shards) {
+/// The campaign without its records, which collect(campaign, loops) brings.
+template <class Collect>
+Campaign run_to_end(Study study, const RunOptions& options, const CampaignHooks& hooks,
+                    const std::optional<std::filesystem::path>& shards, const Collect& collect) {
   const auto start = std::chrono::steady_clock::now();
   Campaign campaign;
   campaign.study = study_to_run(std::move(study), options);
@@ -119,12 +127,26 @@ Campaign run_campaign(Study study, const RunOptions& options, const CampaignHook
   campaign.basis = loops.run(hooks);
   campaign.info = info_of(campaign.study, options);
   campaign.methods = methods_of(campaign.study, "");
-  loops.move_into(campaign);
+  collect(campaign, loops);
   campaign.info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() +
                           loops.earlier_seconds();
   if (hooks.on_end)
     hooks.on_end(campaign);
   return campaign;
+}
+
+}  // namespace
+
+Campaign run_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks,
+                      const std::optional<std::filesystem::path>& shards) {
+  return run_to_end(std::move(study), options, hooks, shards,
+                    [](Campaign& campaign, CampaignLoops& loops) { loops.move_into(campaign); });
+}
+
+void stream_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks,
+                     const std::filesystem::path& shards) {
+  run_to_end(std::move(study), options, hooks, shards,
+             [&](Campaign& campaign, CampaignLoops& loops) { loops.stream_into(campaign, hooks.stop); });
 }
 
 std::int64_t run_part(const PartFolder& part, const CampaignHooks& hooks) {

@@ -50,6 +50,11 @@ class UnhealthyBasis : public InputError {
 Campaign run_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks = {},
                       const std::optional<std::filesystem::path>& shards = {});
 
+/// The same for any number of experiments: the records stay in the shards, and are no more when it returns.
+/// `hooks.on_end` gets the campaign, streamed, and may be interrupted as the experiments are.
+void stream_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks,
+                     const std::filesystem::path& shards);
+
 /// Runs those of the loops of a part that no shard in its folder has, as run_campaign() runs them, and leaves
 /// all of them there, in shards, with the description of the part. No record is kept in memory. Returns how
 /// many were run. Errors: as run_campaign().

@@ -51,6 +51,9 @@ class ExperimentSeries {
   /// Brings the outcomes into order, all of which must be there.
   OutcomeCollection collect();
 
+  /// The shards, in which all outcomes must be. Only of a series with shards.
+  const ShardSet& shards() const { return shards_->set(); }
+
   /// Makes as few shards as there can be.
   void compact();
 

@@ -34,21 +34,16 @@ void require_one_finding(const AuditedStep& one, const AuditedStep& other) {
 
 }  // namespace
 
-OutcomeCollection::OutcomeCollection(std::int64_t count) : records_(static_cast<std::size_t>(count)) {}
-
-void OutcomeCollection::add(ExperimentOutcome outcome) {
-  audit_.insert(audit_.end(), outcome.audited.begin(), outcome.audited.end());
-  audit_seconds_ += outcome.audit_seconds;
-  records_[static_cast<std::size_t>(outcome.record.draw.index)] = std::move(outcome.record);
+void AuditCollection::add(const ExperimentOutcome& outcome) {
+  add_repeated(outcome);
+  seconds_ += outcome.audit_seconds;
 }
 
-std::vector<std::string> OutcomeCollection::differences(const ExperimentOutcome& outcome,
-                                                        const RecordBytes& format) {
+void AuditCollection::add_repeated(const ExperimentOutcome& outcome) {
   audit_.insert(audit_.end(), outcome.audited.begin(), outcome.audited.end());
-  return format.differences(records_[static_cast<std::size_t>(outcome.record.draw.index)], outcome.record);
 }
 
-void OutcomeCollection::move_into(Campaign& campaign) {
+void AuditCollection::move_into(Campaign& campaign) {
   std::stable_sort(audit_.begin(), audit_.end(), earlier);
   const auto repeated = [](const AuditedStep& one, const AuditedStep& other) {
     if (earlier(one, other))
@@ -57,9 +52,20 @@ void OutcomeCollection::move_into(Campaign& campaign) {
     return true;
   };
   audit_.erase(std::unique(audit_.begin(), audit_.end(), repeated), audit_.end());
-  campaign.records = std::move(records_);
   campaign.audit = std::move(audit_);
-  campaign.info.audit_seconds = audit_seconds_;
+  campaign.info.audit_seconds = seconds_;
+}
+
+OutcomeCollection::OutcomeCollection(std::int64_t count) : records_(static_cast<std::size_t>(count)) {}
+
+void OutcomeCollection::add(ExperimentOutcome outcome) {
+  audit_.add(outcome);
+  records_[static_cast<std::size_t>(outcome.record.draw.index)] = std::move(outcome.record);
+}
+
+void OutcomeCollection::move_into(Campaign& campaign) {
+  audit_.move_into(campaign);
+  campaign.records = std::move(records_);
 }
 
 }  // namespace mpm

@@ -1,14 +1,27 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "bench/outcome/experiment_outcome.hpp"
 #include "results/archive/campaign.hpp"
-#include "results/archive/record_bytes.hpp"
 
 namespace mpm {
+
+/// What the audit of a campaign found.
+class AuditCollection {
+ public:
+  void add(const ExperimentOutcome& outcome);
+  /// Another outcome of an experiment that was added.
+  void add_repeated(const ExperimentOutcome& outcome);
+
+  /// Moves the audit and its time into the campaign. Throws InputError for a step with two results.
+  void move_into(Campaign& campaign);
+
+ private:
+  std::vector<AuditedStep> audit_;
+  double seconds_ = 0.0;
+};
 
 /// Brings outcomes, which come in any order, into the order of a campaign.
 class OutcomeCollection {
@@ -18,18 +31,12 @@ class OutcomeCollection {
   /// Each experiment at most once.
   void add(ExperimentOutcome outcome);
 
-  /// Another outcome of an experiment that was added: what of its record is not the same, by name. What its
-  /// audit found is added.
-  std::vector<std::string> differences(const ExperimentOutcome& outcome, const RecordBytes& format);
-
   /// Moves the records, the audit and its time into the campaign. Every experiment must have been added.
-  /// Throws InputError when the audit of a step has found two things.
   void move_into(Campaign& campaign);
 
  private:
   std::vector<ExperimentRecord> records_;
-  std::vector<AuditedStep> audit_;
-  double audit_seconds_ = 0.0;
+  AuditCollection audit_;
 };
 
 }  // namespace mpm

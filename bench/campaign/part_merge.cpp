@@ -6,11 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/method_table.hpp"
 #include "bench/campaign/calibration_runs.hpp"
 #include "bench/campaign/campaign_steps.hpp"
 #include "bench/campaign/comparison_runner.hpp"
-#include "bench/campaign/outcome_collection.hpp"
+#include "bench/campaign/streamed_records.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_identity.hpp"
 #include "scenarios/calibration.hpp"
@@ -30,14 +29,6 @@ bool are_pieces(const std::vector<PartFolder>& parts, std::int64_t loops) {
   return !parts.empty() && std::all_of(parts.begin(), parts.end(), [&](const PartFolder& part) {
     return part.loops == loops && part.part.shard->of == parts.front().part.shard->of;
   });
-}
-
-OutcomeCollection collected(const ShardSet& shards, const Study& study, std::int64_t count) {
-  OutcomeCollection outcomes(count);
-  const RecordBytes format(study, assessment_forms(study, study_methods(study)));
-  shards.read([&](ExperimentOutcome outcome) { outcomes.add(std::move(outcome)); },
-              [&](const ExperimentOutcome& outcome) { return outcomes.differences(outcome, format); });
-  return outcomes;
 }
 
 }  // namespace
@@ -111,12 +102,10 @@ Campaign PartMerge::merge(const CampaignHooks& hooks) const {
   campaign.basis = checked_basis(campaign.study, first_.options, hooks, {loops(), loops()});
   campaign.info = info_of(campaign.study, first_.options);
   campaign.methods = methods_of(campaign.study, "");
-  collected(*experiments_, campaign.study, experiments()).move_into(campaign);
+  take_records(campaign, *experiments_, hooks.stop);
   campaign.info.seconds = experiments_->seconds();
   if (calibration_) {
-    Campaign calibration;
-    collected(*calibration_, calibration_study_, loops() - experiments()).move_into(calibration);
-    campaign.calibration = calibration_of(calibration_study_, calibration.records);
+    campaign.calibration = calibration_of(calibration_study_, records_in(*calibration_, hooks.stop));
     campaign.info.seconds += calibration_->seconds();
   }
   campaign.info.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -63,17 +63,16 @@ std::string missing_json(const PartMerge& parts) {
 /// Writes the archive. Throws std::runtime_error when something is missing: the other parts may be under way.
 void write_merged(const MergeArguments& options, const PartMerge& parts, Progress& progress,
                   const std::string& command_line) {
-  Campaign campaign;
   try {
-    campaign = parts.merge(hooks_of(progress));
+    Campaign campaign = parts.merge(hooks_of(progress));
+    note_command(campaign, command_line);
+    const StudyFindings findings = findings_of(campaign);
+    write_archive(options.output, campaign, findings);
+    if (!options.quiet && !options.json)
+      print_result(summary_text(campaign, findings, options.output));
   } catch (const Interrupted& error) {
     throw std::runtime_error(progress.explain(error));
   }
-  note_command(campaign, command_line);
-  const StudyFindings findings = findings_of(campaign);
-  write_archive(options.output, campaign, findings);
-  if (!options.quiet && !options.json)
-    print_result(summary_text(campaign, findings, options.output));
 }
 
 ExitCode merge(const MergeArguments& options, const std::string& command_line) {

@@ -66,16 +66,18 @@ void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
 
 void run_whole(const RunArguments& options, const Study& study, const RunOptions& run_options,
                CampaignHooks hooks, const std::string& command_line) {
-  StudyFindings findings;
+  std::string summary;
   hooks.on_end = [&](Campaign& campaign) {
     note_command(campaign, command_line);
-    findings = findings_of(campaign);
+    const StudyFindings findings = findings_of(campaign);
     write_archive(options.output, campaign, findings);
+    if (!options.quiet)
+      summary = summary_text(campaign, findings, options.output);
   };
-  const Campaign campaign = run_campaign(study, run_options, hooks, shard_folder_of(options.output));
+  stream_campaign(study, run_options, hooks, shard_folder_of(options.output));
   remove_shards(options.output);
   if (!options.quiet)
-    print_result(summary_text(campaign, findings, options.output));
+    print_result(summary);
 }
 
 /// The part of the campaign that --shard and --range name.

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bench/outcome/experiment_outcome.hpp"
 #include "results/archive/record_bytes.hpp"
@@ -20,6 +22,14 @@ class OutcomeBytes {
   /// The outcome again. Throws std::runtime_error when the bytes are too short or too long, InputError for an
   /// experiment that the study has not.
   ExperimentOutcome from_bytes(std::string_view bytes) const;
+
+  /// The index of the experiment alone. Throws std::runtime_error when the bytes are too short.
+  static std::int64_t index_of(std::string_view bytes);
+
+  /// What of their records is not the same, by name.
+  std::vector<std::string> differences(const ExperimentOutcome& one, const ExperimentOutcome& other) const {
+    return records_.differences(one.record, other.record);
+  }
 
  private:
   RecordBytes records_;

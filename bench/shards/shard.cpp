@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -49,9 +50,7 @@ ShardIdentity read_identity(ByteReader& reader) {
   return identity;
 }
 
-ExperimentOutcome read_outcome(ByteReader& reader, const OutcomeBytes& format, std::size_t number) {
-  std::string bytes;
-  transfer(reader, bytes);
+ExperimentOutcome read_outcome(const std::string& bytes, const OutcomeBytes& format, std::size_t number) {
   try {
     return format.from_bytes(bytes);
   } catch (const std::exception& error) {  // a part of an outcome may refuse its numbers by an InputError
@@ -59,18 +58,29 @@ ExperimentOutcome read_outcome(ByteReader& reader, const OutcomeBytes& format, s
   }
 }
 
-/// What follows the type of the file. Throws InputError for another version or identity, std::runtime_error
-/// for bytes that are no shard.
-Shard read_content(std::string_view content, const ShardIdentity& identity, const OutcomeBytes& format,
-                   const std::string& file) {
-  ByteReader reader(content);
-  require_version(reader, file);
-  require_same(read_identity(reader), identity, file);
-  Shard shard;
-  transfer(reader, shard.seconds);
-  while (reader.left() > 0)
-    shard.outcomes.push_back(read_outcome(reader, format, shard.outcomes.size()));
-  return shard;
+/// Calls read(reader, seconds), the reader being at the first outcome, and returns what it does; none for a
+/// shard that is damaged. Errors: as read_shard().
+template <class Read>
+auto read_whole(const std::filesystem::path& path, const ShardIdentity& identity, const Read& read)
+    -> std::optional<decltype(read(std::declval<ByteReader&>(), std::size_t{}, 0.0))> {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  std::optional<std::string_view> content = unsealed(bytes);
+  if (!content)
+    return std::nullopt;
+  if (!content->starts_with(kFileType))
+    throw InputError(path.string(), "a whole file of another type", "a shard of mpmbench");
+  ByteReader reader(content->substr(kFileType.size()));
+  try {
+    require_version(reader, path.string());
+    require_same(read_identity(reader), identity, path.string());
+    double seconds = 0.0;
+    transfer(reader, seconds);
+    return read(reader, content->size(), seconds);
+  } catch (const std::runtime_error& error) {
+    throw InputError(path.string(), fmt::format("a whole shard with unreadable content ({})", error.what()),
+                     "what mpmbench writes; or --discard to start anew");
+  }
 }
 
 }  // namespace
@@ -90,21 +100,29 @@ void ShardBytes::write(const std::filesystem::path& path, const ShardIdentity& i
 
 std::optional<Shard> read_shard(const std::filesystem::path& path, const ShardIdentity& identity,
                                 const OutcomeBytes& format) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  std::optional<std::string_view> content = unsealed(bytes);
-  if (!content)
-    return std::nullopt;
-  if (!content->starts_with(kFileType))
-    throw InputError(path.string(), "a whole file of another type", "a shard of mpmbench");
-  content->remove_prefix(kFileType.size());
+  return read_whole(path, identity, [&](ByteReader& reader, std::size_t, double seconds) {
+    Shard shard{seconds, {}};
+    std::string bytes;
+    while (reader.left() > 0) {
+      transfer(reader, bytes);
+      shard.outcomes.push_back(read_outcome(bytes, format, shard.outcomes.size()));
+    }
+    return shard;
+  });
+}
 
-  try {
-    return read_content(*content, identity, format, path.string());
-  } catch (const std::runtime_error& error) {
-    throw InputError(path.string(), fmt::format("a whole shard with unreadable content ({})", error.what()),
-                     "what mpmbench writes; or --discard to start anew");
-  }
+std::optional<std::vector<OutcomePlace>> outcome_places(const std::filesystem::path& path,
+                                                        const ShardIdentity& identity) {
+  return read_whole(path, identity, [](ByteReader& reader, std::size_t file_size, double) {
+    std::vector<OutcomePlace> places;
+    std::string bytes;
+    while (reader.left() > 0) {
+      transfer(reader, bytes);
+      places.push_back({OutcomeBytes::index_of(bytes), file_size - reader.left() - bytes.size(),
+                        static_cast<std::uint32_t>(bytes.size())});
+    }
+    return places;
+  });
 }
 
 }  // namespace mpm

@@ -45,4 +45,16 @@ class ShardBytes {
 std::optional<Shard> read_shard(const std::filesystem::path& path, const ShardIdentity& identity,
                                 const OutcomeBytes& format);
 
+/// Where in a shard the bytes of an outcome are.
+struct OutcomePlace {
+  std::int64_t index;
+  std::uint64_t begin;
+  std::uint32_t size;
+};
+
+/// The places of the outcomes in a shard, without a look at what they hold; none, and errors: as
+/// read_shard().
+std::optional<std::vector<OutcomePlace>> outcome_places(const std::filesystem::path& path,
+                                                        const ShardIdentity& identity);
+
 }  // namespace mpm

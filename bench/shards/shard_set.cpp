@@ -4,18 +4,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "plants/error.hpp"
 #include "results/files/archive_error.hpp"
 
 namespace mpm {
-namespace {
-
-constexpr std::int32_t kNowhere = -1;
-
-}  // namespace
-
 ShardSet::ShardSet(const RunOptions& options, const Study& study, std::int64_t count)
     : identity_(shard_identity(study, options)), format_(study), done_(static_cast<std::size_t>(count)) {}
 
@@ -49,26 +42,18 @@ std::vector<std::int64_t> ShardSet::missing() const {
   return indices;
 }
 
-void ShardSet::read(const Take& take, const Compare& repeated) const {
-  std::vector<std::int32_t> taken_from(done_.size(), kNowhere);  // a shard
-  for (std::size_t place = 0; place < shards_.size(); ++place) {
-    const std::string file = shards_[place].string();
-    std::optional<Shard> shard = read_shard(shards_[place], identity_, format_);
+void ShardSet::read(const Take& take) const {
+  std::vector<bool> taken(done_.size());
+  for (const std::filesystem::path& path : shards_) {
+    std::optional<Shard> shard = read_shard(path, identity_, format_);
     if (!shard)
-      throw ArchiveError(fmt::format("{}: cut off or damaged since it was written", file));
+      throw ArchiveError(fmt::format("{}: cut off or damaged since it was written", path.string()));
     for (ExperimentOutcome& outcome : shard->outcomes) {
-      const std::int64_t index = outcome.record.draw.index;
-      std::int32_t& from = taken_from[static_cast<std::size_t>(index)];
-      if (from == kNowhere) {
-        from = static_cast<std::int32_t>(place);
-        take(std::move(outcome));
-      } else if (repeated) {
-        if (const std::vector<std::string> names = repeated(outcome); !names.empty())
-          throw InputError(fmt::format("{}: experiment {}", file, index),
-                           fmt::format("another {} than in {}", fmt::join(names, ", "),
-                                       shards_[static_cast<std::size_t>(from)].string()),
-                           "the same, bit for bit: they were run by one build on processors of one kind");
-      }
+      const auto index = static_cast<std::size_t>(outcome.record.draw.index);
+      if (taken[index])
+        continue;
+      taken[index] = true;
+      take(std::move(outcome));
     }
   }
 }

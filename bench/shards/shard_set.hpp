@@ -17,8 +17,6 @@ class ShardSet {
  public:
   using Warn = std::function<void(const std::string&)>;
   using Take = std::function<void(ExperimentOutcome)>;
-  /// Names of what is not the same in an outcome and in that of the same experiment which was taken before.
-  using Compare = std::function<std::vector<std::string>(const ExperimentOutcome&)>;
 
   /// `study` must outlive it. `count` is the number of experiments of the campaign.
   ShardSet(const RunOptions& options, const Study& study, std::int64_t count);
@@ -43,10 +41,13 @@ class ShardSet {
   const ShardIdentity& identity() const { return identity_; }
   const OutcomeBytes& format() const { return format_; }
 
-  /// Gives each outcome once, shard by shard. Those that another shard has too go to `repeated`; without one
-  /// they are passed over. Throws ArchiveError when a shard can no longer be read, InputError, which names
-  /// both files, when something is not the same in two shards.
-  void read(const Take& take, const Compare& repeated = {}) const;
+  /// How many experiments the campaign has.
+  std::size_t count() const { return done_.size(); }
+  /// Those that are whole.
+  const std::vector<std::filesystem::path>& shards() const { return shards_; }
+
+  /// Gives each outcome once, shard by shard. Throws ArchiveError when a shard can no longer be read.
+  void read(const Take& take) const;
 
  private:
   ShardIdentity identity_;

@@ -41,6 +41,8 @@ class ShardStore {
   /// experiments in two shards. Throws ArchiveError.
   void compact();
 
+  /// The shards, of which none is waiting to be written.
+  const ShardSet& set() const { return set_; }
   /// Gives each outcome once, shard by shard. Throws ArchiveError when a shard can no longer be read.
   void read(const ShardSet::Take& take) const { set_.read(take); }
 

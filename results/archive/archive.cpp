@@ -2,6 +2,7 @@
 
 #include <new>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "results/archive/archive_groups.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
+#include "results/files/file_seal.hpp"
 
 namespace mpm {
 namespace {
@@ -30,15 +32,10 @@ Campaign read_groups(const std::filesystem::path& path) {
   return campaign;
 }
 
-[[noreturn]] void refuse_size(const std::filesystem::path& path) {
-  throw ArchiveError(fmt::format("{}: it, or a variable in it, does not fit into the memory", path.string()));
-}
-
-}  // namespace
-
-void write_archive(const std::filesystem::path& path, const Campaign& campaign,
-                   const StudyFindings& findings) {
-  const Hdf5File file = Hdf5File::create(path.string());
+/// `name` is for messages.
+void write_groups(const std::filesystem::path& path, const std::string& name, const Campaign& campaign,
+                  const StudyFindings& findings) {
+  const Hdf5File file = Hdf5File::create_at(path, name);
   Hdf5Group root = file.root();
   write_heading(root, campaign);
   write_records(root, campaign);
@@ -52,7 +49,21 @@ void write_archive(const std::filesystem::path& path, const Campaign& campaign,
   write_calibration(root, campaign);
   write_audit(root, campaign.audit);
   write_findings(root, campaign, findings);
-  write_file_atomically(path, file.image());
+  file.finish();
+}
+
+[[noreturn]] void refuse_size(const std::filesystem::path& path) {
+  throw ArchiveError(fmt::format("{}: it, or a variable in it, does not fit into the memory", path.string()));
+}
+
+}  // namespace
+
+void write_archive(const std::filesystem::path& path, const Campaign& campaign,
+                   const StudyFindings& findings) {
+  write_file_atomically(path, [&](const std::filesystem::path& temporary) {
+    write_groups(temporary, path.string(), campaign, findings);
+    seal_file(temporary);
+  });
 }
 
 Campaign read_archive(const std::filesystem::path& path) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <set>
 
 #include <fmt/format.h>
@@ -21,13 +22,28 @@ namespace {
 
 using Records = std::vector<ExperimentRecord>;
 
-std::vector<const ExperimentRecord*> records_in(const RecordTable& table, const Records& records) {
-  std::vector<const ExperimentRecord*> chosen;
-  for (const ExperimentRecord& record : records)
-    if (!table.has || table.has(record))
-      chosen.push_back(&record);
-  return chosen;
-}
+/// The indices of the experiments that stand in each table; those of all experiments once.
+class TableIndices {
+ public:
+  TableIndices(const std::vector<RecordTable>& tables, const RecordRange& records) : of_(tables.size()) {
+    all_.reserve(records.size());
+    records.each([&](const ExperimentRecord& record) {
+      all_.push_back(record.draw.index);
+      for (std::size_t t = 0; t < tables.size(); ++t)
+        if (tables[t].has && tables[t].has(record))
+          of_[t].push_back(record.draw.index);
+    });
+    for (std::size_t t = 0; t < tables.size(); ++t)
+      whole_.push_back(!tables[t].has);
+  }
+
+  const std::vector<std::int64_t>& of(std::size_t table) const { return whole_[table] ? all_ : of_[table]; }
+
+ private:
+  std::vector<std::int64_t> all_;
+  std::vector<std::vector<std::int64_t>> of_;
+  std::vector<bool> whole_;
+};
 
 /// The group with this path, made unless it is there; `made` keeps those that are.
 Hdf5Group& group_of(std::map<std::string, Hdf5Group>& made, const std::string& path) {
@@ -83,22 +99,37 @@ void write_dimension(Hdf5Group& group, const std::string& name, const Campaign& 
                           attributes<std::string>({name, "method of assessment"}));
 }
 
-void write_variable(Hdf5Group& group, const RecordTable& table, const RecordVariable& variable,
-                    const std::vector<const ExperimentRecord*>& records) {
+/// A variable of the file that takes one record after the other.
+struct VariableWriter {
+  std::function<void(const ExperimentRecord&)> add;
+  std::function<void()> finish;
+};
+
+/// `variable` must outlive it.
+VariableWriter variable_writer(Hdf5Group& group, const RecordTable& table, const RecordVariable& variable) {
   std::vector<std::string> dimensions{table.dimension};
   dimensions.insert(dimensions.end(), variable.dimensions.begin(), variable.dimensions.end());
-  std::visit(
-      [&]<class T>(const RecordAccess<T>& access) {
-        std::vector<T> values(records.size() * variable.size());
-        T* place = values.data();
-        for (const ExperimentRecord* record : records) {
-          access.get(*record, place);
-          place += variable.size();
-        }
-        group.write(variable.text.name, dimensions, values, attributes<T>(variable.text));
+  return std::visit(
+      [&]<class T>(const RecordAccess<T>& access) -> VariableWriter {
+        const auto rows = std::make_shared<Hdf5Rows<T>>(
+            group.create_rows<T>(variable.text.name, dimensions, attributes<T>(variable.text)));
+        return {[rows, &access](const ExperimentRecord& record) { access.get(record, rows->add()); },
+                [rows] { rows->finish(); }};
       },
       variable.access);
 }
+
+/// The variables of a table.
+struct TableWriter {
+  const RecordTable* table;
+  std::vector<VariableWriter> variables = {};
+
+  void add(const ExperimentRecord& record) const {
+    if (!table->has || table->has(record))
+      for (const VariableWriter& variable : variables)
+        variable.add(record);
+  }
+};
 
 void read_variable(const Hdf5Group& group, const RecordVariable& variable,
                    const std::vector<ExperimentRecord*>& records, const std::string& file) {
@@ -205,35 +236,43 @@ bool is_own(const AssessmentRecord& assessment, const std::string& name) {
 void write_records(Hdf5Group& root, const Campaign& campaign) {
   std::map<std::string, Hdf5Group> groups{{"", root}};
   std::map<std::string, std::set<std::string>> dimensions;  // of each group
-  for (const RecordTable& table : record_tables(campaign.study, forms_of(campaign))) {
-    const std::vector<const ExperimentRecord*> records = records_in(table, campaign.records);
-    if (table.dimension == "stored" && records.empty())
+  const std::vector<RecordTable> tables = record_tables(campaign.study, forms_of(campaign));
+  const RecordRange records = records_of(campaign);
+  const TableIndices indices(tables, records);
+  std::vector<TableWriter> writers;
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    const RecordTable& table = tables[t];
+    if (table.dimension == "stored" && indices.of(t).empty())
       continue;  // no loop was kept
     Hdf5Group& group = group_of(groups, table.group);
     if (!table.title.empty())
       group.write_attribute("title", table.title);
     std::set<std::string>& known = dimensions[table.group];
-    if (known.insert(table.dimension).second) {
-      std::vector<std::int64_t> indices;
-      for (const ExperimentRecord* record : records)
-        indices.push_back(record->draw.index);
+    if (known.insert(table.dimension).second)
       group.write_dimension(
-          table.dimension, indices,
+          table.dimension, indices.of(t),
           attributes<std::int64_t>({table.dimension, "index of the experiment in the study"}));
-    }
     if (table.group.empty())
       for (const char* name : {"cv", "mv", "md", "method"})
         if (known.insert(name).second)
           write_dimension(group, name, campaign);
+    TableWriter& writer = writers.emplace_back(TableWriter{&table});
     for (const RecordVariable& variable : table.variables) {
       if (variable.use == RecordUse::bytes_only)
         continue;
       for (const std::string& name : variable.dimensions)
         if (known.insert(name).second)
           write_dimension(group, name, campaign);
-      write_variable(group, table, variable, records);
+      writer.variables.push_back(variable_writer(group, table, variable));
     }
   }
+  records.each([&](const ExperimentRecord& record) {
+    for (const TableWriter& writer : writers)
+      writer.add(record);
+  });
+  for (const TableWriter& writer : writers)
+    for (const VariableWriter& variable : writer.variables)
+      variable.finish();
 }
 
 void write_numbers(Hdf5Group& group, const AssessmentRecord& assessment) {

@@ -84,8 +84,8 @@ void write_spreads(Hdf5Group& group, const std::string& name, const std::string&
   number("_max", "largest", &RatioSpread::largest);
 }
 
-void write_curves(Hdf5Group& group, const Study& study, const std::vector<ExperimentRecord>& records) {
-  const std::vector<S0Curve> curves = s0_curves(study, records);
+void write_curves(Hdf5Group& group, const Study& study, const RecordRange& records) {
+  const std::vector<S0Curve> curves = s0_curve_collector(study).of(records);
   write_cv_dimension(group, "perturbed_cv", "affected CV", study, curves);
   std::vector<std::int64_t> counts;
   for (const S0Curve& curve : curves)
@@ -103,7 +103,7 @@ void write_s0_perturbation(Hdf5Group& root, const Campaign& campaign) {
   if (study.s0_perturbation.multipliers.empty())
     return;
   Hdf5Group group = root.group(kPerturbationGroup);
-  write_curves(group, study, campaign.records);
+  write_curves(group, study, records_of(campaign));
   write_fits(group, study, campaign.basis.sensitivity);
   write_structure(group, study, campaign.basis);
 }

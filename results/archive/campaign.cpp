@@ -31,17 +31,12 @@ std::size_t chain_place(const Campaign& campaign) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), kChainMethod) - names.begin());
 }
 
-std::int64_t assessed_loops(const Campaign& campaign) {
-  const auto looked_at = [](const AssessmentRecord& said) {
-    return said.status != AssessmentStatus::not_assessed;
-  };
-  return std::count_if(campaign.records.begin(), campaign.records.end(), [&](const ExperimentRecord& record) {
-    return std::any_of(record.assessments.begin(), record.assessments.end(), looked_at);
-  });
+RecordRange records_of(const Campaign& campaign) {
+  return campaign.streamed ? *campaign.streamed : RecordRange(campaign.records);
 }
 
 StudyFindings findings_of(const Campaign& campaign) {
-  return study_findings(campaign.study, forms_of(campaign), campaign.records, campaign.calibration);
+  return study_findings(campaign.study, forms_of(campaign), records_of(campaign), campaign.calibration);
 }
 
 }  // namespace mpm

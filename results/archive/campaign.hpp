@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/record_range.hpp"
 #include "analysis/findings/calibration.hpp"
 #include "analysis/findings/study_findings.hpp"
 #include "scenarios/audit.hpp"
@@ -46,6 +48,9 @@ struct Campaign {
   BasisCase basis;
   std::vector<CampaignMethod> methods;
   std::vector<ExperimentRecord> records;
+  /// In place of `records`, when these are too many for the memory: findings_of(), write_archive() and
+  /// summary_text() take them from here. Never in a study of named scenarios.
+  std::optional<RecordRange> streamed = {};
   /// What the methods say of the calibration loops, none of them kept; no loops unless the study asks for
   /// them.
   Calibration calibration;
@@ -62,8 +67,8 @@ void note_command(Campaign& campaign, const std::string& command_line);
 /// The place of the thesis's chain among its methods; as many as there are methods when it is none of them.
 std::size_t chain_place(const Campaign& campaign);
 
-/// How many of its loops some method has looked at.
-std::int64_t assessed_loops(const Campaign& campaign);
+/// Its records, wherever they are.
+RecordRange records_of(const Campaign& campaign);
 
 /// What it has found.
 StudyFindings findings_of(const Campaign& campaign);

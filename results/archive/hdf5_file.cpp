@@ -2,14 +2,20 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cerrno>
 #include <functional>
+#include <iterator>
+#include <limits>
 #include <numeric>
+#include <system_error>
 #include <type_traits>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
+#include <unistd.h>
 
 #include "plants/non_finite.hpp"
 #include "results/files/archive_error.hpp"
@@ -246,28 +252,39 @@ Handle creation_properties(const Place& place, const Shape& shape, bool fill) {
   return properties;
 }
 
+/// A variable without values. It keeps no chunk in memory: whole ones are written.
 template <class T>
-Handle write_dataset(const Place& place, hid_t group, const Shape& shape, const std::vector<T>& values,
-                     const Attributes& attributes, bool is_dimension) {
-  assert(values.size() == product(shape));
+Handle create_dataset(const Place& place, hid_t group, const Shape& shape, const Attributes& attributes,
+                      bool is_dimension) {
   const bool fill = std::is_same_v<T, double> && !is_dimension;
   const Handle type = type_of<T>(place);
   const Handle space = make_space(place, shape);
   const Handle properties = creation_properties<T>(place, shape, fill);
+  const Handle access = place.own(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, "make properties");
+  place.check(H5Pset_chunk_cache(access.get(), H5D_CHUNK_CACHE_NSLOTS_DEFAULT, 0, H5D_CHUNK_CACHE_W0_DEFAULT),
+              "make properties");
   Handle dataset = place.own(H5Dcreate2(group, place.name.c_str(), type.get(), space.get(), H5P_DEFAULT,
-                                        properties.get(), H5P_DEFAULT),
+                                        properties.get(), access.get()),
                              H5Dclose, "create it");
-  if (!values.empty()) {
-    with_buffer(values, [&](const void* buffer) {
-      place.check(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer), "write it");
-    });
-  }
   if (fill)
     write_attribute_to({place.file, "attribute", place.parent + place.name + "/", "_FillValue"},
                        dataset.get(), kFillValue);
   for (const auto& [name, value] : attributes)
     write_attribute_to({place.file, "attribute", place.parent + place.name + "/", name}, dataset.get(),
                        value);
+  return dataset;
+}
+
+template <class T>
+Handle write_dataset(const Place& place, hid_t group, const Shape& shape, const std::vector<T>& values,
+                     const Attributes& attributes, bool is_dimension) {
+  assert(values.size() == product(shape));
+  Handle dataset = create_dataset<T>(place, group, shape, attributes, is_dimension);
+  const Handle type = type_of<T>(place);
+  if (!values.empty())
+    with_buffer(values, [&](const void* buffer) {
+      place.check(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer), "write it");
+    });
   return dataset;
 }
 
@@ -301,17 +318,156 @@ std::vector<T> read_dataset(const Place& place, const Handle& dataset) {
   });
 }
 
+// --- Files on the disk ------------------------------------------------------------------------------------
+
+/// The number of the first error of the system, 0 before.
+using DiskError = std::shared_ptr<int>;
+
+/// A file that is made on the disk. The library crashes when it ends with a file that it could not write, so
+/// that it hears of no error: what cannot be written is lost, and finish() tells.
+struct DiskFile {
+  H5FD_t base;  ///< first, as the library wants it
+  int descriptor;
+  int* error;
+  haddr_t end_of_allocation, end_of_file;
+
+  static DiskFile& of(H5FD_t* file) { return *reinterpret_cast<DiskFile*>(file); }
+  static const DiskFile& of(const H5FD_t* file) { return *reinterpret_cast<const DiskFile*>(file); }
+
+  void note_error() {
+    if (*error == 0)
+      *error = errno;
+  }
+
+  static H5FD_t* open(const char* name, unsigned, hid_t access, haddr_t) {
+    const int descriptor = ::open(name, O_RDWR | O_TRUNC | O_CLOEXEC);
+    if (descriptor < 0)
+      return nullptr;
+    auto* const error = *static_cast<int* const*>(H5Pget_driver_info(access));
+    return &(new DiskFile{{}, descriptor, error, 0, 0})->base;
+  }
+  static herr_t close(H5FD_t* file) {
+    const std::unique_ptr<DiskFile> closed(&of(file));
+    if (::close(closed->descriptor) != 0)
+      closed->note_error();
+    return 0;
+  }
+  static herr_t query(const H5FD_t*, unsigned long* flags) {
+    *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
+             H5FD_FEAT_AGGREGATE_SMALLDATA;
+    return 0;
+  }
+  static haddr_t get_eoa(const H5FD_t* file, H5FD_mem_t) { return of(file).end_of_allocation; }
+  static herr_t set_eoa(H5FD_t* file, H5FD_mem_t, haddr_t end) {
+    of(file).end_of_allocation = end;
+    return 0;
+  }
+  static haddr_t get_eof(const H5FD_t* file, H5FD_mem_t) { return of(file).end_of_file; }
+
+  /// Zeros beyond the end, and where an error was.
+  static herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t begin, std::size_t size, void* buffer) {
+    auto* const bytes = static_cast<char*>(buffer);
+    std::size_t done = 0;
+    while (done < size) {
+      const ssize_t got =
+          ::pread(of(file).descriptor, bytes + done, size - done, static_cast<off_t>(begin + done));
+      if (got < 0 && errno == EINTR)
+        continue;
+      if (got < 0)
+        of(file).note_error();
+      if (got <= 0)
+        break;
+      done += static_cast<std::size_t>(got);
+    }
+    std::fill(bytes + done, bytes + size, '\0');
+    return 0;
+  }
+  static herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t begin, std::size_t size, const void* buffer) {
+    DiskFile& to = of(file);
+    const auto* const bytes = static_cast<const char*>(buffer);
+    for (std::size_t done = 0; done < size && *to.error == 0;) {
+      const ssize_t put =
+          ::pwrite(to.descriptor, bytes + done, size - done, static_cast<off_t>(begin + done));
+      if (put < 0 && errno != EINTR)
+        to.note_error();
+      done += put < 0 ? 0 : static_cast<std::size_t>(put);
+    }
+    to.end_of_file = std::max<haddr_t>(to.end_of_file, begin + size);
+    return 0;
+  }
+  static herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
+    DiskFile& cut = of(file);
+    if (cut.end_of_file != cut.end_of_allocation &&
+        ::ftruncate(cut.descriptor, static_cast<off_t>(cut.end_of_allocation)) != 0)
+      cut.note_error();
+    cut.end_of_file = cut.end_of_allocation;
+    return 0;
+  }
+
+  /// The driver of such files, known to the library from the first call on.
+  static hid_t driver() {
+    static const H5FD_class_t kClass = [] {
+      H5FD_class_t driver{};
+      driver.name = "mpmbench disk";
+      driver.maxaddr = static_cast<haddr_t>(std::numeric_limits<off_t>::max());
+      driver.fc_degree = H5F_CLOSE_WEAK;
+      driver.fapl_size = sizeof(int*);
+      driver.open = open;
+      driver.close = close;
+      driver.query = query;
+      driver.get_eoa = get_eoa;
+      driver.set_eoa = set_eoa;
+      driver.get_eof = get_eof;
+      driver.read = read;
+      driver.write = write;
+      driver.truncate = truncate;
+      constexpr H5FD_mem_t kMap[] = H5FD_FLMAP_DICHOTOMY;
+      std::copy(std::begin(kMap), std::end(kMap), std::begin(driver.fl_map));
+      return driver;
+    }();
+    static const hid_t kDriver = H5FDregister(&kClass);
+    return kDriver;
+  }
+};
+
 }  // namespace
 
 // --- Groups -----------------------------------------------------------------------------------------------
 
 /// The library keeps a file open while a group of it is, so that the root group stands for the file.
 struct Hdf5Group::State {
+  DiskError disk;  ///< of a file that is made on the disk; it is closed with the last group
   Handle group;
   std::string file;
   std::string path;  ///< ends with "/"
 
   Place place(const char* what, const std::string& name) const { return {file, what, path, name}; }
+
+  static std::shared_ptr<const State> root_of(const Handle& file, const Place& place, DiskError disk = {}) {
+    return std::make_shared<const State>(State{
+        std::move(disk), place.own(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose, "open the root group"),
+        place.file, place.parent});
+  }
+};
+
+/// The dimensions of a variable to come, in its group.
+struct Hdf5Group::Scales {
+  std::vector<Handle> datasets = {};
+  Shape shape = {};
+
+  Scales(const State& group, const std::vector<std::string>& dimensions) {
+    for (const std::string& dimension : dimensions) {
+      const Place place = group.place("dimension", dimension);
+      datasets.push_back(open_dataset(place, group.group.get()));
+      shape.push_back(shape_of_dataset(place, datasets.back()).at(0));
+    }
+  }
+
+  void attach_to(const Handle& variable, const Place& place) const {
+    for (std::size_t i = 0; i < datasets.size(); ++i)
+      place.check(H5DSattach_scale(variable.get(), datasets[i].get(), static_cast<unsigned>(i)),
+                  "attach its dimensions");
+  }
 };
 
 Hdf5Group Hdf5Group::create_group(const std::string& name) {
@@ -319,6 +475,7 @@ Hdf5Group Hdf5Group::create_group(const std::string& name) {
   const Handle properties = place.own(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "make properties");
   set_group_properties(place, properties.get());
   return Hdf5Group(std::make_shared<const State>(State{
+      state_->disk,
       place.own(H5Gcreate2(state_->group.get(), name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
                 H5Gclose, "create it"),
       state_->file, state_->path + name + "/"}));
@@ -341,18 +498,79 @@ template <class T>
 void Hdf5Group::write(const std::string& name, const std::vector<std::string>& dimensions,
                       const std::vector<T>& values, const Attributes& attributes) {
   const Place place = state_->place("variable", name);
-  std::vector<Handle> scales;
-  Shape shape;
-  for (const std::string& dimension : dimensions) {
-    const Place scale = state_->place("dimension", dimension);
-    scales.push_back(open_dataset(scale, state_->group.get()));
-    shape.push_back(shape_of_dataset(scale, scales.back()).at(0));
-  }
-  const Handle dataset = write_dataset(place, state_->group.get(), shape, values, attributes, false);
-  for (std::size_t i = 0; i < scales.size(); ++i)
-    place.check(H5DSattach_scale(dataset.get(), scales[i].get(), static_cast<unsigned>(i)),
-                "attach its dimensions");
+  const Scales scales(*state_, dimensions);
+  const Handle dataset = write_dataset(place, state_->group.get(), scales.shape, values, attributes, false);
+  scales.attach_to(dataset, place);
 }
+
+template <class T>
+Hdf5Rows<T> Hdf5Group::create_rows(const std::string& name, const std::vector<std::string>& dimensions,
+                                   const Attributes& attributes) {
+  const Place place = state_->place("variable", name);
+  const Scales scales(*state_, dimensions);
+  Handle dataset = create_dataset<T>(place, state_->group.get(), scales.shape, attributes, false);
+  scales.attach_to(dataset, place);
+  return Hdf5Rows<T>(std::make_shared<typename Hdf5Rows<T>::State>(place, std::move(dataset), scales.shape));
+}
+
+// --- Variables that are written row by row ----------------------------------------------------------------
+
+template <class T>
+struct Hdf5Rows<T>::State {
+  Place place;
+  Handle dataset;
+  Shape shape;
+  std::size_t row;      ///< values in one
+  std::size_t block;    ///< rows that are written at once
+  hsize_t written = 0;  ///< rows
+  std::vector<T> waiting = {};
+
+  State(Place at, Handle of, Shape size)
+      : place(std::move(at)),
+        dataset(std::move(of)),
+        shape(std::move(size)),
+        row(product({shape.begin() + 1, shape.end()})),
+        block(row == 0 || shape.front() == 0 ? 1 : chunk_shape(shape).front()) {}
+
+  void write() {
+    if (waiting.empty())
+      return;
+    Shape count = shape, begin(shape.size(), 0);
+    count.front() = waiting.size() / row;
+    begin.front() = written;
+    const Handle type = type_of<T>(place), there = make_space(place, shape), here = make_space(place, count);
+    place.check(
+        H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, begin.data(), nullptr, count.data(), nullptr),
+        "select rows of it");
+    with_buffer(waiting, [&](const void* buffer) {
+      place.check(H5Dwrite(dataset.get(), type.get(), here.get(), there.get(), H5P_DEFAULT, buffer),
+                  "write it");
+    });
+    written += count.front();
+    waiting.clear();
+  }
+};
+
+template <class T>
+std::size_t Hdf5Rows<T>::size() const {
+  return state_->row;
+}
+
+template <class T>
+T* Hdf5Rows<T>::add() {
+  if (state_->waiting.size() == state_->block * state_->row)
+    state_->write();
+  state_->waiting.resize(state_->waiting.size() + state_->row);
+  return state_->waiting.data() + (state_->waiting.size() - state_->row);
+}
+
+template <class T>
+void Hdf5Rows<T>::finish() {
+  state_->write();
+  assert(state_->row == 0 || state_->written == state_->shape.front());
+}
+
+// --- Groups that are read ---------------------------------------------------------------------------------
 
 bool Hdf5Group::has_group(const std::string& name) const {
   return H5Lexists(state_->group.get(), name.c_str(), H5P_DEFAULT) > 0;
@@ -366,9 +584,9 @@ Hdf5Group Hdf5Group::group(const std::string& name) const {
   const Place place = state_->place("group", name);
   if (!has_group(name))
     place.fail("missing");
-  return Hdf5Group(std::make_shared<const State>(
-      State{place.own(H5Gopen2(state_->group.get(), name.c_str(), H5P_DEFAULT), H5Gclose, "open it"),
-            state_->file, state_->path + name + "/"}));
+  return Hdf5Group(std::make_shared<const State>(State{
+      state_->disk, place.own(H5Gopen2(state_->group.get(), name.c_str(), H5P_DEFAULT), H5Gclose, "open it"),
+      state_->file, state_->path + name + "/"}));
 }
 
 template <class T>
@@ -566,19 +784,30 @@ std::optional<std::string> Hdf5Group::text_attribute(const std::string& variable
 
 namespace {
 
-/// In memory, in the format of HDF5 1.8 at most, which netCDF-4 takes. Tracked objects get checksums by it.
-/// The superblock must be the earliest one: of a later one H5Fget_file_image (1.10.8) spoils the checksum,
-/// because it resets a flag below it.
-Handle memory_access(const Place& place) {
-  constexpr std::size_t kGrowth = std::size_t{1} << 22;
+/// In the format of HDF5 1.8 at most, which netCDF-4 takes. Tracked objects get checksums by it. The
+/// superblock must be the earliest one: of a later one H5Fget_file_image (1.10.8) spoils the checksum,
+/// because it resets a flag below it. The library locks no file: ours are locked by others, or lie where
+/// nobody can.
+Handle file_access(const Place& place) {
   Handle access = place.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
-  place.check(H5Pset_fapl_core(access.get(), kGrowth, false), "make properties");
   place.check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "make properties");
+  place.check(H5Pset_file_locking(access.get(), false, true), "make properties");
   return access;
 }
 
-Handle open_root(const Place& place, const Handle& file) {
-  return place.own(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose, "open the root group");
+Handle memory_access(const Place& place) {
+  constexpr std::size_t kGrowth = std::size_t{1} << 22;
+  Handle access = file_access(place);
+  place.check(H5Pset_fapl_core(access.get(), kGrowth, false), "make properties");
+  return access;
+}
+
+/// A new file at `path`, which is a name only when `access` says that it is in memory.
+Handle create_file(const Place& place, const std::string& path, const Handle& access) {
+  const Handle creation = place.own(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make properties");
+  set_group_properties(place, creation.get());
+  return place.own(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose,
+                   "create the file");
 }
 
 }  // namespace
@@ -586,17 +815,28 @@ Handle open_root(const Place& place, const Handle& file) {
 Hdf5File Hdf5File::create(const std::string& name) {
   silence_library();
   const Place place{name, "group", "/", ""};
-  const Handle creation = place.own(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make properties");
-  set_group_properties(place, creation.get());
-  const Handle access = memory_access(place);
-  const Handle file = place.own(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()),
-                                H5Fclose, "create a file in memory");
-  return Hdf5File(std::make_shared<const Hdf5Group::State>(
-      Hdf5Group::State{open_root(place, file), place.file, place.parent}));
+  return Hdf5File(Hdf5Group::State::root_of(create_file(place, name, memory_access(place)), place));
+}
+
+Hdf5File Hdf5File::create_at(const std::filesystem::path& path, const std::string& name) {
+  silence_library();
+  const Place place{name, "group", "/", ""};
+  auto disk = std::make_shared<int>(0);
+  const Handle access = file_access(place);
+  int* const error = disk.get();
+  place.check(H5Pset_driver(access.get(), DiskFile::driver(), &error), "make properties");
+  return Hdf5File(
+      Hdf5Group::State::root_of(create_file(place, path.string(), access), place, std::move(disk)));
 }
 
 Hdf5File Hdf5File::open(const std::filesystem::path& path) {
-  return open_unsealed(read_sealed_file(path), path.string());
+  require_seal(path);
+  silence_library();
+  const Place place{path.string(), "group", "/", ""};
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access(place).get()), H5Fclose);
+  if (file.get() < 0)
+    throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one ({})", place.file, last_error()));
+  return Hdf5File(Hdf5Group::State::root_of(file, place));
 }
 
 Hdf5File Hdf5File::open_unsealed(std::vector<std::byte> content, const std::string& name) {
@@ -606,12 +846,19 @@ Hdf5File Hdf5File::open_unsealed(std::vector<std::byte> content, const std::stri
   const Handle file(H5LTopen_file_image(content.data(), content.size(), kReadOnlyCopy), H5Fclose);
   if (file.get() < 0)
     throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one ({})", name, last_error()));
-  return Hdf5File(std::make_shared<const Hdf5Group::State>(
-      Hdf5Group::State{open_root(place, file), place.file, place.parent}));
+  return Hdf5File(Hdf5Group::State::root_of(file, place));
 }
 
 Hdf5Group Hdf5File::root() const {
   return Hdf5Group(root_);
+}
+
+void Hdf5File::finish() const {
+  const Place place = root_->place("group", "");
+  place.check(H5Fflush(root_->group.get(), H5F_SCOPE_GLOBAL), "finish the file");
+  if (root_->disk && *root_->disk != 0)
+    throw ArchiveError(fmt::format("{}: cannot write: {}", place.file,
+                                   std::error_code(*root_->disk, std::generic_category()).message()));
 }
 
 std::vector<std::byte> Hdf5File::image() const {
@@ -631,6 +878,9 @@ std::vector<std::byte> Hdf5File::image() const {
   template void Hdf5Group::write_dimension<T>(const std::string&, const std::vector<T>&, const Attributes&); \
   template void Hdf5Group::write<T>(const std::string&, const std::vector<std::string>&,                     \
                                     const std::vector<T>&, const Attributes&);                               \
+  template Hdf5Rows<T> Hdf5Group::create_rows<T>(const std::string&, const std::vector<std::string>&,        \
+                                                 const Attributes&);                                         \
+  template class Hdf5Rows<T>;                                                                                \
   template std::vector<T> Hdf5Group::read<T>(const std::string&, const std::vector<std::size_t>&) const;     \
   template std::vector<T> Hdf5Group::read_list<T>(const std::string&) const
 

@@ -21,6 +21,27 @@ using AttributeValue =
 /// Attributes in the order in which they are written.
 using Attributes = std::vector<std::pair<std::string, AttributeValue>>;
 
+/// A variable that is written row by row, a row being its values at one place of the first dimension, and
+/// goes to the file in blocks: what waits is a chunk at most. Errors: as Hdf5Group.
+template <class T>
+class Hdf5Rows {
+ public:
+  /// Values in a row.
+  std::size_t size() const;
+  /// Room for one more row, which is to be filled before the next call.
+  T* add();
+  /// Writes what waits. As many rows must have been added as the dimension is long.
+  void finish();
+
+ private:
+  friend class Hdf5Group;
+  struct State;
+
+  explicit Hdf5Rows(std::shared_ptr<State> state) : state_(std::move(state)) {}
+
+  std::shared_ptr<State> state_;
+};
+
 /// A group of an HDF5 file that netCDF-4 can read too.
 ///
 /// Every variable has named dimensions. A dimension is a one-dimensional variable of the same group, its
@@ -48,6 +69,11 @@ class Hdf5Group {
   template <class T>
   void write(const std::string& name, const std::vector<std::string>& dimensions,
              const std::vector<T>& values, const Attributes& attributes);
+
+  /// The same with values that come later, row by row.
+  template <class T>
+  Hdf5Rows<T> create_rows(const std::string& name, const std::vector<std::string>& dimensions,
+                          const Attributes& attributes);
 
   bool has_group(const std::string& name) const;
   /// A group in this one.
@@ -87,22 +113,26 @@ class Hdf5Group {
  private:
   friend class Hdf5File;
   struct State;
+  struct Scales;
 
   explicit Hdf5Group(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 
   std::shared_ptr<const State> state_;
 };
 
-/// An HDF5 file: one that is made in memory, or one on disk that is read.
+/// An HDF5 file that is made, in memory or on the disk, or read.
 ///
-/// A file is made in memory because the library leaves wreckage behind when a disk is full; the finished
-/// image is written by write_file_atomically(). It holds no time stamps: the same content is the same bytes.
-/// It is read in memory as well, after its seal (results/file_seal.hpp) has shown that it is what was
-/// written.
+/// The library leaves wreckage behind when a disk is full or it is killed, so that a file is put in its place
+/// by write_file_atomically(): the finished image, or the temporary file that was made on the disk. It holds
+/// no time stamps: the same content is the same bytes. It is read after its seal (results/file_seal.hpp) has
+/// shown that it is what was written.
 class Hdf5File {
  public:
-  /// An empty file. `name` is for messages.
+  /// An empty file in memory. `name` is for messages.
   static Hdf5File create(const std::string& name);
+
+  /// An empty file at `path`, which may be there; finish() ends it.
+  static Hdf5File create_at(const std::filesystem::path& path, const std::string& name);
 
   /// Opens a file for reading. Throws ArchiveError when it is no HDF5 file, not a whole one, or damaged.
   static Hdf5File open(const std::filesystem::path& path);
@@ -113,6 +143,10 @@ class Hdf5File {
 
   /// The group that holds everything.
   Hdf5Group root() const;
+
+  /// Writes everything to the disk. Throws ArchiveError when that fails. The file is closed when the last
+  /// group of it is gone.
+  void finish() const;
 
   /// The bytes of the file so far, with their seal.
   std::vector<std::byte> image() const;

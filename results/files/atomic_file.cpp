@@ -73,6 +73,8 @@ class TemporaryFile {
       ::unlink(path_.c_str());
   }
 
+  std::filesystem::path path() const { return path_; }
+
   void write(std::span<const std::byte> content) { write_all(descriptor_, content, target_); }
 
   void flush() {
@@ -159,7 +161,10 @@ bool is_stream(const std::filesystem::path& path) {
   return std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status);
 }
 
-void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content) {
+namespace {
+
+template <class Write>
+void write_atomically(const std::filesystem::path& path, const Write& write) {
   const std::filesystem::path target = target_of(path);
   std::error_code error;  // what cannot be looked at cannot be written either, which is said below
   if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error))
@@ -168,10 +173,21 @@ void write_file_atomically(const std::filesystem::path& path, std::span<const st
                     std::filesystem::is_directory(target, error) ? "folder" : "device or a pipe"));
   remove_abandoned_files(target);
   TemporaryFile file(target);
-  file.write(content);
+  write(file);
   file.flush();
   file.rename();
   flush_folder(target);
+}
+
+}  // namespace
+
+void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content) {
+  write_atomically(path, [content](TemporaryFile& file) { file.write(content); });
+}
+
+void write_file_atomically(const std::filesystem::path& path,
+                           const std::function<void(const std::filesystem::path&)>& fill) {
+  write_atomically(path, [&fill](const TemporaryFile& file) { fill(file.path()); });
 }
 
 void write_through(const std::filesystem::path& path, std::span<const std::byte> content) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 
 namespace mpm {
@@ -14,6 +15,11 @@ namespace mpm {
 /// Throws ArchiveError when that cannot be done (no such folder, no permission, disk full, a device or a pipe
 /// in its place); the temporary file is then removed and a file that was at `path` is as it was.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content);
+
+/// The same with a file that `fill` writes, at the path that it is given: an empty file is there. What `fill`
+/// throws goes on, and the temporary file is removed.
+void write_file_atomically(const std::filesystem::path& path,
+                           const std::function<void(const std::filesystem::path&)>& fill);
 
 /// Whether `path` is, or leads to, something that takes bytes and keeps no file: a terminal, /dev/null, a
 /// FIFO.

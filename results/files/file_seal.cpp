@@ -59,6 +59,23 @@ class InputFile {
   std::ifstream file_;
 };
 
+/// Of the first `size` bytes of the file.
+std::string sha256_of(InputFile& file, std::size_t size) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20;
+  Sha256 hash;
+  for (std::size_t begin = 0; begin < size; begin += kPiece)
+    hash.add(file.read<std::vector<std::byte>>(begin, std::min(kPiece, size - begin)));
+  return hash.digits();
+}
+
+std::string seal_of(const std::string& hash) {
+  return fmt::format("{}{}{}", kSealBegin, hash, kSealEnd);
+}
+
+constexpr const char* kDamaged =
+    "the file is damaged: its SHA-256 differs from the one at its end; take a copy of it, or run its study "
+    "again";
+
 /// The hash in the seal at the end of the file.
 std::string read_seal(InputFile& file) {
   const std::size_t begin = file.size() - std::min(file.size(), kSealBytes);
@@ -75,7 +92,7 @@ std::string read_seal(InputFile& file) {
 }  // namespace
 
 std::vector<std::byte> sealed(std::vector<std::byte> content) {
-  const std::string seal = fmt::format("{}{}{}", kSealBegin, sha256(content), kSealEnd);
+  const std::string seal = seal_of(sha256(content));
   const auto bytes = std::as_bytes(std::span(seal));
   content.insert(content.end(), bytes.begin(), bytes.end());
   return content;
@@ -95,11 +112,24 @@ std::vector<std::byte> read_sealed_file(const std::filesystem::path& path) {
   const std::string hash = read_seal(file);  // first, because what has none may be longer than the memory
   auto content = file.read<std::vector<std::byte>>(0, file.size() - kSealBytes);
   if (sha256(content) != hash)
-    file.refuse(
-        "the file is damaged: its SHA-256 differs from the one at its end; take a copy of it, or run its "
-        "study "
-        "again");
+    file.refuse(kDamaged);
   return content;
+}
+
+void require_seal(const std::filesystem::path& path) {
+  InputFile file(path);
+  const std::string hash = read_seal(file);
+  if (sha256_of(file, file.size() - kSealBytes) != hash)
+    file.refuse(kDamaged);
+}
+
+void seal_file(const std::filesystem::path& path) {
+  InputFile file(path);
+  const std::string seal = seal_of(sha256_of(file, file.size()));
+  std::ofstream end(path, std::ios::binary | std::ios::app);
+  end << seal << std::flush;
+  if (!end)
+    file.refuse("cannot write its checksum");
 }
 
 }  // namespace mpm

@@ -22,6 +22,9 @@ inline constexpr std::size_t kSealBytes = 82;
 /// `content` with its seal.
 std::vector<std::byte> sealed(std::vector<std::byte> content);
 
+/// Puts the seal at the end of a file. Throws ArchiveError when it cannot be read or written.
+void seal_file(const std::filesystem::path& path);
+
 /// The content of a sealed file that was read as a whole, without the seal; none when it has no seal or the
 /// seal is that of another content.
 std::optional<std::string_view> unsealed(std::string_view file);
@@ -31,5 +34,8 @@ std::optional<std::string_view> unsealed(std::string_view file);
 /// Errors: ArchiveError for a file that cannot be read, has no seal (it is cut off, was changed by another
 /// program, comes from an early version, or is no archive at all), or differs from what was sealed.
 std::vector<std::byte> read_sealed_file(const std::filesystem::path& path);
+
+/// The same without its content: throws unless it is what was sealed.
+void require_seal(const std::filesystem::path& path);
 
 }  // namespace mpm

@@ -80,7 +80,7 @@ std::string asked(const ReportInput& input) {
       methods == 1 ? fmt::format("does the method <code>{}</code> tell",
                                  html_text(input.findings().methods.front().name()))
                    : fmt::format("do {} methods tell", methods),
-      input.findings().experiments, kinds_text(input.campaign));
+      input.findings().experiments, kinds_text(input.campaign.study, input.parts.kinds));
 }
 
 std::string found(const ReportInput& input) {

@@ -18,12 +18,12 @@ namespace {
 
 using Methods = std::vector<MethodFindings>;
 
-std::string introduction(const Campaign& campaign) {
+std::string introduction(const StudyFindings& findings) {
   return fmt::format(
       "<p>Every method has assessed the same {} of {} experiments, those that ran to their end, and has seen "
       "of each what a historian would have kept. Judge detection and false alarms together, for a method "
       "that flags every loop detects every fault; a rate that is missing had no loop to be counted on.</p>\n",
-      assessed_loops(campaign), campaign.records.size());
+      findings.assessed, findings.experiments);
 }
 
 /// A value over its interval and what it rests on, both small.
@@ -188,12 +188,12 @@ ReportSection comparison_section(const ReportInput& input) {
   const Campaign& campaign = input.campaign;
   ReportSection section{"comparison", "Which method is right most often?", {}};
   const StudyFindings& summary = input.findings();
-  if (assessed_loops(campaign) == 0) {
+  if (summary.assessed == 0) {
     section.leave_out("it needs an experiment that ran to its end; there is none.");
     return section;
   }
   section.answer = comparison_answer(input);
-  section.add(introduction(campaign));
+  section.add(introduction(summary));
   Figure rates = comparison_rates_figure(campaign.study, summary.methods);
   if (!rates.panels.empty())
     section.add(std::move(rates));

@@ -100,8 +100,8 @@ std::string comparison_json(const Campaign& campaign, const StudyFindings& findi
     pairs.push_back(pair_json(findings, pair));
   Json comparison{{"study", campaign.study.name},
                   {"seed", campaign.study.seed},
-                  {"experiments", campaign.records.size()},
-                  {"loops", assessed_loops(campaign)},
+                  {"experiments", findings.experiments},
+                  {"loops", findings.assessed},
                   {"confidence", campaign.study.aggregate.confidence},
                   {"rates", rate_names_json(campaign.study)},
                   {"methods", methods},

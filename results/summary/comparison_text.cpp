@@ -154,7 +154,7 @@ std::string pairs_text(const StudyFindings& summary) {
 
 std::string comparison_text(const Campaign& campaign, const StudyFindings& findings) {
   std::string text = fmt::format("{}: {} of {} experiments compared; [{:g} % interval], loops looked at\n",
-                                 campaign.study.name, assessed_loops(campaign), campaign.records.size(),
+                                 campaign.study.name, findings.assessed, findings.experiments,
                                  100.0 * campaign.study.aggregate.confidence);
   for (std::size_t first = 0; first < findings.methods.size(); first += kMethodsAbreast)
     text += fmt::format("\n{}", rates_text(campaign.study, findings.methods, first,

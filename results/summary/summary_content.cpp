@@ -9,42 +9,63 @@
 
 namespace mpm {
 
-std::vector<KindCount> kind_counts(const Campaign& campaign) {
+namespace {
+
+std::vector<KindCount> kinds_of(const Study& study) {
   std::vector<KindCount> counts;
-  if (campaign.study.names_scenarios())
+  if (study.names_scenarios())
     return counts;
   for (const ExperimentKind kind : {ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud,
                                     ExperimentKind::healthy, ExperimentKind::tuning, ExperimentKind::other})
-    if (campaign.study.experiments.of(kind) > 0)
-      counts.push_back(
-          {kind, std::count_if(campaign.records.begin(), campaign.records.end(),
-                               [kind](const auto& record) { return record.draw.kind == kind; })});
+    if (study.experiments.of(kind) > 0)
+      counts.push_back({kind, 0});
   return counts;
 }
 
-std::string kinds_text(const Campaign& campaign) {
-  std::string text = campaign.study.names_scenarios() ? "named scenarios" : "";
-  for (const KindCount& count : kind_counts(campaign))
+}  // namespace
+
+std::string kinds_text(const Study& study, const std::vector<KindCount>& kinds) {
+  std::string text = study.names_scenarios() ? "named scenarios" : "";
+  for (const KindCount& count : kinds)
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.experiments, kind_name(count.kind));
   return text;
 }
 
 SummaryContent summary_content(const Campaign& campaign, const StudyFindings& findings) {
+  const Study& study = campaign.study;
   SummaryContent parts(findings);
-  if (!campaign.study.s0_perturbation.multipliers.empty()) {
-    parts.s0_curves = s0_curves(campaign.study, campaign.records);
-    parts.s0_fits = diagonal_fits(campaign.basis.sensitivity, campaign.study.controller.sample_time);
-    parts.structure_fits = structure_fits(campaign.study, campaign.basis);
+  std::optional<Collector<std::vector<S0Curve>>> s0_curves;
+  if (!study.s0_perturbation.multipliers.empty()) {
+    s0_curves = s0_curve_collector(study);
+    parts.s0_fits = diagonal_fits(campaign.basis.sensitivity, study.controller.sample_time);
+    parts.structure_fits = structure_fits(study, campaign.basis);
   }
   parts.audit = summarise(campaign.audit);
-  for (const ExperimentRecord& record : campaign.records) {
+  parts.kinds = kinds_of(study);
+  const auto list = [&](const ExperimentRecord& record, std::vector<const ExperimentRecord*>& listed) {
+    if (!campaign.streamed)
+      listed.push_back(&record);
+    else if (listed.size() < kMostListed)
+      listed.push_back(&parts.first.emplace_back(record));
+  };
+  records_of(campaign).each([&](const ExperimentRecord& record) {
     parts.fallbacks += record.solver.fallbacks;
-    if (record.status == ExperimentStatus::failed)
-      parts.failed.push_back(&record);
+    for (KindCount& kind : parts.kinds)
+      kind.experiments += record.draw.kind == kind.kind ? 1 : 0;
+    if (s0_curves)
+      s0_curves->add(record);
+    if (record.status == ExperimentStatus::failed) {
+      ++parts.failed_count;
+      list(record, parts.failed);
+    }
     const AssessmentRecord* const chain = record.by(kChainMethod);
-    if (chain != nullptr && judge(campaign.study, record, *chain).wrong())
-      parts.wrong.push_back(&record);
-  }
+    if (chain != nullptr && judge(study, record, *chain).wrong()) {
+      ++parts.wrong_count;
+      list(record, parts.wrong);
+    }
+  });
+  if (s0_curves)
+    parts.s0_curves = s0_curves->result();
   return parts;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
-#include <string_view>
+#include <cstdint>
+#include <deque>
+#include <string>
 #include <vector>
 
 #include "analysis/basis/s0_perturbation_structure.hpp"
@@ -15,11 +17,8 @@ struct KindCount {
   std::int64_t experiments;
 };
 
-/// Of each kind that a study of random experiments has; none of named scenarios.
-std::vector<KindCount> kind_counts(const Campaign& campaign);
-
-/// "150 MPM, 150 UD, 100 MPM+UD"; "named scenarios".
-std::string kinds_text(const Campaign& campaign);
+/// How many experiments the summary for people lists one by one.
+inline constexpr std::size_t kMostListed = 10;
 
 /// What both forms of the summary are made of. Points into the campaign.
 struct SummaryContent {
@@ -31,9 +30,16 @@ struct SummaryContent {
   std::vector<S0Curve> s0_curves;    ///< this and the next two: none unless the study perturbs S0
   std::vector<DiagonalFit> s0_fits;  ///< of the CVs at a soft limit
   std::vector<StructureFit> structure_fits;  ///< none unless the study fixes MVs
+  std::vector<KindCount> kinds;              ///< of a study of random experiments, those that it has
+  std::size_t failed_count = 0, wrong_count = 0;
+  /// All of them; of a campaign that is streamed the first ones, kMostListed at most.
   std::vector<const ExperimentRecord*> failed;
   std::vector<const ExperimentRecord*> wrong;  ///< verdicts of the chain, Judgement::wrong()
+  std::deque<ExperimentRecord> first;          ///< these, of a campaign that is streamed
 };
+
+/// "150 MPM, 150 UD, 100 MPM+UD"; "named scenarios".
+std::string kinds_text(const Study& study, const std::vector<KindCount>& kinds);
 
 /// `campaign` and `findings` must outlive the parts.
 SummaryContent summary_content(const Campaign& campaign, const StudyFindings& findings);

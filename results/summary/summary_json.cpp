@@ -239,7 +239,7 @@ std::string summary_json(const Campaign& campaign, const StudyFindings& total) {
       {"experiments", total.experiments},
       {"infeasible", total.infeasible.hits},
       {"failed", total.failed},
-      {"kinds", kinds_json(kind_counts(campaign))},
+      {"kinds", kinds_json(parts.kinds)},
       {"basis", basis_json(campaign.study, campaign.basis)},
       {"settings", settings_json(campaign.study)},
       {"run", run_json(campaign.info)},

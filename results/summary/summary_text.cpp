@@ -17,8 +17,6 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kMostListed = 10;
-
 std::string audit_sentence(const SummaryContent& parts, const CampaignInfo& info) {
   const AuditSummary& audit = parts.audit;
   const std::string fallbacks =
@@ -80,8 +78,8 @@ void add_heading(SummaryLines& text, const Campaign& campaign, const SummaryCont
   if (!campaign.basis.sensitivity.is_known)
     text.entry("S0", "none: the program runs on the plant only, not on its own model");
   text.entry("experiments", fmt::format("{} ({}) of {} samples; {} infeasible, {} failed",
-                                        findings.experiments, kinds_text(campaign), study.simulation.samples,
-                                        findings.infeasible.hits, findings.failed));
+                                        findings.experiments, kinds_text(study, parts.kinds),
+                                        study.simulation.samples, findings.infeasible.hits, findings.failed));
   text.entry("seed", fmt::format("{}", study.seed));
   text.entry("program", fmt::format("mpmbench {} ({}), solver {}", info.mpmbench_version,
                                     info.git_sha.empty() ? "unknown revision" : info.git_sha, info.solver));
@@ -156,20 +154,20 @@ void add_more(SummaryLines& text, std::size_t count) {
     text.line("  and {} more", count - kMostListed);
 }
 
-void add_failed(SummaryLines& text, const std::vector<const ExperimentRecord*>& failed) {
-  if (failed.empty())
+void add_failed(SummaryLines& text, const SummaryContent& parts) {
+  if (parts.failed_count == 0)
     return;
   text.line("");
-  text.line("{} failed:", plural(failed.size(), "experiment"));
-  for (std::size_t i = 0; i < std::min(failed.size(), kMostListed); ++i)
-    text.line("  {:>5}  {}", failed[i]->draw.index, failed[i]->message);
-  add_more(text, failed.size());
+  text.line("{} failed:", plural(parts.failed_count, "experiment"));
+  for (std::size_t i = 0; i < std::min(parts.failed.size(), kMostListed); ++i)
+    text.line("  {:>5}  {}", parts.failed[i]->draw.index, parts.failed[i]->message);
+  add_more(text, parts.failed_count);
 }
 
-void add_wrong(SummaryLines& text, const Study& study, const std::vector<const ExperimentRecord*>& wrong,
-               const std::string& file) {
+void add_wrong(SummaryLines& text, const Study& study, const SummaryContent& parts, const std::string& file) {
+  const std::vector<const ExperimentRecord*>& wrong = parts.wrong;
   text.line("");
-  text.line("{} with impact got a wrong verdict{}", plural(wrong.size(), "experiment"),
+  text.line("{} with impact got a wrong verdict{}", plural(parts.wrong_count, "experiment"),
             wrong.empty() ? "" : ":");
   for (std::size_t i = 0; i < std::min(wrong.size(), kMostListed); ++i) {
     const ExperimentDraw& draw = wrong[i]->draw;
@@ -181,7 +179,7 @@ void add_wrong(SummaryLines& text, const Study& study, const std::vector<const E
               file.size() + 22, truth, to_string(said.predicted_source),
               said.predicted_cv < 0 ? "no CV" : cv_name(study, said.predicted_cv));
   }
-  add_more(text, wrong.size());
+  add_more(text, parts.wrong_count);
 }
 
 }  // namespace
@@ -200,9 +198,9 @@ std::string summary_text(const Campaign& campaign, const StudyFindings& findings
     add_dominance(text, campaign.study, findings.dominance);
     add_s0_perturbation(text, campaign.study, parts);
   }
-  add_failed(text, parts.failed);
+  add_failed(text, parts);
   if (!campaign.study.names_scenarios() && chain)
-    add_wrong(text, campaign.study, parts.wrong, file);
+    add_wrong(text, campaign.study, parts, file);
   if (findings.methods.size() > 1 || !chain)
     text.line("\n{}", comparison_text(campaign, findings));
   return text.take();

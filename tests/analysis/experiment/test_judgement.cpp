@@ -312,7 +312,7 @@ TEST_CASE("judgements, counted one by one, are the rates of the findings") {
     const auto source = [&](const ExperimentRecord& record) {
       return judge(study, record, record.assessments[0]).source();
     };
-    const std::vector<KindFindings> kinds = kind_findings(study, *testing::chain_form(), 0, records);
+    const std::vector<KindFindings> kinds = kind_collector(study, *testing::chain_form(), 0).of(records);
     REQUIRE(kinds.size() == 3);
     for (const KindFindings& kind : kinds) {
       check_counts(records, kind.kind, location, kind.located);

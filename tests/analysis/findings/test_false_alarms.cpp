@@ -142,7 +142,7 @@ TEST_CASE("a controller that does not run on its own model makes the experiment 
 
 TEST_CASE("false_alarms counts each kind, and each parameter that the controller has", "[false_alarms]") {
   Study study = find_study("chapter6");
-  CHECK(false_alarms(study, 0, {}).empty());
+  CHECK(false_alarm_collector(study, 0).of({}).empty());
   study.experiments = {.mpm = 1, .healthy = 1, .tuning = 1};
   const auto healthy = ExperimentKind::healthy, tuning = ExperimentKind::tuning;
   const std::vector<ExperimentRecord> records{
@@ -154,7 +154,7 @@ TEST_CASE("false_alarms counts each kind, and each parameter that the controller
       made_up(tuning, ExperimentStatus::ok, FaultSource::mpm),
       made_up(tuning, ExperimentStatus::failed),
   };
-  const std::vector<FalseAlarms> groups = false_alarms(study, 0, records);
+  const std::vector<FalseAlarms> groups = false_alarm_collector(study, 0).of(records);
   REQUIRE(groups.size() == 5);  // without the setpoint weights, which no CV has
   CHECK(groups[0].name() == "healthy");
   CHECK(groups[0].experiments == 4);

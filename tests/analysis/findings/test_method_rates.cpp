@@ -56,8 +56,8 @@ struct Case {
     add(kind == ExperimentKind::healthy ? healthy_record(index) : made_up_record(index, kind, 1, 0.2), first,
         second);
   }
-  MethodRates rates() const { return method_rates(study(), 0, records); }
-  std::vector<MethodPair> pairs() const { return method_pairs(study(), 2, records); }
+  MethodRates rates() const { return rate_collector(study(), 0).of(records); }
+  std::vector<MethodPair> pairs() const { return pair_collector(study(), 2).of(records); }
 };
 
 void check_rate(const Rate& rate, std::int64_t hits, std::int64_t total) {
@@ -390,14 +390,14 @@ TEST_CASE("paired methods: p-values are corrected within each truth, for the pai
     records.push_back(made_up_record(i, kMpm, 1, 0.2));
     records.back().assessments = {verdict(true), verdict(false), no_verdict(AssessmentStatus::failed)};
   }
-  std::vector<MethodPair> pairs = method_pairs(study(), 3, records);
+  std::vector<MethodPair> pairs = pair_collector(study(), 3).of(records);
   REQUIRE(pairs.size() == 6);
   CHECK(pairs[0].test.p_two_sided == 2.0 / 64.0);
   CHECK(pairs[0].p_holm == pairs[0].test.p_two_sided);
   CHECK(pairs[1].p_holm == 1.0);
   for (ExperimentRecord& record : records)
     record.assessments[2] = verdict(false);  // as the second one: p = 1/32, 1/32, 1
-  pairs = method_pairs(study(), 3, records);
+  pairs = pair_collector(study(), 3).of(records);
   CHECK(pairs[0].p_holm == 6.0 / 64.0);
   CHECK(pairs[1].p_holm == 6.0 / 64.0);
   CHECK(pairs[2].p_holm == 1.0);
@@ -405,8 +405,8 @@ TEST_CASE("paired methods: p-values are corrected within each truth, for the pai
 }
 
 TEST_CASE("paired methods: every pair once for each truth", "[method_rates]") {
-  CHECK(method_pairs(study(), 1, {}).empty());
-  const std::vector<MethodPair> pairs = method_pairs(study(), 3, {});
+  CHECK(pair_collector(study(), 1).of({}).empty());
+  const std::vector<MethodPair> pairs = pair_collector(study(), 3).of({});
   REQUIRE(pairs.size() == 6);
   std::set<std::tuple<FlagTruth, std::size_t, std::size_t>> different;
   for (const MethodPair& pair : pairs) {

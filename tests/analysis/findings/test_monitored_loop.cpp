@@ -75,7 +75,7 @@ TEST_CASE("monitored loops: median of the delays, and alarms over the time that 
   const std::vector<ExperimentRecord> records{
       said(kFaulty, 200, {0, 0, 0, 0, 1, 1, 1}), said(kFaulty, 200, {0, 0, 1, 1, 1, 1, 1}),
       said(kFaulty, 200, {0, 0, 0, 0, 0, 0, 0}), said(kHealthy, 0, {0, 0, 0, 1, 0, 0, 0})};
-  const MethodRates rates = method_rates(monitored(), 0, records);
+  const MethodRates rates = rate_collector(monitored(), 0).of(records);
   CHECK(rates.detection_delay.value == 400.0);  // of 400, 200 and never
   CHECK(rates.detection_delay.count == 3);
   CHECK(rates.monitored_impact.hits == 2);

@@ -149,7 +149,7 @@ TEST_CASE("S0 curves: quartiles of the ratios, and changes within the tolerance 
   records.push_back(records.front());
   records.back().perturbed.time_constant.setConstant(mpm::kInfinity);
 
-  const std::vector<S0Curve> curves = s0_curves(study, records);
+  const std::vector<S0Curve> curves = s0_curve_collector(study).of(records);
   REQUIRE(curves.size() == 1);
   CHECK(curves[0].cv == 1);
   CHECK(curves[0].experiments == 6);
@@ -163,12 +163,12 @@ TEST_CASE("S0 curves: quartiles of the ratios, and changes within the tolerance 
   CHECK(curves[0].time_constant_change.within_band.total == 5);
   CHECK(curves[0].damping_change.largest == Approx(0.0).margin(1e-15));
   CHECK(curves[0].damping_change.within_band.hits == 6);
-  CHECK(s0_changes(study, records).time_constant.largest == curves[0].time_constant_change.largest);
-  CHECK(s0_curves(study_with({}), records).empty());
+  CHECK(s0_change_collector(study).of(records).time_constant.largest == curves[0].time_constant_change.largest);
+  CHECK(s0_curve_collector(study_with({})).of(records).empty());
   for (ExperimentRecord& record : records)
     record.assessments.clear();
-  CHECK(s0_curves(study, records).empty());  // Ivar_diag is a number of the chain
-  CHECK(std::isnan(s0_changes(study, {}).damping.largest));
+  CHECK(s0_curve_collector(study).of(records).empty());  // Ivar_diag is a number of the chain
+  CHECK(std::isnan(s0_change_collector(study).of({}).damping.largest));
 }
 
 TEST_CASE("fixed MVs: the static gain of T0 is that of the nominal model with the other MVs alone") {

@@ -123,7 +123,7 @@ TEST_CASE("summary: fits and changes of a modified S0, and S0 with MVs fixed, in
   REQUIRE(json["fits"].size() == 3);  // y1, y2, y7
   CHECK(json["fits"][2]["cv"] == "y7");
   CHECK(json["fixed_mvs"].size() == 2);
-  const std::vector<S0Curve> curves = s0_curves(small_sample().study, small_sample().records);
+  const std::vector<S0Curve> curves = s0_curve_collector(small_sample().study).of(small_sample().records);
   REQUIRE_FALSE(curves.empty());
   REQUIRE(json["changes"].size() == curves.size());
   CHECK(json["changes"][0]["experiments"] == curves[0].experiments);

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "analysis/experiment/experiment.hpp"
+
+namespace mpm {
+
+/// The records of experiments in the order of their index, to be looked at one after the other: records in
+/// memory, or ones that are read anew each time, so that there is one of them at a time.
+class RecordRange {
+ public:
+  using Visit = std::function<void(const ExperimentRecord&)>;
+
+  /// No records.
+  RecordRange() : RecordRange(std::span<const ExperimentRecord>()) {}
+  /// These, which must outlive it.
+  RecordRange(std::span<const ExperimentRecord> records)
+      : size_(records.size()), each_([records](const Visit& visit) {
+          for (const ExperimentRecord& record : records)
+            visit(record);
+        }) {}
+  RecordRange(const std::vector<ExperimentRecord>& records)
+      : RecordRange(std::span<const ExperimentRecord>(records)) {}
+  /// `size` of them, which `each` reads and passes on, as often as it is called.
+  RecordRange(std::size_t size, std::function<void(const Visit&)> each)
+      : size_(size), each_(std::move(each)) {}
+
+  std::size_t size() const { return size_; }
+  void each(const Visit& visit) const { each_(visit); }
+
+ private:
+  std::size_t size_;
+  std::function<void(const Visit&)> each_;
+};
+
+}  // namespace mpm
