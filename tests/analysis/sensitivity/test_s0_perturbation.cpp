@@ -163,7 +163,8 @@ TEST_CASE("S0 curves: quartiles of the ratios, and changes within the tolerance 
   CHECK(curves[0].time_constant_change.within_band.total == 5);
   CHECK(curves[0].damping_change.largest == Approx(0.0).margin(1e-15));
   CHECK(curves[0].damping_change.within_band.hits == 6);
-  CHECK(s0_change_collector(study).of(records).time_constant.largest == curves[0].time_constant_change.largest);
+  CHECK(s0_change_collector(study).of(records).time_constant.largest ==
+        curves[0].time_constant_change.largest);
   CHECK(s0_curve_collector(study_with({})).of(records).empty());
   for (ExperimentRecord& record : records)
     record.assessments.clear();
