@@ -99,7 +99,8 @@ void ShardIndex::compare_repeated() const {
 void ShardIndex::each(const Visit& visit) const {
   Reader reader(set_);
   for (const Place& place : places_)
-    visit(reader.read(place));
+    if (place.shard != kNoShard)
+      visit(reader.read(place));
 }
 
 void ShardIndex::each_repeated(const Visit& visit) const {

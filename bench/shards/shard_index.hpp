@@ -20,7 +20,7 @@ class ShardIndex {
   explicit ShardIndex(const ShardSet& set);
 
   std::size_t size() const { return places_.size(); }
-  /// Each experiment once. Throws ArchiveError when a shard can no longer be read.
+  /// Each experiment that is there once. Throws ArchiveError when a shard can no longer be read.
   void each(const Visit& visit) const;
   /// What several shards have, but for the outcomes that each() gives.
   void each_repeated(const Visit& visit) const;

@@ -6,8 +6,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "analysis/methods/method_table.hpp"
-#include "bench/campaign/outcome_collection.hpp"
+#include "bench/campaign/streamed_records.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "bench/outcome/outcome_bytes.hpp"
 #include "bench/shards/shard_set.hpp"
@@ -239,12 +238,12 @@ Campaign merged(const std::vector<fs::path>& folders) {
   ShardSet set(RunOptions(), study(), 5);
   for (const fs::path& one : folders)
     set.take_stock(shards_in(one), {});
-  OutcomeCollection outcomes(5);
-  const RecordBytes records(study(), assessment_forms(study(), study_methods(study())));
-  set.read([&](ExperimentOutcome outcome) { outcomes.add(std::move(outcome)); },
-           [&](const ExperimentOutcome& outcome) { return outcomes.differences(outcome, records); });
   Campaign campaign;
-  outcomes.move_into(campaign);
+  campaign.study = study();
+  campaign.info.audit_share = 1.0;
+  take_records(campaign, set, {});
+  records_of(campaign).each([&](const ExperimentRecord& record) { campaign.records.push_back(record); });
+  campaign.streamed.reset();  // the set ends here
   return campaign;
 }
 
@@ -253,7 +252,9 @@ TEST_CASE("shard set: an experiment in two shards counts once, and is refused wh
   leave_behind(folder / "one", {4, 1});
   leave_behind(folder / "two", {1, 0});
   const Campaign campaign = merged({folder / "one", folder / "two"});
+  REQUIRE(campaign.records.size() == 3);  // 0, 1, 4
   CHECK(campaign.records[1].message == "experiment 1");
+  CHECK(campaign.records[2].message == "experiment 4");
   CHECK(campaign.audit.size() == 3);  // each audit has a step of experiment 0 too
 
   ExperimentOutcome other = outcome_of(1);
