@@ -43,6 +43,11 @@ void read_cv(const TomlTable& table, Eigen::Index i, MpcOptions& options) {
   const NumberPair hard = read_limits(table, "hard");
   set_limits(options.cv_hard, i, hard);
   const bool has_setpoint = table.has("setpoint_weight");
+  if (table.has("setpoint") && !has_setpoint)
+    table.refuse("setpoint", "a setpoint without setpoint_weight", "both or none");
+  if (!has_setpoint && !table.has("soft") && !table.has("slack_weight"))
+    table.refuse("", "neither a setpoint nor a range",
+                 "setpoint_weight for a setpoint, slack_weight and soft for a range, or all three");
   if (has_setpoint)
     options.setpoint_weight(i) = read_number(table, "setpoint_weight", NumberRule::positive());
   if (has_setpoint && !table.has("soft") && !table.has("slack_weight"))
@@ -138,8 +143,6 @@ Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantMod
   for (std::size_t i = 0; i < names.size(); ++i) {
     const TomlTable table = tables.table(names[i], study_file_keys("controller.cv.NAME"));
     const auto cv = static_cast<Eigen::Index>(i);
-    if (table.has("setpoint") && !controller.has_setpoint(cv))
-      table.refuse("setpoint", "a setpoint without setpoint_weight", "both or none");
     if (controller.has_setpoint(cv))
       setpoint(cv) = read_number_or(table, "setpoint", NumberRule::finite(), 0.0);
   }

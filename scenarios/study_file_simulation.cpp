@@ -56,6 +56,12 @@ void read_steps(const TomlTable& simulation, const std::vector<std::string>& mds
     const bool of_md = table.has("md");
     if (of_md == table.has("cv"))
       table.refuse("", of_md ? "both md and cv" : "neither md nor cv", "exactly one of the two");
+    if (!of_md && setpoint_cvs.empty())
+      table.refuse("cv", "a step of a setpoint, and no CV has one",
+                   "none, or a CV with controller.cv.NAME.setpoint_weight");
+    if (of_md && mds.empty())
+      table.refuse("md", "a step of a measured disturbance, and the plant has none",
+                   "none, or an MD of the plant, plant.md[]");
     const SignalStep step{.variable = of_md ? static_cast<Eigen::Index>(read_one_of(table, "md", mds))
                                             : cv_of_setpoint[read_one_of(table, "cv", setpoint_cvs)],
                           .sample = static_cast<int>(read_whole(table, "sample", 0, options.samples - 1)),

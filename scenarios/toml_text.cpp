@@ -1,6 +1,8 @@
 #include "scenarios/toml_text.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -85,6 +87,17 @@ std::string describe(const toml::node& node) {
     return fmt::format("a list of {}", list->size());
   }
   return node.is_table() ? "a table" : "a date or time";
+}
+
+std::string describe_no_number(const toml::node& node) {
+  const auto* text = node.as_string();
+  if (text == nullptr)
+    return describe(node);
+  double number = 0.0;
+  const char* const end = text->get().data() + text->get().size();
+  const auto read = std::from_chars(text->get().data(), end, number);
+  const bool reads_as_number = read.ec == std::errc() && read.ptr == end;
+  return fmt::format("the text {}{}", describe(node), reads_as_number ? " (a number has no quotes)" : "");
 }
 
 }  // namespace mpm

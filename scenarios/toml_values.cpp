@@ -38,7 +38,7 @@ NumberPair raw_pair(const TomlTable& table, std::string_view key, const std::str
   }
   for (const toml::node& element : *list) {
     if (!element.is_number()) {
-      table.refuse(key, describe(element) + " in the list", allowed);
+      table.refuse(key, describe_no_number(element) + " in the list", allowed);
     }
   }
   return {number_in((*list)[0]), number_in((*list)[1])};
@@ -73,7 +73,7 @@ double read_number(const TomlTable& table, std::string_view key, const NumberRul
   const toml::node& node = table.require(key, rule.text());
   const double value = number_in(node);
   if (!node.is_number() || !rule.contains(value)) {
-    table.refuse(key, describe(node), rule.text());
+    table.refuse(key, describe_no_number(node), rule.text());
   }
   return recorded(table, key, value);
 }
@@ -87,7 +87,7 @@ std::int64_t read_whole(const TomlTable& table, std::string_view key, std::int64
   const toml::node& node = table.require(key, allowed);
   const toml::value<std::int64_t>* value = node.as_integer();
   if (value == nullptr || value->get() < low || value->get() > high) {
-    table.refuse(key, describe(node), allowed);
+    table.refuse(key, describe_no_number(node), allowed);
   }
   return recorded(table, key, value->get());
 }
@@ -224,7 +224,7 @@ Eigen::VectorXd read_numbers(const TomlTable& table, std::string_view key, const
     const toml::node& element = (*list)[static_cast<std::size_t>(i)];
     numbers(i) = number_in(element);
     if (!element.is_number() || !rule.contains(numbers(i))) {
-      table.refuse(key, describe(element) + " in the list", allowed);
+      table.refuse(key, describe_no_number(element) + " in the list", allowed);
     }
   }
   return recorded(table, key, numbers);

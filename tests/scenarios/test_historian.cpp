@@ -151,7 +151,7 @@ TEST_CASE("what makes no record is refused", "[historian]") {
       {"", "[record]\nquantisation = -1\n", "quantisation",
        "record.quantisation: found -1; allowed: a number >= 0"},
       {"", "[record]\ncompression = 'door'\n", "compression",
-       "record.compression: found 'door'; allowed: a number >= 0"},
+       "record.compression: found the text 'door'; allowed: a number >= 0"},
   });
   const std::string silent = testing::replaced(testing::small_study(), "noise_standard_deviation = 0.01",
                                                "noise_standard_deviation = {level = 0.01, heat = 0}");

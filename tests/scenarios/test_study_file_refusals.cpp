@@ -74,6 +74,22 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
   });
 }
 
+TEST_CASE("a text in the place of a number is called a text", "[study_file]") {
+  check_refusals({
+      {"sample_time = 1\n", "sample_time = \"4.3\"\n", "sample_time",
+       "controller.sample_time: found the text '4.3' (a number has no quotes); allowed: a number > 0"},
+      {"sample_time = 1\n", "sample_time = \"1 min\"\n", "sample_time",
+       "controller.sample_time: found the text '1 min'; allowed: a number > 0"},
+      {"samples = 60\n", "samples = \"60\"\n", "samples = \"60\"",
+       "simulation.samples: found the text '60' (a number has no quotes); allowed: a whole number from 1 to "
+       "1000000"},
+      {"soft = [0, 1]\n", "soft = [\"0\", 1]\n", "soft = [\"0\", 1]",
+       "controller.cv.level.soft: found the text '0' (a number has no quotes) in the list; allowed: [low, "
+       "high] "
+       "with low <= high; -inf and inf for no limit"},
+  });
+}
+
 TEST_CASE("missing tables and keys are refused at the line of their table", "[study_file]") {
   check_refusals({
       {"[study]", "[[study]]", "[[study]]", "study: found a list of 1; allowed: a table"},

@@ -51,6 +51,16 @@ TEST_CASE("what is wrong with setpoints is refused by name and place", "[study_f
              Catch::Contains("controller.cv.level.setpoint_weight: found 0; allowed: a number > 0"));
   CHECK_THAT(refused("setpoint_weight = 5\n", "slack_weight = 8\nsoft = [0, 1]\n"),
              Catch::Contains("controller.cv.level.setpoint: found a setpoint without setpoint_weight"));
+  CHECK_THAT(refused("setpoint_weight = 5\n", ""),
+             Catch::Contains("controller.cv.level.setpoint: found a setpoint without setpoint_weight"));
+  CHECK_THAT(
+      testing::refusal(replaced(testing::small_study(), "slack_weight = 9\nsoft = [-inf, 0.5]\n", "")),
+      Catch::Contains("controller.cv.heat: found neither a setpoint nor a range; allowed: setpoint_weight "
+                      "for a setpoint, slack_weight and soft for a range, or all three"));
+  CHECK_THAT(testing::refusal(replaced(testing::small_study(), "md = \"drain\"\nsample = 10",
+                                       "cv = \"heat\"\nsample = 10")),
+             Catch::Contains("found a step of a setpoint, and no CV has one; allowed: none, or a CV with "
+                             "controller.cv.NAME.setpoint_weight"));
   CHECK_THAT(refused("setpoint_weight = 5\n", "setpoint_weight = 5\nsoft = [0, 1]\n"),
              Catch::Contains("controller.cv.level.slack_weight: found nothing"));
   CHECK_THAT(refused("cv = \"level\"\nsample = 30", "cv = \"heat\"\nsample = 30"),

@@ -74,7 +74,9 @@ TEST_CASE("the channels of a plant are checked", "[study_file]") {
       {"[-1.5]", "[nan]", "numerator",
        "plant.channel[1].numerator: found nan in the list; allowed: a list of 1 to 20, each a finite number"},
       {"[-1.5]", "['1']", "numerator",
-       "plant.channel[1].numerator: found '1' in the list; allowed: a list of 1 to 20, each a finite number"},
+       "plant.channel[1].numerator: found the text '1' (a number has no quotes) in the list; allowed: a list "
+       "of "
+       "1 to 20, each a finite number"},
       {"[-1.5]", "[1, 0, 0, 0]", "[[plant.channel]]\ncv = \"heat\"",
        "plant.channel[1]: numerator degree of a transfer function: found 3; allowed: at most the denominator "
        "degree 2"},
@@ -111,7 +113,7 @@ TEST_CASE("the numbers of the controller are checked", "[study_file]") {
       {"sample_time = 1", "sample_time = 0", "sample_time",
        "controller.sample_time: found 0; allowed: a number > 0"},
       {"sample_time = 1", "sample_time = '1'", "sample_time",
-       "controller.sample_time: found '1'; allowed: a number > 0"},
+       "controller.sample_time: found the text '1' (a number has no quotes); allowed: a number > 0"},
       {"sample_time = 1", "sample_time = 1e-4", "sample_time",
        "controller.sample_time: found 0.0001 (a dead time has 3e+04 samples); allowed: dead times of at most "
        "10000 samples"},
@@ -152,7 +154,7 @@ TEST_CASE("the limits of the controller are checked", "[study_file]") {
        "controller.mv.hot.hard: found a list of 3; allowed: " + kLimitRule},
       {"[-4, 5]", "5", "hard = 5", "controller.mv.hot.hard: found 5; allowed: " + kLimitRule},
       {"[-4, 5]", "['a', 5]", "hard = ['a'",
-       "controller.mv.hot.hard: found 'a' in the list; allowed: " + kLimitRule},
+       "controller.mv.hot.hard: found the text 'a' in the list; allowed: " + kLimitRule},
       {"[0, 1]", "[0, 2.5]", "soft = [0, 2.5]",
        "controller.cv.level.soft: found [0, 2.5]; allowed: limits within the hard ones [-2, 2]"},
       {"[0, 1]", "[-3, 1]", "soft = [-3, 1]",
