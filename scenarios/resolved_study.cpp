@@ -12,7 +12,9 @@
 
 namespace mpm {
 
-std::string resolved_study(const Study& study) {
+namespace {
+
+TomlDraft resolved_draft(const Study& study) {
   TomlDraft draft(study_file_keys(""));
   Study read = read_study(study.source, study.name, &draft);
   read.seed = study.seed;
@@ -28,7 +30,17 @@ std::string resolved_study(const Study& study) {
   else
     heading.comment("seed", fmt::format("{}, above what a study file can say, {}", study.seed, kLargestSeed));
   draft.table("methods", study_file_keys("methods")).set("names", study.methods);
-  return draft.text();
+  return draft;
+}
+
+}  // namespace
+
+std::string resolved_study(const Study& study) {
+  return resolved_draft(study).text();
+}
+
+std::vector<std::string> changed_defaults(const Study& study) {
+  return resolved_draft(study).changes();
 }
 
 }  // namespace mpm

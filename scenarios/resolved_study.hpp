@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scenarios/study.hpp"
 
@@ -19,5 +20,9 @@ namespace mpm {
 ///
 /// Errors: InputError when `study` differs in anything else from what its source says.
 std::string resolved_study(const Study& study);
+
+/// What of this study is not as its defaults would have it, for people: "diagnosis.mpm_threshold = 0.2
+/// (default: 0.1)". Keys without a default are not among them. Errors: as resolved_study().
+std::vector<std::string> changed_defaults(const Study& study);
 
 }  // namespace mpm

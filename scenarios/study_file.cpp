@@ -93,13 +93,27 @@ Study parse_study(std::string_view text, const std::string& file_name) {
   return read_study(text, file_name, nullptr);
 }
 
-Study load_study(const std::filesystem::path& path) {
-  Study study = parse_study(read_toml_file(path, "a study file"), path.string());
+namespace {
+
+/// With what parse_study() leaves for the first loop.
+Study with_outside_parts(Study study) {
   if (study.nonlinear && study.nonlinear->model.foreign)
     study.nonlinear->model.foreign->load();
   if (study.controller_program)
     study.controller_program->runs_on_model();
   return study;
+}
+
+constexpr const char* kStudyFile = "a study file";
+
+}  // namespace
+
+Study load_study(const std::filesystem::path& path) {
+  return with_outside_parts(parse_study(read_toml_file(path, kStudyFile), path.string()));
+}
+
+Study load_study(std::istream& stream, const std::string& name) {
+  return with_outside_parts(parse_study(read_toml_stream(stream, name, kStudyFile), name));
 }
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
 #include <string>
 #include <string_view>
 
@@ -21,5 +22,8 @@ Study parse_study(std::string_view text, const std::string& file_name);
 /// simulated: an archive can be read without it. Errors: as parse_study(), as ForeignModel::load(), and
 /// InputError for a file that cannot be read.
 Study load_study(const std::filesystem::path& path);
+
+/// The same from a stream that has this name in messages; paths in the study are from the current folder.
+Study load_study(std::istream& stream, const std::string& name);
 
 }  // namespace mpm

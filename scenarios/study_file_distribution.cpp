@@ -45,6 +45,7 @@ Distribution read_distribution(const TomlTable& table, std::string_view key, con
 
 Distribution read_distribution_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
                                   const Distribution& fallback) {
+  table.record_default(key, fallback);
   if (table.has(key))
     return read_distribution(table, key, rule);
   table.record(key, fallback);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iostream>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -73,6 +74,8 @@ std::vector<StudyEntry> shipped_studies(const fs::path& directory) {
 }
 
 Study find_study(const std::string& path_or_name, const fs::path& directory) {
+  if (path_or_name == "-")
+    return load_study(std::cin, "standard input");
   const bool names_a_path =
       path_or_name.find('/') != std::string::npos || fs::path(path_or_name).extension() == kStudyExtension;
   if (names_a_path) {

@@ -24,7 +24,8 @@ std::filesystem::path study_directory();
 std::vector<StudyEntry> shipped_studies(const std::filesystem::path& directory = study_directory());
 
 /// The study in a file, or the shipped study of that name. A text with a '/' or with ".toml" at its end is a
-/// path; any other one is looked up in `directory` first, and then is the name of a file.
+/// path; any other one is looked up in `directory` first, and then is the name of a file. "-" is what comes
+/// on stdin.
 /// Errors: as load_study(); InputError that lists the known names when there is neither.
 Study find_study(const std::string& path_or_name, const std::filesystem::path& directory = study_directory());
 

@@ -58,6 +58,29 @@ void TomlDraft::write(std::string& text, const std::string& path) const {
   }
 }
 
+void TomlDraft::add_changes(std::vector<std::string>& changes, const std::string& path) const {
+  for (const std::string& key : key_order_) {
+    const auto found = entries_.find(key);
+    if (found == entries_.end())
+      continue;
+    const Entry& entry = found->second;
+    const std::string below = path.empty() ? "" : path + '.';
+    if (!entry.line.empty() && !entry.fallback.empty() && entry.line != entry.fallback)
+      changes.push_back(fmt::format("{}{} (default: {})", below, entry.line,
+                                    entry.fallback.substr(entry.fallback.find(" = ") + 3)));
+    if (entry.line.empty())
+      for (std::size_t i = 0; i < entry.tables.size(); ++i)
+        entry.tables[i]->add_changes(changes,
+                                     below + toml_key(key) + (entry.is_list ? fmt::format("[{}]", i) : ""));
+  }
+}
+
+std::vector<std::string> TomlDraft::changes() const {
+  std::vector<std::string> changes;
+  add_changes(changes, "");
+  return changes;
+}
+
 std::string TomlDraft::text() const {
   std::string text;
   write(text, "");

@@ -23,6 +23,13 @@ class TomlDraft {
   void set(std::string_view key, const Value& value) {
     entry(key).line = toml_key(key) + " = " + toml_literal(value);
   }
+  /// Notes what the key would have without a value of its own, for changes().
+  template <class Value>
+  void set_default(std::string_view key, const Value& value) {
+    entry(key).fallback = toml_key(key) + " = " + toml_literal(value);
+  }
+  /// The values that are not their defaults: "table.key = value (default: value)", in the order of text().
+  std::vector<std::string> changes() const;
   /// "# KEY: TEXT" in place of a value that TOML cannot have. The text has no line break.
   void comment(std::string_view key, std::string_view text);
   /// The table under `key`, made when it is not there.
@@ -37,13 +44,15 @@ class TomlDraft {
 
  private:
   struct Entry {
-    std::string line;  // "key = value"; empty: tables
+    std::string line;      // "key = value"; empty: tables
+    std::string fallback;  // "key = default"; empty: nothing was noted
     bool is_list = false;
     std::vector<std::unique_ptr<TomlDraft>> tables;
   };
 
   Entry& entry(std::string_view key);
   void write(std::string& text, const std::string& path) const;
+  void add_changes(std::vector<std::string>& changes, const std::string& path) const;
   bool has_values() const;
 
   std::vector<std::string> key_order_;

@@ -10,11 +10,15 @@ namespace mpm {
 
 std::string read_toml_file(const std::filesystem::path& path, const std::string& allowed) {
   std::ifstream file = open_input(path, allowed);
+  return read_toml_stream(file, path.string(), allowed);
+}
+
+std::string read_toml_stream(std::istream& stream, const std::string& name, const std::string& allowed) {
   std::string text(kMaxTomlBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad() || (file.gcount() == 0 && !file.eof()))
-    throw InputError(path.string(), "a file that cannot be read to its end", allowed);
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad() || (stream.gcount() == 0 && !stream.eof()))
+    throw InputError(name, "a file that cannot be read to its end", allowed);
+  text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
 }
 

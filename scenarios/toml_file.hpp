@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
 #include <string>
 
 namespace mpm {
@@ -8,5 +9,8 @@ namespace mpm {
 /// The text of a file, for parse_toml(): of one longer than kMaxTomlBytes only as much as shows that.
 /// `allowed` says what the file should be. Errors: InputError for a file that cannot be read.
 std::string read_toml_file(const std::filesystem::path& path, const std::string& allowed);
+
+/// The same of a stream that has this name in messages.
+std::string read_toml_stream(std::istream& stream, const std::string& name, const std::string& allowed);
 
 }  // namespace mpm

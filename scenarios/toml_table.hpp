@@ -54,6 +54,13 @@ class TomlTable {
       draft_->set(key, value);
   }
 
+  /// Records what the key would have without a value of its own.
+  template <class Value>
+  void record_default(std::string_view key, const Value& value) const {
+    if (draft_ != nullptr)
+      draft_->set_default(key, value);
+  }
+
   /// "FILE:LINE: KEY" of the value under `key`, or of this table for an empty `key`.
   std::string where(std::string_view key = {}) const;
   /// Throws the InputError for the value under `key`, or for this table for an empty `key`.

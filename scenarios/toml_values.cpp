@@ -20,6 +20,13 @@ Value recorded(const TomlTable& table, std::string_view key, Value value) {
   return value;
 }
 
+/// What stands under a key that may be missing: what `read` reads, or its default.
+template <class Value, class Read>
+Value read_or(const TomlTable& table, std::string_view key, const Value& fallback, Read read) {
+  table.record_default(key, fallback);
+  return table.has(key) ? read() : recorded(table, key, fallback);
+}
+
 /// NaN, which no rule takes, for what is no number.
 double number_in(const toml::node& node) {
   return node.value<double>().value_or(kNaN);
@@ -79,7 +86,7 @@ double read_number(const TomlTable& table, std::string_view key, const NumberRul
 }
 
 double read_number_or(const TomlTable& table, std::string_view key, const NumberRule& rule, double fallback) {
-  return table.has(key) ? read_number(table, key, rule) : recorded(table, key, fallback);
+  return read_or(table, key, fallback, [&] { return read_number(table, key, rule); });
 }
 
 std::int64_t read_whole(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high) {
@@ -94,19 +101,16 @@ std::int64_t read_whole(const TomlTable& table, std::string_view key, std::int64
 
 std::int64_t read_whole_or(const TomlTable& table, std::string_view key, std::int64_t low, std::int64_t high,
                            std::int64_t fallback) {
-  return table.has(key) ? read_whole(table, key, low, high) : recorded(table, key, fallback);
+  return read_or(table, key, fallback, [&] { return read_whole(table, key, low, high); });
 }
 
 bool read_flag_or(const TomlTable& table, std::string_view key, bool fallback) {
-  const toml::node* node = table.find(key);
-  if (node == nullptr) {
-    return recorded(table, key, fallback);
-  }
-  const toml::value<bool>* flag = node->as_boolean();
-  if (flag == nullptr) {
-    table.refuse(key, describe(*node), "true or false");
-  }
-  return recorded(table, key, flag->get());
+  return read_or(table, key, fallback, [&] {
+    const toml::value<bool>* flag = table.find(key)->as_boolean();
+    if (flag == nullptr)
+      table.refuse(key, describe(*table.find(key)), "true or false");
+    return recorded(table, key, flag->get());
+  });
 }
 
 std::string read_text(const TomlTable& table, std::string_view key) {
@@ -120,9 +124,9 @@ std::string read_text(const TomlTable& table, std::string_view key) {
 }
 
 std::string read_text_or(const TomlTable& table, std::string_view key, const std::string& fallback) {
-  if (table.has(key))
-    return read_text(table, key);
-  return fallback.empty() ? fallback : recorded(table, key, fallback);
+  if (fallback.empty())
+    return table.has(key) ? read_text(table, key) : fallback;
+  return read_or(table, key, fallback, [&] { return read_text(table, key); });
 }
 
 std::string read_name(const TomlTable& table, std::string_view key) {
@@ -166,9 +170,9 @@ std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view k
 
 std::vector<std::string> read_texts_or(const TomlTable& table, std::string_view key,
                                        const std::string& allowed, const std::vector<std::string>& fallback) {
-  table.record(key, fallback);
+  table.record_default(key, fallback);
   if (!table.has(key))
-    return fallback;
+    return recorded(table, key, fallback);
   const std::string list_of = fmt::format("a list of one or more {}, each once", allowed);
   const toml::node& node = table.require(key, list_of);
   const toml::array* list = node.as_array();
@@ -240,6 +244,7 @@ NumberPair read_pair(const TomlTable& table, std::string_view key, const std::st
 
 NumberPair read_band_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
                         const NumberPair& fallback) {
+  table.record_default(key, fallback);
   if (!table.has(key)) {
     return recorded(table, key, fallback);
   }

@@ -51,8 +51,10 @@ Value read_choice_or(const TomlTable& table, std::string_view key,
   std::vector<std::string> names;
   for (const auto& [name, value] : choices) {
     names.push_back(name);
-    if (value == fallback)
+    if (value == fallback) {
       table.record(key, name);
+      table.record_default(key, name);
+    }
   }
   if (!table.has(key)) {
     return fallback;

@@ -1,6 +1,7 @@
 #include "bench/campaign/campaign_runner.hpp"
 
 #include <chrono>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/campaign/experiment_series.hpp"
 #include "bench/campaign/streamed_records.hpp"
+#include "bench/shards/shard_folder.hpp"
 #include "scenarios/calibration.hpp"
 
 namespace mpm {
@@ -23,19 +25,18 @@ void require_options(const RunOptions& options) {
   qp_solver_factory(options.solver);  // refuses one that there is not
 }
 
-/// In processes also where somebody else simulates the plant or is the controller: such loops wait for other
-/// processes, and these are made without other threads at work. Throws InputError for threads that the solver
-/// does not bear.
-Execution execution_of(const Study& study, const RunOptions& options) {
+}  // namespace
+
+bool runs_in_threads(const Study& study, const RunOptions& options) {
   const bool safe = options.solver == "auto" || options.solver == "active-set";
   if (options.parallel == Parallel::threads && !safe)
     throw InputError("parallel", fmt::format("threads for the solver {}", options.solver),
                      "processes, or one of the solvers auto and active-set");
   const bool foreign = (study.nonlinear && study.nonlinear->model.foreign) || study.controller_program;
-  const bool in_threads =
-      options.parallel == Parallel::by_solver ? safe && !foreign : options.parallel == Parallel::threads;
-  return in_threads ? execute_in_threads : execute_in_processes;
+  return options.parallel == Parallel::by_solver ? safe && !foreign : options.parallel == Parallel::threads;
 }
+
+namespace {
 
 /// The loops of a campaign, or of a part of it: its experiments, and its calibration loops.
 class CampaignLoops {
@@ -46,7 +47,7 @@ class CampaignLoops {
                 const LoopRanges* part = nullptr)
       : study_(study), options_(options) {
     require_options(options);
-    execute_ = execution_of(study, options);
+    execute_ = runs_in_threads(study, options) ? execute_in_threads : execute_in_processes;
     const std::int64_t count = experiment_count(study, options);
     experiments_.emplace(study, options, wanted(part, 0, count), shards, warn);
     if (!study.calibration)
@@ -116,6 +117,33 @@ class CampaignLoops {
   std::optional<ExperimentSeries> calibration_;
 };
 
+/// Says in a folder of shards of which campaign they are, so that what is done of it can be looked at;
+/// without a shard to speak of it goes at the end.
+class ShardsDescription {
+ public:
+  ShardsDescription(const std::filesystem::path& shards, const Study& study, RunOptions options)
+      : shards_(shards) {
+    options.experiments = experiment_count(study, options);
+    PartFolder folder;
+    folder.path = shards;
+    folder.study = study;
+    folder.options = options;
+    folder.loops = *options.experiments + calibration_loops(study);
+    folder.part.loops = {{0, folder.loops}};
+    write_part_description(folder);
+  }
+  ~ShardsDescription() {
+    std::error_code no_file;
+    if (shards_in(shards_).empty() && shards_in(calibration_shard_folder(shards_)).empty())
+      std::filesystem::remove(shards_ / kCampaignDescription, no_file);
+  }
+  ShardsDescription(const ShardsDescription&) = delete;
+  ShardsDescription& operator=(const ShardsDescription&) = delete;
+
+ private:
+  std::filesystem::path shards_;
+};
+
 /// The campaign without its records, which collect(campaign, loops) brings.
 template <class Collect>
 Campaign run_to_end(Study study, const RunOptions& options, const CampaignHooks& hooks,
@@ -124,6 +152,9 @@ Campaign run_to_end(Study study, const RunOptions& options, const CampaignHooks&
   Campaign campaign;
   campaign.study = study_to_run(std::move(study), options);
   CampaignLoops loops(campaign.study, options, shards, hooks.on_warning);
+  std::optional<ShardsDescription> description;
+  if (shards)
+    description.emplace(*shards, campaign.study, options);
   campaign.basis = loops.run(hooks);
   campaign.info = info_of(campaign.study, options);
   campaign.methods = methods_of(campaign.study, "");

@@ -36,6 +36,11 @@ class UnhealthyBasis : public InputError {
   using InputError::InputError;
 };
 
+/// Whether loops run in threads, or in worker processes: these also where somebody else simulates the plant
+/// or is the controller, since such loops wait for other processes, which are made without other threads at
+/// work. Throws InputError for threads that the solver does not bear.
+bool runs_in_threads(const Study& study, const RunOptions& options);
+
 /// Runs the basis case, checks it, and then the experiments, in threads or processes. The records stand in
 /// the order of their index; an experiment whose worker process died is marked `failed` and the campaign goes
 /// on. Basis case, records and audit are those of run_serially(), bit for bit, for any number of jobs, and

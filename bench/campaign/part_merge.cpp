@@ -95,6 +95,10 @@ std::optional<MissingPieces> PartMerge::missing_pieces() const {
   return pieces;
 }
 
+std::int64_t PartMerge::experiments_done() const {
+  return experiments() - std::ssize(experiments_->missing());
+}
+
 Campaign PartMerge::merge(const CampaignHooks& hooks) const {
   const auto start = std::chrono::steady_clock::now();
   Campaign campaign;
@@ -104,7 +108,7 @@ Campaign PartMerge::merge(const CampaignHooks& hooks) const {
   campaign.methods = methods_of(campaign.study, "");
   take_records(campaign, *experiments_, hooks.stop);
   campaign.info.seconds = experiments_->seconds();
-  if (calibration_) {
+  if (calibration_ && calibration_->missing().empty()) {
     campaign.calibration = calibration_of(calibration_study_, records_in(*calibration_, hooks.stop));
     campaign.info.seconds += calibration_->seconds();
   }

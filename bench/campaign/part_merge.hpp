@@ -43,9 +43,13 @@ class PartMerge {
   /// equally many.
   std::optional<MissingPieces> missing_pieces() const;
 
-  /// The campaign: basis case, records and audit are those of run_campaign() in one go, bit for bit. Nothing
-  /// may be missing. `hooks` see the basis case, and may stop it. The records stay in the shards of the
-  /// parts, and are there as long as this object.
+  /// How many experiments the parts have, calibration loops apart.
+  std::int64_t experiments_done() const;
+
+  /// The campaign: basis case, records and audit are those of run_campaign() in one go, bit for bit. Of what
+  /// is missing() there is no record, and no calibration unless all of its loops are there. `hooks` see the
+  /// basis case, and may stop it. The records stay in the shards of the parts, and are there as long as this
+  /// object.
   ///
   /// Throws InputError when two parts have the same experiment with another result, UnhealthyBasis,
   /// Interrupted and ArchiveError as run_campaign().

@@ -10,15 +10,11 @@
 #include "plants/error.hpp"
 
 namespace mpm {
-namespace {
-
 namespace fs = std::filesystem;
 
-fs::path archive_of(const Suite& suite, const SuiteCell& cell, const SuiteRun& options) {
-  return options.folder / fmt::format("{}.h5", suite.name_of(cell));
+fs::path suite_archive(const Suite& suite, const SuiteCell& cell, const fs::path& folder) {
+  return folder / fmt::format("{}.h5", suite.name_of(cell));
 }
-
-}  // namespace
 
 std::vector<CellScores> run_suite(const Suite& suite, const SuiteRun& options) {
   std::vector<CellScores> scores;
@@ -26,7 +22,7 @@ std::vector<CellScores> run_suite(const Suite& suite, const SuiteRun& options) {
     if (options.is_wanted && !options.is_wanted(place))
       continue;
     const SuiteCell& cell = suite.cells[place];
-    const fs::path archive = archive_of(suite, cell, options);
+    const fs::path archive = suite_archive(suite, cell, options.folder);
     const std::optional<Campaign> kept = kept_campaign(archive, cell.study, options.run);
     if (options.on_cell)
       options.on_cell(place, kept.has_value());

@@ -24,6 +24,10 @@ struct SuiteRun {
   std::function<void(std::size_t cell, bool is_there)> on_cell = {};
 };
 
+/// The archive of a cell in the folder of its suite.
+std::filesystem::path suite_archive(const Suite& suite, const SuiteCell& cell,
+                                    const std::filesystem::path& folder);
+
 /// Runs the cells of a suite one after the other, each as run_campaign() does, and writes their archives. An
 /// archive that is there and is what this run would make of the cell (the same text, seed, methods, solver,
 /// number of experiments and program) is kept as it is; another one is replaced. So a suite that was stopped

@@ -10,6 +10,7 @@ namespace mpm {
 /// place in one of the tasks below.
 using AddCommand = void(CommandSet& commands);
 
+AddCommand add_init;        // writes a study of a plant of one's own
 AddCommand add_run;         // runs a study and writes its archive
 AddCommand add_merge;       // makes the archive of parts that were run on several machines
 AddCommand add_validate;    // what is implausible in a study, what it will show and cost
@@ -38,7 +39,7 @@ struct Task {
 
 inline std::vector<Task> tasks() {
   return {{"Test methods on simulated loops",
-           {add_validate, add_run, add_merge, add_sweep, add_suite, add_compare}},
+           {add_init, add_validate, add_run, add_merge, add_sweep, add_suite, add_compare}},
           {"See what was found", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
           {"Assess the records of a plant", {add_assess, add_identify, add_repair}},
           {"What there is", {add_list, add_reproduce, add_manual, add_completion}}};

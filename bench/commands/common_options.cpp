@@ -124,8 +124,8 @@ void add_json(CLI::App& app, bool& json) {
   app.add_flag("--json", json, "As JSON");
 }
 
-void add_quiet(CLI::App& app, bool& quiet, const std::string& description) {
-  app.add_flag("--quiet", quiet, description);
+CLI::Option* add_quiet(CLI::App& app, bool& quiet, const std::string& description) {
+  return app.add_flag("--quiet", quiet, description);
 }
 
 }  // namespace mpm

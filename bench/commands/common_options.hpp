@@ -46,6 +46,6 @@ std::optional<ShardNumber> shard_of(const std::string& text);
 /// Is the study at this place one of them?
 bool is_in_shard(std::size_t place, const std::optional<ShardNumber>& shard);
 void add_json(CLI::App& app, bool& json);
-void add_quiet(CLI::App& app, bool& quiet, const std::string& description = "No progress");
+CLI::Option* add_quiet(CLI::App& app, bool& quiet, const std::string& description = "No progress");
 
 }  // namespace mpm

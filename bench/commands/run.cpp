@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/validation/study_warnings.hpp"
 #include "bench/campaign/calibration_runs.hpp"
@@ -17,10 +19,12 @@
 #include "bench/campaign/campaign_steps.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/dry_run.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/files/outside_files.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/parts/loop_ranges.hpp"
 #include "bench/parts/part_folder.hpp"
@@ -28,6 +32,7 @@
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/resolved_study.hpp"
 #include "scenarios/study_library.hpp"
 
 namespace mpm {
@@ -39,7 +44,11 @@ struct RunArguments {
   std::string shard, range;  ///< which part is run; both empty: the whole campaign
   RunOptions run;
   std::vector<std::string> method_files;
+  bool dry_run = false;
+  bool verbose = false;
   bool quiet = false;
+
+  bool is_part() const { return !shard.empty() || !range.empty(); }
 };
 
 /// The end of a message about a run that was not finished; empty when no shard is left to go on with.
@@ -64,8 +73,63 @@ void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
     progress.note(fmt::format("warning: {}: {}", warning.key, warning.found));
 }
 
+/// What is read, decided and done, for who asks for it by --verbose.
+class Narrator {
+ public:
+  Narrator(bool verbose, Progress& progress) : verbose_(verbose), progress_(progress) {}
+
+  void say(const std::string& text) const {
+    if (verbose_)
+      progress_.note(text);
+  }
+
+  /// The time since the last stage was over.
+  void end_stage(const std::string& stage) {
+    const Clock::time_point now = Clock::now();
+    say(fmt::format("{}: {:.2f} s", stage,
+                    std::chrono::duration<double>(now - std::exchange(start_, now)).count()));
+  }
+
+  void say_what_is_run(const RunArguments& arguments, const Study& study, const RunOptions& options) const {
+    if (!verbose_)
+      return;
+    const Study of_run = study_to_run(study, options);
+    say(fmt::format("study: {} ({}), {} bytes, SHA-256 {}...", study.name, arguments.study,
+                    study.source.size(), digest_of(study.source)));
+    if (const std::string outside = outside_files(study); !outside.empty())
+      say(fmt::format("from outside: {}", outside));
+    for (const std::string& change : changed_defaults(of_run))
+      say(fmt::format("not the default: {}", change));
+    say(fmt::format("seed: {}; methods: {}", of_run.seed, fmt::join(of_run.methods, ", ")));
+    say(solver_text(of_run, options));
+    say(fmt::format("writes: {}", output_text(arguments.output, arguments.is_part())));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  const bool verbose_;
+  Progress& progress_;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// The same hooks with the stages of a run said.
+CampaignHooks with_stages(CampaignHooks hooks, Narrator& narrator) {
+  hooks.on_basis = [&narrator, inner = hooks.on_basis](const Study& study, const BasisCase& basis) {
+    narrator.end_stage("basis case");
+    inner(study, basis);
+  };
+  hooks.on_end = [&narrator, inner = hooks.on_end](Campaign& campaign) {
+    narrator.end_stage("loops");
+    if (inner)
+      inner(campaign);
+    narrator.end_stage("findings and archive");
+  };
+  return hooks;
+}
+
 void run_whole(const RunArguments& options, const Study& study, const RunOptions& run_options,
-               CampaignHooks hooks, const std::string& command_line) {
+               CampaignHooks hooks, Narrator& narrator, const std::string& command_line) {
   std::string summary;
   hooks.on_end = [&](Campaign& campaign) {
     note_command(campaign, command_line);
@@ -74,7 +138,8 @@ void run_whole(const RunArguments& options, const Study& study, const RunOptions
     if (!options.quiet)
       summary = summary_text(campaign, findings, options.output);
   };
-  stream_campaign(study, run_options, hooks, shard_folder_of(options.output));
+  stream_campaign(study, run_options, with_stages(std::move(hooks), narrator),
+                  shard_folder_of(options.output));
   remove_shards(options.output);
   if (!options.quiet)
     print_result(summary);
@@ -121,10 +186,18 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
       with_programs(options.run.methods, study.methods, take_method_files(options.method_files));
   require_output_archive(options.output, "archive");
   std::optional<PartFolder> part;
-  if (!options.shard.empty() || !options.range.empty())
+  if (options.is_part())
     part = part_of(options, study, run_options);
 
   Progress progress(options.quiet);
+  if (options.dry_run) {
+    print_result(dry_run_text(
+        {.study = study, .run = run_options, .output = options.output, .part = part ? &*part : nullptr},
+        hooks_of(progress)));
+    return ExitCode::done;
+  }
+  Narrator narrator(options.verbose, progress);
+  narrator.say_what_is_run(options, study, run_options);
   CampaignHooks hooks = hooks_of(progress);
   hooks.on_basis = [&progress](const Study& of_run, const BasisCase& basis) {
     warn_of(of_run, basis, progress);
@@ -134,9 +207,9 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
   };
   try {
     if (part)
-      run_one_part(options, *part, hooks, progress);
+      run_one_part(options, *part, with_stages(hooks, narrator), progress);
     else
-      run_whole(options, study, run_options, hooks, command_line);
+      run_whole(options, study, run_options, hooks, narrator, command_line);
   } catch (const InputError&) {
     throw;
   } catch (const Interrupted& error) {
@@ -199,7 +272,7 @@ void add_run(CommandSet& commands) {
   const auto options = std::make_shared<RunArguments>();
   CLI::App& app = commands.add("run", "Run a study and write its archive",
                                [options, &commands] { return run(*options, commands.command_line()); });
-  add_path(app, "STUDY", options->study, "Study file, or name of a shipped study")->required();
+  add_path(app, "STUDY", options->study, "Study file, name of a shipped study, or - for stdin")->required();
   add_path(app, "-o,--output", options->output, "Archive to write (HDF5)")->required();
   add_experiments(app, options->run.experiments, "Run the first N experiments; any N keeps the proportions");
   add_seed(app, options->run.seed, "Master seed instead of the study's");
@@ -215,7 +288,10 @@ void add_run(CommandSet& commands) {
                "Run although the basis case fails its self-check");
   add_part(app, *options);
   add_interruption(app, options->run);
-  add_quiet(app, options->quiet, "No progress and no summary");
+  add_dry_run(app, options->dry_run);
+  CLI::Option* const verbose = app.add_flag(
+      "--verbose", options->verbose, "Say what is read, decided and done, and how long each stage takes");
+  add_quiet(app, options->quiet, "No progress and no summary")->excludes(verbose);
 }
 
 }  // namespace mpm

@@ -13,6 +13,7 @@
 #include "bench/campaign/suite_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/dry_run.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
@@ -34,6 +35,7 @@ struct SuiteArguments {
   std::string shard;  ///< which of the cells are run; empty: all of them, and the leaderboard
   RunOptions run;
   std::vector<std::string> method_files;
+  bool dry_run = false;
   bool json = false;
   bool quiet = false;
 };
@@ -48,6 +50,15 @@ void write_pictures(const std::filesystem::path& folder, const Leaderboard& boar
   }
 }
 
+std::vector<IntendedStudy> intended(const Suite& suite, const SuiteRun& run) {
+  std::vector<IntendedStudy> studies;
+  for (std::size_t cell = 0; cell < suite.cells.size(); ++cell)
+    if (run.is_wanted(cell))
+      studies.push_back({suite.name_of(suite.cells[cell]), suite.cells[cell].study,
+                         suite_archive(suite, suite.cells[cell], run.folder)});
+  return studies;
+}
+
 /// Runs the suite, or what is missing of it, and shows its leaderboard, which is also left in the folder as a
 /// page and as JSON.
 ExitCode run_suite_command(const SuiteArguments& options, const std::string& command_line) {
@@ -59,6 +70,10 @@ ExitCode run_suite_command(const SuiteArguments& options, const std::string& com
                                   run.run.methods.empty() ? "suite.methods" : "--methods");
   const std::optional<ShardNumber> shard = shard_of(options.shard);
   run.is_wanted = [&](std::size_t cell) { return is_in_shard(cell, shard); };
+  if (options.dry_run) {
+    print_result(dry_run_text(intended(suite, run), run.run));
+    return ExitCode::done;
+  }
   make_output_folder(run.folder, "archives");
 
   Progress progress(options.quiet);
@@ -119,6 +134,7 @@ void add_suite(CommandSet& commands) {
                      "Methods that assess the loops, separated by commas, or all; in place of the suite's");
   add_method_files(app, options->method_files);
   add_jobs(app, options->run.jobs, "How many experiments run at once");
+  add_dry_run(app, options->dry_run);
   add_json(app, options->json);
   add_quiet(app, options->quiet);
 }

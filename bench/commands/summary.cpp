@@ -1,28 +1,81 @@
 #include "results/summary/summary.hpp"
 
+#include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "bench/campaign/part_merge.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
+#include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
+#include "bench/parts/part_folder.hpp"
+#include "bench/shards/shard_folder.hpp"
 
 namespace mpm {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct SummaryArguments {
   std::string archive;
+  std::vector<std::string> method_files;
   bool json = false;
 };
 
-ExitCode summary(const SummaryArguments& options) {
-  const Campaign campaign = read_input(options.archive);
+/// The folders with what is done of a run that has written no archive: the one that is named, or those beside
+/// the archive that it will write. None when there is an archive, or nothing.
+std::vector<std::string> unfinished_folders(const std::string& named) {
+  std::error_code no_status;
+  if (fs::is_directory(named, no_status))
+    return {named};
+  std::vector<std::string> folders;
+  if (!fs::exists(named, no_status))
+    for (const fs::path& folder : {shard_folder_of(named), parts_folder_of(named)})
+      if (fs::is_directory(folder, no_status))
+        folders.push_back(folder.string());
+  return folders;
+}
+
+std::string summary_of(const SummaryArguments& options, const Campaign& campaign,
+                       const std::optional<Unfinished>& unfinished) {
   const StudyFindings findings = findings_of(campaign);
-  print_result(options.json ? summary_json(campaign, findings)
-                            : summary_text(campaign, findings, options.archive));
+  return options.json ? summary_json(campaign, findings, unfinished)
+                      : summary_text(campaign, findings, options.archive, unfinished);
+}
+
+std::string partial_summary(const SummaryArguments& options, const std::vector<std::string>& folders) {
+  take_method_files(options.method_files);
+  Progress progress(false);
+  const PartMerge parts(folders, [&progress](const std::string& text) { progress.warn(text); });
+  if (parts.experiments_done() == 0)
+    throw std::runtime_error(
+        fmt::format("{}: none of {} experiments is done yet", folders.front(), parts.experiments()));
+  try {
+    return summary_of(options, parts.merge(hooks_of(progress)),
+                      Unfinished{parts.experiments_done(), parts.experiments()});
+  } catch (const Interrupted& error) {
+    throw std::runtime_error(progress.explain(error));
+  }
+}
+
+ExitCode summary(const SummaryArguments& options) {
+  if (const std::vector<std::string> folders = unfinished_folders(options.archive); !folders.empty()) {
+    print_result(partial_summary(options, folders));
+    return ExitCode::done;
+  }
+  const Campaign campaign = read_input(options.archive);
+  if (has_shards(options.archive))
+    print_note(
+        fmt::format("{0}: a later run is not finished; `mpmbench summary {0}` says what it has found\n",
+                    shard_folder_of(options.archive).string()));
+  print_result(summary_of(options, campaign, std::nullopt));
   return ExitCode::done;
 }
 
@@ -30,9 +83,14 @@ ExitCode summary(const SummaryArguments& options) {
 
 void add_summary(CommandSet& commands) {
   const auto options = std::make_shared<SummaryArguments>();
-  CLI::App& app = commands.add("summary", "Print what a study found, beside what was reported",
+  CLI::App& app = commands.add("summary",
+                               "Print what a study found, beside what was reported; of a run that is not "
+                               "finished, what it has found so far",
                                [options] { return summary(*options); });
-  add_archive(app, options->archive);
+  add_path(app, "ARCHIVE", options->archive,
+           "Archive, written or not; or a folder with the shards or parts of a run")
+      ->required();
+  add_method_files(app, options->method_files);
   add_json(app, options->json);
 }
 

@@ -13,6 +13,7 @@
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/dry_run.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
@@ -32,6 +33,7 @@ struct SweepArguments {
   std::string output;
   std::string shard;  ///< which of the studies are run; empty: all of them, and the table
   RunOptions run;
+  bool dry_run = false;
   bool quiet = false;
 };
 
@@ -61,12 +63,29 @@ SweepRow row_of(const SweepVariant& variant, const fs::path& archive, const RunO
   return row;
 }
 
+fs::path archive_of(const fs::path& folder, std::size_t place) {
+  return folder / fmt::format("{:02}.h5", place);
+}
+
+std::vector<IntendedStudy> intended(const Sweep& sweep, const std::optional<ShardNumber>& shard,
+                                    const fs::path& folder) {
+  std::vector<IntendedStudy> studies;
+  for (std::size_t i = 0; i < sweep.variants.size(); ++i)
+    if (is_in_shard(i, shard))
+      studies.push_back({label(sweep.variants[i]), sweep.variants[i].study, archive_of(folder, i)});
+  return studies;
+}
+
 /// Runs every study and writes its archive, one after the other, and at the end the table of all of them
 /// (`sweep.md`, and on stdout). A part of the studies leaves its archives only, which another call finds.
 ExitCode run_sweep(const SweepArguments& options, const std::string& command_line) {
   const Sweep sweep = find_sweep(options.sweep);
   const std::optional<ShardNumber> shard = shard_of(options.shard);
   const fs::path folder = options.output;
+  if (options.dry_run) {
+    print_result(dry_run_text(intended(sweep, shard, folder), options.run));
+    return ExitCode::done;
+  }
   make_output_folder(folder, "archives");
   Progress progress(options.quiet);
   std::vector<SweepRow> rows;
@@ -77,8 +96,7 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
     const std::string name = fmt::format("study {} of {}: {}", i + 1, sweep.variants.size(), label(variant));
     progress.note(name);
     try {
-      rows.push_back(row_of(variant, folder / fmt::format("{:02}.h5", i), options.run, hooks_of(progress),
-                            command_line));
+      rows.push_back(row_of(variant, archive_of(folder, i), options.run, hooks_of(progress), command_line));
     } catch (const Interrupted& error) {
       throw std::runtime_error(fmt::format("{}, in {}\nWhat is done is kept in {}. To go on with it:\n  {}",
                                            progress.explain(error), name, options.output, command_line));
@@ -114,6 +132,7 @@ void add_sweep(CommandSet& commands) {
   add_shard_of_studies(app, options->shard, "studies");
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
+  add_dry_run(app, options->dry_run);
   add_quiet(app, options->quiet);
 }
 

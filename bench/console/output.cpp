@@ -4,6 +4,7 @@
 #include <string>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "results/files/utf8.hpp"
@@ -18,6 +19,12 @@ void print_result(std::string_view text) {
 void print_note(std::string_view text) {
   const std::string plain = plain_text(text);
   std::fwrite(plain.data(), 1, plain.size(), stderr);
+}
+
+std::string duration_text(double seconds) {
+  return seconds < 120.0    ? fmt::format("{:.1f} s", seconds)
+         : seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0)
+                            : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
 bool results_arrived() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace mpm {
@@ -13,6 +14,9 @@ void print_result(std::string_view text);
 
 /// Writes on stderr. What is lost there is lost.
 void print_note(std::string_view text);
+
+/// "3.2 s", "12 min", "3.1 h"
+std::string duration_text(double seconds);
 
 /// Whether all of print_result() has been written; when not, a note says why.
 bool results_arrived();

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/files/outside_files.hpp"
+#include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
 #include "results/files/atomic_file.hpp"
 #include "scenarios/study_file.hpp"
@@ -22,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kDescription = "campaign.json";
 constexpr const char* kPartType = "mpmbench part";
 
 CampaignPart part_in(const Json& json, std::int64_t loops) {
@@ -89,11 +89,11 @@ void write_part_description(const PartFolder& part) {
   if (part.part.shard)
     json["shard"] = Json{{"number", part.part.shard->number}, {"of", part.part.shard->of}};
   const std::string text = json.dump(2) + '\n';
-  write_file_atomically(part.path / kDescription, std::as_bytes(std::span(text)));
+  write_file_atomically(part.path / kCampaignDescription, std::as_bytes(std::span(text)));
 }
 
 PartFolder read_part(const fs::path& folder) {
-  const std::string file = (folder / kDescription).string();
+  const std::string file = (folder / kCampaignDescription).string();
   std::ifstream stream(file);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   try {
@@ -102,7 +102,7 @@ PartFolder read_part(const fs::path& folder) {
     throw;
   } catch (const std::exception& error) {
     throw InputError(file, fmt::format("no description of a part ({})", error.what()),
-                     "what `mpmbench run --shard` writes");
+                     "what `mpmbench run` writes into a folder of shards");
   }
 }
 
@@ -111,17 +111,18 @@ std::vector<fs::path> find_parts(const std::vector<std::string>& folders) {
   for (const std::string& folder : folders) {
     const std::size_t before = found.size();
     std::error_code error;
-    if (fs::exists(fs::path(folder) / kDescription, error))
+    if (fs::exists(fs::path(folder) / kCampaignDescription, error))
       found.insert(fs::path(folder).lexically_normal());
     for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error))
-      if (entry->path().filename() == kDescription)
+      if (entry->path().filename() == kCampaignDescription)
         found.insert(entry->path().parent_path().lexically_normal());
     if (error)
       throw InputError(folder, error.message(), "a folder with parts of a campaign");
-    if (found.size() == before && !fs::exists(fs::path(folder) / kDescription))
-      throw InputError(folder, "no part of a campaign",
-                       fmt::format("folders with {}, which `mpmbench run --shard` makes", kDescription));
+    if (found.size() == before && !fs::exists(fs::path(folder) / kCampaignDescription))
+      throw InputError(
+          folder, "no part of a campaign",
+          fmt::format("folders with {}, which `mpmbench run --shard` makes", kCampaignDescription));
   }
   return {found.begin(), found.end()};
 }

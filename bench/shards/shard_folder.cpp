@@ -111,6 +111,7 @@ void remove_shards(const fs::path& output) {
   if (const fs::path inner = calibration_shard_folder(shards.path()); fs::exists(inner))
     ShardFolder(inner).clear();
   shards.clear();
+  fs::remove(shards.path() / kCampaignDescription);
 }
 
 bool has_shards(const fs::path& output) {

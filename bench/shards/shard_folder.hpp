@@ -38,13 +38,16 @@ class ShardFolder {
 /// The shards in a folder, whole or not, in the order in which they were written; none when it is not there.
 std::vector<std::filesystem::path> shards_in(const std::filesystem::path& folder);
 
+/// The file in a folder of shards that says of which campaign they are (bench/parts/part_folder).
+inline constexpr const char* kCampaignDescription = "campaign.json";
+
 /// Where the shards of an output lie: beside it.
 std::filesystem::path shard_folder_of(const std::filesystem::path& output);
 
 /// Where, in the folder of the shards of an output, those of its calibration loops lie.
 std::filesystem::path calibration_shard_folder(const std::filesystem::path& shards);
 
-/// Removes all shards of an output, whose archive is written, and their folders.
+/// Removes all shards of an output, whose archive is written, their description and their folders.
 void remove_shards(const std::filesystem::path& output);
 
 /// Whether an interrupted run of this output has left shards.

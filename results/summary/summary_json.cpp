@@ -226,9 +226,12 @@ Json wrong_json(const std::vector<const ExperimentRecord*>& wrong) {
 
 }  // namespace
 
-std::string summary_json(const Campaign& campaign, const StudyFindings& total) {
+std::string summary_json(const Campaign& campaign, const StudyFindings& total,
+                         const std::optional<Unfinished>& unfinished) {
   const SummaryContent parts = summary_content(campaign, total);
   const Json summary{
+      {"partial",
+       unfinished ? Json{{"done", unfinished->done}, {"experiments", unfinished->experiments}} : Json()},
       {"study", campaign.study.name},
       {"seed", campaign.study.seed},
       {"solver", campaign.info.solver},

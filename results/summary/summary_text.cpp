@@ -184,10 +184,16 @@ void add_wrong(SummaryLines& text, const Study& study, const SummaryContent& par
 
 }  // namespace
 
-std::string summary_text(const Campaign& campaign, const StudyFindings& findings, const std::string& file) {
+std::string summary_text(const Campaign& campaign, const StudyFindings& findings, const std::string& file,
+                         const std::optional<Unfinished>& unfinished) {
   const SummaryContent parts = summary_content(campaign, findings);
   const bool chain = findings.chain() != nullptr;
   SummaryLines text;
+  if (unfinished)
+    text.line(
+        "PARTIAL: {} of {} experiments. The run is not finished, and what is done is no random sample:\n"
+        "slow loops come last.\n",
+        unfinished->done, unfinished->experiments);
   add_heading(text, campaign, parts);
   if (campaign.study.names_scenarios()) {
     if (chain)

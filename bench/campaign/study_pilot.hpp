@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "analysis/validation/study_forecast.hpp"
+#include "bench/campaign/campaign_runner.hpp"
+
+namespace mpm {
+
+/// The first experiments of a study, run and timed in the place of all of them.
+struct StudyPilot {
+  Campaign campaign;
+  StudyForecast forecast;
+  double basis_seconds = 0.0;           ///< wall clock
+  double seconds = 0.0;                 ///< the whole study, calibration loops too, with as many jobs
+  double milliseconds_of_a_loop = 0.0;  ///< on one core, with all methods
+};
+
+/// Runs the first `loops` experiments, or those that there are, as `options` say, but without an audit, and
+/// keeps nothing. The basis case may be unhealthy. `hooks` see it as run_campaign(). Errors: as
+/// run_campaign().
+StudyPilot run_pilot(Study study, RunOptions options, std::int64_t loops, CampaignHooks hooks);
+
+}  // namespace mpm

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/campaign/campaign_runner.hpp"
+#include "bench/parts/part_folder.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace mpm {
+
+// What a command says of its work: instead of it (--dry-run), or beside it (--verbose).
+
+void add_dry_run(CLI::App& app, bool& dry_run);
+
+/// A run that is asked for.
+struct IntendedRun {
+  const Study& study;
+  const RunOptions& run;  ///< with the methods of programs
+  std::string output;
+  const PartFolder* part = nullptr;  ///< none: the whole campaign
+};
+
+/// What the run would do: loops, methods, time, memory and files. The time is that of a few loops, which are
+/// run and timed; nothing is written. Errors: as run_campaign().
+std::string dry_run_text(const IntendedRun& intended, const CampaignHooks& hooks);
+
+/// One of the studies that a command runs one after the other, and keeps.
+struct IntendedStudy {
+  std::string name;
+  const Study& study;
+  std::filesystem::path archive;
+};
+
+/// The same of several studies, without a time: nothing is run.
+std::string dry_run_text(const std::vector<IntendedStudy>& studies, const RunOptions& options);
+
+/// "solver: active-set, in 2 threads": who solves the problems, and how many loops run at once.
+std::string solver_text(const Study& study, const RunOptions& options);
+
+/// "out.h5; until then out.h5.shards".
+std::string output_text(const std::string& output, bool is_part);
+
+}  // namespace mpm
