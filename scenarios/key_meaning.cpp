@@ -47,7 +47,7 @@ std::string plain(std::string_view markdown) {
 /// A row of a table without the bars at its ends. A bar in quotes has no blanks beside it.
 std::vector<std::string> cells(std::string row) {
   for (std::size_t empty = row.find("| |"); empty != std::string::npos; empty = row.find("| |"))
-    row.insert(empty + 1, " ");
+    row.insert(empty + 1, 1, ' ');
   std::vector<std::string> cells = split(row.substr(2, row.rfind('|') - 2), " | ");
   for (std::string& cell : cells) {
     cell = plain(cell);

@@ -43,11 +43,18 @@ std::vector<std::string> unfinished_folders(const std::string& named) {
   return folders;
 }
 
+/// The archive that a folder with shards or parts lies beside.
+std::string archive_of(const std::string& named) {
+  fs::path path = fs::path(named).has_filename() ? fs::path(named) : fs::path(named).parent_path();
+  return path.extension() == ".shards" || path.extension() == ".parts" ? path.replace_extension().string()
+                                                                       : named;
+}
+
 std::string summary_of(const SummaryArguments& options, const Campaign& campaign,
                        const std::optional<Unfinished>& unfinished) {
   const StudyFindings findings = findings_of(campaign);
   return options.json ? summary_json(campaign, findings, unfinished)
-                      : summary_text(campaign, findings, options.archive, unfinished);
+                      : summary_text(campaign, findings, archive_of(options.archive), unfinished);
 }
 
 std::string partial_summary(const SummaryArguments& options, const std::vector<std::string>& folders) {

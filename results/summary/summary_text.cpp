@@ -191,8 +191,8 @@ std::string summary_text(const Campaign& campaign, const StudyFindings& findings
   SummaryLines text;
   if (unfinished)
     text.line(
-        "PARTIAL: {} of {} experiments. The run is not finished, and what is done is no random sample:\n"
-        "slow loops come last.\n",
+        "PARTIAL: {} of {} experiments. The run is not finished, and what is done is no random sample: slow\n"
+        "loops come last. `replay` needs the archive.\n",
         unfinished->done, unfinished->experiments);
   add_heading(text, campaign, parts);
   if (campaign.study.names_scenarios()) {

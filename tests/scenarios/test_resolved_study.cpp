@@ -409,6 +409,26 @@ TEST_CASE("studies differ by each part, and by the length of a vector", "[resolv
   CHECK(differs([](Study& s) { s.assessment.badwe2009.nf = 3; }));
 }
 
+TEST_CASE("what is not the default is named with it, and nothing else", "[resolved_study]") {
+  const std::string small = small_study();
+  const auto changes = [](const std::string& text) { return changed_defaults(parse_study(text, "s.toml")); };
+  const std::vector<std::string> before = changes(small);
+  CHECK(changes(small + "[diagnosis]\nmpm_threshold = 0.1\n") == before);  // written out, and the default
+  std::vector<std::string> after =
+      changes(small + "[diagnosis]\nmpm_threshold = 0.2\nself_check = \"none\"\n");
+  const auto take = [&](const std::string& change) {
+    const auto place = std::find(after.begin(), after.end(), change);
+    REQUIRE(place != after.end());
+    after.erase(place);
+  };
+  take("diagnosis.mpm_threshold = 0.2 (default: 0.1)");
+  take("diagnosis.self_check = \"none\" (default: \"ivar\")");
+  CHECK(after == before);
+  Study other = parse_study(small, "s.toml");
+  other.methods = {"sse"};
+  CHECK(changed_defaults(other).back() == "methods.names = [\"sse\"] (default: [\"botelho\"])");
+}
+
 TEST_CASE("a dead time of 0 that is written out leaves a disturbance as it is", "[resolved_study]") {
   const std::string text = scenario_study_text();
   const std::string model = "gain = 0.1\ntime_constant = 0.3\n";

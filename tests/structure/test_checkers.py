@@ -10,6 +10,7 @@ from pathlib import Path
 import check_format
 import check_hygiene
 import check_includes
+import check_links
 import check_used_names
 
 HEADER = "#pragma once\n"
@@ -189,6 +190,20 @@ class Hygiene(CheckerTest):
 
     def test_not_utf8(self):
         self.assert_one(check_hygiene, {"docs/a.md": b"\xff\n"}, "docs/a.md:1:", "not UTF-8")
+
+
+class Links(CheckerTest):
+    PAGE = "# Page\n\n## The `key[]` of it\n\n```sh\n# no heading\n```\n"
+
+    def test_clean(self):
+        self.assert_clean(check_links, {"docs/a.md": self.PAGE, "docs/b.md": "[a](a.md#the-key-of-it), [p](../x.cpp)\n"
+                                        "[top](#b) [web](https://example.org/none)\n```\n[c](none.md)\n```\n# B\n",
+                                        "x.cpp": ""})
+
+    def test_what_is_not_there(self):
+        for link, text in (("none.md", "no such file"), ("a.md#key", "no such heading"), ("a.md#no-heading", "no such heading"),
+                           ("#b", "no such heading")):
+            self.assert_one(check_links, {"docs/a.md": self.PAGE, "docs/b.md": f"\n[a]({link})\n"}, "docs/b.md:2:", text)
 
 
 class Tidy(CheckerTest):

@@ -1,0 +1,117 @@
+"""A study of one's own plant from `init`: from options, from answers on a terminal, and what it refuses.
+
+usage: check_init.py MPMBENCH
+"""
+
+import os
+import pathlib
+import pty
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+TANK = ["--cvs", "level,temperature", "--mvs", "inflow,heat", "--mds", "supply", "--unit", "level=cm",
+        "--gains", "2 0 0; -0.8 1.5 0.6", "--time-constants", "20 1 1; 12 8 10", "--dead-times", "1 0 0; 2 1 0",
+        "--setpoint", "level=5", "--limits", "inflow=-10:10"]
+
+
+def main(program):
+    def run(*words, code=0, **options):
+        result = subprocess.run([program, *map(str, words)], capture_output=True, text=True, timeout=600,
+                                stdin=subprocess.DEVNULL, **options)
+        assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
+        return result
+
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        study = folder / "my-tank.toml"
+        said = run("init", study, *TANK)
+        assert "mpmbench validate" in said.stdout and not said.stderr, said
+        text = study.read_text()
+        toml = tomllib.loads(text)
+        assert toml["study"]["name"] == "my-tank"
+        assert [cv["unit"] for cv in toml["plant"]["cv"]] == ["cm", "1"]
+        # What was given stands there as it was given; a channel without a gain is none.
+        channels = {(c["cv"], c["input"]): c for c in toml["plant"]["channel"]}
+        assert sorted(channels) == [("level", "inflow"), ("temperature", "heat"), ("temperature", "inflow"),
+                                    ("temperature", "supply")]
+        assert channels["temperature", "inflow"] == {"cv": "temperature", "input": "inflow", "gain": -0.8,
+                                                     "time_constant": 12.0, "dead_time": 2.0}
+        assert toml["controller"]["mv"]["inflow"]["hard"] == [-10, 10]
+        assert max(step["level"] for step in toml["simulation"]["step"] if step["cv"] == "level") == 5
+        # Each key has a comment above it where it stands first, with the meaning of docs/study_file.md.
+        lines = text.splitlines()
+        first = {}
+        table = ""
+        for place, line in enumerate(lines):
+            if line.startswith("["):
+                table = line.strip("[]")
+            elif " = " in line and not line.startswith("#"):
+                first.setdefault((table, line.split(" = ")[0]), place)
+        assert lines[first["controller", "sample_time"] - 1] == "# Ts [time]; allowed: > 0"
+        described = [key for key, place in first.items() if lines[place - 1].startswith("#")]
+        missing = {key for table, key in first if (table, key) not in described
+                   and not table.startswith(("controller.mv.heat", "controller.cv.temperature", "simulation.noise"))}
+        assert not missing, missing
+        assert "|" not in text and "`" not in text.replace("`mpmbench init`", "").replace("`mpmbench validate`", "")
+
+        # It is a study that runs as it is, and its basis case is healthy; so it is from stdout to stdin.
+        archive = folder / "a.h5"
+        assert "passed" in run("run", study, "-o", archive, "--experiments", 2).stdout
+        piped = run("init", "-", *TANK).stdout
+        assert piped == text.replace("my-tank", "my-plant")
+
+        # In ranges, without measured disturbances, of second order; two CVs by number.
+        run("init", folder / "ranges.toml", "--cvs", 2, "--mvs", 2, "--time-unit", "s", "--sample-time", 2,
+            "--channel", "y1,u1=4 / 100 25 1 @ 3", "--channel", "y2,u2=-2/30 1", "--channel", "y2,u1=1/40 1",
+            "--range", "y1=-1:1", "--range", "y2=0:4")
+        ranges = tomllib.loads((folder / "ranges.toml").read_text())
+        assert ranges["controller"]["sample_time"] == 2 and ranges["controller"]["cv"]["y2"]["soft"] == [0, 4]
+        assert ranges["plant"]["channel"][0]["denominator"] == [100, 25, 1]
+        assert "passed" in run("run", folder / "ranges.toml", "-o", archive, "--experiments", 2).stdout
+
+        # Nothing is overwritten, and what is wrong is said by option.
+        assert "a file that is there" in run("init", study, *TANK, code=2).stderr and study.read_text() == text
+        other = folder / "other.toml"
+        for words, message in (
+                ([], "--cvs: found nothing"),
+                (["--cvs", 1, "--mvs", 1], "--gains: found no model"),
+                (["--cvs", 1, "--mvs", 1, "--gains", "1 2", "--time-constants", "1"],
+                 "--gains: found '1 2'; allowed: 1 rows of 1 numbers"),
+                (["--cvs", 1, "--mvs", 1, "--gains", "one", "--time-constants", "1"], "--gains: found 'one'"),
+                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u2=1/2 1"], "--channel: found 'u2'; allowed: u1"),
+                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1"], "NUMERATOR / DENOMINATOR"),
+                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/1 0"], "integrat"),
+                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--range", "y1=1:0"], "low < high"),
+                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--setpoint", "y1=0"], "a size > 0"),
+                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--limits", "u1=3"], "LOW:HIGH")):
+            assert message in run("init", other, *words, code=2).stderr, (words, message)
+        run("init", folder / "none" / "a.toml", *TANK, code=3)
+        assert not other.exists()
+
+        # On a terminal it asks; an empty answer takes the default.
+        answers = ["1", "1", "0", "h", "2 / 5 1 @ 1", "", "3", "-4:4"]
+        assert asked(program, other, answers) == 0
+        toml = tomllib.loads(other.read_text())
+        assert toml["plant"]["time_unit"] == "h" and toml["controller"]["mv"]["u1"]["hard"] == [-4, 4]
+        assert toml["plant"]["channel"] == [{"cv": "y1", "input": "u1", "gain": 2.0, "time_constant": 5.0,
+                                             "dead_time": 1.0}]
+
+
+def asked(program, study, answers):
+    """The exit code of `init` on a terminal on which somebody types these answers."""
+    child, terminal = pty.fork()
+    if child == 0:
+        os.execv(program, [program, "init", str(study)])
+    os.write(terminal, "".join(answer + "\n" for answer in answers).encode())
+    try:
+        while os.read(terminal, 1024):
+            pass
+    except OSError:  # the end of the terminal
+        pass
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
