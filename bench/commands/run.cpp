@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -11,7 +10,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "analysis/validation/study_warnings.hpp"
 #include "bench/campaign/calibration_runs.hpp"
@@ -20,11 +18,11 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
+#include "bench/commands/narrator.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
-#include "bench/files/outside_files.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/parts/loop_ranges.hpp"
 #include "bench/parts/part_folder.hpp"
@@ -32,7 +30,6 @@
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/resolved_study.hpp"
 #include "scenarios/study_library.hpp"
 
 namespace mpm {
@@ -73,61 +70,6 @@ void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
     progress.note(fmt::format("warning: {}: {}", warning.key, warning.found));
 }
 
-/// What is read, decided and done, for who asks for it by --verbose.
-class Narrator {
- public:
-  Narrator(bool verbose, Progress& progress) : verbose_(verbose), progress_(progress) {}
-
-  void say(const std::string& text) const {
-    if (verbose_)
-      progress_.note(text);
-  }
-
-  /// The time since the last stage was over.
-  void end_stage(const std::string& stage) {
-    const Clock::time_point now = Clock::now();
-    say(fmt::format("{}: {:.2f} s", stage,
-                    std::chrono::duration<double>(now - std::exchange(start_, now)).count()));
-  }
-
-  void say_what_is_run(const RunArguments& arguments, const Study& study, const RunOptions& options) const {
-    if (!verbose_)
-      return;
-    const Study of_run = study_to_run(study, options);
-    say(fmt::format("study: {} ({}), {} bytes, SHA-256 {}...", study.name, arguments.study,
-                    study.source.size(), digest_of(study.source)));
-    if (const std::string outside = outside_files(study); !outside.empty())
-      say(fmt::format("from outside: {}", outside));
-    for (const std::string& change : changed_defaults(of_run))
-      say(fmt::format("not the default: {}", change));
-    say(fmt::format("seed: {}; methods: {}", of_run.seed, fmt::join(of_run.methods, ", ")));
-    say(solver_text(of_run, options));
-    say(fmt::format("writes: {}", output_text(arguments.output, arguments.is_part())));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  const bool verbose_;
-  Progress& progress_;
-  Clock::time_point start_ = Clock::now();
-};
-
-/// The same hooks with the stages of a run said.
-CampaignHooks with_stages(CampaignHooks hooks, Narrator& narrator) {
-  hooks.on_basis = [&narrator, inner = hooks.on_basis](const Study& study, const BasisCase& basis) {
-    narrator.end_stage("basis case");
-    inner(study, basis);
-  };
-  hooks.on_end = [&narrator, inner = hooks.on_end](Campaign& campaign) {
-    narrator.end_stage("loops");
-    if (inner)
-      inner(campaign);
-    narrator.end_stage("findings and archive");
-  };
-  return hooks;
-}
-
 void run_whole(const RunArguments& options, const Study& study, const RunOptions& run_options,
                CampaignHooks hooks, Narrator& narrator, const std::string& command_line) {
   std::string summary;
@@ -138,7 +80,7 @@ void run_whole(const RunArguments& options, const Study& study, const RunOptions
     if (!options.quiet)
       summary = summary_text(campaign, findings, options.output);
   };
-  stream_campaign(study, run_options, with_stages(std::move(hooks), narrator),
+  stream_campaign(study, run_options, narrator.with_stages(std::move(hooks)),
                   shard_folder_of(options.output));
   remove_shards(options.output);
   if (!options.quiet)
@@ -197,7 +139,7 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
     return ExitCode::done;
   }
   Narrator narrator(options.verbose, progress);
-  narrator.say_what_is_run(options, study, run_options);
+  narrator.say_what_is_run(options.study, study, run_options, output_text(options.output, options.is_part()));
   CampaignHooks hooks = hooks_of(progress);
   hooks.on_basis = [&progress](const Study& of_run, const BasisCase& basis) {
     warn_of(of_run, basis, progress);
@@ -207,7 +149,7 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
   };
   try {
     if (part)
-      run_one_part(options, *part, with_stages(hooks, narrator), progress);
+      run_one_part(options, *part, narrator.with_stages(hooks), progress);
     else
       run_whole(options, study, run_options, hooks, narrator, command_line);
   } catch (const InputError&) {

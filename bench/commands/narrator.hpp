@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "bench/campaign/campaign_runner.hpp"
+#include "bench/console/progress.hpp"
+
+namespace mpm {
+
+/// What a run reads, decides and does, for who asks for it by --verbose; on stderr.
+class Narrator {
+ public:
+  Narrator(bool verbose, Progress& progress) : verbose_(verbose), progress_(progress) {}
+
+  /// The study, which was found under `found_as`, what of it is not the default, and how and whereto it is
+  /// run.
+  void say_what_is_run(const std::string& found_as, const Study& study, const RunOptions& options,
+                       const std::string& output) const;
+
+  /// The same hooks, with the time of each stage said. It must outlive them.
+  CampaignHooks with_stages(CampaignHooks hooks);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void say(const std::string& text) const;
+  void end_stage(const std::string& stage);
+
+  const bool verbose_;
+  Progress& progress_;
+  Clock::time_point start_ = Clock::now();  ///< of the stage
+};
+
+}  // namespace mpm
