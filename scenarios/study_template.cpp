@@ -59,6 +59,8 @@ void require(const StudySketch& sketch) {
       throw InputError(fmt::format("setpoint of {}", name), fmt::format("{}", sketch.size(cv)),
                        "a size > 0 by which it moves");
   }
+  if (sketch.sample_time && !(std::isfinite(*sketch.sample_time) && *sketch.sample_time > 0))
+    throw InputError("sample time", fmt::format("{}", *sketch.sample_time), "a number > 0");
   bool moves = false;
   for (std::size_t mv = 0; mv < plant.mvs.size(); ++mv)
     for (Eigen::Index cv = 0; cv < plant.G.rows(); ++cv)
@@ -89,7 +91,7 @@ Guess::Guess(const StudySketch& sketch) : size(sketch.size), gain(sketch.plant.G
     shortest = longest = settled = std::max(dead_time, 1.0);
   sample_time =
       sketch.sample_time.value_or(rounded(std::max(shortest / kStepsOfFastest, settled / kMostSamples)));
-  prediction_horizon = std::clamp(static_cast<int>(std::ceil(settled / sample_time)), 10, 300);
+  prediction_horizon = static_cast<int>(std::clamp(std::ceil(settled / sample_time), 10.0, 300.0));
   samples = std::max(400, 10 * prediction_horizon);
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plants/plant_model.hpp"
@@ -32,7 +33,7 @@ struct StudySketch {
 /// sizes, the excitation, and faults by their effect on the loop. They are a beginning, and the text says so.
 ///
 /// Errors: InputError for a plant that makes none (PlantModel::validate(), an integrating channel, no channel
-/// from an MV), ranges that are not finite or empty, sizes that are not positive.
+/// from an MV), ranges that are not finite or empty, sizes and a sample time that are not positive.
 std::string study_template(const StudySketch& sketch);
 
 }  // namespace mpm
