@@ -150,7 +150,7 @@ TEST_CASE("command line: wrong usage names what is wrong") {
   const Words run{"run", "chapter6", "-o", "x"};
   const std::vector<std::pair<Words, std::string>> wrong{
       {{}, "Test methods on simulated loops"},
-      {{"dance"}, "command: found 'dance'; allowed: validate, run"},
+      {{"dance"}, "command: found 'dance'; allowed: init, validate, run"},
       {{"sumary", "--help"}, "command: found 'sumary' (nearest: 'summary')"},
       {{"run", "chapter6"}, "--output is required"},
       {run + Words{"--jobs", "0"}, "--jobs"},
