@@ -12,13 +12,6 @@
 namespace mpm {
 namespace {
 
-/// The power of two nearest to the root mean square of a signal, 1 for a signal that is 0: a unit in which
-/// its size is about 1, and to which it is brought without rounding.
-double unit_of(const Eigen::Ref<const Eigen::VectorXd>& signal) {
-  const double rms = std::sqrt(signal.squaredNorm() / static_cast<double>(signal.size()));
-  return rms > 0.0 ? std::exp2(std::round(std::log2(rms))) : 1.0;
-}
-
 /// Output and inputs in units of their own, so that the tolerances of the search are relative ones.
 struct Units {
   double y;
@@ -93,6 +86,11 @@ ceres::Solver::Options solver_options(const PredictionErrorOptions& options) {
 }
 
 }  // namespace
+
+double unit_of(const Eigen::Ref<const Eigen::VectorXd>& signal) {
+  const double rms = std::sqrt(signal.squaredNorm() / static_cast<double>(signal.size()));
+  return rms > 0.0 ? std::exp2(std::round(std::log2(rms))) : 1.0;
+}
 
 double search_radius(const PolynomialModel& model) {
   double radius = std::max(root_radius(model.C), root_radius(model.D));

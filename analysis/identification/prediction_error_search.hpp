@@ -16,6 +16,10 @@ PolynomialModel search_prediction_error(const PolynomialModel& start,
                                         const Eigen::Ref<const Eigen::MatrixXd>& u,
                                         const PredictionErrorOptions& options);
 
+/// The power of two nearest to the root mean square of a signal, 1 for a signal that is 0: a unit in which
+/// its size is about 1, and to which it is brought without rounding.
+double unit_of(const Eigen::Ref<const Eigen::VectorXd>& signal);
+
 /// Largest magnitude of the roots of C, D and every F.
 double search_radius(const PolynomialModel& model);
 

@@ -12,8 +12,6 @@
 namespace mpm {
 namespace {
 
-constexpr Eigen::Index kLongestArx = 25;
-constexpr int kReductionRounds = 12;
 void narrow(Eigen::VectorXd& polynomial, double radius) {
   polynomial = stabilised(polynomial, radius);
 }

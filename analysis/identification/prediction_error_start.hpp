@@ -9,6 +9,11 @@
 
 namespace mpm {
 
+/// Order of the longest ARX model that a start comes from.
+inline constexpr Eigen::Index kLongestArx = 25;
+/// Rounds of Steiglitz and McBride's iteration.
+inline constexpr int kReductionRounds = 12;
+
 /// First guesses for `identify_prediction_error`, the one with the smallest loss first; all within
 /// `options.largest_radius`. One guess for each of a few orders of the ARX model that it comes from:
 ///

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "analysis/identification/prediction_error_fit.hpp"
-#include "analysis/identification/prediction_error_options.hpp"
+#include "analysis/identification/identification.hpp"
+#include "analysis/identification/output_error_fit.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
 
@@ -41,40 +41,32 @@ Inputs moving_inputs(const Eigen::MatrixXd& deviations, double resolution) {
   return inputs;
 }
 
-/// A model of the given order of `target`, from its first `samples` samples.
-Identification fitted(const Eigen::VectorXd& target, const Inputs& inputs, Eigen::Index order,
-                      Eigen::Index delay, Eigen::Index samples, const DesignedOutputOptions& options) {
-  PredictionErrorOptions fit;
-  fit.max_iterations = options.max_iterations;
-  fit.max_starts = 1;
-  const Eigen::Index nb = delay == 0 ? order + 1 : order;
-  return identify_prediction_error(target.head(samples), inputs.moving.leftCols(samples),
-                                   output_error_order(inputs.moving.rows(), nb, order, delay), fit);
+/// Models of `target` of all orders, from its first `samples` samples.
+std::vector<OutputErrorFit> fitted(const Eigen::VectorXd& target, const Inputs& inputs,
+                                   const std::vector<Eigen::Index>& orders, Eigen::Index delay,
+                                   Eigen::Index samples, const DesignedOutputOptions& options) {
+  return OutputErrorFits(inputs.moving.leftCols(samples), options.max_iterations)
+      .fit(target.head(samples), orders, delay);
 }
 
-/// The criterion of one order so that larger is better, and the model over the whole record if it has one
-/// yet.
-struct Trial {
-  double merit;
-  std::optional<PolynomialModel> model;
-};
-
-Trial tried(const Eigen::VectorXd& target, const Inputs& inputs, Eigen::Index order, Eigen::Index delay,
-            const DesignedOutputOptions& options) {
-  const Eigen::Index N = target.size();
-  if (options.criterion == DesignedOrderCriterion::validation_fit) {
-    const auto kept =
-        std::max<Eigen::Index>(2, std::lround(options.validation_share * static_cast<double>(N)));
-    const Identification found = fitted(target, inputs, order, delay, N - kept, options);
-    const Eigen::VectorXd output = simulate(found.model, inputs.moving);
-    return {percent_fit(target.tail(kept), output.tail(kept)), std::nullopt};
+/// The criterion of a model so that larger is better. `N` - `samples` samples were kept from it.
+double merit_of(const OutputErrorFit& found, const Eigen::VectorXd& target, const Inputs& inputs,
+                Eigen::Index samples, DesignedOrderCriterion criterion) {
+  if (criterion == DesignedOrderCriterion::bic) {
+    const auto n = static_cast<double>(samples);
+    const auto p = static_cast<double>(found.model.order().parameter_count());
+    return -n * std::log(found.loss) - p * std::log(n);
   }
-  const Identification found = fitted(target, inputs, order, delay, N, options);
-  if (options.criterion == DesignedOrderCriterion::record_fit)
-    return {percent_fit(target, simulate(found.model, inputs.moving)), found.model};
-  const auto n = static_cast<double>(found.samples);
-  const auto p = static_cast<double>(found.model.order().parameter_count());
-  return {-n * std::log(found.loss) - p * std::log(n), found.model};
+  const Eigen::Index judged =
+      criterion == DesignedOrderCriterion::record_fit ? samples : target.size() - samples;
+  return percent_fit(target.tail(judged), simulate(found.model, inputs.moving).tail(judged));
+}
+
+/// How many samples the models are found from that are compared.
+Eigen::Index samples_of_trials(Eigen::Index N, const DesignedOutputOptions& options) {
+  if (options.criterion != DesignedOrderCriterion::validation_fit)
+    return N;
+  return N - std::max<Eigen::Index>(2, std::lround(options.validation_share * static_cast<double>(N)));
 }
 
 /// The model with a path for every eps; those that stand still act on nothing.
@@ -97,20 +89,26 @@ ClosedLoopModel identified_row(const Eigen::VectorXd& target, const Inputs& inpu
   }
   if (inputs.of_cv.empty())
     return row;
-  std::optional<Trial> best;
-  for (const Eigen::Index order : options.orders) {
-    Trial trial = tried(target, inputs, order, delay, options);
-    if (std::isnan(trial.merit) || (best && !(trial.merit > best->merit)))
+  const Eigen::Index N = target.size();
+  const Eigen::Index samples = samples_of_trials(N, options);
+  const std::vector<OutputErrorFit> trials = fitted(target, inputs, options.orders, delay, samples, options);
+  std::optional<std::size_t> best;
+  double most = kNaN;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const double merit = merit_of(trials[i], target, inputs, samples, options.criterion);
+    if (std::isnan(merit) || (best && !(merit > most)))
       continue;
-    best = std::move(trial);
-    row.order = order;
+    best = i;
+    most = merit;
   }
   if (!best)
     return row;
-  if (!best->model)
-    best->model = fitted(target, inputs, row.order, delay, target.size(), options).model;
-  row.fit = percent_fit(target, simulate(*best->model, inputs.moving));
-  row.model = with_all_paths(*best->model, inputs);
+  row.order = options.orders[*best];
+  const PolynomialModel model = samples == N
+                                    ? trials[*best].model
+                                    : fitted(target, inputs, {row.order}, delay, N, options).front().model;
+  row.fit = percent_fit(target, simulate(model, inputs.moving));
+  row.model = with_all_paths(model, inputs);
   row.status = ClosedLoopModelStatus::identified;
   return row;
 }

@@ -88,12 +88,33 @@ double root_radius(const Eigen::Ref<const Eigen::VectorXd>& a) {
   return a.size() == 1 ? 0.0 : roots(a).cwiseAbs().maxCoeff();
 }
 
+bool has_roots_within(const Eigen::Ref<const Eigen::VectorXd>& a, double radius) {
+  require_monic(a);
+  Eigen::VectorXd scaled = a;  // the roots of z are those of a over `radius`
+  double power = 1.0;
+  for (double& coefficient : scaled) {
+    coefficient *= power;
+    power /= radius;
+  }
+  for (Eigen::Index degree = a.size() - 1; degree > 0; --degree) {
+    const double reflection = scaled(degree);
+    if (!(std::abs(reflection) < 1.0))
+      return false;
+    const Eigen::VectorXd mirrored = scaled.head(degree + 1).reverse();
+    scaled.head(degree) =
+        (scaled.head(degree) - reflection * mirrored.head(degree)) / (1.0 - reflection * reflection);
+  }
+  return true;
+}
+
 Eigen::VectorXd stabilised(const Eigen::Ref<const Eigen::VectorXd>& a, double radius) {
   require_monic(a);
   if (!(radius > 0.0 && radius <= 1.0))
     throw InputError("radius of the roots", fmt::format("{}", radius), "above 0, up to 1");
+  if (has_roots_within(a, radius))
+    return a;
   Eigen::VectorXcd z = roots(a);
-  if (a.size() == 1 || z.cwiseAbs().maxCoeff() <= radius)
+  if (z.cwiseAbs().maxCoeff() <= radius)
     return a;
   for (std::complex<double>& root : z) {
     if (std::abs(root) > 1.0)

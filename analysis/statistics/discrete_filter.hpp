@@ -38,6 +38,11 @@ Eigen::VectorXd delayed(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Index
 /// @throws InputError for an empty polynomial or one that does not begin with 1
 double root_radius(const Eigen::Ref<const Eigen::VectorXd>& a);
 
+/// Whether `root_radius` is below `radius`, by the reflection coefficients of the polynomial (Jury's test),
+/// which cost n^2 operations; NaN is not below anything.
+/// @throws InputError as `root_radius`
+bool has_roots_within(const Eigen::Ref<const Eigen::VectorXd>& a, double radius);
+
 /// The monic polynomial with the same amplitude response up to a factor and every root in |z| <= `radius`: a
 /// root outside of the unit circle is reflected in it, z -> 1/conj(z), and what is then still beyond `radius`
 /// is drawn back to it.

@@ -16,14 +16,14 @@ struct LimitArrays {
   const double *value, *lower, *upper, *dual;
 };
 
-/// The inner loops of the active-set method and of its certificate. They work on eight numbers side by side
-/// in an order that is the same for every instruction set, without fused operations: the bits of the result
-/// do not depend on the processor.
+/// The inner loops of the active-set method, of its certificate, and of fits to long records. They work on
+/// eight numbers side by side in an order that is the same for every instruction set, without fused
+/// operations: the bits of the result do not depend on the processor.
 ///
-/// All pointers but those of LimitArrays are multiples of 64 bytes, strides multiples of 8, and what is
-/// padded is zero where nothing else is said (LaneVector). A matrix with a `stride` has its columns (rows, in
-/// `rows`) that far apart. `blocks` of rows are the rows in groups of eight, a group column by column
-/// (LaneProgram).
+/// All pointers but those of LimitArrays and lag_sums are multiples of 64 bytes, strides multiples of 8, and
+/// what is padded is zero where nothing else is said (LaneVector). A matrix with a `stride` has its columns
+/// (rows, in `rows`) that far apart. `blocks` of rows are the rows in groups of eight, a group column by
+/// column (LaneProgram).
 struct LaneKernels {
   const char* name;  ///< "baseline", "avx2", "avx512"
   bool (*runs_here)();
@@ -50,6 +50,14 @@ struct LaneKernels {
   void (*solve)(const double* lower, long stride, long size, const double* inverse, double* x);
 
   double (*dot)(const double* a, const double* b, long size);  ///< `size` a multiple of 8
+
+  /// sums[l] = sum over k < size of a[k] b[k - l], l = 0 ... lags-1. Nothing is aligned or padded, and
+  /// b[-(lags - 1)] is the first number that is read.
+  void (*lag_sums)(const double* a, const double* b, long size, long lags, double* sums);
+  /// Eight filters side by side, B/(1 + a_1 q^-1 + ...): eight numbers a sample and eight a coefficient, of
+  /// which denominators[0..7] are not read. `nb` - 1 samples before x and `na` before y are read.
+  void (*filter_eight)(const double* numerators, long nb, const double* denominators, long na,
+                       const double* x, long samples, double* y);
 
   void (*pull)(const SpringArrays& springs);                      ///< LimitSprings::pull
   void (*pull_stretched)(const SpringArrays& springs);            ///< LimitSprings::pull_stretched

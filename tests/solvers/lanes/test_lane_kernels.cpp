@@ -122,6 +122,46 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
   }
 }
 
+TEST_CASE("sums over lags and filters side by side are those of their definitions, with the same bits",
+          "[lanes]") {
+  constexpr Eigen::Index kLags = 7, kOrder = 3;
+  const Eigen::Index size = GENERATE(1, 8, 61);
+  Numbers numbers(5);
+  const LaneVector a = numbers.vector(size + kLags);
+  const LaneVector b = numbers.vector(size + kLags);
+  const LaneMatrix numerators = numbers.matrix(8, kOrder), denominators = numbers.matrix(8, kOrder + 1);
+  LaneMatrix x(8, kOrder - 1 + size);  // a sample a column, zeros before the first
+  for (Eigen::Index k = kOrder - 1; k < x.columns(); ++k)
+    for (Eigen::Index lane = 0; lane < 8; ++lane)
+      x(lane, k) = numbers.next();
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(8, kOrder + size);
+  for (Eigen::Index k = 0; k < size; ++k)
+    for (Eigen::Index lane = 0; lane < 8; ++lane) {
+      for (Eigen::Index i = 0; i < kOrder; ++i)
+        expected(lane, kOrder + k) += numerators(lane, i) * x(lane, kOrder - 1 + k - i);
+      for (Eigen::Index i = 1; i <= kOrder; ++i)
+        expected(lane, kOrder + k) -= denominators(lane, i) * expected(lane, kOrder + k - i);
+    }
+
+  SameBits sums, filtered;
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name);
+    Eigen::VectorXd sum(kLags);
+    kernels->lag_sums(a.data() + 1, b.data() + kLags, size, kLags, sum.data());
+    for (Eigen::Index lag = 0; lag < kLags; ++lag)
+      CHECK(std::abs(sum(lag) - a.vector().segment(1, size).dot(b.vector().segment(kLags - lag, size))) <=
+            kSumRounding);
+    sums.add(sum);
+
+    LaneMatrix y(8, kOrder + size);
+    kernels->filter_eight(numerators.data(), kOrder, denominators.data(), kOrder, x.column(kOrder - 1), size,
+                          y.column(kOrder));
+    // Filters with random denominators grow.
+    CHECK((all_of(y) - expected).norm() <= kSumRounding * expected.norm());
+    filtered.add(all_of(y).reshaped());
+  }
+}
+
 TEST_CASE("outer products, factor and solution are those of Eigen, with the same bits from all kernels",
           "[lanes]") {
   const auto [n, m] = sizes();

@@ -1,0 +1,149 @@
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Core>
+#include <catch2/catch.hpp>
+
+#include "analysis/identification/identification.hpp"
+#include "analysis/identification/model_order.hpp"
+#include "analysis/identification/output_error_fit.hpp"
+#include "analysis/identification/polynomial_model.hpp"
+#include "analysis/identification/prediction_error_fit.hpp"
+#include "analysis/identification/prediction_error_options.hpp"
+#include "analysis/identification/signal_bank.hpp"
+#include "analysis/statistics/discrete_filter.hpp"
+#include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+#include "tests/analysis/identification/identification_samples.hpp"
+
+using mpm::OutputErrorFit;
+using mpm::OutputErrorFits;
+using mpm::PolynomialModel;
+using mpm::ShiftedSignals;
+using mpm::SignalBank;
+using mpm::testing::noisy_output;
+using mpm::testing::random_steps;
+using mpm::testing::white_inputs;
+
+namespace {
+
+constexpr double kExact = 1e-11;  // of sums over some hundred numbers of the size of 1
+
+/// Two paths of second order with the direct term, or with a delay.
+PolynomialModel second_order_sample(Eigen::Index delay) {
+  PolynomialModel model;
+  const Eigen::VectorXd direct = Eigen::Vector3d(0.5, 0.3, -0.2);
+  const Eigen::VectorXd other = Eigen::Vector3d(-0.4, 0.1, 0.05);
+  const Eigen::Index nb = delay == 0 ? 3 : 2;
+  model.inputs = {{direct.head(nb), Eigen::Vector3d(1.0, -1.2, 0.5), delay},
+                  {other.head(nb), Eigen::Vector3d(1.0, -0.9, 0.3), delay}};
+  model.noise_variance = 0.01;
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("signal bank: more signals than eight at once are each filtered as one alone is") {
+  const Eigen::Index count = 11, samples = 200;
+  const Eigen::MatrixXd x = white_inputs(count, samples, 60);
+  const Eigen::MatrixXd B = 0.3 * white_inputs(3, count, 61);
+  Eigen::MatrixXd F = 0.1 * white_inputs(4, count, 62);
+  F.row(0).setOnes();
+  SignalBank in(count, samples, 4);
+  for (Eigen::Index a = 0; a < count; ++a)
+    in[a] = x.row(a).transpose();
+  SignalBank out(count, samples, 3);
+  filter_bank(B, F, 2, in, out);
+  for (Eigen::Index a = 0; a < count; ++a) {
+    const Eigen::VectorXd alone = mpm::filter(B.col(a), F.col(a), x.row(a).transpose(), 2);
+    CHECK((out[a] - alone).cwiseAbs().maxCoeff() < kExact);
+  }
+}
+
+TEST_CASE("signal bank: products of shifted signals are those of their columns") {
+  const Eigen::Index samples = 157;
+  ShiftedSignals signals(3, samples, 9);
+  for (Eigen::Index a = 0; a < 3; ++a)
+    signals[a] = white_inputs(3, samples, 63).row(a).transpose();
+  const Eigen::Index first = GENERATE(0, 9);  // with zeros from before the record, and without
+  const std::vector<mpm::LaggedColumns> columns{{0, 1, 5}, {1, 0, 7}, {2, 3, 1}, {0, 2, 7}};
+  const Eigen::MatrixXd X = lagged_matrix(signals, columns, first);
+  REQUIRE(X.cols() == 20);
+  CHECK(X(10, 0) == signals[0](first + 9));
+  CHECK((lagged_products(signals, columns, first) - X.transpose() * X).cwiseAbs().maxCoeff() < kExact);
+  const Eigen::VectorXd x = signals[1].tail(samples - first);
+  CHECK((lagged_products_with(signals, columns, 1, first) - X.transpose() * x).cwiseAbs().maxCoeff() <
+        kExact);
+}
+
+TEST_CASE("roots are within a radius when their largest magnitude is below it") {
+  int within = 0;
+  const Eigen::MatrixXd random = 0.7 * white_inputs(6, 400, 64);
+  for (Eigen::Index k = 0; k < random.cols(); ++k) {
+    Eigen::VectorXd a = random.col(k).head(2 + k % 5);
+    a(0) = 1.0;
+    const double radius = k % 2 == 0 ? 1.0 : 0.8;
+    CHECK(mpm::has_roots_within(a, radius) == (mpm::root_radius(a) < radius));
+    within += mpm::has_roots_within(a, radius) ? 1 : 0;
+  }
+  CHECK(within > 100);
+  CHECK(within < 300);
+  CHECK(!mpm::has_roots_within(Eigen::Vector2d(1.0, -1.0), 1.0));
+  CHECK(!mpm::has_roots_within(Eigen::Vector2d(1.0, mpm::kNaN), 1.0));
+}
+
+TEST_CASE("output-error fits give the coefficients of data without noise back, in any units") {
+  const Eigen::Index delay = GENERATE(0, 1);
+  const PolynomialModel truth = second_order_sample(delay);
+  Eigen::MatrixXd u = random_steps(2, 400, 65);
+  const Eigen::VectorXd y = 1e-3 * simulate(truth, u);
+  u.row(1) *= 1e4;
+  const std::vector<OutputErrorFit> fits = OutputErrorFits(u, 50).fit(y, {2}, delay);
+  REQUIRE(fits.size() == 1);
+  const PolynomialModel& model = fits[0].model;
+  for (std::size_t j = 0; j < 2; ++j) {
+    const double unit = j == 0 ? 1e3 : 1e7;
+    CHECK((model.inputs[j].B * unit - truth.inputs[j].B).cwiseAbs().maxCoeff() < 1e-7);
+    CHECK((model.inputs[j].F - truth.inputs[j].F).cwiseAbs().maxCoeff() < 1e-7);
+    CHECK(model.inputs[j].delay == delay);
+  }
+  CHECK(fits[0].loss < 1e-16 * y.squaredNorm());
+}
+
+TEST_CASE("output-error fits end where the search over an orthogonal factorisation ends") {
+  const Eigen::Index delay = GENERATE(0, 1);
+  const PolynomialModel truth = second_order_sample(delay);
+  const Eigen::MatrixXd u = random_steps(2, 500, 66);
+  const Eigen::VectorXd y = noisy_output(truth, u, 67);
+  mpm::PredictionErrorOptions options;
+  options.max_iterations = GENERATE(1, 100);  // the same steps, and the same minimum
+  options.max_starts = 1;
+  const Eigen::Index nb = delay == 0 ? 3 : 2;
+  const mpm::Identification slow =
+      identify_prediction_error(y, u, mpm::output_error_order(2, nb, 2, delay), options);
+  const OutputErrorFit fast = OutputErrorFits(u, options.max_iterations).fit(y, {1, 2, 3}, delay)[1];
+  CHECK(fast.loss == Approx(slow.loss).epsilon(1e-10));
+  // Starts differ by rounding, minima by the tolerance of the search.
+  CHECK((fast.model.parameters() - slow.model.parameters()).cwiseAbs().maxCoeff() < 1e-6);
+  CHECK(fast.loss == Approx(prediction_errors(fast.model, y, u).squaredNorm() / 500.0));
+}
+
+TEST_CASE(
+    "output-error fits bear inputs that depend on each other, and refuse what no model can be found from") {
+  Eigen::MatrixXd u = random_steps(2, 300, 68);
+  u.row(1) = 2.0 * u.row(0);
+  const Eigen::VectorXd y = simulate(second_order_sample(1), u);
+  mpm::PredictionErrorOptions options;
+  options.max_iterations = 20;
+  options.max_starts = 1;
+  const mpm::Identification slow =
+      identify_prediction_error(y, u, mpm::output_error_order(2, 2, 2, 1), options);
+  const OutputErrorFit fit = OutputErrorFits(u, 20).fit(y, {2}, 1).front();
+  CHECK(fit.loss < 0.01 * y.squaredNorm() / 300.0);  // %Fit above 90
+  CHECK(fit.loss == Approx(slow.loss).epsilon(0.01));
+  CHECK_THROWS_AS(OutputErrorFits(u, 20).fit(y.head(200), {3}, 1), mpm::InputError);
+  CHECK_THROWS_AS(OutputErrorFits(u.leftCols(12), 20).fit(y.head(12), {3}, 1), mpm::InputError);
+  Eigen::VectorXd missing = y;
+  missing(7) = mpm::kNaN;
+  CHECK_THROWS_AS(OutputErrorFits(u, 20).fit(missing, {3}, 1), mpm::InputError);
+}
