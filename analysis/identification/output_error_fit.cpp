@@ -1,5 +1,6 @@
 #include "analysis/identification/output_error_fit.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "analysis/identification/identification.hpp"
