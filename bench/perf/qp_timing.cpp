@@ -15,6 +15,13 @@ double quantile(std::vector<double> values, double probability) {
 
 }  // namespace
 
+QpTimes program_times(const std::vector<std::vector<double>>& microseconds) {
+  std::vector<double> typical;
+  for (const std::vector<double>& passes : microseconds)
+    typical.push_back(quantile(passes, 0.5));
+  return {.median = quantile(typical, 0.5), .p99 = quantile(typical, 0.99), .max = quantile(typical, 1.0)};
+}
+
 QpTiming::QpTiming(const QpSequence& sequence, const QpSolverFactory& factory, StartOfSolve start)
     : sequence_(sequence),
       solver_(factory(sequence.structure)),
@@ -44,13 +51,11 @@ double QpTiming::pass() {
 }
 
 QpTimes QpTiming::times() const {
-  std::vector<double> typical;
-  for (const std::vector<double>& passes : microseconds_)
-    typical.push_back(quantile(passes, 0.5));
   QpTimes result = quality_;
-  result.median = quantile(typical, 0.5);
-  result.p99 = quantile(typical, 0.99);
-  result.max = quantile(typical, 1.0);
+  const QpTimes times = program_times(microseconds_);
+  result.median = times.median;
+  result.p99 = times.p99;
+  result.max = times.max;
   return result;
 }
 

@@ -26,6 +26,9 @@ struct QpTimes {
   std::int64_t infeasible = 0;  ///< programs of one pass
 };
 
+/// Of the microseconds of each program (one line a program, one number a pass): median, p99 and max.
+QpTimes program_times(const std::vector<std::vector<double>>& microseconds);
+
 /// Solves a sequence again and again and times every program by itself.
 class QpTiming {
  public:
