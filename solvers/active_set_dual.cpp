@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plants/non_finite.hpp"
+#include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {
 namespace {
@@ -72,8 +73,10 @@ void DualActiveSet::warm_start(const QpData& data) {
   rigid_ = 0;
   used_.setConstant(false);
   for (const LimitSide& side : candidates_)
-    if (std::isfinite(geometry_.limit(data, side)))
+    if (std::isfinite(geometry_.limit(data, side))) {
+      find_products(side);
       enter(side, 0.0);
+    }
   for (;;) {
     find_point();
     equilibrate(data);
@@ -85,8 +88,8 @@ void DualActiveSet::warm_start(const QpData& data) {
   }
 }
 
+// With `products_` of the limit.
 bool DualActiveSet::enter(const LimitSide& side, double multiplier) {
-  find_products(side);
   const auto count = static_cast<Eigen::Index>(working_.size());
   if (!factor_.append(products_.head(count), geometry_.product(side, side), kDependent))
     return false;
@@ -160,14 +163,25 @@ bool DualActiveSet::find_violated(const QpData& data, double tolerance, LimitSid
     look(LimitKind::bound, j, data.lower(j) - z_(j), z_(j) - data.upper(j));
   for (Eigen::Index j = n; j < z_.size(); ++j)
     look(LimitKind::bound, j, -z_(j), -kInfinity);
+  const double hard = lane_kernels().violation({.count = row_value_.size(),
+                                                .value = row_value_.data(),
+                                                .lower = data.hard_lower.data(),
+                                                .upper = data.hard_upper.data(),
+                                                .dual = nullptr});
+  for (Eigen::Index i = 0; i < row_value_.size() && hard > largest; ++i)
+    look(LimitKind::hard, i, data.hard_lower(i) - row_value_(i), row_value_(i) - data.hard_upper(i));
   for (Eigen::Index i = 0; i < row_value_.size(); ++i) {
-    const double value = row_value_(i);
-    look(LimitKind::hard, i, data.hard_lower(i) - value, value - data.hard_upper(i));
-    if (const int column = problem_.slack_column(i); column >= 0) {
-      look(LimitKind::slack_upper, i, -kInfinity, value - z_(column) - data.soft_upper(i));
-      look(LimitKind::slack_lower, i, data.soft_lower(i) - value - z_(column), -kInfinity);
+    const int column = problem_.slack_column(i);
+    const double slack = column >= 0 ? z_(column) : 0.0;
+    const double above = row_value_(i) - slack - data.soft_upper(i);
+    const double below = data.soft_lower(i) - row_value_(i) - slack;
+    if (!(above > largest || below > largest))
+      continue;
+    if (column >= 0) {
+      look(LimitKind::slack_upper, i, -kInfinity, above);
+      look(LimitKind::slack_lower, i, below, -kInfinity);
     } else if (problem_.softness(i) > 0.0) {
-      look(LimitKind::soft, i, data.soft_lower(i) - value, value - data.soft_upper(i));
+      look(LimitKind::soft, i, below, above);
     }
   }
   return largest > tolerance;

@@ -15,7 +15,7 @@ ActiveSetFactor::ActiveSetFactor(Eigen::Index size)
     : size_(size),
       gathered_(size, padded(size)),
       lower_(size, padded(size)),
-      inverse_(size),
+      inverse_(LaneKernels::kInverse * padded(size)),
       packed_(size),
       scratch_(4 * padded(size)) {
   free_.reserve(static_cast<std::size_t>(size));

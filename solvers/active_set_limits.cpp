@@ -1,20 +1,35 @@
 #include "solvers/active_set_limits.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 #include "plants/non_finite.hpp"
+#include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {
-LimitGeometry::LimitGeometry(const ActiveSetProblem& problem) : problem_(problem) {
+
+LimitGeometry::LimitGeometry(const ActiveSetProblem& problem)
+    : problem_(problem),
+      lower_(problem.structure->variable_count(), padded(problem.structure->variable_count())),
+      inverse_(LaneKernels::kInverse * lower_.stride()),
+      packed_(problem.structure->variable_count()) {
   const QpStructure& structure = *problem.structure;
   const Eigen::Index n = structure.variable_count();
   const Eigen::Index m = structure.row_count();
   Eigen::MatrixXd quadratic = structure.hessian;
   quadratic.diagonal() += problem.proximal.head(n);
-  factor_ = quadratic.llt().matrixL();
+  const Eigen::MatrixXd factor = quadratic.llt().matrixL();
+  LaneVector reciprocal(n);
+  std::fill(reciprocal.data(), reciprocal.data() + padded(n), 1.0);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    reciprocal(j) = 1.0 / factor(j, j);
+    std::copy_n(factor.col(j).data() + j + 1, n - 1 - j, lower_.column(j) + j + 1);
+  }
+  lane_kernels().invert(lower_.data(), lower_.stride(), padded(n), reciprocal.data(), inverse_.data());
   Eigen::MatrixXd columns(n, m + n);
   columns << structure.rows.transpose(), Eigen::MatrixXd::Identity(n, n);
-  factor_.triangularView<Eigen::Lower>().solveInPlace(columns);
+  factor.triangularView<Eigen::Lower>().solveInPlace(columns);
   scaled_ = columns.transpose();
   slack_ = (problem.quadratic.diagonal() + problem.proximal).tail(problem.variable_count() - n);
 }
@@ -94,11 +109,11 @@ void LimitGeometry::add_normal(const LimitSide& side, double factor, Eigen::Vect
     vector(n + q) += factor * slack_sign(side);
 }
 
-void LimitGeometry::apply_inverse(Eigen::VectorXd& vector) const {
-  const Eigen::Index n = problem_.structure->variable_count();
-  auto head = vector.head(n);
-  factor_.triangularView<Eigen::Lower>().solveInPlace(head);
-  factor_.triangularView<Eigen::Lower>().transpose().solveInPlace(head);
+void LimitGeometry::apply_inverse(Eigen::VectorXd& vector) {
+  const Eigen::Index n = packed_.size();
+  packed_.vector() = vector.head(n);
+  lane_kernels().solve(lower_.data(), lower_.stride(), padded(n), inverse_.data(), packed_.data());
+  vector.head(n) = packed_.vector();
   vector.tail(slack_.size()).array() /= slack_.array();
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "solvers/active_set_problem.hpp"
+#include "solvers/lanes/lane_vector.hpp"
 #include "solvers/qp.hpp"
 
 namespace mpm {
@@ -44,7 +45,7 @@ class LimitGeometry {
   void add_normal(const LimitSide& side, double factor, Eigen::VectorXd& vector) const;
 
   /// Replaces `vector` by inv(Q) times it.
-  void apply_inverse(Eigen::VectorXd& vector) const;
+  void apply_inverse(Eigen::VectorXd& vector);
 
  private:
   Eigen::Index slack_variable(const LimitSide& side) const;
@@ -52,9 +53,10 @@ class LimitGeometry {
   bool has_row(const LimitSide& side) const;
 
   const ActiveSetProblem& problem_;
-  Eigen::MatrixXd factor_;  ///< L, H + diag(sigma) = L L'
-  RowMajorMatrix scaled_;   ///< rows L^-1 a_i, then L^-1 e_j
-  Eigen::VectorXd slack_;   ///< 2w + sigma of the kept slacks
+  LaneMatrix lower_;             ///< L below its diagonal, H + diag(sigma) = L L'
+  LaneVector inverse_, packed_;  ///< of the blocks on the diagonal of L; scratch
+  RowMajorMatrix scaled_;        ///< rows L^-1 a_i, then L^-1 e_j
+  Eigen::VectorXd slack_;        ///< 2w + sigma of the kept slacks
 };
 
 }  // namespace mpm

@@ -167,7 +167,7 @@ void ActiveSetSolver::bind(const QpData& data) {
     stiffen(1.0 / stiffening_);
   // Hard limits are seldom active: they come in when the warm start has one, or when the answer breaks one.
   LimitSprings& hard = families_[kHard];
-  hard.enabled = !hard.multiplier.vector().isZero(0.0);
+  hard.enabled = hard.multiplier.vector().lpNorm<Eigen::Infinity>() > 0.0;
   if (!hard.enabled)
     hard.release();
   set_limits(data);

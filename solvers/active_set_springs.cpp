@@ -62,7 +62,7 @@ void LimitSprings::aim(const ActiveSetProblem& problem, const LaneVector& row_st
 }
 
 void LimitSprings::set_limits(const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper) {
-  if (everywhere_ && slack_sign == 0.0 && multiplier.vector().isZero(0.0)) {
+  if (everywhere_ && slack_sign == 0.0 && multiplier.vector().lpNorm<Eigen::Infinity>() == 0.0) {
     lower.vector() = row_lower;
     upper.vector() = row_upper;
     return;

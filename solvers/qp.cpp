@@ -19,6 +19,8 @@ void require_size(const char* name, Eigen::Index found, Eigen::Index expected) {
 }
 
 void require_ordered(const char* name, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+  if (lane_kernels().ordered(lower.data(), upper.data(), lower.size()))
+    return;
   for (Eigen::Index i = 0; i < lower.size(); ++i)
     if (!(lower(i) <= upper(i) && lower(i) < kInfinity && upper(i) > -kInfinity))  // also false for NaN
       throw InputError(fmt::format("{}[{}]", name, i),
@@ -27,8 +29,11 @@ void require_ordered(const char* name, const Eigen::VectorXd& lower, const Eigen
 }
 
 bool all_finite(const QpResult& result) {
-  return result.x.allFinite() && result.slack.allFinite() && result.bound_dual.allFinite() &&
-         result.hard_dual.allFinite() && result.soft_dual.allFinite();
+  const auto finite = [](const Eigen::VectorXd& numbers) {
+    return lane_kernels().finite(numbers.data(), numbers.size());
+  };
+  return finite(result.x) && finite(result.slack) && finite(result.bound_dual) && finite(result.hard_dual) &&
+         finite(result.soft_dual);
 }
 
 }  // namespace
@@ -109,9 +114,8 @@ double objective(const QpStructure& structure, const QpData& data, const QpResul
   double value = 0.0;
   for (Eigen::Index i = 0; i < structure.variable_count(); ++i)
     value += result.x(i) * (0.5 * structure.hessian.col(i).dot(result.x) + data.gradient(i));
-  for (Eigen::Index q = 0; q < structure.slack_count(); ++q)
-    value += result.slack(q) * (structure.slack_quadratic(q) * result.slack(q) + structure.slack_linear(q));
-  return value;
+  return value + lane_kernels().squares(result.slack.data(), structure.slack_quadratic.data(),
+                                        structure.slack_linear.data(), structure.slack_count());
 }
 
 KktWorkspace::KktWorkspace(const QpStructure& structure)
@@ -141,13 +145,13 @@ double kkt_residual(const QpStructure& structure, const QpData& data, const QpRe
   w.row_dual = result.hard_dual + result.soft_dual;
   w.pushing.clear();
   for (Eigen::Index i = 0; i < w.row_dual.size(); ++i) {
-    if (w.row_dual(i) != 0.0)
-      w.pushing.push_back(static_cast<int>(i));
     const int q = structure.slack_of_row(i);
     const double s = q < 0 ? kInfinity : result.slack(q);  // without a slack there are no soft limits
     w.soft_lower(i) = data.soft_lower(i) - s;
     w.soft_upper(i) = data.soft_upper(i) + s;
-    if (q >= 0)
+    if (w.row_dual(i) != 0.0)
+      w.pushing.push_back(static_cast<int>(i));
+    if (q >= 0 && result.soft_dual(i) != 0.0)
       w.slack_force(q) -= std::abs(result.soft_dual(i));
   }
   w.stationarity.vector() = data.gradient + result.bound_dual;
@@ -166,10 +170,11 @@ double kkt_residual(const QpStructure& structure, const QpData& data, const QpRe
   look(result.x.data(), data.lower, data.upper, result.bound_dual);
   look(w.row_value.data(), data.hard_lower, data.hard_upper, result.hard_dual);
   look(w.row_value.data(), w.soft_lower, w.soft_upper, result.soft_dual);
-  for (Eigen::Index q = 0; q < w.slack_force.size(); ++q) {
-    absolute = std::max(absolute, -result.slack(q));
+  if (w.slack_force.size() > 0) {
+    absolute = std::max(absolute, -result.slack.minCoeff());
     // What is left of the force is the multiplier of s >= 0: not negative, and zero where s > 0.
-    scaled = std::max({scaled, -w.slack_force(q), std::abs(w.slack_force(q) * result.slack(q))});
+    const double product = w.slack_force.cwiseProduct(result.slack).lpNorm<Eigen::Infinity>();
+    scaled = std::max({scaled, -w.slack_force.minCoeff(), product});
   }
   return std::max(absolute, scaled / std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>()));
 }

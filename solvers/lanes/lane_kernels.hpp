@@ -2,6 +2,17 @@
 
 namespace mpm {
 
+/// Rows in blocks of eight as the kernels see them: the eight numbers of block k in column j begin at
+/// numbers[start[k] + offset[j]]. Blocks may share numbers.
+struct RowWindows {
+  const double* numbers;
+  long columns;
+  const long* offset;  ///< of each column
+  long blocks;
+  const long* start;  ///< of each block, in any order
+  const long* row;    ///< the first row of each block, a multiple of 8
+};
+
 /// Springs of a family (LimitSprings) as the kernels see them: padded vectors of 8 `blocks` numbers.
 struct SpringArrays {
   long blocks;
@@ -20,16 +31,15 @@ struct LimitArrays {
 /// eight numbers side by side in an order that is the same for every instruction set, without fused
 /// operations: the bits of the result do not depend on the processor.
 ///
-/// All pointers but those of LimitArrays and lag_sums are multiples of 64 bytes, strides multiples of 8, and
-/// what is padded is zero where nothing else is said (LaneVector). A matrix with a `stride` has its columns
-/// (rows, in `rows`) that far apart. `blocks` of rows are the rows in groups of eight, a group column by
-/// column (LaneProgram).
+/// All pointers but those of LimitArrays, RowWindows and lag_sums are multiples of 64 bytes, strides
+/// multiples of 8, and what is padded is zero where nothing else is said (LaneVector). A matrix with a
+/// `stride` has its columns (rows, in `rows`) that far apart.
 struct LaneKernels {
   const char* name;  ///< "baseline", "avx2", "avx512"
   bool (*runs_here)();
 
-  /// out = A x, for the blocks of eight rows and `columns` numbers x.
-  void (*multiply)(const double* blocks, long columns, long block_count, const double* x, double* out);
+  /// out = A x in the blocks of rows that there are.
+  void (*multiply)(const RowWindows& rows, const double* x, double* out);
   /// out += M x, M of `columns` columns.
   void (*add_product)(const double* matrix, long stride, long columns, const double* x, double* out);
   /// out += sum over the listed rows i of factor_i a_i.
@@ -42,10 +52,14 @@ struct LaneKernels {
   static constexpr long kOuterRows = 32;
 
   /// S = L L' from the lower triangle of S, of `size` rows, a multiple of 8. L is written below its diagonal,
-  /// zero elsewhere in the blocks on it; the reciprocal of its diagonal goes to `inverse`. False when a pivot
-  /// is not above `smallest` times its diagonal in S. `scratch`: 4 * stride numbers.
+  /// zero elsewhere in the blocks on it, whose inverses go to `inverse` (see invert). False when a pivot is
+  /// not above `smallest` times its diagonal in S. `scratch`: 4 * stride numbers.
   bool (*factor)(const double* matrix, long stride, long size, double smallest, double* lower,
                  double* inverse, double* scratch);
+  /// The inverse of each block of eight on the diagonal of L, column by column and then row by row,
+  /// kInverse * size numbers in all. `reciprocal`: of the diagonal of L.
+  void (*invert)(const double* lower, long stride, long size, const double* reciprocal, double* inverse);
+  static constexpr long kInverse = 16;
   /// Solves L L' x = b in place, for `size` numbers.
   void (*solve)(const double* lower, long stride, long size, const double* inverse, double* x);
 
@@ -71,6 +85,11 @@ struct LaneKernels {
   /// The largest |dual| times distance to its limit, the upper one of a positive and the lower one of a
   /// negative dual. At an absent limit nothing may push: |dual|.
   double (*complementarity)(const LimitArrays& limits);
+  /// True when lower <= upper, lower < inf and upper > -inf everywhere; false with a NaN.
+  bool (*ordered)(const double* lower, const double* upper, long count);
+  bool (*finite)(const double* values, long count);  ///< no NaN and no infinity
+  /// sum of x (q x + c), the numbers not padded.
+  double (*squares)(const double* x, const double* q, const double* c, long count);
 };
 
 }  // namespace mpm

@@ -6,22 +6,16 @@
 
 namespace mpm {
 
-LaneProgram::LaneProgram(const Eigen::MatrixXd& hessian,
-                         const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& rows)
-    : hessian_(rows.cols(), rows.cols()),
-      rows_(rows.cols(), rows.rows()),
-      blocks_(static_cast<std::size_t>(padded(rows.rows()) * rows.cols()), 0.0) {
+LaneProgram::LaneProgram(const Eigen::MatrixXd& hessian, const RowBlocks::Rows& rows)
+    : hessian_(rows.cols(), rows.cols()), rows_(rows.cols(), rows.rows()), blocks_(rows) {
   for (Eigen::Index j = 0; j < rows.cols(); ++j)
     std::copy_n(hessian.col(j).data(), rows.cols(), hessian_.column(j));
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
     std::copy_n(rows.row(i).data(), rows.cols(), rows_.column(i));
-    for (Eigen::Index j = 0; j < rows.cols(); ++j)
-      blocks_[static_cast<std::size_t>((i / 8 * rows.cols() + j) * 8 + i % 8)] = rows(i, j);
-  }
 }
 
 void LaneProgram::multiply_rows(const double* x, LaneVector& out) const {
-  lane_kernels().multiply(blocks_.data(), variable_count(), padded(row_count()) / 8, x, out.data());
+  blocks_.multiply(x, out);
 }
 
 void LaneProgram::add_hessian(const double* x, LaneVector& out) const {

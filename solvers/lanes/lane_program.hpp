@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "solvers/lanes/lane_vector.hpp"
+#include "solvers/lanes/row_blocks.hpp"
 
 namespace mpm {
 
@@ -12,8 +13,7 @@ namespace mpm {
 /// have at least the length that the shape says; `out` is followed by room for a multiple of eight.
 class LaneProgram {
  public:
-  LaneProgram(const Eigen::MatrixXd& hessian,
-              const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& rows);
+  LaneProgram(const Eigen::MatrixXd& hessian, const RowBlocks::Rows& rows);
 
   Eigen::Index variable_count() const { return hessian_.columns(); }
   Eigen::Index row_count() const { return rows_.columns(); }
@@ -32,7 +32,7 @@ class LaneProgram {
 
  private:
   LaneMatrix hessian_, rows_;  ///< columns: of H, and the rows of A
-  LaneMemory blocks_;          ///< the rows in groups of eight, a group column by column
+  RowBlocks blocks_;           ///< the rows for the product with them
 };
 
 }  // namespace mpm

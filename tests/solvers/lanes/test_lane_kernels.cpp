@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -92,6 +93,14 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
   for (Eigen::Index i = 0; i < m; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
       blocks(8 * j + i % 8, i / 8) = rows(j, i);
+  std::vector<long> offset, start, row;
+  for (Eigen::Index j = 0; j < n; ++j)
+    offset.push_back(8 * j);
+  for (Eigen::Index k = blocks.columns() - 1; k >= 0; --k) {
+    start.push_back(k * blocks.stride());
+    row.push_back(8 * k);
+  }
+  const RowWindows windows{blocks.data(), n, offset.data(), blocks.columns(), start.data(), row.data()};
   Eigen::VectorXd listed = Eigen::VectorXd::Zero(m);
   for (const int i : list)
     listed(i) = factor(i);
@@ -100,7 +109,7 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
   for (const LaneKernels* kernels : lane_kernel_sets()) {
     CAPTURE(kernels->name);
     LaneVector product(m);
-    kernels->multiply(blocks.data(), n, padded(m) / 8, x.data(), product.data());
+    kernels->multiply(windows, x.data(), product.data());
     CHECK((product.vector() - all_of(rows).topRows(n).transpose() * x.vector()).norm() <= kSumRounding);
     products.add(product.vector());
 
@@ -192,7 +201,7 @@ TEST_CASE("outer products, factor and solution are those of Eigen, with the same
     matrices.add(lower.reshaped());
 
     LaneMatrix factor(n, stride);
-    LaneVector inverse(n);
+    LaneVector inverse(LaneKernels::kInverse * stride);
     LaneVector x = right;
     LaneVector panel(4 * stride);
     REQUIRE(
@@ -200,6 +209,47 @@ TEST_CASE("outer products, factor and solution are those of Eigen, with the same
     kernels->solve(factor.data(), stride, stride, inverse.data(), x.data());
     CHECK((x.vector() - expected.llt().solve(right.vector())).norm() <= kSumRounding);
     solutions.add(x.vector());
+
+    LaneVector reciprocal(n);
+    std::fill(reciprocal.data(), reciprocal.data() + stride, 1.0);
+    reciprocal.vector() = expected.llt().matrixL().toDenseMatrix().diagonal().cwiseInverse();
+    LaneVector again(inverse.size());
+    kernels->invert(factor.data(), stride, stride, reciprocal.data(), again.data());
+    CHECK((again.vector() - inverse.vector()).norm() <= kSumRounding);
+  }
+}
+
+TEST_CASE("limits in order, finite numbers and sums of squares are found by every kernel", "[lanes]") {
+  const Eigen::Index m = sizes().rows;
+  Numbers numbers(4);
+  const LaneVector q = numbers.vector(m);
+  const LaneVector c = numbers.vector(m);
+  SameBits squares;
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name);
+    Eigen::VectorXd lower = Eigen::VectorXd::Constant(m, -kInfinity);
+    Eigen::VectorXd upper = Eigen::VectorXd::Constant(m, kInfinity);
+    const auto ordered = [&] { return kernels->ordered(lower.data(), upper.data(), m); };
+    CHECK(ordered());
+    const Eigen::Index last = m - 1;
+    lower(last) = upper(last) = 1.5;
+    CHECK(ordered());
+    for (const auto& [low, high] : {std::pair{1.0, 0.5}, std::pair{kNaN, 1.0}, std::pair{1.0, kNaN},
+                                    std::pair{kInfinity, kInfinity}, std::pair{-kInfinity, -kInfinity}}) {
+      lower(last) = low;
+      upper(last) = high;
+      CHECK_FALSE(ordered());
+    }
+    Eigen::VectorXd x = numbers.vector(m).vector();
+    CHECK(kernels->finite(x.data(), m));
+    for (const double value : {kNaN, kInfinity, -kInfinity}) {
+      x(last) = value;
+      CHECK_FALSE(kernels->finite(x.data(), m));
+    }
+    const double sum = kernels->squares(c.data(), q.data(), c.data(), m);
+    const Eigen::ArrayXd s = c.vector().array();
+    CHECK(std::abs(sum - (s * (q.vector().array() * s + s)).sum()) <= kSumRounding);
+    squares.add(Eigen::VectorXd::Constant(1, sum));
   }
 }
 
@@ -273,7 +323,7 @@ TEST_CASE("a matrix that is not definite has no factor in any kernel", "[lanes]"
   for (const LaneKernels* kernels : lane_kernel_sets()) {
     CAPTURE(kernels->name);
     LaneMatrix matrix(10, 16), factor(10, 16);
-    LaneVector inverse(10), scratch(64);
+    LaneVector inverse(LaneKernels::kInverse * 16), scratch(64);
     for (Eigen::Index j = 0; j < 16; ++j)
       matrix(j, j) = 1.0;
     CHECK(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data(), scratch.data()));

@@ -1,0 +1,72 @@
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <utility>
+
+#include <Eigen/Core>
+#include <catch2/catch.hpp>
+
+#include "solvers/lanes/lane_vector.hpp"
+#include "solvers/lanes/row_blocks.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr Eigen::Index kCvs = 3, kSamples = 43, kMvs = 2, kMoves = 6;
+
+// What moves do to CVs with step responses of random numbers, dead times among them.
+RowBlocks::Rows prediction() {
+  std::mt19937 generator(5);
+  RowBlocks::Rows rows = RowBlocks::Rows::Zero(kCvs * kSamples, kMvs * kMoves);
+  for (Eigen::Index cv = 0; cv < kCvs; ++cv)
+    for (Eigen::Index j = 0; j < kMvs; ++j) {
+      Eigen::VectorXd step = Eigen::VectorXd::Zero(kSamples + 1);
+      for (Eigen::Index l = 2 + cv; l <= kSamples; ++l)
+        step(l) = static_cast<double>(generator()) / 2147483648.0 - 1.0;
+      for (Eigen::Index l = 1; l <= kSamples; ++l)
+        for (Eigen::Index i = 0; i < kMoves && i < l; ++i)
+          rows(cv * kSamples + l - 1, i * kMvs + j) = step(l - i) - (i == kMoves - 1 ? 0.0 : step(l - i - 1));
+    }
+  return rows;
+}
+
+// Column after column, as the kernels do.
+void require_exact_product(const RowBlocks::Rows& rows) {
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(rows.cols(), -1.0, 0.7).array().sin();
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(rows.rows());
+  for (Eigen::Index j = 0; j < rows.cols(); ++j)
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+      expected(i) += x(j) * rows(i, j);
+  LaneVector product(rows.rows());
+  RowBlocks(rows).multiply(x.data(), product);
+  CHECK(product.vector() == expected);
+  for (Eigen::Index i = rows.rows(); i < padded(rows.rows()); ++i)
+    CHECK(product(i) == 0.0);
+}
+
+}  // namespace
+
+TEST_CASE("rows of a prediction share their numbers, and their product is that of the whole rows to the bit",
+          "[lanes]") {
+  RowBlocks::Rows rows = prediction();
+  require_exact_product(rows);
+  CHECK(RowBlocks(rows).number_count() < static_cast<std::size_t>(rows.size()));
+
+  const std::size_t shared = RowBlocks(rows).number_count();
+  rows(20, 5) = std::nextafter(rows(20, 5), 2.0);  // its block and the run around it have to give in
+  require_exact_product(rows);
+  CHECK(RowBlocks(rows).number_count() > shared);
+}
+
+TEST_CASE("rows without an order are kept as they are", "[lanes]") {
+  for (const auto& [m, n] : {std::pair{1, 1}, std::pair{7, 3}, std::pair{65, 13}, std::pair{16, 12}}) {
+    std::srand(7);
+    const RowBlocks::Rows rows = RowBlocks::Rows::Random(m, n);
+    require_exact_product(rows);
+    CHECK(RowBlocks(rows).number_count() == static_cast<std::size_t>(padded(m) * n));
+  }
+  require_exact_product(RowBlocks::Rows::Zero(24, 8));
+  require_exact_product(RowBlocks::Rows(0, 4));
+}
+
+}  // namespace mpm
