@@ -12,20 +12,21 @@
 namespace mpm {
 namespace {
 
-constexpr Eigen::Index kCvs = 3, kSamples = 43, kMvs = 2, kMoves = 6;
+constexpr Eigen::Index kRunCvs = 3, kRunSamples = 43, kRunMvs = 2, kRunMoves = 6;
 
 // What moves do to CVs with step responses of random numbers, dead times among them.
-RowBlocks::Rows prediction() {
+RowBlocks::Rows predicted_rows() {
   std::mt19937 generator(5);
-  RowBlocks::Rows rows = RowBlocks::Rows::Zero(kCvs * kSamples, kMvs * kMoves);
-  for (Eigen::Index cv = 0; cv < kCvs; ++cv)
-    for (Eigen::Index j = 0; j < kMvs; ++j) {
-      Eigen::VectorXd step = Eigen::VectorXd::Zero(kSamples + 1);
-      for (Eigen::Index l = 2 + cv; l <= kSamples; ++l)
+  RowBlocks::Rows rows = RowBlocks::Rows::Zero(kRunCvs * kRunSamples, kRunMvs * kRunMoves);
+  for (Eigen::Index cv = 0; cv < kRunCvs; ++cv)
+    for (Eigen::Index j = 0; j < kRunMvs; ++j) {
+      Eigen::VectorXd step = Eigen::VectorXd::Zero(kRunSamples + 1);
+      for (Eigen::Index l = 2 + cv; l <= kRunSamples; ++l)
         step(l) = static_cast<double>(generator()) / 2147483648.0 - 1.0;
-      for (Eigen::Index l = 1; l <= kSamples; ++l)
-        for (Eigen::Index i = 0; i < kMoves && i < l; ++i)
-          rows(cv * kSamples + l - 1, i * kMvs + j) = step(l - i) - (i == kMoves - 1 ? 0.0 : step(l - i - 1));
+      for (Eigen::Index l = 1; l <= kRunSamples; ++l)
+        for (Eigen::Index i = 0; i < kRunMoves && i < l; ++i)
+          rows(cv * kRunSamples + l - 1, i * kRunMvs + j) =
+              step(l - i) - (i == kRunMoves - 1 ? 0.0 : step(l - i - 1));
     }
   return rows;
 }
@@ -48,7 +49,7 @@ void require_exact_product(const RowBlocks::Rows& rows) {
 
 TEST_CASE("rows of a prediction share their numbers, and their product is that of the whole rows to the bit",
           "[lanes]") {
-  RowBlocks::Rows rows = prediction();
+  RowBlocks::Rows rows = predicted_rows();
   require_exact_product(rows);
   CHECK(RowBlocks(rows).number_count() < static_cast<std::size_t>(rows.size()));
 
