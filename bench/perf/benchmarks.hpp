@@ -36,6 +36,20 @@ void register_loop_benchmarks(const Study& study);
 /// `study` must outlive the benchmarks. Throws InputError when `experiments` is no number of experiments.
 void register_study_benchmarks(const Study& study, std::int64_t experiments);
 
+/// Registers the loops of made-up plants (SparseLoop) of all sizes,
+///     size/<CVs>x<MVs>/<slack>     200 samples, back end active-set
+///
+/// | counter                   | meaning                                                       |
+/// |---------------------------|---------------------------------------------------------------|
+/// | median_us, p99_us, max_us | a step of the controller, over the samples of the last pass   |
+/// | targets_share             | share of the steps' time in the solver of the targets         |
+/// | moves_share               | in that of the moves                                          |
+/// | iterations                | of the moves, mean                                            |
+/// | kkt                       | largest KKT residual                                          |
+/// | not_solved, programs      | samples without a move; samples                               |
+/// | making_ms                 | to make the controller, before the first step                 |
+void register_size_benchmarks();
+
 /// The samples that every back end solves: a few, for the slow ones, from the first disturbance step on.
 inline constexpr std::size_t kPairedFirst = 20, kPairedCount = 20;
 

@@ -72,6 +72,7 @@ int run(int argc, char** argv) {
   mpm::register_qp_benchmarks(sequences);
   mpm::register_loop_benchmarks(study);
   mpm::register_study_benchmarks(study, options.experiments);
+  mpm::register_size_benchmarks();
   return measure(argv[0], options.rest);
 }
 

@@ -39,6 +39,18 @@ def program_rows(benchmarks, start):
                    f"{b['not_solved']:.0f} / {b['infeasible']:.0f} / {b['programs']:.0f}"]
 
 
+def size_rows(benchmarks):
+    """Loops of made-up plants: the steps of the controller."""
+    for b in benchmarks:
+        name = b["name"].split("/")
+        if name[0] == "size":
+            yield [f"{name[1]} / {name[2]}", number(b["median_us"]), number(b["p99_us"]), number(b["max_us"]),
+                   f"{b['iterations']:.1f}", f"{b['kkt']:.0e}", f"{b['not_solved']:.0f}",
+                   *(f"{100 * share:.0f} %" for share in (
+                       b["moves_share"], b["targets_share"], 1 - b["moves_share"] - b["targets_share"])),
+                   number(1e3 * b["making_ms"])]
+
+
 def paired_rows(benchmarks, octave, start, back_ends):
     """The programs that every solver has: median / maximum of each."""
     cells = {}
@@ -130,7 +142,12 @@ def main(file, octave_file=None):
         if rows:
             print(f"The same programs for every solver, {start}, median / maximum\n")
             table(["program / slack / loop"] + back_ends + (["Octave qp"] if octave else []), rows)
-    parts = {name: runs for name, runs in repetitions(benchmarks).items() if not name.startswith("qp/")}
+    rows = list(size_rows(benchmarks))
+    if rows:
+        table(["plant / slack", "median of a step", "p99", "max", "iterations", "KKT residual", "no move",
+               "moves", "targets", "the rest", "making it"], rows)
+    parts = {name: runs for name, runs in repetitions(benchmarks).items()
+             if not name.startswith(("qp/", "size/"))}
     for head, rows in ((["part of a study", "time"], part_rows(parts)),
                        (["loop", "Ipopt : active set"], ratio_rows(parts)),
                        (["loop", "plant", "controller"], share_rows(parts)),
