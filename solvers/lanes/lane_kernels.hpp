@@ -40,6 +40,10 @@ struct LaneKernels {
 
   /// out = A x in the blocks of rows that there are.
   void (*multiply)(const RowWindows& rows, const double* x, double* out);
+  /// out = A x, for the blocks of eight rows, a block column by column, whose columns are those of the listed
+  /// numbers of x.
+  void (*multiply_some)(const double* blocks, const int* list, long columns, long block_count,
+                        const double* x, double* out);
   /// out += M x, M of `columns` columns.
   void (*add_product)(const double* matrix, long stride, long columns, const double* x, double* out);
   /// out += sum over the listed rows i of factor_i a_i.

@@ -1,16 +1,23 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "solvers/lanes/lane_vector.hpp"
+#include "solvers/lanes/row_band.hpp"
 #include "solvers/lanes/row_blocks.hpp"
 
 namespace mpm {
 
 /// Hessian H (n x n) and rows A (m x n) of a program for the kernels. All sizes and vectors without padding
 /// have at least the length that the shape says; `out` is followed by room for a multiple of eight.
+///
+/// Where rows that follow each other have few columns that are not zero, and the same ones (those of a CV
+/// that answers to some of the MVs only), only these columns are kept and worked on. What is left out are
+/// products with zero: the results are the same to the bit (but for the sign of a zero).
 class LaneProgram {
  public:
   LaneProgram(const Eigen::MatrixXd& hessian, const RowBlocks::Rows& rows);
@@ -22,17 +29,27 @@ class LaneProgram {
   void multiply_rows(const double* x, LaneVector& out) const;
   /// out += H x.
   void add_hessian(const double* x, LaneVector& out) const;
-  /// out += sum over the listed rows of factor_i a_i.
+  /// out += sum over the listed rows, in increasing order, of factor_i a_i.
   void add_rows(const std::vector<int>& list, const double* factor, LaneVector& out) const;
-  /// The lower triangle of `matrix` += sum over the listed rows of weight_k a_k a_k'; what is above it in the
-  /// first n rows and columns is arbitrary afterwards. `scratch`: outer_scratch() numbers.
+  /// The lower triangle of `matrix` += sum over the listed rows, in increasing order, of weight_k a_k a_k';
+  /// what is above it in the first n rows and columns is arbitrary afterwards. `scratch`: outer_scratch()
+  /// numbers.
   void add_outer(const std::vector<int>& list, const std::vector<double>& weight, LaneVector& scratch,
                  LaneMatrix& matrix) const;
   Eigen::Index outer_scratch() const;
 
  private:
-  LaneMatrix hessian_, rows_;  ///< columns: of H, and the rows of A
-  RowBlocks blocks_;           ///< the rows for the product with them
+  bool is_dense() const { return bands_.size() == 1 && bands_.front().width() == variable_count(); }
+  void copy_bands();
+
+  LaneMatrix hessian_;
+  std::vector<RowBand> bands_;
+  LaneMatrix rows_;  ///< columns: the rows of A, of each the columns of its band
+  /// For the product with the rows: all of them when nothing is left out, otherwise the rows of each band in
+  /// groups of eight, a group column by column, and where each band begins.
+  std::optional<RowBlocks> dense_;
+  LaneMemory blocks_;
+  std::vector<std::size_t> begin_;
 };
 
 }  // namespace mpm

@@ -113,6 +113,17 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
     CHECK((product.vector() - all_of(rows).topRows(n).transpose() * x.vector()).norm() <= kSumRounding);
     products.add(product.vector());
 
+    // Of x every second number, last first.
+    LaneVector twice(2 * n);
+    std::vector<int> places;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      places.push_back(static_cast<int>(2 * (n - 1 - j)));
+      twice(places.back()) = x(j);
+    }
+    LaneVector same_product(m);
+    kernels->multiply_some(blocks.data(), places.data(), n, padded(m) / 8, twice.data(), same_product.data());
+    CHECK(same_product.vector() == product.vector());
+
     LaneVector sum = x;
     kernels->add_rows(rows.data(), rows.stride(), list.data(), static_cast<long>(list.size()), factor.data(),
                       sum.data());
