@@ -10,7 +10,6 @@
 #include "plants/linear_plant.hpp"
 #include "plants/thread_clock.hpp"
 #include "scenarios/random_stream.hpp"
-#include "solvers/mpc.hpp"
 
 namespace mpm {
 namespace {
@@ -140,15 +139,8 @@ std::string PlantSize::name() const {
 SparseLoop::SparseLoop(const PlantSize& size, SlackForm slack)
     : size_(size), model_(sparse_model(size)), options_(range_controller(size, slack)) {}
 
-SparseLoop::Times SparseLoop::run(const QpSolverFactory& factory, int samples) const {
-  Times times;
-  const auto timed = [&](const std::shared_ptr<const QpStructure>& structure) -> std::unique_ptr<QpSolver> {
-    double& seconds = structure->hessian.isZero(0.0) ? times.targets : times.moves;
-    return std::make_unique<TimedSolver>(factory(structure), structure, seconds);
-  };
-  const double begin = thread_seconds();
-  Mpc controller(model_, size_.mvs, options_, timed);
-  times.making = thread_seconds() - begin;
+template <class Visit>
+void SparseLoop::visit_steps(Mpc& controller, int samples, const Visit& visit) const {
   LinearPlant plant(model_, options_.sample_time);
   Surroundings surroundings(size_);
   Eigen::VectorXd input(model_.cols());
@@ -158,16 +150,44 @@ SparseLoop::Times SparseLoop::run(const QpSolverFactory& factory, int samples) c
   for (int k = 0; k < samples; ++k) {
     surroundings.go_to(k);
     const Eigen::VectorXd measured = plant.output() + surroundings.added;
-    const double begin_step = thread_seconds();
+    const double begin = thread_seconds();
     const ControlMove& move = controller.step(measured, surroundings.md);
-    times.step.push_back(1e6 * (thread_seconds() - begin_step));
-    times.iterations += controller.move_problem()->result.iterations / static_cast<double>(samples);
-    times.kkt_residual = std::max(times.kkt_residual, move.kkt_residual);
-    times.not_solved += move.status == ControlStatus::ok ? 0 : 1;
+    visit(k, thread_seconds() - begin, move);
     input << move.u, surroundings.md;
     plant.advance(input);
   }
+}
+
+SparseLoop::Times SparseLoop::run(const QpSolverFactory& factory, int samples) const {
+  Times times;
+  const auto timed = [&](const std::shared_ptr<const QpStructure>& structure) -> std::unique_ptr<QpSolver> {
+    double& seconds = structure->hessian.isZero(0.0) ? times.targets : times.moves;
+    return std::make_unique<TimedSolver>(factory(structure), structure, seconds);
+  };
+  const double begin = thread_seconds();
+  Mpc controller(model_, size_.mvs, options_, timed);
+  times.making = thread_seconds() - begin;
+  visit_steps(controller, samples, [&](int, double seconds, const ControlMove& move) {
+    times.step.push_back(1e6 * seconds);
+    times.iterations += controller.move_problem()->result.iterations / static_cast<double>(samples);
+    times.kkt_residual = std::max(times.kkt_residual, move.kkt_residual);
+    times.not_solved += move.status == ControlStatus::ok ? 0 : 1;
+  });
   return times;
+}
+
+SparseLoop::Programs SparseLoop::programs(int first, int count) const {
+  Programs programs;
+  Mpc controller(model_, size_.mvs, options_, qp_solver_factory("active-set"));
+  visit_steps(controller, first + count, [&](int sample, double, const ControlMove&) {
+    if (sample < first)
+      return;
+    const SolvedQp solved = *controller.move_problem();
+    programs.structure = solved.structure;
+    programs.data.push_back(solved.data);
+    programs.answers.push_back(solved.result.x);
+  });
+  return programs;
 }
 
 }  // namespace mpm

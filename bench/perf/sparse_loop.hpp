@@ -3,8 +3,12 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "plants/transfer_matrix.hpp"
+#include "solvers/mpc.hpp"
 #include "solvers/mpc_options.hpp"
+#include "solvers/qp.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {
@@ -52,7 +56,20 @@ class SparseLoop {
 
   Times run(const QpSolverFactory& factory, int samples) const;
 
+  /// The programs of the moves of `count` samples from sample `first` on, with the active-set method's
+  /// answers.
+  struct Programs {
+    QpStructure structure;
+    std::vector<QpData> data;
+    std::vector<Eigen::VectorXd> answers;
+  };
+  Programs programs(int first, int count) const;
+
  private:
+  /// Calls visit(sample, seconds of the controller's step, its move) for a loop with `controller`.
+  template <class Visit>
+  void visit_steps(Mpc& controller, int samples, const Visit& visit) const;
+
   PlantSize size_;
   TransferMatrix model_;  ///< MVs, then MDs
   MpcOptions options_;

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "solvers/qp.hpp"
+
+namespace mpm {
+
+/// HPIPM (github.com/giaf/hpipm, an interior-point method in C on BLASFEO) on the programs of one sequence
+/// with a slack a row: its solver for dense programs in the mode SPEED, to 1e-8. It starts each program from
+/// nothing, and the hard limits of the rows are left out, as of DaqpRival.
+class HpipmRival {
+ public:
+  explicit HpipmRival(const QpStructure& structure);
+  ~HpipmRival();
+  HpipmRival(const HpipmRival&) = delete;
+  HpipmRival& operator=(const HpipmRival&) = delete;
+
+  /// Seconds of processor time that HPIPM took; its copies of the limits are made before.
+  double solve(const QpData& data);
+
+  /// Of the last program: true when there is an answer, and x (n).
+  bool solved() const;
+  const Eigen::VectorXd& x() const;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> work_;
+};
+
+}  // namespace mpm
