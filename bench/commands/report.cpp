@@ -15,14 +15,16 @@
 #include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
+#include "plants/error.hpp"
+#include "results/report/change_report.hpp"
 
 namespace mpm {
 namespace {
 
 struct ReportArguments {
-  std::string archive;
-  std::string output;   ///< no page when empty
-  std::string figures;  ///< folder; no figures as files when empty
+  std::vector<std::string> archives;  ///< one, or two for what changed from the first to the second
+  std::string output;                 ///< no page when empty
+  std::string figures;                ///< folder; no figures as files when empty
   std::string format = "svg";
 };
 
@@ -41,14 +43,32 @@ std::vector<LoopView> shown_loops(const Campaign& campaign) {
   return views;
 }
 
+/// Two archives on one page.
+ExitCode report_change(const ReportArguments& options) {
+  if (options.archives.size() > 2)
+    throw InputError("ARCHIVE", fmt::format("{} archives", options.archives.size()),
+                     "one, or two for what changed from the first to the second");
+  if (!options.figures.empty())
+    throw InputError("--figures", "two archives", "one archive; two give a page, -o FILE");
+  require_output_folder(options.output, "page");
+  const Campaign before = read_input(options.archives[0]);
+  const Campaign now = read_input(options.archives[1]);
+  write_text(options.output, change_html(before, options.archives[0], now, options.archives[1]));
+  print_result(fmt::format("{}\n", options.output));
+  return ExitCode::done;
+}
+
 ExitCode report(const ReportArguments& options) {
+  if (options.archives.size() > 1)
+    return report_change(options);
+  const std::string& archive = options.archives.front();
   const FigureFormat format = figure_format(options.format);
   if (!options.output.empty())
     require_output_folder(options.output, "page");
-  const Campaign campaign = read_input(options.archive);
+  const Campaign campaign = read_input(archive);
   const StudyFindings findings = findings_of(campaign);
   if (!options.output.empty()) {
-    write_text(options.output, report_html(campaign, findings, options.archive, shown_loops(campaign)));
+    write_text(options.output, report_html(campaign, findings, archive, shown_loops(campaign)));
     print_result(fmt::format("{}\n", options.output));
   }
   if (!options.figures.empty())
@@ -64,7 +84,10 @@ void add_report(CommandSet& commands) {
   CLI::App& app =
       commands.add("report", "Write what a study found as one HTML page, and its figures as files",
                    [options] { return report(*options); });
-  add_archive(app, options->archive);
+  app.add_option("ARCHIVE", options->archives,
+                 "Archive; two for a page of what changed from the first to the second")
+      ->required()
+      ->expected(1, -1);
   CLI::Option_group* const outputs = app.add_option_group("outputs", "What to write, one or both");
   add_path(*outputs, "-o,--output", options->output, "Page to write (HTML)");
   CLI::Option* const figures =

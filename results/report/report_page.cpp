@@ -7,37 +7,16 @@
 #include "results/files/atomic_file.hpp"
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/figure_html.hpp"
 #include "results/report/html_page.hpp"
 #include "results/report/report.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_glossary.hpp"
 #include "results/report/report_sections.hpp"
+#include "results/report/section_html.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
 namespace {
-
-std::string section_html(const ReportSection& section, std::size_t number) {
-  std::string html = fmt::format(
-      "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\"><span "
-      "class=\"index\">{1}</span>{2}</h2>\n",
-      section.id, number, html_label(section.title));
-  if (!section.answer.empty())
-    html += "<p class=\"answer\">" + section.answer + "</p>\n";
-  for (const auto& piece : section.content)
-    html += std::holds_alternative<Html>(piece) ? std::get<Html>(piece).text
-                                                : figure_html(std::get<Figure>(piece));
-  return html + "</section>\n";
-}
-
-std::string contents_html(const std::vector<ReportSection>& sections) {
-  std::string items;
-  for (std::size_t i = 0; i < sections.size(); ++i)
-    items += fmt::format("<li><span>{}</span><a href=\"#{}\">{}</a></li>\n", i + 1, sections[i].id,
-                         html_label(sections[i].title));
-  return "<nav aria-label=\"Contents\"><ol>\n" + items + "</ol></nav>\n";
-}
 
 std::vector<Figure> all_figures(const ReportSection& section) {
   std::vector<Figure> figures;
@@ -55,9 +34,6 @@ std::string report_html(const Campaign& campaign, const StudyFindings& findings,
   const SummaryContent parts = summary_content(campaign, findings);
   const ReportInput input{campaign, parts, file.filename().string(), loops};
   const std::vector<ReportSection> sections = report_sections(input);
-  std::string body;
-  for (std::size_t i = 0; i < sections.size(); ++i)
-    body += section_html(sections[i], i + 1);
   const std::string file_name = html_text(file.filename().string());
   const std::string study = html_text(campaign.study.name);
   return html_page(
@@ -71,7 +47,7 @@ std::string report_html(const Campaign& campaign, const StudyFindings& findings,
                    file_name, html_text(campaign.info.mpmbench_version),
                    100.0 * campaign.study.aggregate.confidence),
        campaign.info.mpmbench_version, glossary_html(findings.chain() != nullptr)},
-      body);
+      sections_html(sections));
 }
 
 std::vector<std::filesystem::path> write_figures(const Campaign& campaign, const StudyFindings& findings,

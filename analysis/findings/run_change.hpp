@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/calibration.hpp"
+#include "analysis/findings/judgement_changes.hpp"
+#include "analysis/findings/method_rates.hpp"
+#include "analysis/statistics/sample_summary.hpp"
+#include "analysis/statistics/share_difference.hpp"
+
+// What changed from one run to another, experiment by experiment where both ran the same ones.
+
+namespace mpm {
+
+/// One of two runs: what is known of it. All of it must outlive what is said of it.
+struct StudyRun {
+  const Study& study;
+  const AssessmentForms& forms;
+  std::span<const ExperimentRecord> records;  ///< in the order of the index
+  const Calibration& calibration;
+};
+
+/// The same experiment in both runs.
+struct LoopPair {
+  const ExperimentRecord* before;
+  const ExperimentRecord* now;
+};
+
+/// Which experiments of two runs are the same. Runs are paired when seed and variables of the studies are the
+/// same, they have experiments in common, and in each of these the same is wrong.
+struct RunPairing {
+  std::string obstacle = {};         ///< why the runs are not paired, as a clause; empty: they are
+  std::vector<LoopPair> loops = {};  ///< in the order of the index; empty when not paired
+  std::int64_t same_loops = 0;       ///< of these: the same end and the same Ivar_basis, bit for bit
+
+  bool paired() const { return obstacle.empty(); }
+};
+
+RunPairing pair_runs(const StudyRun& before, const StudyRun& now);
+
+/// How a rate of a method changed. Of paired runs the loops in common alone are looked at.
+struct RateChange {
+  const MethodRateInfo* info;
+  Rate before, now;            ///< each over all loops that it counts in this run
+  PairedCounts counts;         ///< of paired runs: over the loops that it counts in both
+  ShareDifference difference;  ///< over these; of unpaired runs: of `before` and `now` as independent
+  double p_holm = 1.0;         ///< difference.p corrected for all rates of the method; NaN where p is
+};
+
+/// One question to an answer that may come to something else in the other run.
+struct VerdictQuestion {
+  const char* name;     ///< for people: "flag, impact"
+  const char* meaning;  ///< when the answer is right
+  Correctness (*ask)(const Study&, const ExperimentRecord&, const AssessmentRecord&);
+};
+
+/// Every question once, in the order in which people read them.
+std::span<const VerdictQuestion> verdict_questions();
+
+/// What became of one question over paired loops.
+struct VerdictChange {
+  const VerdictQuestion* question;
+  std::int64_t right_in_both = 0;
+  JudgementChanges changes = {};
+  double p_holm = 1.0;  ///< two-sided, corrected for all questions of all methods
+};
+
+/// How a number changed over paired loops that have it in both runs. A number of CVs is the mean of an
+/// experiment's CVs, for these are no independent samples.
+struct NumberChange {
+  std::string label;  ///< with the marks of plot labels: "I_{MPM}"
+  std::int64_t experiments = 0;
+  std::int64_t same = 0;     ///< experiments in which nothing of it changed
+  SampleSummary difference;  ///< now - before, over experiments
+  double largest = 0.0;      ///< change of a single value by absolute value, with its sign
+  std::int64_t index = -1;   ///< the experiment with this change; -1: none changed
+};
+
+/// What changed of one method that both runs have.
+struct MethodChange {
+  std::string name;
+  std::size_t before, now;              ///< its place in the assessments of each record
+  std::vector<RateChange> rates;        ///< those that a loop was counted for in some run
+  std::vector<VerdictChange> verdicts;  ///< those that were judged; empty for unpaired runs
+  std::vector<NumberChange> numbers;    ///< empty for unpaired runs
+
+  /// Something of it changed in some paired loop.
+  bool changed() const;
+};
+
+/// All methods of both runs, in the order of the second.
+std::vector<MethodChange> method_changes(const StudyRun& before, const StudyRun& now,
+                                         const RunPairing& pairing);
+
+}  // namespace mpm
