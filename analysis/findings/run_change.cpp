@@ -297,7 +297,7 @@ MethodChange method_change(const MethodRun& before, const MethodRun& now, const 
 }
 
 /// Corrects the p-values of all questions.
-void correct(std::vector<MethodChange>& methods) {
+void correct_questions(std::vector<MethodChange>& methods) {
   std::vector<double> p;
   for (const MethodChange& method : methods)
     for (const VerdictChange& verdict : method.verdicts)
@@ -341,7 +341,7 @@ std::vector<MethodChange> method_changes(const StudyRun& before, const StudyRun&
     for (std::size_t old = 0; old < before.forms.size(); ++old)
       if (before.forms[old]->method().name == now.forms[place]->method().name)
         changes.push_back(method_change({before, old}, {now, place}, pairing));
-  correct(changes);
+  correct_questions(changes);
   return changes;
 }
 

@@ -94,7 +94,7 @@ bool number_changed(const NumberChange& change) {
   return change.same < change.experiments;
 }
 
-std::string number_text(double value) {
+std::string short_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : html_number(value);
 }
 
@@ -126,12 +126,12 @@ ReportSection change_numbers_section(const ChangeInput& input) {
     for (const NumberChange& change : method.numbers)
       if (number_changed(change))
         table.row({html_label(change.label), fmt::format("{}", change.experiments),
-                   fmt::format("{}", change.same), number_text(change.difference.mean),
+                   fmt::format("{}", change.same), short_number(change.difference.mean),
                    std::isnan(change.difference.mean_interval.lower)
                        ? html_number(kNaN)
                        : fmt::format("{:.3g} to {:.3g}", change.difference.mean_interval.lower,
                                      change.difference.mean_interval.upper),
-                   number_text(change.largest),
+                   short_number(change.largest),
                    change.index < 0 ? html_number(kNaN) : fmt::format("{}", change.index)});
   }
   if (any)

@@ -145,7 +145,8 @@ std::string change_html(const Campaign& before, const std::filesystem::path& bef
                                         html_text(input.now_file));
   return html_page(
       {fmt::format("{} and {}", input.before_file, input.now_file),
-       fmt::format("From {} to {}", html_text(input.before_file), html_text(input.now_file)),
+       fmt::format("From <code>{}</code> to <code>{}</code>", html_text(input.before_file),
+                   html_text(input.now_file)),
        fmt::format("<p>Archives {}. <span class=\"hint\">Rest a mouse on a point to see its "
                    "experiment.</span></p>\n{}",
                    names, contents_html(sections)),

@@ -11,7 +11,7 @@ namespace mpm {
 namespace {
 
 /// In percentage points, with a sign.
-std::string points(double share) {
+std::string in_points(double share) {
   return std::isnan(share) ? html_number(share) : fmt::format("{:+.1f}", 100.0 * share);
 }
 
@@ -36,16 +36,16 @@ std::vector<std::string> cells_of(const RateChange& change, bool paired) {
   if (paired)
     cells.push_back(fmt::format("{}<br><small>&minus;{}, +{}</small>", change.counts.total(),
                                 change.counts.first, change.counts.second));
-  cells.push_back(points(difference.value));
+  cells.push_back(in_points(difference.value));
   cells.push_back(std::isnan(difference.value) ? html_number(kNaN)
-                                               : fmt::format("{} to {}", points(difference.interval.lower),
-                                                             points(difference.interval.upper)));
+                                               : fmt::format("{} to {}", in_points(difference.interval.lower),
+                                                             in_points(difference.interval.upper)));
   cells.push_back(p_cell(difference.p));
   cells.push_back(p_cell(change.p_holm));
   return cells;
 }
 
-std::vector<HtmlTable::Column> columns(const ChangeInput& input) {
+std::vector<HtmlTable::Column> rate_columns(const ChangeInput& input) {
   std::vector<HtmlTable::Column> list{{"Share of loops", HtmlTable::Align::left}, {"A"}, {"B"}};
   if (input.pairing.paired())
     list.push_back({"Counted in both"});
@@ -82,7 +82,7 @@ ReportSection change_rates_section(const ChangeInput& input) {
     section.leave_out("no rate of a method that both archives have differs in a single loop.");
     return section;
   }
-  HtmlTable table(caption(paired) + " Corrected by Holm for the rates of the method.", columns(input));
+  HtmlTable table(caption(paired) + " Corrected by Holm for the rates of the method.", rate_columns(input));
   for (const MethodChange& method : input.methods) {
     if (!shows(method))
       continue;

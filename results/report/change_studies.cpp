@@ -31,7 +31,7 @@ ReportSection change_studies_section(const ChangeInput& input) {
   HtmlTable table(
       "What ran, and the keys of the study that have other values, with every default written out; "
       "what differs is marked.",
-      {{"", HtmlTable::Align::left}, {"A", HtmlTable::Align::text}, {"B", HtmlTable::Align::text}});
+      {{"", HtmlTable::Align::left}, {"A", HtmlTable::Align::left}, {"B", HtmlTable::Align::left}});
   const Campaign &a = input.before, &b = input.now;
   const auto row = [&](const char* what, const std::string& before, const std::string& now) {
     table.row({before == now ? std::string(what) : fmt::format("<strong>{}</strong>", what),

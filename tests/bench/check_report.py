@@ -31,6 +31,7 @@ SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "scenario-ellipses",
                     "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "comparison-roc-impact", "t0",
                     "basis-case"]
 WIDTHS = [1280, 390, 320]  # pixels: a desk and two phones
+CHANGE_SECTIONS = ["changes", "studies", "rates", "verdicts", "numbers"]
 
 # What a reader of the page would notice.
 LOOK = """(() => {
@@ -195,6 +196,20 @@ def main(program, write_sample_archive, chromium=""):
         run("report", other / "a.h5", "-o", folder / "b.html", TMPDIR=str(other), TZ="Asia/Tokyo", LC_ALL="C")
         assert (folder / "b.html").read_bytes() == page.read_bytes()
 
+        # Two archives: the same, then one of other experiments.
+        change, unpaired = folder / "change.html", folder / "unpaired.html"
+        assert run("report", archive, other / "a.h5", "-o", change).strip() == str(change)
+        text = change.read_text(encoding="utf-8")
+        check_text(text, CHANGE_SECTIONS, ["change-numbers"])
+        assert "Nothing changed." in text and str(other / "a.h5") in text
+        run("report", archive, folder / "named.h5", "-o", unpaired)
+        text = unpaired.read_text(encoding="utf-8")
+        check_text(text, CHANGE_SECTIONS, [])
+        assert "Compared as unrelated runs" in text and "the plants have different variables" in text
+        run("report", archive, other / "a.h5", "-o", folder / "again.html", TMPDIR=str(other), TZ="Asia/Tokyo",
+            LC_ALL="C")
+        assert (folder / "again.html").read_bytes() == change.read_bytes()
+
         for extension, start in (("svg", b"<?xml"), ("pdf", b"%PDF-"), ("png", b"\x89PNG")):
             files = run("report", archive, "--figures", folder / extension, "--format", extension).split()
             assert sorted(pathlib.Path(file).stem for file in files) == sorted([*FIGURES, "confusion"]), files
@@ -209,6 +224,12 @@ def main(program, write_sample_archive, chromium=""):
         before = sorted(folder.iterdir())
         assert "none.h5" in run("report", folder / "none.h5", "-o", folder / "c.html", code=2)
         assert "a.html" in run("report", page, "-o", folder / "c.html", code=2)
+        assert "none.h5" in run("report", archive, folder / "none.h5", "-o", folder / "c.html", code=2)
+        assert "a.html" in run("report", page, archive, "-o", folder / "c.html", code=2)
+        message = run("report", archive, archive, archive, "-o", folder / "c.html", code=2)
+        assert "found 3 archives; allowed: one, or two" in message, message
+        message = run("report", archive, archive, "--figures", folder / "f", code=2)
+        assert "--figures: found two archives" in message, message
         assert "none.h5" in run("plot", folder / "none.h5", 0, "-o", folder / "c.svg", code=2)
         assert "jpg" in run("report", archive, "--figures", folder / "f", "--format", "jpg", code=2)
         assert ".svg, .pdf, .png" in run("plot", archive, 0, "-o", folder / "c.jpg", code=2)
@@ -229,6 +250,7 @@ def main(program, write_sample_archive, chromium=""):
         with Browser(chromium, folder) as browser:
             check_in_browser(browser, page, LOOPS_ON_PAGE, random=True)
             check_in_browser(browser, named, SCENARIO_FIGURES, random=False)
+            check_in_browser(browser, change, ["change-numbers"], random=False)
     return 0
 
 
