@@ -1,0 +1,342 @@
+// usage: fuzz_inputs SOURCE_FOLDER COUNT [SEED] [KIND [FIRST]]
+//
+// COUNT damaged inputs of every kind in turn, or of one kind from the FIRST on, each drawn from the seed and
+// its number alone. An input must be read or refused: InputError, ArchiveError or a failure of a program.
+// A COUNT of 1 says why it is refused. Another exception, a report of a sanitizer or an input that takes a
+// minute ends the program; the file that the first line names then holds the number of the input, with which
+// FIRST tries it again. Exit code 0 when every kind has inputs of both sorts.
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "analysis/methods/method_messages.hpp"
+#include "bench/outcome/outcome_bytes.hpp"
+#include "bench/parts/part_folder.hpp"
+#include "bench/shards/shard.hpp"
+#include "bench/shards/shard_identity.hpp"
+#include "plants/child_process.hpp"
+#include "plants/error.hpp"
+#include "plants/fmu_description.hpp"
+#include "plants/foreign_plant.hpp"
+#include "plants/program_model.hpp"
+#include "results/archive/archive.hpp"
+#include "results/blind/blind_loops.hpp"
+#include "results/blind/verdict_file.hpp"
+#include "results/files/archive_error.hpp"
+#include "results/files/file_seal.hpp"
+#include "results/gates/gate_check.hpp"
+#include "results/gates/gate_file.hpp"
+#include "results/records/netcdf_columns.hpp"
+#include "results/records/plant_record_file.hpp"
+#include "scenarios/method_file.hpp"
+#include "scenarios/study_file.hpp"
+#include "scenarios/study_library.hpp"
+#include "scenarios/suite_file.hpp"
+#include "scenarios/sweep_file.hpp"
+#include "tests/results/made_up_campaign.hpp"
+#include "tests/scenarios/mutator.hpp"
+
+namespace {
+
+using namespace mpm;
+using namespace mpm::testing;
+namespace fs = std::filesystem;
+
+constexpr unsigned kPatience = 60;  // s for one input
+
+/// One kind of input: a whole one, how it is damaged, and how it is read.
+struct Kind {
+  std::string name;
+  std::vector<std::string> whole;
+  bool is_text = true;
+  std::function<void(const std::string& content)> read;
+  bool in_a_process = false;  ///< HDF5 itself crashes on a damaged file: counted, no failure
+  std::int64_t accepted = 0;
+  std::int64_t refused = 0;
+  std::int64_t crashed = 0;
+};
+
+std::vector<std::byte> bytes_of(const std::string& content) {
+  const auto bytes = std::as_bytes(std::span(content));
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Reads a file with any content by its path.
+template <class Load>
+auto from_file(const fs::path& file, const Load& load) {
+  return [file, load](const std::string& content) {
+    fs::remove(file);  // ext4 would flush a file that takes the place of its old content
+    make_file(file, content);
+    load(file);
+  };
+}
+
+const char* const kSweep =
+    "[sweep]\nname = \"s\"\ntitle = \"t\"\nstudy = \"small.toml\"\n[[variant]]\nchoice = \"noise\"\n"
+    "value = \"none\"\nset.simulation.noise_standard_deviation = 0.0\n[[variant]]\nchoice = \"steps\"\n"
+    "value = \"other\"\nremove = [\"simulation.step\"]\nset.simulation.random_steps = {interval = "
+    "{constant = 9}, level = {constant = 1}}\n";
+const char* const kSuite =
+    "[suite]\nname = \"s\"\nversion = \"1.0\"\ntitle = \"t\"\nseed = 7\nmethods = [\"sse\"]\n[common]\n"
+    "set.simulation.samples = 110\n[[plant]]\nname = \"a\"\nstudy = \"small.toml\"\n[[family]]\n"
+    "name = \"f\"\ntitle = \"t\"\nset.experiments = {mpm = 1, ud = 2, mpm_ud = 0}\n[[family]]\n"
+    "name = \"g\"\ntitle = \"u\"\nplants = [\"a\"]\n";
+const char* const kMethods =
+    "[method.mine]\ncommand = [\"python3\", \"mine.py\"]\ntime_limit = 60\noptions = {threshold = 1.5, x = "
+    "[1, {y = true}]}\n[method.other]\ncommand = [\"octave-cli\"]\n";
+const char* const kGates =
+    "inconclusive = \"pass\"\nconfidence = 0.9\nmaximum_failed = 3\n[[gate]]\naggregate = \"infeasible\"\n"
+    "maximum = 0.1\n[[gate]]\naggregate = \"mpm.slope\"\nminimum = -1\nmaximum = 2.5\nreason = \"a text\"\n"
+    "[baseline]\narchive = \"old/a.h5\"\nsignificance = 0.01\n";
+const char* const kFmu = R"(<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0" guid="{1}">
+<CoSimulation modelIdentifier="m"/><ModelVariables>
+  <ScalarVariable name="u" valueReference="3" causality="input"><Real/></ScalarVariable>
+  <ScalarVariable name="y" valueReference="0" causality="output"><Real unit="K"/></ScalarVariable>
+  <ScalarVariable name="n" valueReference="5" causality="input"><Integer/></ScalarVariable>
+  <ScalarVariable name="k" valueReference="7" causality="parameter" variability="tunable"><Real/></ScalarVariable>
+</ModelVariables></fmiModelDescription>)";
+const char* const kAnswer =
+    R"({"flagged": true, "score": 1.5, "cv": "xD", "source": "mpm", "channels": [["xD", "R"], ["xB", "S"]],
+"mismatch": {"channel": ["xD", "R"], "parameter": "gain", "size": 1.2, "lower": 1.1, "upper": 1.3},
+"candidate": 1, "numbers": {"total": 3, "each": [1, 2], "gain": [[1, 2], [3, null]]}})";
+
+std::string record_csv() {
+  std::string text = "time;xD;xB;R;S;F\n";
+  for (int k = 0; k < 60; ++k)
+    text +=
+        fmt::format("2024-03-01 12:{:02}:00;{};{};{};0.25;{}\n", k, 0.01 * k, 1 - 0.02 * k, k % 7, k / 20);
+  return text;
+}
+
+MethodDescription answering_all() {
+  MethodDescription method;
+  method.name = "mine";
+  method.locates_cvs = method.tells_sources = method.names_channels = method.names_mismatches =
+      method.names_candidates = true;
+  method.numbers = {
+      {"total", NumberScope::loop, ""}, {"each", NumberScope::cv, ""}, {"gain", NumberScope::channel, ""}};
+  return method;
+}
+
+/// What no reader of studies, sweeps, suites, methods and gates takes for its own stays the text of a study.
+std::vector<Kind> text_kinds(const fs::path& folder, const fs::path& source) {
+  const std::vector<std::string> studies{file_content(source / "tests/scenarios/data/small.toml"),
+                                         file_content(source / "scenarios/studies/wood-berry.toml"),
+                                         file_content(source / "scenarios/studies/chapter6-scenarios.toml"),
+                                         file_content(source / "scenarios/studies/chapter5-tank.toml")};
+  make_file(folder / "small.toml", studies[0]);
+  const Study study = find_study("wood-berry");
+  return {
+      {"study", studies, true, [](const std::string& text) { parse_study(text, "s.toml"); }},
+      {"sweep", {kSweep}, true, from_file(folder / "sweep.toml", [](const fs::path& f) { load_sweep(f); })},
+      {"suite", {kSuite}, true, from_file(folder / "suite.toml", [](const fs::path& f) { load_suite(f); })},
+      {"methods",
+       {kMethods},
+       true,
+       from_file(folder / "methods.toml", [](const fs::path& f) { load_method_file(f); })},
+      {"gates",
+       {kGates},
+       true,
+       [findings = gate_findings(study)](const std::string& text) { parse_gates(text, "g", findings); }},
+      {"records, CSV",
+       {record_csv()},
+       true,
+       [study](const std::string& text) { read_plant_record(study, text, "r.csv"); }},
+      {"FMU description", {kFmu}, true, [](const std::string& xml) { parse_fmu_description(xml, "m.fmu"); }},
+      {"answer of a method", {kAnswer}, true, [study, method = answering_all()](const std::string& text) {
+         const auto answer = nlohmann::ordered_json::parse(text, nullptr, false);
+         if (!answer.is_object())
+           throw InputError("answer", "no JSON object", "one");
+         assessment_of(answer, study.plant, method, "mine");
+       }}};
+}
+
+/// A program that answers by one line of a file after the other, as the plant of a study.
+Kind plant_answers(const fs::path& file) {
+  ProgramSettings settings;
+  settings.command = {"/bin/sh", "-c",
+                      "exec 3<\"$0\"; while read -r _; do IFS= read -r line <&3 || exit; "
+                      "printf '%s\\n' \"$line\"; done",
+                      file.string()};
+  settings.mvs = settings.outputs = 2;
+  const auto model = program_model(settings, {});
+  return {"answers of a plant",
+          {"{}\n{\"y\": [1.5, -2e-3]}\n{\"y\": [0, 1e300]}\n"},
+          true,
+          from_file(file, [model](const fs::path&) {
+            const auto simulation = model->simulation(1.0);
+            simulation->start({}, Eigen::VectorXd::Zero(2));
+            simulation->step(Eigen::VectorXd::Ones(2));
+            simulation->step(Eigen::VectorXd::Ones(2));
+          })};
+}
+
+/// Archives, and what else is made of campaigns. `campaign` must outlive them.
+std::vector<Kind> campaign_kinds(const fs::path& folder, const Campaign& campaign) {
+  const fs::path archive = folder / "a.h5", shard = folder / "00000001.shard", part = folder / "part";
+  write_archive(archive, campaign, findings_of(campaign));
+  const std::string whole = file_content(archive);
+
+  fs::create_directory(part);
+  PartFolder description;
+  description.path = part;
+  description.study = find_study("wood-berry");
+  description.options.experiments = 40;
+  description.loops = 40;
+  description.part = {parse_loop_ranges("0:10,20:30", 40), ShardNumber{1, 2, ""}};
+  write_part_description(description);
+
+  const ShardIdentity identity = shard_identity(campaign.study, {});
+  const auto format = std::make_shared<OutcomeBytes>(campaign.study);
+  ShardBytes bytes;
+  ExperimentOutcome outcome;
+  outcome.record = campaign.records.front();
+  bytes.add(format->to_bytes(outcome));
+  bytes.write(shard, identity, 1.5);
+  const std::string sealed_shard = file_content(shard);
+  const auto read = [identity, format](const fs::path& file) {
+    if (!read_shard(file, identity, *format))
+      throw InputError("shard", "damaged", "a whole one");
+  };
+  const std::string verdicts = hash_line(loops_hash(campaign, false)) +
+                               "loop,flagged,score,cv,source,channels,parameter,size,error\n"
+                               "1,yes,7.5,,,,,,\n0,0,-inf,,,,,,\n2,,,,,,,,\"no, \"\"not\"\" it\"\n";
+  const auto resealed = [](const std::string& content) {
+    const std::vector<std::byte> file = sealed(bytes_of(content));
+    return std::string(reinterpret_cast<const char*>(file.data()), file.size());
+  };
+  return {{"archive", {whole}, false, from_file(archive, [](const fs::path& f) { read_archive(f); })},
+          {"records, netCDF",
+           {whole},
+           false,
+           [](const std::string& content) { netcdf_columns(bytes_of(content), "r.nc", "experiment"); },
+           true},
+          {"description of a part",
+           {file_content(part / "campaign.json")},
+           true,
+           from_file(part / "campaign.json", [part](const fs::path&) { read_part(part); })},
+          {"shard", {sealed_shard}, false, from_file(shard, read)},
+          {"shard, checksum right",
+           {sealed_shard.substr(0, sealed_shard.size() - kSealBytes)},
+           false,
+           [write_and_read = from_file(shard, read), resealed](const std::string& content) {
+             write_and_read(resealed(content));
+           }},
+          {"verdicts", {verdicts}, true, from_file(folder / "mine.csv", [&campaign](const fs::path& f) {
+             read_verdicts(f, "mine", campaign);
+           })}};
+}
+
+/// One input in 16 is random bytes, one the whole one; the others are changed in one to four places.
+std::string damaged(const Kind& kind, Mutator& mutator) {
+  const std::string& whole = kind.whole[mutator.below(kind.whole.size())];
+  const std::size_t way = mutator.below(16);
+  if (way == 0)
+    return mutator.random_bytes(2000);
+  if (way == 1)
+    return whole;
+  return kind.is_text && way < 14 ? mutator.mutated_toml(whole) : mutator.mutated_bytes(whole);
+}
+
+/// Whether the input is read; false when it is refused.
+bool reads(const Kind& kind, const std::string& content, bool says_why) {
+  std::string why;
+  try {
+    kind.read(content);
+    return true;
+  } catch (const InputError& error) {
+    why = error.what();
+  } catch (const ArchiveError& error) {
+    why = error.what();
+  } catch (const ForeignFailure& error) {
+    why = error.what();
+  }
+  if (says_why)
+    std::printf("%s\n", why.c_str());
+  return false;
+}
+
+/// The same in a process of its own: none when it ends by a signal.
+std::optional<bool> reads_in_a_process(const Kind& kind, const std::string& content) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(kPatience);
+    ::_exit(reads(kind, content, false) ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? std::optional(WEXITSTATUS(status) == 0) : std::nullopt;
+}
+
+void try_input(Kind& kind, std::uint64_t seed, bool says_why) {
+  Mutator mutator(seed);
+  const std::string content = damaged(kind, mutator);
+  ::alarm(kPatience);
+  const std::optional<bool> read =
+      kind.in_a_process ? reads_in_a_process(kind, content) : reads(kind, content, says_why);
+  ::alarm(0);
+  ++(!read ? kind.crashed : *read ? kind.accepted : kind.refused);
+}
+
+bool fuzz(std::vector<Kind>& kinds, const std::string& only, std::int64_t first, std::int64_t count,
+          std::uint64_t seed, const fs::path& at) {
+  for (Kind& kind : kinds) {
+    if (!only.empty() && kind.name != only)
+      continue;
+    std::ofstream number(at);
+    for (std::int64_t i = first; i < first + count; ++i) {
+      number.seekp(0);
+      number << kind.name << ' ' << i << '\n' << std::flush;
+      try_input(kind, seed * 1'000'000'007U + static_cast<std::uint64_t>(i), count == 1);
+    }
+    fmt::print("{:8} read {:8} refused {:5} crashed  {}\n", kind.accepted, kind.refused, kind.crashed,
+               kind.name);
+    std::fflush(stdout);
+    if (count >= 200 && (kind.accepted == 0 || kind.refused == 0))
+      return false;  // a reader that accepts or refuses everything is no reader
+  }
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3)
+    return 2;
+  const std::int64_t count = std::atoll(argv[2]);
+  const std::uint64_t seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
+  const fs::path at = fs::temp_directory_path() / fmt::format("fuzz_inputs.{}", ::getpid());
+  try {
+    const TemporaryFolder folder;
+    const Campaign campaign = drawn_campaign();
+    std::vector<Kind> kinds = text_kinds(folder.path(), argv[1]);
+    kinds.push_back(plant_answers(folder / "answers"));
+    for (Kind& kind : campaign_kinds(folder.path(), campaign))
+      kinds.push_back(std::move(kind));
+    std::printf("the number of the input is in %s\n", at.c_str());
+    std::fflush(stdout);
+    const bool both =
+        fuzz(kinds, argc > 4 ? argv[4] : "", argc > 5 ? std::atoll(argv[5]) : 0, count, seed, at);
+    fs::remove(at);
+    return both ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", at.c_str(), error.what());
+    return 1;
+  }
+}
