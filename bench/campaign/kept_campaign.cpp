@@ -61,7 +61,11 @@ std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& stud
     return std::nullopt;
   try {
     Campaign campaign = read_archive(archive);
-    return is_of(campaign, study, options) ? std::optional(std::move(campaign)) : std::nullopt;
+    if (!is_of(campaign, study, options))
+      return std::nullopt;
+    if (fs::exists(shard_folder_of(archive), no_status))
+      remove_shards(archive);  // of a run that was killed between archive and clean-up
+    return campaign;
   } catch (const ArchiveError&) {
     return std::nullopt;  // it is replaced
   }

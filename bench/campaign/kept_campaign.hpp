@@ -11,7 +11,8 @@
 namespace mpm {
 
 /// The campaign in this archive, when it is there and whole and what this run would make of the study: the
-/// same text, seed, methods, solver, number of experiments and program.
+/// same text, seed, methods, solver, number of experiments and program. Shards beside it are removed: they
+/// are of a run that was killed between archive and clean-up.
 std::optional<Campaign> kept_campaign(const std::filesystem::path& archive, const Study& study,
                                       const RunOptions& options);
 

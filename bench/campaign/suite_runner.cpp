@@ -27,7 +27,6 @@ std::vector<CellScores> run_suite(const Suite& suite, const SuiteRun& options) {
     if (options.on_cell)
       options.on_cell(place, kept.has_value());
     if (kept) {
-      remove_shards(archive);  // a run that was killed between archive and clean-up
       scores.push_back(cell_scores(cell, findings_of(*kept)));
       continue;
     }

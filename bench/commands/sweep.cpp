@@ -51,7 +51,6 @@ SweepRow row_of(const SweepVariant& variant, const fs::path& archive, const RunO
     std::optional<Campaign> campaign = kept_campaign(archive, variant.study, options);
     if (!campaign)
       campaign = run_and_keep(archive, variant.study, options, hooks, command_line);
-    remove_shards(archive);  // also of a run that was killed between archive and clean-up
     row.healthy = campaign->basis.healthy;
     row.findings = findings_of(*campaign).rows;
   } catch (const InputError& error) {

@@ -259,7 +259,10 @@ def check_trust(bench, study):
     first = json.loads(bench.run(*words).stdout)
     kept = bench.folder / "plant.csv.calibration.h5"
     stamp = kept.stat().st_mtime_ns
-    assert json.loads(bench.run(*words).stdout) == first and kept.stat().st_mtime_ns == stamp
+    shards = bench.folder / f"{kept.name}.shards"  # as if killed between archive and clean-up
+    shards.mkdir()
+    (shards / "00000001.shard").write_bytes(b"x")
+    assert json.loads(bench.run(*words).stdout) == first and not shards.exists() and kept.stat().st_mtime_ns == stamp
     trust = first["methods"][0]["trust"]
     assert first["trial"]["loops"] == 60 and trust["rates"]["false_alarm_healthy"]["total"] == 30, trust
     assert trust["rates"]["detected"]["total"] == 30 and trust["as_high"]["total"] == 30, trust
