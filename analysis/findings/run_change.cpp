@@ -115,7 +115,7 @@ struct MethodRun {
   std::size_t place;
 
   MethodRates rates(std::span<const ExperimentRecord> records) const {
-    return method_rates(run.study, place, records, run.calibration);
+    return rate_collector(run.study, place, run.calibration).of(records);
   }
 };
 

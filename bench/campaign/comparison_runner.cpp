@@ -9,6 +9,7 @@
 #include "bench/execution/experiment_execution.hpp"
 #include "bench/execution/thread_loop.hpp"
 #include "bench/version.hpp"
+#include "plants/error.hpp"
 #include "scenarios/calibration.hpp"
 #include "solvers/qp_solver.hpp"
 

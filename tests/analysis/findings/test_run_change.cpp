@@ -72,14 +72,14 @@ TEST_CASE("run change: nothing changed between a run and itself") {
 }
 
 TEST_CASE(
-    "run change: rates of paired runs are those of method_rates, and differ by the loops that changed") {
+    "run change: rates of paired runs are those of rate_collector, and differ by the loops that changed") {
   const MadeUpRun before;
   MadeUpRun now;
   now.say(3, true, 2);    // the wrong CV
   now.say(4, false, -1);  // not flagged any more
   const MethodChange change = change_of(before, now);
-  const MethodRates was = method_rates(before.study, 0, before.records);
-  const MethodRates is = method_rates(now.study, 0, now.records);
+  const MethodRates was = rate_collector(before.study, 0).of(before.records);
+  const MethodRates is = rate_collector(now.study, 0).of(now.records);
   for (const RateChange& rate : change.rates) {
     INFO(rate.info->name);
     CHECK(rate.before.hits == (was.*rate.info->rate).hits);
