@@ -33,8 +33,8 @@ class TableIndices {
         if (tables[t].has && tables[t].has(record))
           of_[t].push_back(record.draw.index);
     });
-    for (std::size_t t = 0; t < tables.size(); ++t)
-      whole_.push_back(!tables[t].has);
+    for (const RecordTable& table : tables)
+      whole_.push_back(!table.has);
   }
 
   const std::vector<std::int64_t>& of(std::size_t table) const { return whole_[table] ? all_ : of_[table]; }

@@ -13,7 +13,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kMostRows = 1000;
+constexpr std::size_t kMostExperiments = 1000;
 
 /// "right", "wrong", or why it was not judged.
 std::string outcome_cell(const Study& study, const ExperimentRecord& record) {
@@ -37,7 +37,8 @@ double index_of(const Study& study, const ExperimentRecord& record, const Eigen:
 
 std::string experiment_anchor(const Campaign& campaign, const ExperimentRecord& record) {
   const std::vector<ExperimentRecord>& records = campaign.records;
-  const bool listed = records.size() <= kMostRows || record.draw.index < records[kMostRows].draw.index;
+  const bool listed =
+      records.size() <= kMostExperiments || record.draw.index < records[kMostExperiments].draw.index;
   return listed && chain_place(campaign) < campaign.methods.size() && !campaign.study.names_scenarios()
              ? fmt::format("experiment-{}", record.draw.index)
              : "";
@@ -66,7 +67,7 @@ ReportSection experiments_section(const ReportInput& input) {
        {"Ivar"},
        {"Ivar<sub>diag</sub>"},
        {"Ivar<sub>basis</sub>"}});
-  for (std::size_t i = 0; i < std::min(campaign.records.size(), kMostRows); ++i) {
+  for (std::size_t i = 0; i < std::min(campaign.records.size(), kMostExperiments); ++i) {
     const ExperimentRecord& record = campaign.records[i];
     const Diagnosis chain = record.chain();
     const std::string number = fmt::format("{}", record.draw.index);
@@ -82,10 +83,10 @@ ReportSection experiments_section(const ReportInput& input) {
          html_number(index_of(study, record, record.ivar_basis))},
         experiment_anchor(campaign, record));
   }
-  if (campaign.records.size() > kMostRows)
+  if (campaign.records.size() > kMostExperiments)
     section.add(fmt::format(
         "<p>The first {} of {}; <code>mpmbench export {} --table experiments</code> writes all.</p>\n",
-        kMostRows, campaign.records.size(), html_text(input.file)));
+        kMostExperiments, campaign.records.size(), html_text(input.file)));
   section.add(table.html());
   return section;
 }

@@ -5,9 +5,6 @@ usage: check_report.py MPMBENCH WRITE_SAMPLE_ARCHIVE [CHROMIUM]
 Without a Chromium the page is checked as text only and the exit code is 77: skipped.
 """
 
-import base64
-import hashlib
-import html.parser
 import os
 import pathlib
 import re
@@ -16,6 +13,7 @@ import sys
 import tempfile
 
 from browser import Browser
+from html_page import WIDTHS, check_page, check_quiet
 
 SKIPPED = 77
 SECTIONS = ["run", "rates", "loops", "variance", "location", "indicator", "dominance", "roc", "fault-size", "comparison",
@@ -30,7 +28,6 @@ SCENARIO_SECTIONS = ["run", "scenarios", "comparison", "sensitivity", "interacti
 SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "scenario-ellipses", "scenario-acf-basis", "scenario-acf-0",
                     "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "comparison-roc-impact", "t0",
                     "basis-case"]
-WIDTHS = [1280, 390, 320]  # pixels: a desk and two phones
 CHANGE_SECTIONS = ["changes", "studies", "rates", "verdicts", "numbers"]
 
 # What a reader of the page would notice.
@@ -45,57 +42,11 @@ LOOK = """(() => {
 })()"""
 
 
-class Page(html.parser.HTMLParser):
-    """Ids, references and elements of a page; complains about unclosed elements."""
-
-    VOID = {"meta", "link", "br", "hr", "img"}
-
-    def __init__(self, text):
-        super().__init__()
-        self.ids, self.references, self.loads, self.elements, self.open = [], [], [], [], []
-        self.feed(text)
-        assert not self.open, f"not closed: {self.open}"
-
-    def handle_startendtag(self, tag, attributes):
-        self.handle_starttag(tag, attributes)
-        if tag not in self.VOID:
-            self.open.pop()
-
-    def handle_starttag(self, tag, attributes):
-        self.elements.append((tag, dict(attributes)))
-        for name, value in attributes:
-            if name == "id":
-                self.ids.append(value)
-            if name in ("href", "xlink:href"):
-                self.references.append(value)
-            if name in ("src", "srcset", "data", "action", "poster") or name.startswith("on"):
-                self.loads.append((name, value))
-        if tag not in self.VOID:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open and self.open[-1] == tag, f"</{tag}> closes {self.open[-1:]}, line {self.getpos()[0]}"
-        self.open.pop()
-
-
 def check_text(text, sections, figures):
     """The page needs nothing else, and says to everybody what its pictures show."""
-    page = Page(text)
-    duplicates = {name for name in page.ids if page.ids.count(name) > 1}
-    assert not duplicates, duplicates
-    for reference in page.references:
-        assert reference == "data:," or reference[0] == "#" and reference[1:] in page.ids, reference
-    assert not page.loads, page.loads
-    assert text.count("<script") == 1 and "@import" not in text and "url(" not in text
-    script = re.search(r"<script>(.*?)</script>", text, re.DOTALL)[1]
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    assert f"default-src 'none'; style-src 'unsafe-inline'; img-src data:; script-src 'sha256-{digest}'" in text
-    assert 'name="viewport"' in text and "@media print" in text
+    page = check_page(text)
     assert [a["id"] for tag, a in page.elements if tag == "section"] == sections
     assert [a["id"] for tag, a in page.elements if tag == "figure"] == ["figure-" + name for name in figures]
-    for tag, attributes in page.elements:
-        if tag == "svg" and attributes.get("aria-hidden") != "true":
-            assert attributes.get("role") == "img" and attributes.get("aria-label"), attributes
 
 
 def check_points(browser):
@@ -161,9 +112,7 @@ def check_in_browser(browser, file, figures, random):
             check_table(browser)
     assert len(browser.pdf()) > 50_000
     check_theme(browser, file.as_uri())
-    assert not browser.complaints, browser.complaints
-    assert {address.split("#")[0] for address in browser.requests} <= {file.as_uri(), "data:,"}, browser.requests
-    browser.requests.clear()
+    check_quiet(browser, file)
 
 
 def main(program, write_sample_archive, chromium=""):

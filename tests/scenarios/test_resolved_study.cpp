@@ -256,10 +256,12 @@ void collect(const toml::table& table, const std::string& name, Keys& keys) {
     const toml::table* const inner = node.as_table();
     if (inner == nullptr || below == "simulation.noise_standard_deviation" || name == "data")
       continue;
-    if (is_known(below + ".NAME"))
-      for (const auto& [variable, of_variable] : *inner)
-        collect(*of_variable.as_table(), below + ".NAME", keys);
-    else
+    const std::string each = below + (below == "reference" ? ".FINDING" : ".NAME");
+    if (is_known(each))
+      for (const auto& [name_below, entry] : *inner)
+        if (entry.is_table())
+          collect(*entry.as_table(), each, keys);
+    if (is_known(below) || !is_known(each))
       collect(*inner, is_known(below) ? below : "DISTRIBUTION", keys);
   }
 }
