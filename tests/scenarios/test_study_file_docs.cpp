@@ -1,15 +1,16 @@
+#include <string>
+
 #include <catch2/catch.hpp>
 
 #include "scenarios/key_meaning.hpp"
 #include "scenarios/study_file_keys.hpp"
 #include "tests/scenarios/documented_keys.hpp"
-#include "tests/scenarios/study_texts.hpp"
 
 namespace mpm {
 namespace {
 
-TEST_CASE("the document of the study file has exactly the keys that the reader knows", "[study_file]") {
-  testing::check_documented_keys(testing::project_file("docs/study_file.md"), study_file_tables());
+TEST_CASE("the documents of the study file have exactly the keys that the reader knows", "[study_file]") {
+  testing::check_documented_keys(std::string(study_file_pages()), study_file_tables());
 }
 
 TEST_CASE("the program knows of each key what the document says of it", "[study_file]") {

@@ -1,6 +1,6 @@
-"""Opens an archive with xarray, h5py and ncdump, and compares it field by field with docs/file_format.md.
+"""Opens an archive with xarray, h5py and ncdump, and compares it field by field with docs/file_format*.md.
 
-usage: check_archive.py WRITER FILE_FORMAT.md
+usage: check_archive.py WRITER DOCS
 """
 
 import json
@@ -258,8 +258,9 @@ def check_empty(path, variables):
     subprocess.run(["ncdump", path], check=True, capture_output=True)
 
 
-def main(writer, file_format):
-    variables, attributes = documented(pathlib.Path(file_format).read_text(encoding="utf-8"))
+def main(writer, docs):
+    pages = sorted(pathlib.Path(docs).glob("file_format*.md"))
+    variables, attributes = documented("\n".join(page.read_text(encoding="utf-8") for page in pages))
     with tempfile.TemporaryDirectory() as folder:
         path = str(pathlib.Path(folder) / "sample.h5")
         subprocess.run([writer, path], check=True)
