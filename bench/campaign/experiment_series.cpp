@@ -39,10 +39,11 @@ void ExperimentSeries::run(const BasisCase& basis, Execution execute, const Camp
     --left;
     if (hooks.on_done)
       hooks.on_done(outcome.record);
-    if (shards_)
-      shards_->add(outcome);
-    else
-      outcomes_->add(std::move(outcome));
+    if (!shards_)
+      return outcomes_->add(std::move(outcome));
+    shards_->add(outcome);
+    if (requested(hooks.stop))
+      shards_->flush();  // what else runs may not end in the time that there is
   };
   if (!missing_.empty())
     execute({study_, basis, options_, missing_, hooks.on_warning}, hooks.stop, take);

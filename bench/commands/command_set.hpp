@@ -6,19 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "bench/console/exit_code.hpp"
+
 namespace CLI {
 class App;
 }
 
 namespace mpm {
-
-/// Exit codes of the program (README.md).
-enum class ExitCode : int {
-  done = 0,
-  comparison_failed = 1,  ///< a replay that differs, a gate that stops a campaign
-  bad_input = 2,          ///< wrong usage, or a file that is not what it should be
-  not_finished = 3,       ///< the run could not be finished
-};
 
 /// What an exception says to a user: that of the standard library for too little memory says nothing.
 std::string what_happened(const std::exception& error);

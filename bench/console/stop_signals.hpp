@@ -12,7 +12,11 @@ namespace mpm {
 ///
 /// The first of each is noted only; the second one finds the default action again and ends the process at
 /// once. Processes that are forked meanwhile inherit this: a Ctrl-C goes to them too, and must leave it to
-/// their parent when they end. At most one object at a time.
+/// their parent when they end.
+///
+/// Work that has not ended 1.7 s after the first is given up: the process says so and ends at once, with the
+/// exit code of a command that did not finish. It leaves what a killed one leaves. At most one object at a
+/// time.
 class StopSignals {
  public:
   StopSignals();
@@ -29,6 +33,7 @@ class StopSignals {
  private:
   struct sigaction interrupt_ {};
   struct sigaction terminate_ {};
+  struct sigaction alarm_ {};
 };
 
 }  // namespace mpm

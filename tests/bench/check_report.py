@@ -67,6 +67,21 @@ def check_points(browser):
                                        return box.top >= 0 && box.bottom <= innerHeight; }})()""")
 
 
+def check_way_to_loop(browser, index):
+    """From the point of an experiment to its row, and by the keyboard from there to its loop."""
+    point = f'document.querySelector(\'.point a[href="#experiment-{index}"]\')'
+    browser.evaluate(f'{point}.scrollIntoView({{block: "center", behavior: "instant"}})')
+    at = browser.evaluate(f"(() => {{ const box = {point}.getBoundingClientRect(); "
+                          "return {x: box.x + box.width / 2, y: box.y + box.height / 2}; })()")
+    browser.click(at["x"], at["y"])
+    browser.wait_for(f"document.activeElement.id === 'experiment-{index}'")
+    browser.press("Tab", 9)
+    browser.press("Enter", 13)
+    browser.wait_for(f"location.hash === '#loop-{index}'")
+    browser.wait_for(f"""(() => {{ const box = document.getElementById('figure-loop-{index}').getBoundingClientRect();
+                                   return box.top < innerHeight && box.bottom > 0; }})()""")
+
+
 def check_table(browser):
     """The table of the experiments sorts by the keyboard alone and filters; a row that is filtered out is shown when
     somebody comes for it."""
@@ -109,6 +124,7 @@ def check_in_browser(browser, file, figures, random):
         assert look["smallest"] >= (7 if width > 320 else 5.5), (width, look)  # subscripts on a phone
         if random:
             check_points(browser)
+            check_way_to_loop(browser, 7)
             check_table(browser)
     assert len(browser.pdf()) > 50_000
     check_theme(browser, file.as_uri())

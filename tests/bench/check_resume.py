@@ -130,6 +130,37 @@ def check_stops(trial, reference):
     assert not trial.shards.exists()
 
 
+SLEEPY = """import json, os, sys, time
+for line in sys.stdin:
+    if line.strip():
+        told = json.loads(line)
+        if "SLEEPY" in os.environ and told["ask"] == "loop" and told["number"] > 3:
+            time.sleep(2 * PATIENCE)
+        print(json.dumps({"number": told["number"], **({"flagged": True} if told["ask"] == "loop" else {})}), flush=True)
+""".replace("PATIENCE", str(PATIENCE))
+
+
+def check_endless_work(trial):
+    """SIGTERM ends a run also where its threads are at work that takes longer than anybody waits; what was finished
+    before is kept."""
+    script = trial.output.with_name("sleepy.py")
+    script.write_text(SLEEPY)
+    methods = trial.output.with_name("sleepy.toml")
+    methods.write_text(f"[method.sleepy]\ncommand = ['{sys.executable}', '-S', '-E', '{script}']\n")
+    words = ("--methods", "sse,sleepy", "--method-file", methods, "--experiments", 8, "--audit", 0, "--shard-interval", 0,
+             "--parallel", "threads")
+    os.environ["SLEEPY"] = "1"
+    code, error = trial.interrupt("--resume", *words, number=signal.SIGTERM, shards=2)
+    del os.environ["SLEEPY"]
+    assert code == 3 and "given up" in error, (code, error)
+    kept = trial.files()
+    assert kept
+    trial.run("--resume", *words)
+    resumed = contents(trial.output)
+    trial.run("--discard", *words)
+    assert contents(trial.output) == resumed
+
+
 def check_two_at_once(trial):
     """A second run of the same output is refused while the first one is at work; --discard starts anew."""
     process = trial.start()
@@ -185,6 +216,7 @@ def main(program):
 
         check_kills(Trial(program, folder, "killed.h5"), references[MANY])
         check_stops(Trial(program, folder, "stopped.h5"), references[SOME])
+        check_endless_work(Trial(program, folder, "sleepy.h5"))
         check_two_at_once(Trial(program, folder, "two.h5"))
         check_full_disk(Trial(program, folder, "full.h5"), references[SOME])
         (folder / "disk").mkdir()

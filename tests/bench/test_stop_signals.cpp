@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "bench/console/exit_code.hpp"
 #include "bench/console/stop_signals.hpp"
 
 namespace {
@@ -35,6 +36,20 @@ TEST_CASE("stop signals: the second one of a kind ends the process") {
   ::waitpid(child, &status, 0);
   REQUIRE(WIFSIGNALED(status));
   CHECK(WTERMSIG(status) == signal);
+}
+
+TEST_CASE("stop signals: work that goes on and on is given up") {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const StopSignals signals;
+    ::raise(SIGTERM);
+    for (;;)
+      ::pause();
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  REQUIRE(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == static_cast<int>(ExitCode::not_finished));
 }
 
 TEST_CASE("stop signals: they are noted where they were ignored, and all is as before afterwards") {
