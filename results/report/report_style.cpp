@@ -5,12 +5,16 @@ namespace mpm {
 const char* const kReportStyle = R"(
 :root { --ink: #1b1f24; --soft: #59636e; --rule: #d5dbe1; --wash: #f4f6f8; --blue: #0072b2;
   --good: #00704f; --bad: #b34700; --page: #fff; --warn: #fdf0e6; --mark: #fff3c4; color-scheme: light; }
-@media (prefers-color-scheme: dark) { :root:not([data-theme=light]) { --ink: #e6e9ec; --soft: #a2acb6; --rule: #39424c; --wash: #20262d; --blue: #6cb6e8; --good: #4fc79a;
-  --bad: #ff9d5c; --page: #14181c; --warn: #33241a; --mark: #4a3f14; color-scheme: dark; } }
-:root[data-theme=dark] { --ink: #e6e9ec; --soft: #a2acb6; --rule: #39424c; --wash: #20262d; --blue: #6cb6e8; --good: #4fc79a;
-  --bad: #ff9d5c; --page: #14181c; --warn: #33241a; --mark: #4a3f14; color-scheme: dark; }
-@media (prefers-color-scheme: dark) { :root:not([data-theme=light]) figure svg { filter: invert(1) hue-rotate(180deg); } }
-:root[data-theme=dark] figure svg { filter: invert(1) hue-rotate(180deg); }
+@media screen and (prefers-color-scheme: dark) {
+  :root:not([data-theme=light]) { --ink: #e6e9ec; --soft: #a2acb6; --rule: #39424c; --wash: #20262d; --blue: #6cb6e8; --good: #4fc79a;
+    --bad: #ff9d5c; --page: #14181c; --warn: #33241a; --mark: #4a3f14; color-scheme: dark; }
+  :root:not([data-theme=light]) figure svg { filter: invert(1) hue-rotate(180deg); }
+}
+@media screen {
+  :root[data-theme=dark] { --ink: #e6e9ec; --soft: #a2acb6; --rule: #39424c; --wash: #20262d; --blue: #6cb6e8; --good: #4fc79a;
+    --bad: #ff9d5c; --page: #14181c; --warn: #33241a; --mark: #4a3f14; color-scheme: dark; }
+  :root[data-theme=dark] figure svg { filter: invert(1) hue-rotate(180deg); }
+}
 .panels svg > g > rect:first-child { fill: none; }
 * { box-sizing: border-box; }
 html { -webkit-text-size-adjust: 100%; text-size-adjust: 100%; scroll-behavior: smooth; }
@@ -125,7 +129,6 @@ footer { margin-top: 3.5rem; padding-top: 1rem; border-top: 1px solid var(--rule
   html { scroll-behavior: auto; }
   body { max-width: none; padding: 0; font-size: 10pt; }
   nav, .hint, .theme, .filter, th button::after { display: none; }
-  :root { --ink: #1b1f24; --soft: #59636e; --rule: #d5dbe1; --wash: #f4f6f8; --page: #fff; }
   section { margin-top: 1.4rem; padding-top: 0.8rem; }
   h2, .caption, .legend { break-after: avoid; }
   figure { break-inside: avoid; }

@@ -28,6 +28,7 @@ SCENARIO_SECTIONS = ["run", "scenarios", "comparison", "sensitivity", "interacti
 SCENARIO_FIGURES = ["scenario-ivar", "scenario-indicators", "scenario-ellipses", "scenario-acf-basis", "scenario-acf-0",
                     "scenario-acf-1", "scenario-acf-2", "comparison-rates", "comparison-roc", "comparison-roc-impact", "t0",
                     "basis-case"]
+DARK = [{"name": "prefers-color-scheme", "value": "dark"}]
 CHANGE_SECTIONS = ["changes", "studies", "rates", "verdicts", "numbers"]
 
 # What a reader of the page would notice.
@@ -110,6 +111,9 @@ def check_theme(browser, address):
     browser.open(address, 1280, dark=True)
     dark = browser.evaluate(ground)
     assert light != dark
+    browser.call("Emulation.setEmulatedMedia", media="print", features=DARK)
+    assert browser.evaluate(ground) == light, "a dark page is printed on black"
+    browser.call("Emulation.setEmulatedMedia", media="screen", features=DARK)
     browser.evaluate("document.querySelector('.theme').click()")
     assert browser.evaluate(ground) == light
 
