@@ -15,9 +15,19 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 # Most of the time of a build goes into reading headers and instantiating Eigen. Sources that are compiled as one
-# share that, and the whole takes less than half the time. The price is that a change compiles its neighbours too,
-# so the preset debug compiles each source by itself.
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 12 CACHE STRING "Sources that are compiled as one, with CMAKE_UNITY_BUILD")
+# share that: 24 at a time take a third of the compiler's time away that 12 take, which take half of that of single ones.
+# The price is that a change compiles its neighbours too, so the preset debug compiles each source by itself, and up to
+# 2 GB of memory for a compiler, of which no more run at once than find that much.
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 24 CACHE STRING "Sources that are compiled as one, with CMAKE_UNITY_BUILD")
+if(CMAKE_UNITY_BUILD)
+  cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY)  # MiB
+  math(EXPR compilers "(${memory} + 1023) / 2048")
+  if(compilers LESS 1)
+    set(compilers 1)
+  endif()
+  set_property(GLOBAL APPEND PROPERTY JOB_POOLS compile=${compilers})
+  set(CMAKE_JOB_POOL_COMPILE compile)
+endif()
 
 # Carried by every target of the project, never by users' code.
 add_library(mpm_build_flags INTERFACE)

@@ -23,7 +23,7 @@ std::string sealed_text(const std::string& text) {
 }
 
 /// The message by which a file with this content is refused; "accepted" when it is not.
-std::string refusal_of(const TemporaryFolder& folder, const std::string& content) {
+std::string seal_refusal_of(const TemporaryFolder& folder, const std::string& content) {
   make_file(folder / "f", content);
   try {
     read_sealed_file(folder / "f");
@@ -54,11 +54,11 @@ TEST_CASE("file seal: content of any length comes back") {
 TEST_CASE("file seal: every bit that is turned over is noticed, in the content and in the seal") {
   const TemporaryFolder folder;
   const std::string whole = sealed_text("\x89HDF\r\n\x1A\nsome content of some length");
-  REQUIRE(refusal_of(folder, whole) == "accepted");
+  REQUIRE(seal_refusal_of(folder, whole) == "accepted");
   for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
     std::string damaged = whole;
     damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
-    const std::string message = refusal_of(folder, damaged);
+    const std::string message = seal_refusal_of(folder, damaged);
     REQUIRE_THAT(message, Contains("the file is damaged") || Contains("no checksum at its end"));
     REQUIRE_THAT(message, Contains((folder / "f").string()));
   }
@@ -68,11 +68,11 @@ TEST_CASE("file seal: what is cut off, added or not there is named") {
   const TemporaryFolder folder;
   const std::string whole = sealed_text("\x89HDF\r\n\x1A\nsome content");
   for (std::size_t length = 8; length < whole.size(); ++length)
-    REQUIRE_THAT(refusal_of(folder, whole.substr(0, length)), Contains("no checksum at its end"));
-  CHECK_THAT(refusal_of(folder, whole + "\n"), Contains("no checksum at its end"));
-  CHECK_THAT(refusal_of(folder, whole.substr(1)), Contains("the file is damaged"));
-  CHECK_THAT(refusal_of(folder, "some text"), Contains("no HDF5 file"));
-  CHECK_THAT(refusal_of(folder, ""), Contains("no HDF5 file"));
+    REQUIRE_THAT(seal_refusal_of(folder, whole.substr(0, length)), Contains("no checksum at its end"));
+  CHECK_THAT(seal_refusal_of(folder, whole + "\n"), Contains("no checksum at its end"));
+  CHECK_THAT(seal_refusal_of(folder, whole.substr(1)), Contains("the file is damaged"));
+  CHECK_THAT(seal_refusal_of(folder, "some text"), Contains("no HDF5 file"));
+  CHECK_THAT(seal_refusal_of(folder, ""), Contains("no HDF5 file"));
   CHECK_THROWS_WITH(read_sealed_file(folder / "none"), Contains("none: no such file"));
   CHECK_THROWS_WITH(read_sealed_file(folder.path()), Contains("no HDF5 file, but a folder or a device"));
   CHECK_THROWS_WITH(read_sealed_file("/dev/null"), Contains("no HDF5 file, but a folder or a device"));

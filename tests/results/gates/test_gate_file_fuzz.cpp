@@ -13,9 +13,9 @@ using namespace mpm;
 using namespace mpm::testing;
 
 /// Reads gate files and holds one campaign against those that can be read.
-class Reader {
+class GateReader {
  public:
-  Reader() : campaign_(made_up_campaign()), findings_(gate_findings(campaign_.study)) {
+  GateReader() : campaign_(made_up_campaign()), findings_(gate_findings(campaign_.study)) {
     campaign_.study.aggregate.bootstrap_replications = 100;
   }
 
@@ -73,7 +73,7 @@ maximum_lost = 0
 )";
 
 TEST_CASE("thousands of damaged gate files are read or refused") {
-  Reader reader;
+  GateReader reader;
   REQUIRE(reader.accepts(kGates));
   Mutator mutator(1);
   constexpr int kTrials = 4000;
@@ -88,7 +88,7 @@ TEST_CASE("thousands of damaged gate files are read or refused") {
 }
 
 TEST_CASE("gate files that are cut off anywhere, and random bytes, are read or refused") {
-  Reader reader;
+  GateReader reader;
   for (std::size_t length = 0; length < kGates.size(); ++length)
     reader.accepts(kGates.substr(0, length));
   Mutator mutator(2);
