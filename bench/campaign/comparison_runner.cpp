@@ -6,8 +6,10 @@
 #include <type_traits>
 
 #include "analysis/methods/method_table.hpp"
+#include "bench/campaign/calibration_runs.hpp"
 #include "bench/execution/experiment_execution.hpp"
 #include "bench/execution/thread_loop.hpp"
+#include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
 #include "scenarios/calibration.hpp"
@@ -20,15 +22,6 @@ using Records = std::vector<ExperimentRecord*>;
 
 bool is_compared(const ExperimentRecord& record, const std::optional<std::int64_t>& experiments) {
   return record.status == ExperimentStatus::ok && (!experiments || record.draw.index < *experiments);
-}
-
-Records compared_records(Campaign& campaign, const std::optional<std::int64_t>& experiments) {
-  Records records;
-  for (ExperimentRecord& record : campaign.records) {
-    if (is_compared(record, experiments))
-      records.push_back(&record);
-  }
-  return records;
 }
 
 void remove(Campaign& campaign, const std::string& method) {
@@ -169,38 +162,176 @@ class DoneReports {
   std::mutex mutex_;
 };
 
-/// Runs the calibration loops again, for the scores of the methods behind those that the campaign has.
-void add_calibration(Campaign& campaign, const ComparisonOptions& options, int threads, DoneReports& done) {
-  const Study loops = calibration_study(campaign.study);
-  ThreadedRunners runners(campaign, loops, options.methods, threads);
-  std::vector<ExperimentRecord> records(campaign.calibration.loops.size());
-  for_each_in_threads(records.size(), threads, [&](std::size_t i, std::size_t thread) {
-    records[i] = runners.run(static_cast<std::int64_t>(i), thread);
-    done.one_more();
-  });
-  const Calibration added = calibration_of(loops, records);
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    std::vector<double>& scores = campaign.calibration.loops[i].scores;
-    scores.insert(scores.end(), added.loops[i].scores.begin(), added.loops[i].scores.end());
+/// Has an execution give out loops that it makes itself: `make(index, thread)` returns the record of each.
+template <class Make>
+Execution execution_by(Make make) {
+  return [make](const ExecutionPlan& plan, const StopRequest& stop, const OutcomeSink& deliver) {
+    std::mutex delivery;
+    for_each_in_threads(plan.indices.size(), plan.options.jobs, [&](std::size_t i, std::size_t thread) {
+      if (requested(stop))
+        return;
+      ExperimentOutcome outcome;
+      outcome.record = make(plan.indices[i], thread);
+      const std::lock_guard one_at_a_time(delivery);
+      deliver(std::move(outcome));
+    });
+  };
+}
+
+/// The study of an archive, as the further methods have it.
+Study study_with(Study study, const std::vector<std::string>& methods) {
+  study.methods = methods;
+  return study;
+}
+
+RunOptions run_options(const Campaign& campaign, const ComparisonOptions& options) {
+  RunOptions run{.solver = campaign.info.solver,
+                 .audit_share = 0.0,
+                 .store = StorePolicy::none,
+                 .jobs = std::max(1, options.jobs)};
+  if (options.kept) {
+    run.archive = options.kept->archive;
+    run.leftovers = options.kept->leftovers;
+    run.shard_interval = options.kept->interval;
   }
+  return run;
 }
 
 }  // namespace
 
-void add_methods(Campaign& campaign, const ComparisonOptions& options, const std::string& command) {
-  const Records records = compared_records(campaign, options.experiments);
-  const int threads = std::max(1, options.jobs);
-  prepare_plant(campaign.study);
-  ThreadedRunners runners(campaign, campaign.study, options.methods, threads);
-  std::vector<std::vector<AssessmentRecord>> assessments(records.size());
-  DoneReports done(options.on_done);
-  for_each_in_threads(records.size(), threads, [&](std::size_t i, std::size_t thread) {
-    assessments[i] = runners.assess(*records[i], thread);
-    done.one_more();
-  });
-  append(campaign, runners.forms(), records, std::move(assessments), command);
-  if (campaign.study.calibration)
-    add_calibration(campaign, options, threads, done);
+class Comparison::Loops {
+ public:
+  Loops(const Campaign& campaign, const ComparisonOptions& options)
+      : campaign_(campaign),
+        study_(study_with(campaign.study, options.methods)),
+        run_(run_options(campaign, options)) {
+    std::size_t place = 0;  // of a loop among those of the comparison
+    std::vector<std::int64_t> wanted, calibrating;
+    for (const ExperimentRecord& record : campaign.records)
+      if (is_compared(record, options.experiments) && is_in_shard(place++, options.shard))
+        wanted.push_back(record.draw.index);
+    open(loops_, study_, run_, {std::ssize(campaign.records), std::move(wanted)}, options.kept, false);
+    const std::int64_t loops = std::ssize(campaign.calibration.loops);
+    if (loops == 0)
+      return;
+    for (std::int64_t index = 0; index < loops; ++index)
+      if (is_in_shard(place++, options.shard))
+        calibrating.push_back(index);
+    calibration_study_ = calibration_study(study_);
+    open(calibration_, calibration_study_, calibration_options(run_), {loops, std::move(calibrating)},
+         options.kept, true);
+  }
+
+  ExperimentTally tally() const {
+    ExperimentTally tally = loops_->tally();
+    if (calibration_)
+      tally += calibration_->tally();
+    return tally;
+  }
+
+  void run(const CampaignHooks& hooks) {
+    ExperimentTally tally = this->tally();
+    if (hooks.on_start)
+      hooks.on_start(tally.done, tally.count);
+    prepare_plant(campaign_.study);
+    ThreadedRunners runners(campaign_, study_, study_.methods, run_.jobs);
+    loops_->run(campaign_.basis, execution_by([&](std::int64_t index, std::size_t thread) {
+                  ExperimentRecord record = campaign_.records[static_cast<std::size_t>(index)];
+                  record.assessments = runners.assess(record, thread);
+                  record.loop.reset();  // the archive has it
+                  return record;
+                }),
+                hooks, tally);
+    if (!calibration_)
+      return;
+    ThreadedRunners calibrating(campaign_, calibration_study_, study_.methods, run_.jobs);
+    calibration_->run(campaign_.basis, execution_by([&](std::int64_t index, std::size_t thread) {
+                        return calibrating.run(index, thread);
+                      }),
+                      hooks, tally);
+  }
+
+  void compact() {
+    loops_->compact();
+    if (calibration_)
+      calibration_->compact();
+  }
+
+  /// What the methods say of the experiments that are compared; the others have no assessment.
+  std::vector<ExperimentRecord> assessed() {
+    Campaign loops;
+    loops_->collect().move_into(loops);
+    return std::move(loops.records);
+  }
+
+  /// What they say of the calibration loops.
+  Calibration scored() {
+    if (!calibration_)
+      return {};
+    Campaign loops;
+    calibration_->collect().move_into(loops);
+    return calibration_of(calibration_study_, loops.records);
+  }
+
+  const Study& study() const { return study_; }
+
+ private:
+  static void open(std::optional<ExperimentSeries>& series, const Study& study, const RunOptions& run,
+                   const WantedLoops& wanted, const std::optional<KeptAssessments>& kept, bool calibration) {
+    const auto folder = [&](const std::filesystem::path& shards) {
+      return calibration ? calibration_shard_folder(shards) : shards;
+    };
+    if (!kept) {
+      series.emplace(study, run, wanted, std::nullopt, ShardStore::Warn());
+      return;
+    }
+    std::vector<std::filesystem::path> others;
+    for (const std::filesystem::path& part : kept->parts)
+      for (std::filesystem::path& shard : shards_in(folder(part)))
+        others.push_back(std::move(shard));
+    series.emplace(study, run, wanted, folder(kept->shards), kept->warn, others);
+  }
+
+  const Campaign& campaign_;
+  Study study_, calibration_study_;
+  RunOptions run_;
+  std::optional<ExperimentSeries> loops_, calibration_;
+};
+
+Comparison::Comparison(const Campaign& campaign, const ComparisonOptions& options)
+    : loops_(std::make_unique<Loops>(campaign, options)) {}
+
+Comparison::~Comparison() = default;
+
+ExperimentTally Comparison::tally() const {
+  return loops_->tally();
+}
+
+void Comparison::run(const CampaignHooks& hooks) {
+  loops_->run(hooks);
+}
+
+void Comparison::compact() {
+  loops_->compact();
+}
+
+void Comparison::add_to(Campaign& campaign, const std::string& command) {
+  std::vector<ExperimentRecord> assessed = loops_->assessed();
+  Records records;
+  std::vector<std::vector<AssessmentRecord>> assessments;
+  for (ExperimentRecord& record : assessed) {
+    if (record.assessments.empty())
+      continue;
+    records.push_back(&campaign.records[static_cast<std::size_t>(record.draw.index)]);
+    assessments.push_back(std::move(record.assessments));
+  }
+  append(campaign, assessment_forms(loops_->study(), loops_->study().methods), records,
+         std::move(assessments), command);
+  const Calibration scored = loops_->scored();
+  for (std::size_t i = 0; i < scored.loops.size(); ++i) {
+    std::vector<double>& scores = campaign.calibration.loops[i].scores;
+    scores.insert(scores.end(), scored.loops[i].scores.begin(), scored.loops[i].scores.end());
+  }
 }
 
 std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,

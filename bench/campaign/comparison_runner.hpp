@@ -1,12 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/methods/assessed_loop.hpp"
+#include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/experiment_series.hpp"
+#include "bench/parts/launcher.hpp"
+#include "bench/shards/shard_store.hpp"
 #include "results/archive/campaign.hpp"
 #include "results/blind/blind_loops.hpp"
 #include "results/blind/verdict_file.hpp"
@@ -16,11 +22,22 @@ namespace mpm {
 /// The methods of a study as they assess its loops now, by this program and the command line `command`.
 std::vector<CampaignMethod> methods_of(const Study& study, const std::string& command);
 
+/// Where the answers of a comparison wait until all of them are there.
+struct KeptAssessments {
+  std::filesystem::path shards;              ///< folder of its own
+  std::vector<std::filesystem::path> parts;  ///< folders of shards that others have left
+  std::string archive;                       ///< digest of the archive whose loops are assessed
+  Leftovers leftovers = Leftovers::resume;
+  double interval = RunOptions().shard_interval;  ///< s
+  ShardStore::Warn warn;
+};
+
 struct ComparisonOptions {
-  std::vector<std::string> methods;         ///< names of assessment_methods(), each once
-  std::optional<std::int64_t> experiments;  ///< the first N only
-  int jobs = 1;                             ///< threads
-  std::function<void()> on_done;            ///< after each loop; one call at a time, but from any thread
+  std::vector<std::string> methods;          ///< names of assessment_methods(), each once
+  std::optional<std::int64_t> experiments;   ///< the first N only
+  int jobs = 1;                              ///< threads
+  std::optional<KeptAssessments> kept = {};  ///< none: they wait in memory
+  std::optional<ShardNumber> shard = {};     ///< which piece of the loops is assessed; none: all
 };
 
 /// How many loops a comparison of this campaign has: its experiments with status ok.
@@ -30,13 +47,34 @@ std::int64_t compared_loops(const Campaign& campaign, const std::optional<std::i
 bool has_answers(const Campaign& campaign, const std::string& method,
                  const std::optional<std::int64_t>& experiments);
 
-/// Has methods assess the experiments with status ok, in threads; the same answer for any number of
-/// them, but for the processor times. They stand behind the other methods that the campaign has; answers that
-/// it has of one of them, such as on its first experiments only, are replaced. A loop that was not stored is
-/// run again by the solver of the campaign, where that is Ipopt one at a time: its linear solver does not
-/// bear two threads.
-/// @throws InputError for an unknown method, or options that do not fit the study: that of its first loop
-void add_methods(Campaign& campaign, const ComparisonOptions& options, const std::string& command);
+/// Methods that assess the experiments with status ok, and the calibration loops, in threads; the same answer
+/// for any number of them, and however often it was stopped, but for the processor times. A loop that was not
+/// stored is run again by the solver of the campaign, where that is Ipopt one at a time: its linear solver
+/// does not bear two threads.
+class Comparison {
+ public:
+  /// `campaign` must outlive run(). Errors: as ShardStore.
+  Comparison(const Campaign& campaign, const ComparisonOptions& options);
+  ~Comparison();
+
+  /// Of the loops that are wanted; what an earlier comparison has left is done.
+  ExperimentTally tally() const;
+
+  /// Assesses those that are missing. Throws Interrupted, and InputError for an unknown method, or options
+  /// that do not fit the study: that of its first loop.
+  void run(const CampaignHooks& hooks);
+
+  /// Makes as few shards as there can be.
+  void compact();
+
+  /// Puts the answers, which must all be there, behind those of the other methods of the campaign; answers
+  /// that it has of one of them, such as on its first experiments only, are replaced.
+  void add_to(Campaign& campaign, const std::string& command);
+
+ private:
+  class Loops;
+  std::unique_ptr<Loops> loops_;
+};
 
 /// These loops as methods see them; run again where they were not kept. Without samples: a calibration loop
 /// that does not run to its end.

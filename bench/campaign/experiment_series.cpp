@@ -19,7 +19,8 @@ std::vector<std::int64_t> common(const std::vector<std::int64_t>& one,
 
 ExperimentSeries::ExperimentSeries(const Study& study, RunOptions options, const WantedLoops& wanted,
                                    const std::optional<std::filesystem::path>& shards,
-                                   const ShardStore::Warn& warn)
+                                   const ShardStore::Warn& warn,
+                                   const std::vector<std::filesystem::path>& others)
     : study_(study), options_(std::move(options)), count_(std::ssize(wanted.indices)), all_(wanted.count) {
   if (!shards) {
     missing_ = wanted.indices;
@@ -27,6 +28,7 @@ ExperimentSeries::ExperimentSeries(const Study& study, RunOptions options, const
     return;
   }
   shards_.emplace(*shards, options_, study_, all_, warn);
+  shards_->take_others(others, warn);
   missing_ = common(shards_->missing(), wanted.indices);
   earlier_seconds_ = shards_->seconds();
 }

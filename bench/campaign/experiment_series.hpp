@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -12,8 +13,8 @@
 
 namespace mpm {
 
-/// execute_in_threads or execute_in_processes.
-using Execution = decltype(&execute_in_threads);
+/// execute_in_threads, execute_in_processes, or what gives out loops of an archive.
+using Execution = std::function<void(const ExecutionPlan&, const StopRequest&, const OutcomeSink&)>;
 
 /// How many experiments of a campaign are done, of how many.
 struct ExperimentTally {
@@ -37,9 +38,11 @@ struct WantedLoops {
 /// is, until they are collected.
 class ExperimentSeries {
  public:
-  /// `study` must outlive it. Errors: as ShardStore.
+  /// `study` must outlive it. `others` are shards that lie elsewhere and stay there; with a folder only.
+  /// Errors: as ShardStore.
   ExperimentSeries(const Study& study, RunOptions options, const WantedLoops& wanted,
-                   const std::optional<std::filesystem::path>& shards, const ShardStore::Warn& warn);
+                   const std::optional<std::filesystem::path>& shards, const ShardStore::Warn& warn,
+                   const std::vector<std::filesystem::path>& others = {});
 
   /// Of what is wanted; what an earlier run has left is done.
   ExperimentTally tally() const { return {count_ - std::ssize(missing_), count_}; }

@@ -104,20 +104,24 @@ std::vector<std::string> with_programs(const std::vector<std::string>& named, st
   return own;
 }
 
-void add_shard_of_studies(CLI::App& app, std::string& shard, const std::string& what) {
+void add_shard_of(CLI::App& app, std::string& shard, const std::string& what) {
   app.add_option(
       "--shard", shard,
-      fmt::format("Run every Nth of the {} only, from the Ith on, given as I/N, or as auto or auto/N "
-                  "as `run` takes it; without it the same command shows all of them",
+      fmt::format("Do every Nth of the {} only, from the Ith on, given as I/N, or as auto or auto/N "
+                  "as `run` takes it; without it the same command does what is missing and shows all",
                   what));
+}
+
+void add_shard_interval(CLI::App& app, double& interval) {
+  app.add_option(
+         "--shard-interval", interval,
+         "Seconds between two shards, which keep what is finished: as much is lost when a run is killed")
+      ->check(number_between(0.0, 1e9))
+      ->capture_default_str();
 }
 
 std::optional<ShardNumber> shard_of(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional(parse_shard(text, process_environment));
-}
-
-bool is_in_shard(std::size_t place, const std::optional<ShardNumber>& shard) {
-  return !shard || static_cast<std::int64_t>(place) % shard->of == shard->number - 1;
 }
 
 void add_json(CLI::App& app, bool& json) {

@@ -40,11 +40,10 @@ std::vector<std::string> take_method_files(const std::vector<std::string>& files
 std::vector<std::string> with_programs(const std::vector<std::string>& named, std::vector<std::string> own,
                                        const std::vector<std::string>& programs);
 /// --shard of a command that runs several studies, `what`: which of them it runs.
-void add_shard_of_studies(CLI::App& app, std::string& shard, const std::string& what);
+void add_shard_of(CLI::App& app, std::string& shard, const std::string& what);
 /// What that option says; none without it. Throws InputError.
 std::optional<ShardNumber> shard_of(const std::string& text);
-/// Is the study at this place one of them?
-bool is_in_shard(std::size_t place, const std::optional<ShardNumber>& shard);
+void add_shard_interval(CLI::App& app, double& interval);
 void add_json(CLI::App& app, bool& json);
 CLI::Option* add_quiet(CLI::App& app, bool& quiet, const std::string& description = "No progress");
 

@@ -4,7 +4,9 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -20,6 +22,10 @@
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/files/outside_files.hpp"
+#include "bench/parts/launcher.hpp"
+#include "bench/parts/part_folder.hpp"
+#include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
@@ -35,8 +41,11 @@ struct CompareArguments {
   std::vector<std::string> method_files;
   std::vector<std::string> verdicts;  ///< FILE or NAME=FILE
   std::string output;                 ///< archive with the comparison; none when empty
+  std::string shard;                  ///< which piece of the loops is assessed; empty: all of them
   std::optional<std::int64_t> experiments;
   int jobs = 1;
+  bool discard = false;
+  double shard_interval = RunOptions().shard_interval;
   bool json = false;
   bool quiet = false;
 };
@@ -99,6 +108,61 @@ std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std
   return names;
 }
 
+/// Where the answers of a comparison wait; in memory when it has no output.
+std::optional<KeptAssessments> kept_assessments(const CompareArguments& options, Progress& progress) {
+  if (options.output.empty())
+    return std::nullopt;
+  KeptAssessments kept{.shards = shard_folder_of(options.output),
+                       .parts = {},
+                       .archive = digest_of_file(options.archive),
+                       .leftovers = options.discard ? Leftovers::discard : Leftovers::resume,
+                       .interval = options.shard_interval,
+                       .warn = [&progress](const std::string& text) { progress.warn(text); }};
+  const std::filesystem::path parts = parts_folder_of(options.output);
+  std::error_code no_folder;
+  for (const auto& part : std::filesystem::directory_iterator(parts, no_folder))
+    kept.parts.push_back(part.path());
+  std::sort(kept.parts.begin(), kept.parts.end());
+  return kept;
+}
+
+/// Has the loops assessed by the methods that are missing; stopped, it says how to go on.
+void assess(Comparison& comparison, const CompareArguments& options, Progress& progress,
+            const std::string& command_line) {
+  try {
+    comparison.run(hooks_of(progress));
+  } catch (const Interrupted& error) {
+    throw std::runtime_error(progress.explain(error) +
+                             (options.output.empty()
+                                  ? ""
+                                  : fmt::format("\nWhat is done is kept beside {}. To go on with it:\n  {}",
+                                                options.output, command_line)));
+  }
+}
+
+/// A piece of the loops, whose answers wait for the comparison of all of them.
+ExitCode compare_part(const Campaign& campaign, ComparisonOptions comparison_options,
+                      const CompareArguments& options, Progress& progress, const std::string& command_line) {
+  const ShardNumber& shard = *comparison_options.shard;
+  const std::filesystem::path folder =
+      parts_folder_of(options.output) / fmt::format("{}-of-{}", shard.number, shard.of);
+  make_output_folder(folder.parent_path(), "parts");
+  comparison_options.kept->shards = folder;
+  comparison_options.kept->parts.clear();
+  Comparison comparison(campaign, comparison_options);
+  const std::int64_t count = comparison.tally().count;
+  assess(comparison, options, progress, command_line);
+  comparison.compact();
+  print_result(
+      fmt::format("{}: {} loops assessed, part {} of {}\n", folder.string(), count, shard.number, shard.of));
+  return ExitCode::done;
+}
+
+void show(const CompareArguments& options, const Campaign& campaign) {
+  const StudyFindings findings = findings_of(campaign);
+  print_result(options.json ? comparison_json(campaign, findings) : comparison_text(campaign, findings));
+}
+
 /// Assesses the loops of an archive by the methods that it does not have yet, prints how often each of those
 /// that are asked for is right, and writes the archive with them when an output is asked for. Loops that the
 /// archive has not kept are run again from (study, seed, index).
@@ -106,8 +170,9 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
   Campaign campaign = read_input(options.archive);
   if (!options.output.empty())
     require_output_archive(options.output, "archive");
-  const std::int64_t loops = compared_loops(campaign, options.experiments);
-  if (loops == 0)
+  else if (!options.shard.empty())
+    throw InputError("--shard", "no --output", "with --output, beside which the parts wait");
+  if (compared_loops(campaign, options.experiments) == 0)
     throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
   std::vector<std::string> given = take_method_files(options.method_files);
   for (std::string& name : take_verdicts(campaign, options.verdicts, command_line))
@@ -119,20 +184,23 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
     if (std::find(asked.begin(), asked.end(), name) == asked.end())
       asked.push_back(name);
   const std::vector<std::string> missing = missing_methods(campaign, asked, options.experiments);
+  Progress progress(options.quiet);
+  std::optional<Comparison> comparison;  // its shards are locked until the archive is written
   if (!missing.empty()) {
-    Progress progress(options.quiet);
-    progress.begin(loops + calibration_loops(campaign.study));
-    const auto on_done = [&] {
-      progress.advance();
-      progress.end_when_requested();
-    };
-    add_methods(campaign, {missing, options.experiments, options.jobs, on_done}, command_line);
+    const ComparisonOptions comparison_options{missing, options.experiments, options.jobs,
+                                               kept_assessments(options, progress), shard_of(options.shard)};
+    if (comparison_options.shard)
+      return compare_part(campaign, comparison_options, options, progress, command_line);
+    comparison.emplace(campaign, comparison_options);
+    assess(*comparison, options, progress, command_line);
+    comparison->add_to(campaign, command_line);
   }
-  if (!options.output.empty())
+  if (!options.output.empty()) {
     write_archive(options.output, campaign, findings_of(campaign));
-  const Campaign shown = with_methods(std::move(campaign), asked, options.experiments);
-  const StudyFindings findings = findings_of(shown);
-  print_result(options.json ? comparison_json(shown, findings) : comparison_text(shown, findings));
+    comparison.reset();
+    remove_shards(options.output);
+  }
+  show(options, with_methods(std::move(campaign), asked, options.experiments));
   return ExitCode::done;
 }
 
@@ -151,8 +219,13 @@ void add_compare(CommandSet& commands) {
       "CSV file with verdicts on the loops of `export --blind`, FILE or NAME=FILE; a method like any "
       "other. May be given several times");
   add_path(app, "-o,--output", options->output,
-           "Archive to write with the comparison in it (HDF5); may be ARCHIVE itself");
+           "Archive to write with the comparison in it (HDF5); may be ARCHIVE itself. What is done of it is "
+           "kept beside it until then, and the same command goes on");
   add_experiments(app, options->experiments, "Compare on the first N experiments only");
+  add_shard_of(app, options->shard, "loops");
+  app.add_flag("--discard", options->discard,
+               "Delete what an interrupted comparison of this output has done, and start anew");
+  add_shard_interval(app, options->shard_interval);
   add_jobs(app, options->jobs, "How many loops are assessed at once");
   add_json(app, options->json);
   add_quiet(app, options->quiet);

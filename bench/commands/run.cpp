@@ -201,11 +201,7 @@ void add_interruption(CLI::App& app, RunOptions& run) {
          "--discard", [&run] { run.leftovers = Leftovers::discard; },
          "Delete what an interrupted run of this output has done, and start anew")
       ->excludes(resume);
-  app.add_option(
-         "--shard-interval", run.shard_interval,
-         "Seconds between two shards, which keep what is finished: as much is lost when a run is killed")
-      ->check(number_between(0.0, 1e9))
-      ->capture_default_str();
+  add_shard_interval(app, run.shard_interval);
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ void add_suite(CommandSet& commands) {
       ->delimiter(',');
   app.add_option("--families", options->choice.families, "These families only, separated by commas")
       ->delimiter(',');
-  add_shard_of_studies(app, options->shard, "cells");
+  add_shard_of(app, options->shard, "cells");
   add_experiments(app, options->run.experiments, "Run the first N experiments of each cell");
   add_methods_option(app, options->run.methods,
                      "Methods that assess the loops, separated by commas, or all; in place of the suite's");

@@ -128,7 +128,7 @@ void add_sweep(CommandSet& commands) {
            "Folder for the archives and the table; what it has of this sweep is kept")
       ->required();
   add_experiments(app, options->run.experiments, "Run the first N experiments of each study");
-  add_shard_of_studies(app, options->shard, "studies");
+  add_shard_of(app, options->shard, "studies");
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
   add_dry_run(app, options->dry_run);

@@ -33,6 +33,7 @@ struct RunOptions {
   double audit_share = 0.001;                    ///< share of the steps that Ipopt audits; with `auto` only
   StorePolicy store = StorePolicy::flagged;      ///< which loops are kept
   bool allow_unhealthy_basis = false;            ///< run although the basis case fails its self-check
+  std::string archive = {};  ///< digest of the archive whose loops are assessed; empty: they are run
 
   // These change no number.
   int jobs = 1;  ///< how many experiments run at once

@@ -132,4 +132,8 @@ ShardNumber parse_shard(std::string_view text, const Environment& environment) {
   return {*number, *of, ""};
 }
 
+bool is_in_shard(std::size_t place, const std::optional<ShardNumber>& shard) {
+  return !shard || static_cast<std::int64_t>(place) % shard->of == shard->number - 1;
+}
+
 }  // namespace mpm

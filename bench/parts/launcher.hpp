@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -38,5 +39,9 @@ std::optional<std::string> process_environment(const char* name);
 /// Throws InputError for another text, for `auto` without a launcher, and for an array whose size is not
 /// known.
 ShardNumber parse_shard(std::string_view text, const Environment& environment);
+
+/// Of things that are done one after the other, is the one at this place in the piece? Every Nth is, from the
+/// Ith on; all are without a piece.
+bool is_in_shard(std::size_t place, const std::optional<ShardNumber>& shard);
 
 }  // namespace mpm

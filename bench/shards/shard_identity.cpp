@@ -41,13 +41,16 @@ std::string study_text(const Study& study) {
 }  // namespace
 
 ShardIdentity shard_identity(const Study& study, const RunOptions& options) {
-  return {{"program", program()},
-          {"study", study_text(study)},
-          {"seed", fmt::format("{}", study.seed)},
-          {"methods", methods_text(study)},
-          {"solver", options.solver},
-          {"audit", fmt::format("{}", audited_share(study, options))},
-          {"store", name_of(options.store)}};
+  ShardIdentity identity{{"program", program()},
+                         {"study", study_text(study)},
+                         {"seed", fmt::format("{}", study.seed)},
+                         {"methods", methods_text(study)},
+                         {"solver", options.solver},
+                         {"audit", fmt::format("{}", audited_share(study, options))},
+                         {"store", name_of(options.store)}};
+  if (!options.archive.empty())
+    identity.push_back({"archive", options.archive});
+  return identity;
 }
 
 void require_same(const ShardIdentity& found, const ShardIdentity& expected, const std::string& found_in) {

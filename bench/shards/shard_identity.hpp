@@ -17,9 +17,9 @@ struct IdentityEntry {
 };
 
 /// What two runs must have in common for the experiments of one to be experiments of the other: program (the
-/// bits of a result belong to one build), study, seed, methods, solver, audit share and which loops are
-/// stored. Not the number of experiments, so that a longer run takes up a shorter one, nor jobs, threads and
-/// processes.
+/// bits of a result belong to one build), study, seed, methods, solver, audit share, which loops are
+/// stored, and where loops of an archive are assessed, which archive. Not the number of experiments, so that
+/// a longer run takes up a shorter one, nor jobs, threads and processes.
 using ShardIdentity = std::vector<IdentityEntry>;
 
 ShardIdentity shard_identity(const Study& study, const RunOptions& options);

@@ -26,6 +26,12 @@ class ShardStore {
   ShardStore(const std::filesystem::path& folder, const RunOptions& options, const Study& study,
              std::int64_t count, const Warn& warn);
 
+  /// What is in these shards, which lie elsewhere and stay as they are, is done too; before the first add().
+  /// Errors: as the constructor.
+  void take_others(const std::vector<std::filesystem::path>& shards, const Warn& warn) {
+    set_.take_stock(shards, warn);
+  }
+
   /// The experiments that no shard has, in the order of their index.
   std::vector<std::int64_t> missing() const { return set_.missing(); }
   /// Wall-clock time that the experiments in the shards took, in s: those of earlier runs until one is added.

@@ -20,6 +20,7 @@ from archives import contents
 MANY, SOME = 400, 150
 OPTIONS = {"--experiments": SOME, "--jobs": 2, "--store": "all", "--audit": 0.0005, "--shard-interval": 0.05,
            "--methods": "botelho,badwe2009,sse"}
+STUDIES = pathlib.Path(__file__).parents[2] / "scenarios/studies"
 PATIENCE = 300  # s, for a machine that is busy with other things
 
 
@@ -161,6 +162,63 @@ def check_endless_work(trial):
     assert contents(trial.output) == resumed
 
 
+def check_comparison(program, folder):
+    """A comparison that is killed goes on, and one in parts is put together: bit for bit what one go gives."""
+    def compare(output, *words, code=0):
+        result = subprocess.run([program, "compare", archive, "--methods", "sse,counterfactual", "--quiet", "-o", output,
+                                 "--shard-interval", "0", *words], capture_output=True, text=True, timeout=PATIENCE)
+        assert result.returncode == code, (words, result)
+        return result.stderr if code else result.stdout
+
+    archive, whole = str(folder / "loops.h5"), folder / "whole.h5"
+    study = folder / "calibrated.toml"
+    study.write_text((STUDIES / "wood-berry.toml").read_text() + "\n[calibration]\nhealthy = 12\n")
+    subprocess.run([program, "run", study, "-o", archive, "--experiments", "60", "--methods", "sse", "--audit", "0",
+                    "--store", "none", "--quiet"], check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
+    compare(whole)
+    reference = contents(whole)
+    assert not (folder / "whole.h5.shards").exists()
+
+    killed, moments = folder / "killed-comparison.h5", random.Random(20150401)
+    shards = folder / (killed.name + ".shards")
+    command = [program, "compare", archive, "--methods", "sse,counterfactual", "--quiet", "-o", killed, "--jobs", "2",
+               "--shard-interval", "0"]
+    kills = 0
+    while not killed.exists() and kills < 12:
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        before = len(list(shards.glob("**/*.shard")))
+        while process.poll() is None and len(list(shards.glob("**/*.shard"))) < before + 3:
+            time.sleep(0.002)
+        time.sleep(moments.uniform(0, 0.02))
+        process.send_signal(moments.choice([signal.SIGKILL, signal.SIGTERM]))
+        error = process.communicate(timeout=PATIENCE)[1]
+        kills += process.returncode != 0
+        assert process.returncode in (0, -signal.SIGKILL) or process.returncode == 3 and "To go on with it" in error, error
+    assert kills >= 3, kills
+    compare(killed)
+    assert contents(killed) == reference and not shards.exists()
+
+    # What others have left: refused by what differs, or discarded.
+    subprocess.run([*command[:-5], folder / "other.h5", "--shard-interval", "0", "--shard", "1/2"], check=True,
+                   timeout=PATIENCE, stdout=subprocess.DEVNULL)
+    parts = folder / "other.h5.parts"
+    (parts / "1-of-2").rename(folder / "other.h5.shards")
+    parts.rmdir()
+    result = subprocess.run([program, "compare", archive, "--methods", "counterfactual,order", "--quiet", "-o",
+                             folder / "other.h5"], capture_output=True, text=True, timeout=PATIENCE)
+    assert result.returncode == 2 and "another methods" in result.stderr, result
+    compare(folder / "other.h5", "--discard")
+    assert contents(folder / "other.h5") == reference
+
+    in_parts = folder / "parted.h5"
+    assert "part 1 of 3" in compare(in_parts, "--shard", "1/3") and not in_parts.exists()
+    compare(in_parts, "--shard", "3/3", "--jobs", "2")
+    compare(in_parts)  # does what is missing
+    assert contents(in_parts) == reference
+    assert "--output" in subprocess.run([program, "compare", archive, "--shard", "1/2"], capture_output=True,
+                                        text=True).stderr
+
+
 def check_two_at_once(trial):
     """A second run of the same output is refused while the first one is at work; --discard starts anew."""
     process = trial.start()
@@ -217,6 +275,7 @@ def main(program):
         check_kills(Trial(program, folder, "killed.h5"), references[MANY])
         check_stops(Trial(program, folder, "stopped.h5"), references[SOME])
         check_endless_work(Trial(program, folder, "sleepy.h5"))
+        check_comparison(program, folder)
         check_two_at_once(Trial(program, folder, "two.h5"))
         check_full_disk(Trial(program, folder, "full.h5"), references[SOME])
         (folder / "disk").mkdir()

@@ -36,6 +36,12 @@ RunOptions few() {
   return options;
 }
 
+void add_methods(Campaign& campaign, const ComparisonOptions& options, const CampaignHooks& hooks) {
+  Comparison comparison(campaign, options);
+  comparison.run(hooks);
+  comparison.add_to(campaign, "compare");
+}
+
 void check_same(const Calibration& one, const Calibration& other) {
   CHECK(one.seed == other.seed);
   REQUIRE(one.loops.size() == other.loops.size());
@@ -64,11 +70,12 @@ TEST_CASE(
   options.methods = {"botelho"};
   Campaign later = run_campaign(study, options);
   int done = 0;
-  add_methods(later, {{"sse", "counterfactual"}, {}, 2, [&] { ++done; }}, "compare");
+  const CampaignHooks counting{.on_done = [&](const ExperimentRecord&) { ++done; }};
+  add_methods(later, {.methods = {"sse", "counterfactual"}, .experiments = {}, .jobs = 2}, counting);
   check_same(later.calibration, serial.calibration);
   CHECK(done == compared_loops(later, {}) + kLoops);
   // Answers that it has are replaced, and stand behind the others.
-  add_methods(later, {{"botelho"}, {}, 1, {}}, "compare");
+  add_methods(later, {.methods = {"botelho"}, .experiments = {}}, {});
   const Campaign chosen = with_methods(later, {"botelho", "sse", "counterfactual"}, {});
   check_same(chosen.calibration, serial.calibration);
 }
