@@ -1,6 +1,5 @@
 #include "plants/fmu_package.hpp"
 
-#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +11,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <unistd.h>
 #include <zip.h>
 
 #include "plants/error.hpp"
@@ -107,42 +105,22 @@ std::string unpack(const fs::path& file, const fs::path& folder) {
   return description;
 }
 
-fs::path make_folder() {
-  std::string name = (fs::temp_directory_path() / "mpmbench-fmu-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw std::system_error(errno, std::generic_category(), "no folder for an FMU: " + name);
-  return name;
-}
-
 }  // namespace
 
-FmuPackage::FmuPackage(const fs::path& file) : folder_(make_folder()), owner_(::getpid()) {
-  try {
-    fs::create_directories(folder_ / kResources);
-    description_ = parse_fmu_description(unpack(file, folder_), file.string());
-    if (!fs::is_regular_file(library()))
-      throw InputError(
-          fmt::format("{}: library", file.string()), "none for this platform",
-          fmt::format("{}{}.so; export it for 64-bit Linux", kBinaries, description_.identifier));
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-    throw;
-  }
-}
-
-FmuPackage::~FmuPackage() {
-  std::error_code ignored;
-  if (owner_ == ::getpid())
-    fs::remove_all(folder_, ignored);
+FmuPackage::FmuPackage(const fs::path& file) {
+  fs::create_directories(folder_.path() / kResources);
+  description_ = parse_fmu_description(unpack(file, folder_.path()), file.string());
+  if (!fs::is_regular_file(library()))
+    throw InputError(fmt::format("{}: library", file.string()), "none for this platform",
+                     fmt::format("{}{}.so; export it for 64-bit Linux", kBinaries, description_.identifier));
 }
 
 fs::path FmuPackage::library() const {
-  return folder_ / kBinaries / (description_.identifier + ".so");
+  return folder_.path() / kBinaries / (description_.identifier + ".so");
 }
 
 std::string FmuPackage::resources() const {
-  return fmt::format("file://{}", (folder_ / "resources").string());
+  return fmt::format("file://{}", (folder_.path() / "resources").string());
 }
 
 }  // namespace mpm

@@ -2,9 +2,8 @@
 
 #include <filesystem>
 
-#include <sys/types.h>
-
 #include "plants/fmu_description.hpp"
+#include "plants/temporary_folder.hpp"
 
 namespace mpm {
 
@@ -15,9 +14,6 @@ class FmuPackage {
   /// Errors: InputError for a file that cannot be read, is no ZIP or holds a path out of it, as
   /// parse_fmu_description(), and without a library for linux64.
   explicit FmuPackage(const std::filesystem::path& file);
-  FmuPackage(const FmuPackage&) = delete;
-  FmuPackage& operator=(const FmuPackage&) = delete;
-  ~FmuPackage();
 
   const FmuDescription& description() const { return description_; }
   /// binaries/linux64/IDENTIFIER.so
@@ -26,8 +22,7 @@ class FmuPackage {
   std::string resources() const;
 
  private:
-  std::filesystem::path folder_;
-  pid_t owner_;  ///< which removes the folder: a copy of this process does not
+  TemporaryFolder folder_;
   FmuDescription description_;
 };
 

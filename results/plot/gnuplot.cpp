@@ -4,9 +4,9 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -19,6 +19,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "plants/temporary_folder.hpp"
 #include "results/files/utf8.hpp"
 
 namespace mpm {
@@ -28,28 +29,13 @@ std::string error_text(int code) {
   return std::error_code(code, std::generic_category()).message();
 }
 
-/// An empty folder that goes away with its owner.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "mpmbench-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-      throw GnuplotError(
-          fmt::format("{}: cannot make a temporary folder for gnuplot: {}", name, error_text(errno)));
-    path_ = name;
+std::unique_ptr<TemporaryFolder> folder_for_gnuplot() {
+  try {
+    return std::make_unique<TemporaryFolder>();
+  } catch (const std::system_error& error) {
+    throw GnuplotError(fmt::format("cannot make a temporary folder for gnuplot: {}", error.what()));
   }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-
-  std::string operator/(const char* name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
+}
 
 std::string content(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -148,10 +134,10 @@ std::string complaint(std::string text) {
 
 std::string run_gnuplot(const std::string& script, const std::string& program,
                         std::chrono::milliseconds patience) {
-  const TemporaryFolder folder;
-  const std::string script_file = folder / "script";
-  const std::string out = folder / "out";
-  const std::string error = folder / "error";
+  const std::unique_ptr<TemporaryFolder> folder = folder_for_gnuplot();
+  const std::string script_file = folder->path() / "script";
+  const std::string out = folder->path() / "out";
+  const std::string error = folder->path() / "error";
   write(script_file, script);
   const int status = run(program, script_file, Redirection(out, error), patience);
   if (!WIFEXITED(status))
