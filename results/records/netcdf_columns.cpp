@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "plants/error.hpp"
+#include "plants/forked_service.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/records/time_stamps.hpp"
@@ -20,6 +24,8 @@ namespace {
 
 constexpr std::array kUsualTimes{"time", "timestamp", "datetime", "date", "t"};
 constexpr double kMillisecondsOfSecond = 1000.0;
+constexpr double kTimeLimit = 120.0;  // s for a file
+constexpr const char* kAllowed = "a netCDF-4 file of records, or a CSV file (docs/own_records.md)";
 
 /// Seconds in a unit of CF; none of another one. Months and years have no fixed length.
 std::optional<double> seconds_in(std::string unit) {
@@ -177,6 +183,33 @@ class NetcdfReader {
   bool several_loops_ = false;
 };
 
+/// What is in the file, or why it is refused.
+nlohmann::json read_file(std::vector<std::byte>& content, const std::string& file, const std::string& time) {
+  try {
+    const Hdf5File opened = Hdf5File::open_unsealed(std::move(content), file);
+    const RecordColumns read = NetcdfReader(opened.root(), file, time).columns();
+    return {{"names", read.names}, {"columns", read.columns}, {"lines", read.lines}};
+  } catch (const InputError& error) {
+    return {{"refused", error.what()}};
+  } catch (const ArchiveError& error) {
+    return {{"refused", InputError(file, error.what(), kAllowed).what()}};
+  }
+}
+
+/// Bytes as a forked service answers them: their number, and as many numbers as hold them.
+std::vector<double> as_numbers(const std::vector<std::uint8_t>& bytes) {
+  std::vector<double> numbers(1 + (bytes.size() + sizeof(double) - 1) / sizeof(double));
+  numbers.front() = static_cast<double>(bytes.size());
+  std::memcpy(numbers.data() + 1, bytes.data(), bytes.size());
+  return numbers;
+}
+
+std::vector<std::uint8_t> as_bytes(const std::vector<double>& numbers) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(numbers.front()));
+  std::memcpy(bytes.data(), numbers.data() + 1, bytes.size());
+  return bytes;
+}
+
 }  // namespace
 
 bool is_netcdf4(std::string_view content) {
@@ -185,12 +218,24 @@ bool is_netcdf4(std::string_view content) {
 
 RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file,
                              const std::string& time) {
+  // The library frees and reads what is not its own when a file is damaged in the right place.
+  ForkedService reader(
+      [&](const auto&) { return as_numbers(nlohmann::json::to_cbor(read_file(content, file, time))); },
+      kTimeLimit);
+  nlohmann::json answer;
   try {
-    const Hdf5File opened = Hdf5File::open_unsealed(std::move(content), file);
-    return NetcdfReader(opened.root(), file, time).columns();
-  } catch (const ArchiveError& error) {
-    throw InputError(file, error.what(), "a netCDF-4 file of records, or a CSV file (docs/own_records.md)");
+    answer = nlohmann::json::from_cbor(as_bytes(reader.ask({})));
+  } catch (const ForeignFailure& failure) {
+    throw InputError(file, fmt::format("a file that HDF5 cannot read ({})", failure.what()), kAllowed);
   }
+  if (answer.contains("refused"))
+    throw InputError(answer["refused"].get<std::string>());
+  RecordColumns columns;
+  columns.file = file;
+  answer["names"].get_to(columns.names);
+  answer["columns"].get_to(columns.columns);
+  answer["lines"].get_to(columns.lines);
+  return columns;
 }
 
 }  // namespace mpm

@@ -26,8 +26,11 @@ bool is_netcdf4(std::string_view content);
 /// missing_value and NaN are empty cells, scale_factor and add_offset are applied. Groups are not looked
 /// into.
 ///
+/// The file is read in a process that is forked off, since HDF5 crashes on some damaged files: to be called
+/// where there are no other threads.
+///
 /// Errors: InputError that names the file, the variable and what to do: no HDF5 file, no time, another
-/// calendar than the usual one, several loops, no variable along the time.
+/// calendar than the usual one, several loops, no variable along the time; HDF5 crashed or took 2 minutes.
 RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file,
                              const std::string& time);
 
