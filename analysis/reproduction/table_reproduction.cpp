@@ -191,21 +191,29 @@ std::vector<std::optional<std::string>> judge(const VerdictRule& rule,
   return judge_each(rule, numbers);
 }
 
-ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& factory, BasisCases& basis_cases) {
-  ReproducedTable result{table, {}};
-  Loops loops(result.table, factory, basis_cases);
-  for (const TableRow& row : result.table.rows) {
-    ReproducedRow reproduced{row.label, "", {}};
-    ScenarioQuantities* const loop = loops.of(row, reproduced.remark);
-    const Study& study = result.table.studies.at(row.variant);
+TableNumbers table_numbers(const ThesisTable& table, const QpSolverFactory& factory,
+                           BasisCases& basis_cases) {
+  TableNumbers numbers;
+  Loops loops(table, factory, basis_cases);
+  for (const TableRow& row : table.rows) {
+    TableNumbers::Row& found = numbers.rows.emplace_back();
+    ScenarioQuantities* const loop = loops.of(row, found.remark);
+    const Study& study = table.studies.at(row.variant);
     for (const TableCell& cell : row.cells)
-      reproduced.cells.push_back(
-          {cell,
-           loop ? loop->value(cell.quantity, place(study.plant.cvs, cell.cv), place(study.plant.mvs, cell.mv))
-                : kNaN,
-           {},
-           {}});
-    result.rows.push_back(std::move(reproduced));
+      found.ours.push_back(
+          loop ? loop->value(cell.quantity, place(study.plant.cvs, cell.cv), place(study.plant.mvs, cell.mv))
+               : kNaN);
+  }
+  return numbers;
+}
+
+ReproducedTable reproduced(ThesisTable table, const TableNumbers& numbers) {
+  ReproducedTable result{std::move(table), {}};
+  for (std::size_t r = 0; r < result.table.rows.size(); ++r) {
+    const TableRow& row = result.table.rows[r];
+    ReproducedRow& judged = result.rows.emplace_back(ReproducedRow{row.label, numbers.rows[r].remark, {}});
+    for (std::size_t c = 0; c < row.cells.size(); ++c)
+      judged.cells.push_back({row.cells[c], numbers.rows[r].ours[c], {}, {}});
   }
   judge_table(result);
   return result;

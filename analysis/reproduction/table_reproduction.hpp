@@ -46,11 +46,22 @@ struct ReproducedTable {
   Agreement agreement() const;
 };
 
-/// Runs every loop of the table, and judges every cell by the rules of the table, ours and the thesis's by
-/// the same. Each study is run with its own basis case and S0, from `basis_cases`, where other tables that
-/// have the study find them. Throws InputError as run_basis_case(). The table must have been read with
-/// ScenarioQuantities::known().
-ReproducedTable reproduce(const ThesisTable& table, const QpSolverFactory& factory, BasisCases& basis_cases);
+/// What the loops of a table give: for each of its rows the number of each cell, NaN as in ReproducedCell.
+struct TableNumbers {
+  struct Row {
+    std::string remark;  ///< of ReproducedRow
+    std::vector<double> ours;
+  };
+  std::vector<Row> rows;
+};
+
+/// Runs every loop of the table. Each study is run with its own basis case and S0, from `basis_cases`, where
+/// other tables that have the study find them. Throws InputError as run_basis_case(). The table must have
+/// been read with ScenarioQuantities::known().
+TableNumbers table_numbers(const ThesisTable& table, const QpSolverFactory& factory, BasisCases& basis_cases);
+
+/// Judges every cell by the rules of the table, ours and the thesis's by the same.
+ReproducedTable reproduced(ThesisTable table, const TableNumbers& numbers);
 
 /// The verdicts on the numbers of one column or row: judge(numbers)[i] for `i` of them. For any_above and
 /// any_within `numbers` are those of the row that the rule is for; for rank those of the column. Entries are

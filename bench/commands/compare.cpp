@@ -12,12 +12,14 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/methods/method_table.hpp"
 #include "bench/campaign/calibration_runs.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/dry_run.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
@@ -45,6 +47,7 @@ struct CompareArguments {
   std::optional<std::int64_t> experiments;
   int jobs = 1;
   bool discard = false;
+  bool dry_run = false;
   double shard_interval = RunOptions().shard_interval;
   bool json = false;
   bool quiet = false;
@@ -158,6 +161,26 @@ ExitCode compare_part(const Campaign& campaign, ComparisonOptions comparison_opt
   return ExitCode::done;
 }
 
+/// What the comparison would do.
+std::string intended_text(const Campaign& campaign, const ComparisonOptions& comparison,
+                          const CompareArguments& options) {
+  ComparisonOptions in_memory = comparison;
+  in_memory.kept.reset();
+  return fmt::format(
+      "methods: {}\nloops: {} of {} ({} experiments, {} calibration loops) to be assessed, {} at "
+      "once\nfiles: "
+      "{}\nnothing was assessed, nothing was written\n",
+      comparison.methods.empty() ? "none that the archive lacks"
+                                 : fmt::to_string(fmt::join(comparison.methods, ", ")),
+      comparison.methods.empty() ? 0 : Comparison(campaign, in_memory).tally().count,
+      compared_loops(campaign, options.experiments) + std::ssize(campaign.calibration.loops),
+      compared_loops(campaign, options.experiments), campaign.calibration.loops.size(), options.jobs,
+      options.output.empty() ? "none"
+      : comparison.shard     ? fmt::format("shards in {}, for the same command without --shard",
+                                           parts_folder_of(options.output).string())
+                             : output_text(options.output, false));
+}
+
 void show(const CompareArguments& options, const Campaign& campaign) {
   const StudyFindings findings = findings_of(campaign);
   print_result(options.json ? comparison_json(campaign, findings) : comparison_text(campaign, findings));
@@ -185,10 +208,15 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
       asked.push_back(name);
   const std::vector<std::string> missing = missing_methods(campaign, asked, options.experiments);
   Progress progress(options.quiet);
+  ComparisonOptions comparison_options{
+      missing, options.experiments, options.jobs, {}, shard_of(options.shard)};
+  if (options.dry_run) {
+    print_result(intended_text(campaign, comparison_options, options));
+    return ExitCode::done;
+  }
   std::optional<Comparison> comparison;  // its shards are locked until the archive is written
   if (!missing.empty()) {
-    const ComparisonOptions comparison_options{missing, options.experiments, options.jobs,
-                                               kept_assessments(options, progress), shard_of(options.shard)};
+    comparison_options.kept = kept_assessments(options, progress);
     if (comparison_options.shard)
       return compare_part(campaign, comparison_options, options, progress, command_line);
     comparison.emplace(campaign, comparison_options);
@@ -227,6 +255,7 @@ void add_compare(CommandSet& commands) {
                "Delete what an interrupted comparison of this output has done, and start anew");
   add_shard_interval(app, options->shard_interval);
   add_jobs(app, options->jobs, "How many loops are assessed at once");
+  add_dry_run(app, options->dry_run);
   add_json(app, options->json);
   add_quiet(app, options->quiet);
 }

@@ -1,6 +1,10 @@
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -11,10 +15,14 @@
 #include "bench/campaign/reproduction_runs.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/dry_run.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
+#include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
+#include "plants/error.hpp"
 #include "results/reproduction/reproduction.hpp"
 #include "results/reproduction/seeded_reproduction.hpp"
 #include "scenarios/study_change.hpp"
@@ -28,6 +36,9 @@ struct ReproduceArguments {
   bool json = false;
   std::vector<std::string> changes;  ///< --set, each KEY=VALUE
   std::optional<int> seeds;          ///< none: each table once, with the seeds of its studies
+  std::string shard;                 ///< which of the tables and seeds are run; empty: all of them, and shown
+  bool dry_run = false;
+  bool quiet = false;
   RunOptions run;
 };
 
@@ -59,23 +70,77 @@ void show_over_seeds(const ReproduceArguments& options, const std::vector<Seeded
                             : seeded_reproduction_text(tables, options.changes));
 }
 
-/// Done even when verdicts differ: they are results.
-ExitCode reproduce_tables(const ReproduceArguments& options) {
+/// Runs the tables; stopped, it says how to go on.
+std::vector<std::vector<ReproducedTable>> run_tables(TableRuns runs, const ReproduceArguments& options,
+                                                     const std::string& command_line) {
+  Progress progress(options.quiet, "tables");
+  runs.stop = [&progress] { return progress.stop_requested(); };
+  runs.on_start = [&progress](std::int64_t done, std::int64_t count) { progress.begin(count, done); };
+  runs.on_done = [&progress] { progress.advance(); };
+  try {
+    return run_tables(runs);
+  } catch (const Interrupted& error) {
+    throw std::runtime_error(progress.explain(error) +
+                             (runs.kept == nullptr
+                                  ? ""
+                                  : fmt::format("\nWhat is done is kept in {}. To go on with it:\n  {}",
+                                                runs.kept->folder().string(), command_line)));
+  }
+}
+
+/// What the command would do.
+std::string intended_text(const TableRuns& runs, const ReproduceArguments& options) {
+  std::string text;
+  for (const ThesisTable& table : runs.tables)
+    text += fmt::format("{}: {} rows: {}\n", table.label(), table.rows.size(), table.title);
+  std::size_t wanted = 0, all = runs.tables.size() * static_cast<std::size_t>(runs.seeds);
+  for (std::size_t place = 0; place < all; ++place)
+    wanted += is_in_shard(place, runs.shard) ? 1 : 0;
+  return text +
+         fmt::format(
+             "together: {} tables with {} seeds, {} of {} to run, with {} at once by {}\nfiles: {}\nnothing "
+             "was run, nothing was written\n",
+             runs.tables.size(), runs.seeds, wanted, all, runs.run.jobs, runs.run.solver,
+             options.output.empty() ? "none" : fmt::format("{0}; until then {0}.tables", options.output));
+}
+
+/// Done even when verdicts differ: they are results. A part leaves its numbers only, which another call
+/// finds.
+ExitCode reproduce_tables(const ReproduceArguments& options, const std::string& command_line) {
   if (!options.output.empty())
     require_output_folder(options.output, "page");
-  const std::vector<std::vector<ReproducedTable>> runs =
-      run_tables(tables_of(options), options.seeds.value_or(1), options.run);
+  else if (!options.shard.empty())
+    throw InputError("--shard", "no --output", "with --output, beside which the parts wait");
+  TableRuns runs{.tables = tables_of(options),
+                 .seeds = options.seeds.value_or(1),
+                 .run = options.run,
+                 .shard = shard_of(options.shard)};
+  if (options.dry_run) {
+    print_result(intended_text(runs, options));
+    return ExitCode::done;
+  }
+  std::optional<KeptTables> kept;
+  if (!options.output.empty())
+    runs.kept = &kept.emplace(options.output, options.run.solver);
+  const std::vector<std::vector<ReproducedTable>> reproduced = run_tables(runs, options, command_line);
+  if (runs.shard) {
+    print_result(fmt::format("{}: part {} of {} of {} tables with {} seeds\n", kept->folder().string(),
+                             runs.shard->number, runs.shard->of, runs.tables.size(), runs.seeds));
+    return ExitCode::done;
+  }
   if (options.seeds) {
     std::vector<SeededTable> tables;
-    for (const std::vector<ReproducedTable>& of_table : runs)
+    for (const std::vector<ReproducedTable>& of_table : reproduced)
       tables.push_back(over_seeds(of_table));
     show_over_seeds(options, tables);
   } else {
     std::vector<ReproducedTable> tables;
-    for (const std::vector<ReproducedTable>& of_table : runs)
+    for (const std::vector<ReproducedTable>& of_table : reproduced)
       tables.push_back(of_table.front());
     show(options, tables);
   }
+  if (kept)
+    kept->remove();
   return ExitCode::done;
 }
 
@@ -84,11 +149,13 @@ ExitCode reproduce_tables(const ReproduceArguments& options) {
 void add_reproduce(CommandSet& commands) {
   const auto options = std::make_shared<ReproduceArguments>();
   options->run.solver = "active-set";
-  CLI::App& app = commands.add("reproduce", "Run the studies behind the tables of the thesis, cell by cell",
-                               [options] { return reproduce_tables(*options); });
+  CLI::App& app =
+      commands.add("reproduce", "Run the studies behind the tables of the thesis, cell by cell",
+                   [options, &commands] { return reproduce_tables(*options, commands.command_line()); });
   app.add_option("TABLES", options->tables, "all, chapter2 to chapter7, or the number of a table such as 4.5")
       ->capture_default_str();
-  add_path(app, "-o,--output", options->output, "Page to write (HTML)");
+  add_path(app, "-o,--output", options->output,
+           "Page to write (HTML). What is done is kept beside it until then, and the same command goes on");
   add_solver(app, options->run.solver);
   add_json(app, options->json);
   app.add_option("--set", options->changes,
@@ -97,6 +164,9 @@ void add_reproduce(CommandSet& commands) {
   app.add_option("--seeds", options->seeds,
                  "Run each table with N seeds, and report medians and the share of seeds that agree")
       ->check(whole_number(1, 100000));
+  add_shard_of(app, options->shard, "tables and seeds");
+  add_dry_run(app, options->dry_run);
+  add_quiet(app, options->quiet);
   add_jobs(app, options->run.jobs, "How many tables run at once, with --solver active-set");
 }
 

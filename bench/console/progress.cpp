@@ -22,7 +22,8 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-Progress::Progress(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(bool quiet, std::string_view what)
+    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), what_(what) {}
 
 Progress::~Progress() {
   end_line();
@@ -35,7 +36,7 @@ void Progress::begin(std::int64_t total, std::int64_t done) {
   failed_ = 0;
   start_ = shown_ = Clock::now();
   if (done > 0)
-    note(fmt::format("{} of {} experiments are done already", done, total));
+    note(fmt::format("{} of {} {} are done already", done, total, what_));
 }
 
 void Progress::advance(bool failed) {
@@ -65,14 +66,14 @@ std::string Progress::explain(const Interrupted& error) const {
 
 void Progress::end_when_requested() const {
   if (stop_requested() && done_ < total_)
-    throw std::runtime_error(explain(Interrupted(done_, total_)));
+    throw std::runtime_error(explain(Interrupted(done_, total_, what_)));
 }
 
 void Progress::show() {
   shown_ = Clock::now();
   const double seconds = std::chrono::duration<double>(shown_ - start_).count();
   const double rate = static_cast<double>(done_ - earlier_) / std::max(seconds, 1e-9);
-  const std::string text = fmt::format("{}/{} experiments, {:.3g}/s, {} left{}", done_, total_, rate,
+  const std::string text = fmt::format("{}/{} {}, {:.3g}/s, {} left{}", done_, total_, what_, rate,
                                        duration(static_cast<double>(total_ - done_) / rate),
                                        failed_ > 0 ? fmt::format(", {} failed", failed_) : "");
   if (terminal_) {

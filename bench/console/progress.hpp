@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/console/stop_signals.hpp"
@@ -15,8 +16,8 @@ namespace mpm {
 /// request to stop. Its end, also by an exception, ends the line. At most one at a time.
 class Progress {
  public:
-  /// `quiet`: shows nothing but warnings.
-  explicit Progress(bool quiet);
+  /// `quiet`: shows nothing but warnings. The work is one of `what`, which must outlive it.
+  explicit Progress(bool quiet, std::string_view what = "experiments");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -46,6 +47,7 @@ class Progress {
 
   const StopSignals signals_;
   const bool quiet_, terminal_;
+  const std::string_view what_;
   std::int64_t total_ = 0, earlier_ = 0, done_ = 0, failed_ = 0;
   Clock::time_point start_, shown_;
   bool in_line_ = false;  ///< the line on the terminal is not ended

@@ -4,7 +4,7 @@
 
 namespace mpm {
 
-Interrupted::Interrupted(std::int64_t done, std::int64_t count)
-    : std::runtime_error(fmt::format("stopped when {} of {} experiments were done", done, count)) {}
+Interrupted::Interrupted(std::int64_t done, std::int64_t count, std::string_view what)
+    : std::runtime_error(fmt::format("stopped when {} of {} {} were done", done, count, what)) {}
 
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
+#include <string_view>
 
 namespace mpm {
 
@@ -17,7 +18,7 @@ inline bool requested(const StopRequest& stop) {
 class Interrupted : public std::runtime_error {
  public:
   /// "stopped when `done` of `count` experiments were done"
-  Interrupted(std::int64_t done, std::int64_t count);
+  Interrupted(std::int64_t done, std::int64_t count, std::string_view what = "experiments");
 };
 
 }  // namespace mpm

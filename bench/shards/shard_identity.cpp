@@ -16,12 +16,6 @@
 namespace mpm {
 namespace {
 
-/// The version, the revision, and the digest of the program file: two builds of a revision may differ.
-std::string program() {
-  return fmt::format("mpmbench {} {} (program {})", mpmbench_version(), source_revision(),
-                     digest_of_file("/proc/self/exe"));
-}
-
 /// The methods, each with what else decides on its answers.
 std::string methods_text(const Study& study) {
   std::vector<std::string> methods;
@@ -40,8 +34,13 @@ std::string study_text(const Study& study) {
 
 }  // namespace
 
+std::string program_identity() {
+  return fmt::format("mpmbench {} {} (program {})", mpmbench_version(), source_revision(),
+                     digest_of_file("/proc/self/exe"));
+}
+
 ShardIdentity shard_identity(const Study& study, const RunOptions& options) {
-  ShardIdentity identity{{"program", program()},
+  ShardIdentity identity{{"program", program_identity()},
                          {"study", study_text(study)},
                          {"seed", fmt::format("{}", study.seed)},
                          {"methods", methods_text(study)},

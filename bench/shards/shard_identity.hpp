@@ -24,6 +24,9 @@ using ShardIdentity = std::vector<IdentityEntry>;
 
 ShardIdentity shard_identity(const Study& study, const RunOptions& options);
 
+/// The version, the revision, and the digest of the program file: two builds of a revision may differ.
+std::string program_identity();
+
 /// Throws InputError, which names the first entry that differs and both values. `found_in` names what `found`
 /// was read from.
 void require_same(const ShardIdentity& found, const ShardIdentity& expected, const std::string& found_in);

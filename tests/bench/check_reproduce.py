@@ -7,14 +7,63 @@ import json
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 import h5py
 
 from browser import Browser
 from html_page import check_page, check_shown
+
+
+def check_going_on(program, folder):
+    """Tables that are killed or done in parts are taken up: the page is that of one go, byte for byte."""
+    def command(page, *words):
+        return [program, "reproduce", "4.5", "--seeds", "6", "--quiet", "-o", page, *words]
+
+    def reproduce(page, *words, code=0):
+        result = subprocess.run(command(page, *words), capture_output=True, text=True, timeout=600)
+        assert result.returncode == code, (words, result)
+        return result.stdout + result.stderr
+
+    whole, killed = folder / "whole.html", folder / "killed.html"
+    told = reproduce(whole)
+    kept = folder / "killed.html.tables"
+    for number in signal.SIGKILL, signal.SIGTERM:
+        process = subprocess.Popen(command(killed, "--jobs", "1"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                   text=True)
+        before = len(list(kept.glob("*.seed*")))
+        while process.poll() is None and len(list(kept.glob("*.seed*"))) == before:
+            time.sleep(0.005)
+        process.send_signal(number)
+        error = process.communicate(timeout=600)[1]
+        assert process.returncode == (3 if number == signal.SIGTERM else -number), (process.returncode, error)
+        assert (number == signal.SIGKILL) or "of 6 tables were done" in error and "To go on with it" in error, error
+        assert not killed.exists()
+    done = {file.name: file.stat().st_mtime_ns for file in kept.glob("*.seed*")}
+    damaged = min(done)
+    (kept / damaged).write_bytes((kept / damaged).read_bytes()[:-100])
+    reproduce(killed, "--shard", "1/6")  # the first, which is the damaged one
+    now = {file.name: file.stat().st_mtime_ns for file in kept.glob("*.seed*")}
+    assert now[damaged] != done[damaged] and all(now[name] == done[name] for name in done if name != damaged)
+    assert reproduce(killed) == told and killed.read_bytes() == whole.read_bytes() and not kept.exists()
+
+    parted = folder / "parted.html"
+    dry = reproduce(parted, "--dry-run", "--shard", "1/4")
+    assert "Table 4.5: " in dry and "1 tables with 6 seeds, 2 of 6 to run" in dry, dry
+    assert not (folder / "parted.html.tables").exists()
+    for part in "1/2", "2/2":
+        assert f"part {part[0]} of 2" in reproduce(parted, "--shard", part)
+    assert len(list((folder / "parted.html.tables").iterdir())) == 6
+    assert reproduce(parted) == told and parted.read_bytes() == whole.read_bytes()
+    result = subprocess.run([program, "reproduce", "4.5", "--shard", "1/2"], capture_output=True, text=True)
+    assert result.returncode == 2 and "--output" in result.stderr, result
+    for part in "1/2", "2/2":  # with another study nothing of it fits
+        reproduce(parted, "--shard", part)
+    assert reproduce(parted, "--set", "simulation.noise_standard_deviation=0.1") != told
 
 
 def main(program, root, chromium=""):
@@ -104,6 +153,8 @@ def main(program, root, chromium=""):
         parsed = check_page(seeded_page.read_text(encoding="utf-8"))
         assert [a["id"] for tag, a in parsed.elements if tag == "section"] == ["table-4.5"]
         assert f"<code>{key}=0.1</code>" in seeded_page.read_text(encoding="utf-8")
+
+        check_going_on(program, folder)
 
         # The page needs nothing else and opens without complaint.
         parsed = check_page(page.read_text(encoding="utf-8"))

@@ -172,7 +172,7 @@ def check_comparison(program, folder):
 
     archive, whole = str(folder / "loops.h5"), folder / "whole.h5"
     study = folder / "calibrated.toml"
-    study.write_text((STUDIES / "wood-berry.toml").read_text() + "\n[calibration]\nhealthy = 12\n")
+    study.write_text((STUDIES / "wood-berry.toml").read_text() + "\n[calibration]\nhealthy = 12\nud = 12\n")
     subprocess.run([program, "run", study, "-o", archive, "--experiments", "60", "--methods", "sse", "--audit", "0",
                     "--store", "none", "--quiet"], check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
     compare(whole)
@@ -211,6 +211,8 @@ def check_comparison(program, folder):
     assert contents(folder / "other.h5") == reference
 
     in_parts = folder / "parted.h5"
+    dry = compare(in_parts, "--dry-run", "--shard", "1/3")
+    assert "methods: counterfactual\n" in dry and " of 84 " in dry and not list(folder.glob("parted*")), dry
     assert "part 1 of 3" in compare(in_parts, "--shard", "1/3") and not in_parts.exists()
     compare(in_parts, "--shard", "3/3", "--jobs", "2")
     compare(in_parts)  # does what is missing

@@ -73,7 +73,7 @@ TEST_CASE("the numbers of a table are those of the experiments of a run", "[repr
   table.rows = {{"1", "", "Scen1", {{"y1", "ivar", 4.54}, {"y1", "ivar_diag", {}}, {"y1", "ivar_basis", {}}}},
                 {"basis", "", "", {{"y2", "ivar", 9.0}, {"y2", "ivar_diag", {}}, {"y2", "ivar_basis", {}}}}};
   BasisCases basis_cases(testing::kFactory);
-  const ReproducedTable reproduced = reproduce(table, testing::kFactory, basis_cases);
+  const ReproducedTable reproduced = reproduced(table, table_numbers(table, testing::kFactory, basis_cases));
   REQUIRE(reproduced.rows.size() == 2);
 
   const BasisCase basis = run_basis_case(study, testing::kFactory);
@@ -104,7 +104,8 @@ TEST_CASE("a loop that stops has a remark and no numbers", "[reproduction]") {
   table.rules = {rule_of(RuleKind::outside, 0.8, 1.2)};
   table.rows = {{"1", "", "Scen1", {{"y1", "ivar", 4.54}}}};
   BasisCases basis_cases(testing::kFactory);
-  const ReproducedRow row = reproduce(table, testing::kFactory, basis_cases).rows.at(0);
+  const ReproducedRow row =
+      reproduced(table, table_numbers(table, testing::kFactory, basis_cases)).rows.at(0);
   CHECK_FALSE(row.remark.empty());
   CHECK(std::isnan(row.cells[0].ours));
   CHECK(row.cells[0].agrees() == false);

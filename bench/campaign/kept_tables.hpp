@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "analysis/reproduction/table_reproduction.hpp"
+
+namespace mpm {
+
+/// The numbers of tables of the thesis that were run already, one file a table and seed, in a folder beside
+/// the page that is made of them.
+class KeptTables {
+ public:
+  /// Of the page `output`, with loops by this solver. Makes the folder. Throws ArchiveError.
+  KeptTables(const std::filesystem::path& output, std::string solver);
+  /// Removes the folder when there is nothing in it.
+  ~KeptTables();
+  KeptTables(const KeptTables&) = delete;
+  KeptTables& operator=(const KeptTables&) = delete;
+
+  /// Those of a table whose seeds were raised by `offset`; none when they are not there, damaged, or of
+  /// another program, solver or table: they are made anew then.
+  std::optional<TableNumbers> find(const ThesisTable& table, std::uint64_t offset) const;
+
+  /// Throws ArchiveError.
+  void keep(const ThesisTable& table, std::uint64_t offset, const TableNumbers& numbers) const;
+
+  /// Removes the folder with everything in it: the page is written.
+  void remove() const;
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path file_of(const ThesisTable& table, std::uint64_t offset) const;
+  /// All that the numbers of a table depend on.
+  std::string identity_of(const ThesisTable& table) const;
+
+  std::filesystem::path folder_;
+  std::string solver_, program_;
+};
+
+}  // namespace mpm
