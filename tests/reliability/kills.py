@@ -72,6 +72,7 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--log", help="a line of JSON for each trial is added here")
     options = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell lets what is in the background ignore it
     bench = Bench(options.program, options.source, options.fmu, options.only)
     draws = random.Random(options.seed)
     counts, findings, kills, number = collections.Counter(), collections.Counter(), 0, 0
