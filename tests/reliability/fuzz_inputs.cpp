@@ -172,7 +172,7 @@ Kind plant_answers(const fs::path& file) {
                       "printf '%s\\n' \"$line\"; done",
                       file.string()};
   settings.mvs = settings.outputs = 2;
-  const auto model = program_model(settings, {});
+  const auto model = program_model(settings, {.time_limit = 5.0});
   return {"answers of a plant",
           {"{}\n{\"y\": [1.5, -2e-3]}\n{\"y\": [0, 1e300]}\n"},
           true,
