@@ -270,13 +270,7 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
   return run_closed_loop(study, plant, signals, factory, observer);
 }
 
-Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
-                               const StepObserver& observer) {
-  if (draw.tuning) {
-    ExperimentDraw rest = draw;
-    rest.tuning.reset();
-    return simulate_experiment(with_tuning(study, draw), rest, factory, observer);
-  }
+LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw) {
   LoopSignals signals{
       measured_disturbances(study),           draw.noise_factor * measurement_noise(study, draw.index),
       unmeasured_disturbances(study, draw),   setpoints(study),
@@ -286,8 +280,18 @@ Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, c
   signals.faults = loop_faults(draw);
   if (const Eigen::MatrixXd errors = sensor_errors(study, draw); errors.size() > 0)
     signals.y_d += errors;
+  return signals;
+}
+
+Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
+                               const StepObserver& observer) {
+  if (draw.tuning) {
+    ExperimentDraw rest = draw;
+    rest.tuning.reset();
+    return simulate_experiment(with_tuning(study, draw), rest, factory, observer);
+  }
   const std::unique_ptr<Plant> plant = plant_of(study, draw);
-  return run_closed_loop(study, *plant, signals, factory, observer);
+  return run_closed_loop(study, *plant, experiment_signals(study, draw), factory, observer);
 }
 
 }  // namespace mpm

@@ -123,6 +123,10 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
                            const QpSolverFactory& factory, const StepObserver& observer = {});
 
+/// The signals that act on the loop of one experiment, from (study, draw) alone; `y_d` with the errors of its
+/// sensors.
+LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw);
+
 /// The closed loop of one experiment: its controller, its plant and its signals, from (study, draw) alone.
 Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
                                const StepObserver& observer = {});

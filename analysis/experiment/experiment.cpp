@@ -104,6 +104,10 @@ void ExperimentRunner::assess_alone(ExperimentRecord& record, const StepObserver
   }
   if (AssessmentRecord* const chain = chain_verdict(record.assessments))
     add_dominance(*chain, record.draw.true_cv(), mpm_alone, ud_alone);
+  if (record.truth) {
+    record.truth->mpm_alone = {mpm_alone.trajectory.y, mpm_alone.trajectory.u};
+    record.truth->ud_alone = {ud_alone.trajectory.y, ud_alone.trajectory.u};
+  }
 }
 
 void ExperimentRunner::add_dominance(AssessmentRecord& chain, Eigen::Index true_cv,
@@ -135,6 +139,10 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
     record.solver.add(main.own->solver);
   if (record.status == ExperimentStatus::ok)
     record.assessments = panel_.assess(main.assessed, main.own ? &*main.own : nullptr);
+  if (store == StorePolicy::truth) {
+    LoopSignals signals = experiment_signals(study_, record.draw);
+    record.truth = LoopTruth{std::move(signals.noise), std::move(signals.y_d)};
+  }
   const Eigen::Index true_cv = record.draw.true_cv();
   if (has_loops_alone(record.draw) && record.status == ExperimentStatus::ok)
     assess_alone(record, observer);
@@ -146,8 +154,9 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
   } else {
     record.assessments = unassessed(panel_.forms());
   }
-  if (store == StorePolicy::all || (store == StorePolicy::flagged && !record.assessments.empty() &&
-                                    judge(study_, record, record.assessments.front()).wrong()))
+  if (store == StorePolicy::all || store == StorePolicy::truth ||
+      (store == StorePolicy::flagged && !record.assessments.empty() &&
+       judge(study_, record, record.assessments.front()).wrong()))
     record.loop = {std::move(main.trajectory), std::move(main.assessed.y_sim)};
   return record;
 }

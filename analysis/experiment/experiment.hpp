@@ -30,12 +30,27 @@ enum class ExperimentStatus : std::int8_t {
 std::string_view to_string(ExperimentStatus status);
 
 /// Whose closed-loop data an archive keeps.
-enum class StorePolicy { none, flagged, all };  // flagged: those with a wrong verdict of the first method
+/// Which loops are kept: none, those with a wrong verdict of the first method, all, or all with their
+/// LoopTruth.
+enum class StorePolicy { none, flagged, all, truth };
 
 /// The data of one closed loop as they are kept in an archive.
 struct LoopRecord {
   Trajectory trajectory;
   Eigen::MatrixXd y_sim;  ///< ny x N
+};
+
+/// What only a simulation knows of a loop, y = G(u, d) + y_d + v with the plant G: no method sees it.
+struct LoopTruth {
+  /// One of the loops with one of two faults alone; empty in an experiment with one fault or none, and where
+  /// the loop with both does not run to its end.
+  struct Alone {
+    Eigen::MatrixXd y, u;  ///< ny x N and nu x N, as in Trajectory
+  };
+
+  Eigen::MatrixXd v;    ///< measurement noise, ny x N
+  Eigen::MatrixXd y_d;  ///< what unmeasured disturbances and errors of sensors add to the CVs, ny x N
+  Alone mpm_alone = {}, ud_alone = {};
 };
 
 /// Everything that is known of one experiment: what was drawn, how it ended, the truth, and what each method
@@ -59,6 +74,7 @@ struct ExperimentRecord {
   /// The loop that was assessed, when it was asked for: as it was measured. recorded() gives what the methods
   /// saw.
   std::optional<LoopRecord> loop;
+  std::optional<LoopTruth> truth = {};  ///< of that loop, when it was asked for
 
   /// What the method of this name says; null when it is not one of the study.
   const AssessmentRecord* by(std::string_view method) const;

@@ -238,7 +238,8 @@ class Comparison::Loops {
     loops_->run(campaign_.basis, execution_by([&](std::int64_t index, std::size_t thread) {
                   ExperimentRecord record = campaign_.records[static_cast<std::size_t>(index)];
                   record.assessments = runners.assess(record, thread);
-                  record.loop.reset();  // the archive has it
+                  record.loop.reset();  // the archive has them
+                  record.truth.reset();
                   return record;
                 }),
                 hooks, tally);

@@ -24,9 +24,9 @@ constexpr std::int64_t kFewestTimed = 4;
 
 /// Share of the loops whose data is kept.
 double kept_share(const RunOptions& options, const StudyForecast& forecast) {
-  return options.store == StorePolicy::all       ? 1.0
-         : options.store == StorePolicy::flagged ? forecast.to_keep.value
-                                                 : 0.0;
+  return options.store == StorePolicy::all || options.store == StorePolicy::truth ? 1.0
+         : options.store == StorePolicy::flagged                                  ? forecast.to_keep.value
+                                                                                  : 0.0;
 }
 
 /// The most that this process has held so far, pilot included.

@@ -44,9 +44,10 @@ ExitCode replay(const ReplayArguments& options) {
   // From (study, seed, index) alone: the basis case is made again too.
   const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
   const BasisCase basis = run_basis_case(campaign.study, factory);
-  const ExperimentRecord again =
-      ExperimentRunner(campaign.study, basis, method_names(campaign), factory)
-          .run(options.index, archived.loop ? StorePolicy::all : StorePolicy::none);
+  const ExperimentRecord again = ExperimentRunner(campaign.study, basis, method_names(campaign), factory)
+                                     .run(options.index, archived.truth  ? StorePolicy::truth
+                                                         : archived.loop ? StorePolicy::all
+                                                                         : StorePolicy::none);
   const std::vector<std::string> differences =
       RecordBytes(campaign.study, forms_of(campaign)).differences(archived, again);
   print_result(fmt::format("experiment {}: {}, {}\n", options.index, to_string(again.draw.kind),

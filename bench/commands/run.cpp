@@ -188,8 +188,10 @@ void add_audit(CLI::App& app, double& share) {
 }
 
 void add_store(CLI::App& app, StorePolicy& store) {
-  add_choice<StorePolicy>(app, "--store", store, store_policies(),
-                          "Keep the loop data of no experiment, of those with a wrong verdict, of all");
+  add_choice<StorePolicy>(
+      app, "--store", store, store_policies(),
+      "Keep the loop data of no experiment, of those with a wrong verdict, of all, or of all with what "
+      "only a simulation knows: noise, disturbances, loops with one of two faults alone");
 }
 
 /// `run` must live until the command line is read.

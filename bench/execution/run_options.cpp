@@ -9,8 +9,10 @@
 namespace mpm {
 
 const std::vector<std::pair<std::string, StorePolicy>>& store_policies() {
-  static const std::vector<std::pair<std::string, StorePolicy>> policies{
-      {"none", StorePolicy::none}, {"flagged", StorePolicy::flagged}, {"all", StorePolicy::all}};
+  static const std::vector<std::pair<std::string, StorePolicy>> policies{{"none", StorePolicy::none},
+                                                                         {"flagged", StorePolicy::flagged},
+                                                                         {"all", StorePolicy::all},
+                                                                         {"truth", StorePolicy::truth}};
   return policies;
 }
 

@@ -146,12 +146,17 @@ std::vector<std::string> recorded_cells(const Study& study, const ExperimentReco
   return list;
 }
 
+bool all_have_truth(const Campaign& campaign) {
+  return std::all_of(campaign.records.begin(), campaign.records.end(),
+                     [](const ExperimentRecord& record) { return !record.loop || record.truth; });
+}
+
 /// One row a sample of the loops that were kept, as they were measured, and as their record shows them where
 /// that is something else.
 std::string loops_csv(const Campaign& campaign) {
   std::vector<RecordVariable> signals;
   for (RecordTable& table : record_tables(campaign.study, forms_of(campaign)))
-    if (table.group == "trajectories")
+    if (table.group == "trajectories" || (table.group == "truth" && all_have_truth(campaign)))
       for (RecordVariable& variable : table.variables)
         if (!variable.dimensions.empty() && variable.dimensions.back() == "sample")
           signals.push_back(std::move(variable));

@@ -515,6 +515,46 @@ RecordTable kept_loops(const Study& study) {
   return table;
 }
 
+/// What only a simulation knows of kept loops.
+RecordTable truth_of_loops(const Study& study) {
+  RecordTable table{.group = "truth",
+                    .dimension = "stored",
+                    .title = "What only a simulation knows of the loops that were kept",
+                    .has = [](const Record& record) { return record.truth.has_value(); },
+                    .make = [](Record& record) { record.truth.emplace(); }};
+  const Eigen::Index samples = study.simulation.samples;
+  table.variables.push_back(matrix(
+      {"v", "measurement noise, which is in y", "CV"}, {"cv", "sample"}, study.cv_count(), samples,
+      [](auto& record) -> auto& { return record.truth->v; }));
+  table.variables.push_back(matrix(
+      {"y_d", "what unmeasured disturbances and errors of sensors add to the CVs", "CV"}, {"cv", "sample"},
+      study.cv_count(), samples, [](auto& record) -> auto& { return record.truth->y_d; }));
+  return table;
+}
+
+/// The loops with one of two faults alone.
+RecordTable loops_alone(const Study& study) {
+  RecordTable table{
+      .group = "truth_alone",
+      .dimension = "stored",
+      .title = "The loops of experiments with two faults that have one of them alone",
+      .has = [](const Record& record) { return record.truth && record.truth->mpm_alone.y.size() > 0; }};
+  const Eigen::Index samples = study.simulation.samples;
+  const auto add = [&](const char* name, const char* meaning, LoopTruth::Alone LoopTruth::*fault,
+                       Eigen::MatrixXd LoopTruth::Alone::*signal) {
+    const bool of_cvs = signal == &LoopTruth::Alone::y;
+    table.variables.push_back(matrix(
+        {name, meaning, of_cvs ? "CV" : "MV"}, {of_cvs ? "cv" : "mv", "sample"},
+        of_cvs ? study.cv_count() : study.mv_count(), samples,
+        [ fault, signal ](auto& record) -> auto& { return (*record.truth).*fault.*signal; }));
+  };
+  add("y_mpm_alone", "measured CVs with the mismatch alone", &LoopTruth::mpm_alone, &LoopTruth::Alone::y);
+  add("u_mpm_alone", "MVs with the mismatch alone", &LoopTruth::mpm_alone, &LoopTruth::Alone::u);
+  add("y_ud_alone", "measured CVs with the disturbance alone", &LoopTruth::ud_alone, &LoopTruth::Alone::y);
+  add("u_ud_alone", "MVs with the disturbance alone", &LoopTruth::ud_alone, &LoopTruth::Alone::u);
+  return table;
+}
+
 RecordTable perturbed(const Study& study) {
   RecordTable table{.group = "s0_perturbation",
                     .dimension = "perturbed",
@@ -534,12 +574,14 @@ RecordTable perturbed(const Study& study) {
 
 // A member more in one of these and this does not compile: it is then to be added to a table above.
 [[maybe_unused]] void every_member_is_in_a_table(const Record& record, const AssessmentRecord& assessment,
-                                                 const LoopRecord& loop, const SolverStatistics& statistics) {
-  [[maybe_unused]] const auto& [draw, status, message, ivar_basis, assessments, perturbed, solver, kept] =
-      record;
+                                                 const LoopRecord& loop, const LoopTruth& truth,
+                                                 const SolverStatistics& statistics) {
+  [[maybe_unused]] const auto& [draw, status, message, ivar_basis, assessments, perturbed, solver, kept,
+                                known] = record;
   [[maybe_unused]] const auto& [form, ended, reason, flagged, score, cv, source, numbers, milliseconds] =
       assessment;
   [[maybe_unused]] const auto& [trajectory, y_sim] = loop;
+  [[maybe_unused]] const auto& [v, y_d, mpm_alone, ud_alone] = truth;
   [[maybe_unused]] const auto& [loop_status, samples_done, y, u, u_target, d, y_set, of_loop, failure, what] =
       trajectory;
   [[maybe_unused]] const auto& [steps, iterations, fallbacks, residual] = statistics;
@@ -572,6 +614,8 @@ std::vector<RecordTable> record_tables(const Study& study, const AssessmentForms
   for (std::size_t m = 0; m < forms.size(); ++m)
     tables.push_back(method_table(*forms[m], m));
   tables.push_back(kept_loops(study));
+  tables.push_back(truth_of_loops(study));
+  tables.push_back(loops_alone(study));
   if (!study.s0_perturbation.multipliers.empty())
     tables.push_back(perturbed(study));
   return tables;

@@ -18,7 +18,7 @@ import h5py
 from archives import contents
 
 MANY, SOME = 400, 150
-OPTIONS = {"--experiments": SOME, "--jobs": 2, "--store": "all", "--audit": 0.0005, "--shard-interval": 0.05,
+OPTIONS = {"--experiments": SOME, "--jobs": 2, "--store": "truth", "--audit": 0.0005, "--shard-interval": 0.05,
            "--methods": "botelho,badwe2009,sse"}
 STUDIES = pathlib.Path(__file__).parents[2] / "scenarios/studies"
 PATIENCE = 300  # s, for a machine that is busy with other things

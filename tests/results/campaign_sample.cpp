@@ -87,7 +87,7 @@ Campaign campaign_sample() {
   campaign.calibration = made_up_calibration(campaign.study);
   ExperimentRunner runner(campaign.study, campaign.basis, {std::string(kChainMethod)}, factory);
   for (std::int64_t i = 0; i < 8; ++i)
-    campaign.records.push_back(runner.run(i, i < 2 ? StorePolicy::all : StorePolicy::none));
+    campaign.records.push_back(runner.run(i, i < 3 ? StorePolicy::truth : StorePolicy::none));
   make_awkward(campaign.records);
   add_made_up_answers(campaign);
   campaign.info = {

@@ -4,7 +4,9 @@
 
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/same_members.hpp"
+#include "scenarios/closed_loop.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
@@ -105,6 +107,41 @@ TEST_CASE("runner: what methods say afterwards, of a loop kept or run again, is 
     check_same(runner.assess(record), record.assessments);
     const double dominance = record.chain().alone.dominance_mpm;
     CHECK(std::isnan(dominance) == (kind != ExperimentKind::mpm_ud));
+  }
+}
+
+TEST_CASE("runner: what only a simulation knows of a loop adds up to it, and is kept when asked for",
+          "[experiment_runner]") {
+  const Study study = short_study();
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  ExperimentRunner runner(study, basis, {"sse"}, testing::kFactory);
+  for (const ExperimentKind kind : {ExperimentKind::mpm, ExperimentKind::ud, ExperimentKind::mpm_ud}) {
+    INFO(to_string(kind));
+    std::int64_t index = first_of(study, kind);
+    ExperimentRecord record = runner.run(index, StorePolicy::truth);
+    while (record.status != ExperimentStatus::ok)
+      record = runner.run(index = first_of(study, kind, index + 1), StorePolicy::truth);
+    REQUIRE(record.truth);
+    CHECK_FALSE(runner.run(index, StorePolicy::all).truth);
+    const Trajectory& loop = record.loop->trajectory;
+    const Eigen::MatrixXd plant =
+        simulated_output(with_mismatches(study.plant.G, record.draw.mismatches), study.controller.sample_time,
+                         basis.point.u, loop.u, loop.d);
+    CHECK((loop.y - record.truth->v - record.truth->y_d - plant).cwiseAbs().maxCoeff() < 1e-12);
+    CHECK((record.truth->y_d.cwiseAbs().maxCoeff() > 0.0) == (kind != ExperimentKind::mpm));
+    CHECK(record.truth->v.cwiseAbs().maxCoeff() > 0.0);
+    const auto check_alone = [&](const LoopTruth::Alone& alone, const ExperimentDraw& draw) {
+      if (kind != ExperimentKind::mpm_ud) {
+        CHECK(alone.y.size() == 0);
+        return;
+      }
+      const Trajectory again = simulate_experiment(study, draw, testing::kFactory);
+      CHECK(alone.y == again.y);
+      CHECK(alone.u == again.u);
+      CHECK(alone.y != loop.y);
+    };
+    check_alone(record.truth->mpm_alone, record.draw.mismatch_alone());
+    check_alone(record.truth->ud_alone, record.draw.disturbance_alone());
   }
 }
 

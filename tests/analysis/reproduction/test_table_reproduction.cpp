@@ -73,24 +73,24 @@ TEST_CASE("the numbers of a table are those of the experiments of a run", "[repr
   table.rows = {{"1", "", "Scen1", {{"y1", "ivar", 4.54}, {"y1", "ivar_diag", {}}, {"y1", "ivar_basis", {}}}},
                 {"basis", "", "", {{"y2", "ivar", 9.0}, {"y2", "ivar_diag", {}}, {"y2", "ivar_basis", {}}}}};
   BasisCases basis_cases(testing::kFactory);
-  const ReproducedTable reproduced = reproduced(table, table_numbers(table, testing::kFactory, basis_cases));
-  REQUIRE(reproduced.rows.size() == 2);
+  const ReproducedTable result = reproduced(table, table_numbers(table, testing::kFactory, basis_cases));
+  REQUIRE(result.rows.size() == 2);
 
   const BasisCase basis = run_basis_case(study, testing::kFactory);
   const ExperimentRecord record =
       ExperimentRunner(study, basis, {"botelho"}, testing::kFactory).run(1, StorePolicy::none);
   const Diagnosis diagnosis = record.chain();
-  const std::vector<ReproducedCell>& cells = reproduced.rows[0].cells;
+  const std::vector<ReproducedCell>& cells = result.rows[0].cells;
   CHECK(cells[0].ours == diagnosis.ivar(0));  // the same bits
   CHECK(cells[1].ours == diagnosis.ivar_diag(0));
   CHECK(cells[2].ours == record.ivar_basis(0));
   CHECK(cells[0].agrees() == true);
   CHECK_FALSE(cells[1].agrees());  // no rule
 
-  CHECK(reproduced.rows[1].cells[0].ours == basis.diagnosis.ivar(1));
-  CHECK(reproduced.rows[1].cells[2].ours == 1.0);  // of the basis case against itself
-  CHECK(reproduced.rows[1].cells[0].agrees() == false);
-  const Agreement agreement = reproduced.agreement();
+  CHECK(result.rows[1].cells[0].ours == basis.diagnosis.ivar(1));
+  CHECK(result.rows[1].cells[2].ours == 1.0);  // of the basis case against itself
+  CHECK(result.rows[1].cells[0].agrees() == false);
+  const Agreement agreement = result.agreement();
   CHECK(agreement.agreeing == 1);
   CHECK(agreement.judged == 2);
 }

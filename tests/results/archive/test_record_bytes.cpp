@@ -186,6 +186,14 @@ std::vector<MemberChange> member_changes() {
        [](R& r) { r.loop->trajectory.solver.largest_kkt_residual = 17.0; },
        {"trajectories/kkt_residual_max"}},
       {"no loop", [](R& r) { r.loop.reset(); }, {"trajectories"}},
+      {"noise", [](R& r) { r.truth->v(0, 3) += 1.0; }, {"truth/v"}},
+      {"disturbance", [](R& r) { r.truth->y_d(1, 0) += 1.0; }, {"truth/y_d"}},
+      {"y, mismatch alone", [](R& r) { r.truth->mpm_alone.y(1, 1) += 1.0; }, {"truth_alone/y_mpm_alone"}},
+      {"u, mismatch alone", [](R& r) { r.truth->mpm_alone.u(0, 1) += 1.0; }, {"truth_alone/u_mpm_alone"}},
+      {"y, disturbance alone", [](R& r) { r.truth->ud_alone.y(1, 1) += 1.0; }, {"truth_alone/y_ud_alone"}},
+      {"u, disturbance alone", [](R& r) { r.truth->ud_alone.u(0, 1) += 1.0; }, {"truth_alone/u_ud_alone"}},
+      {"no loops alone", [](R& r) { r.truth->mpm_alone = r.truth->ud_alone = {}; }, {"truth_alone"}},
+      {"no truth", [](R& r) { r.truth.reset(); }, {"truth", "truth_alone"}},
   };
 }
 
@@ -196,6 +204,9 @@ ExperimentRecord full_record(const Campaign& campaign) {
   REQUIRE(record.status == ExperimentStatus::ok);
   REQUIRE(record.loop);
   REQUIRE(record.perturbed.damping.size() == 3);
+  const Trajectory& loop = record.loop->trajectory;
+  record.truth =
+      LoopTruth{0.1 * loop.y, 0.2 * loop.y, {0.3 * loop.y, 0.4 * loop.u}, {0.5 * loop.y, 0.6 * loop.u}};
   record.solver.largest_kkt_residual = 0.0;
   record.draw.mismatches[0].value = record.draw.disturbances[0].gain =
       record.draw.disturbances[0].time_constant = 0.5;
