@@ -33,7 +33,7 @@ ExperimentSeries::ExperimentSeries(const Study& study, RunOptions options, const
   earlier_seconds_ = shards_->seconds();
 }
 
-void ExperimentSeries::run(const BasisCase& basis, Execution execute, const CampaignHooks& hooks,
+void ExperimentSeries::run(const BasisCase& basis, const Execution& execute, const CampaignHooks& hooks,
                            ExperimentTally& tally) {
   std::int64_t left = std::ssize(missing_);
   const auto take = [&](ExperimentOutcome outcome) {

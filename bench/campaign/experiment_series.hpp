@@ -49,7 +49,8 @@ class ExperimentSeries {
   double earlier_seconds() const { return earlier_seconds_; }
 
   /// Runs what is missing, and counts it in `tally`. Throws Interrupted when it was stopped before.
-  void run(const BasisCase& basis, Execution execute, const CampaignHooks& hooks, ExperimentTally& tally);
+  void run(const BasisCase& basis, const Execution& execute, const CampaignHooks& hooks,
+           ExperimentTally& tally);
 
   /// Brings the outcomes into order, all of which must be there.
   OutcomeCollection collect();
