@@ -106,8 +106,7 @@ constexpr std::array<VerdictQuestion, 6> kQuestions{{
     {"parameter", "channel and parameter of a single mismatch are the named ones", &ask_parameter},
 }};
 
-// --- rates
-// ---------------------------------------------------------------------------------------------------
+// --- Rates ---
 
 /// What is counted of one run of a method.
 struct MethodRun {
@@ -173,8 +172,7 @@ std::vector<RateChange> corrected(std::vector<RateChange> changes) {
   return changes;
 }
 
-// --- verdicts
-// ------------------------------------------------------------------------------------------------
+// --- Verdicts ---
 
 VerdictChange verdict_change(const VerdictQuestion& question, const MethodRun& before, const MethodRun& now,
                              const std::vector<LoopPair>& loops) {
@@ -200,8 +198,7 @@ VerdictChange verdict_change(const VerdictQuestion& question, const MethodRun& b
   return verdict;
 }
 
-// --- numbers
-// -------------------------------------------------------------------------------------------------
+// --- Numbers ---
 
 /// Collects one number over experiments.
 class NumberCollection {

@@ -197,138 +197,108 @@ RunOptions run_options(const Campaign& campaign, const ComparisonOptions& option
   return run;
 }
 
+/// The record of the experiment `index`, which there is.
+template <class List>
+auto record_with(List& records, std::int64_t index) {
+  return std::lower_bound(
+      records.begin(), records.end(), index,
+      [](const ExperimentRecord& record, std::int64_t wanted) { return record.draw.index < wanted; });
+}
+
+/// Opens the experiments of a comparison, or its calibration loops.
+void open(std::optional<ExperimentSeries>& series, const Study& study, const RunOptions& run,
+          const WantedLoops& wanted, const std::optional<KeptAssessments>& kept, bool calibration) {
+  if (!kept) {
+    series.emplace(study, run, wanted, std::nullopt, ShardStore::Warn());
+    return;
+  }
+  const auto folder = [&](const std::filesystem::path& shards) {
+    return calibration ? calibration_shard_folder(shards) : shards;
+  };
+  std::vector<std::filesystem::path> others;
+  for (const std::filesystem::path& part : kept->parts)
+    for (std::filesystem::path& shard : shards_in(folder(part)))
+      others.push_back(std::move(shard));
+  series.emplace(study, run, wanted, folder(kept->shards), kept->warn, others);
+}
+
 }  // namespace
 
-class Comparison::Loops {
- public:
-  Loops(const Campaign& campaign, const ComparisonOptions& options)
-      : campaign_(campaign),
-        study_(study_with(campaign.study, options.methods)),
-        run_(run_options(campaign, options)) {
-    std::size_t place = 0;  // of a loop among those of the comparison
-    std::vector<std::int64_t> wanted, calibrating;
-    for (const ExperimentRecord& record : campaign.records)
-      if (is_compared(record, options.experiments) && is_in_shard(place++, options.shard))
-        wanted.push_back(record.draw.index);
-    open(loops_, study_, run_, {std::ssize(campaign.records), std::move(wanted)}, options.kept, false);
-    const std::int64_t loops = std::ssize(campaign.calibration.loops);
-    if (loops == 0)
-      return;
-    for (std::int64_t index = 0; index < loops; ++index)
-      if (is_in_shard(place++, options.shard))
-        calibrating.push_back(index);
-    calibration_study_ = calibration_study(study_);
-    open(calibration_, calibration_study_, calibration_options(run_), {loops, std::move(calibrating)},
-         options.kept, true);
-  }
-
-  ExperimentTally tally() const {
-    ExperimentTally tally = loops_->tally();
-    if (calibration_)
-      tally += calibration_->tally();
-    return tally;
-  }
-
-  void run(const CampaignHooks& hooks) {
-    ExperimentTally tally = this->tally();
-    if (hooks.on_start)
-      hooks.on_start(tally.done, tally.count);
-    prepare_plant(campaign_.study);
-    ThreadedRunners runners(campaign_, study_, study_.methods, run_.jobs);
-    loops_->run(campaign_.basis, execution_by([&](std::int64_t index, std::size_t thread) {
-                  ExperimentRecord record = campaign_.records[static_cast<std::size_t>(index)];
-                  record.assessments = runners.assess(record, thread);
-                  record.loop.reset();  // the archive has them
-                  record.truth.reset();
-                  return record;
-                }),
-                hooks, tally);
-    if (!calibration_)
-      return;
-    ThreadedRunners calibrating(campaign_, calibration_study_, study_.methods, run_.jobs);
-    calibration_->run(campaign_.basis, execution_by([&](std::int64_t index, std::size_t thread) {
-                        return calibrating.run(index, thread);
-                      }),
-                      hooks, tally);
-  }
-
-  void compact() {
-    loops_->compact();
-    if (calibration_)
-      calibration_->compact();
-  }
-
-  /// What the methods say of the experiments that are compared; the others have no assessment.
-  std::vector<ExperimentRecord> assessed() {
-    Campaign loops;
-    loops_->collect().move_into(loops);
-    return std::move(loops.records);
-  }
-
-  /// What they say of the calibration loops.
-  Calibration scored() {
-    if (!calibration_)
-      return {};
-    Campaign loops;
-    calibration_->collect().move_into(loops);
-    return calibration_of(calibration_study_, loops.records);
-  }
-
-  const Study& study() const { return study_; }
-
- private:
-  static void open(std::optional<ExperimentSeries>& series, const Study& study, const RunOptions& run,
-                   const WantedLoops& wanted, const std::optional<KeptAssessments>& kept, bool calibration) {
-    const auto folder = [&](const std::filesystem::path& shards) {
-      return calibration ? calibration_shard_folder(shards) : shards;
-    };
-    if (!kept) {
-      series.emplace(study, run, wanted, std::nullopt, ShardStore::Warn());
-      return;
-    }
-    std::vector<std::filesystem::path> others;
-    for (const std::filesystem::path& part : kept->parts)
-      for (std::filesystem::path& shard : shards_in(folder(part)))
-        others.push_back(std::move(shard));
-    series.emplace(study, run, wanted, folder(kept->shards), kept->warn, others);
-  }
-
-  const Campaign& campaign_;
-  Study study_, calibration_study_;
-  RunOptions run_;
-  std::optional<ExperimentSeries> loops_, calibration_;
-};
-
 Comparison::Comparison(const Campaign& campaign, const ComparisonOptions& options)
-    : loops_(std::make_unique<Loops>(campaign, options)) {}
-
-Comparison::~Comparison() = default;
+    : campaign_(campaign),
+      study_(study_with(campaign.study, options.methods)),
+      run_(run_options(campaign, options)) {
+  std::size_t place = 0;  // of a loop among those of the comparison
+  std::vector<std::int64_t> wanted, calibrating;
+  for (const ExperimentRecord& record : campaign.records)
+    if (is_compared(record, options.experiments) && is_in_shard(place++, options.shard))
+      wanted.push_back(record.draw.index);
+  const std::int64_t experiments = campaign.records.empty() ? 0 : campaign.records.back().draw.index + 1;
+  open(loops_, study_, run_, {experiments, std::move(wanted)}, options.kept, false);
+  const std::int64_t loops = std::ssize(campaign.calibration.loops);
+  if (loops == 0)
+    return;
+  for (std::int64_t index = 0; index < loops; ++index)
+    if (is_in_shard(place++, options.shard))
+      calibrating.push_back(index);
+  calibration_study_ = calibration_study(study_);
+  open(calibration_, calibration_study_, calibration_options(run_), {loops, std::move(calibrating)},
+       options.kept, true);
+}
 
 ExperimentTally Comparison::tally() const {
-  return loops_->tally();
+  ExperimentTally tally = loops_->tally();
+  if (calibration_)
+    tally += calibration_->tally();
+  return tally;
 }
 
 void Comparison::run(const CampaignHooks& hooks) {
-  loops_->run(hooks);
+  ExperimentTally tally = this->tally();
+  if (hooks.on_start)
+    hooks.on_start(tally.done, tally.count);
+  prepare_plant(campaign_.study);
+  ThreadedRunners runners(campaign_, study_, study_.methods, run_.jobs);
+  loops_->run(campaign_.basis, execution_by([&](std::int64_t index, std::size_t thread) {
+                ExperimentRecord record = *record_with(campaign_.records, index);
+                record.assessments = runners.assess(record, thread);
+                record.loop.reset();  // the archive has them
+                record.truth.reset();
+                return record;
+              }),
+              hooks, tally);
+  if (!calibration_)
+    return;
+  ThreadedRunners calibrating(campaign_, calibration_study_, study_.methods, run_.jobs);
+  calibration_->run(campaign_.basis, execution_by([&](std::int64_t index, std::size_t thread) {
+                      return calibrating.run(index, thread);
+                    }),
+                    hooks, tally);
 }
 
 void Comparison::compact() {
   loops_->compact();
+  if (calibration_)
+    calibration_->compact();
 }
 
 void Comparison::add_to(Campaign& campaign, const std::string& command) {
-  std::vector<ExperimentRecord> assessed = loops_->assessed();
+  Campaign assessed;
+  loops_->collect().move_into(assessed);
   Records records;
   std::vector<std::vector<AssessmentRecord>> assessments;
-  for (ExperimentRecord& record : assessed) {
+  for (ExperimentRecord& record : assessed.records) {
     if (record.assessments.empty())
-      continue;
-    records.push_back(&campaign.records[static_cast<std::size_t>(record.draw.index)]);
+      continue;  // not one of those that are compared
+    records.push_back(&*record_with(campaign.records, record.draw.index));
     assessments.push_back(std::move(record.assessments));
   }
-  append(campaign, assessment_forms(loops_->study(), loops_->study().methods), records,
-         std::move(assessments), command);
-  const Calibration scored = loops_->scored();
+  append(campaign, assessment_forms(study_, study_.methods), records, std::move(assessments), command);
+  if (!calibration_)
+    return;
+  Campaign calibrating;
+  calibration_->collect().move_into(calibrating);
+  const Calibration scored = calibration_of(calibration_study_, calibrating.records);
   for (std::size_t i = 0; i < scored.loops.size(); ++i) {
     std::vector<double>& scores = campaign.calibration.loops[i].scores;
     scores.insert(scores.end(), scored.loops[i].scores.begin(), scored.loops[i].scores.end());

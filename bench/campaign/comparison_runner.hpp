@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,7 +54,8 @@ class Comparison {
  public:
   /// `campaign` must outlive run(). Errors: as ShardStore.
   Comparison(const Campaign& campaign, const ComparisonOptions& options);
-  ~Comparison();
+  Comparison(const Comparison&) = delete;
+  Comparison& operator=(const Comparison&) = delete;
 
   /// Of the loops that are wanted; what an earlier comparison has left is done.
   ExperimentTally tally() const;
@@ -72,8 +72,10 @@ class Comparison {
   void add_to(Campaign& campaign, const std::string& command);
 
  private:
-  class Loops;
-  std::unique_ptr<Loops> loops_;
+  const Campaign& campaign_;
+  Study study_, calibration_study_;  ///< with the methods of the comparison
+  RunOptions run_;
+  std::optional<ExperimentSeries> loops_, calibration_;
 };
 
 /// These loops as methods see them; run again where they were not kept. Without samples: a calibration loop

@@ -41,14 +41,7 @@ bool fits(const TableNumbers& numbers, const ThesisTable& table) {
 }  // namespace
 
 KeptTables::KeptTables(const std::filesystem::path& output, std::string solver)
-    : folder_(output.string() + ".tables"), solver_(std::move(solver)), program_(program_identity()) {
-  make_output_folder(folder_, "tables");
-}
-
-KeptTables::~KeptTables() {
-  std::error_code not_empty;
-  std::filesystem::remove(folder_, not_empty);
-}
+    : folder_(output.string() + ".tables"), solver_(std::move(solver)), program_(program_identity()) {}
 
 std::filesystem::path KeptTables::file_of(const ThesisTable& table, std::uint64_t offset) const {
   return folder_ / fmt::format("{}.seed{}", table.name(), offset);
@@ -88,6 +81,7 @@ void KeptTables::keep(const ThesisTable& table, std::uint64_t offset, const Tabl
   transfer_numbers(writer, numbers);
   const std::string bytes = writer.take();
   const auto content = std::as_bytes(std::span(bytes));
+  make_output_folder(folder_, "tables");
   write_file_atomically(file_of(table, offset), sealed({content.begin(), content.end()}));
 }
 

@@ -13,18 +13,14 @@ namespace mpm {
 /// the page that is made of them.
 class KeptTables {
  public:
-  /// Of the page `output`, with loops by this solver. Makes the folder. Throws ArchiveError.
+  /// Of the page `output`, with loops by this solver.
   KeptTables(const std::filesystem::path& output, std::string solver);
-  /// Removes the folder when there is nothing in it.
-  ~KeptTables();
-  KeptTables(const KeptTables&) = delete;
-  KeptTables& operator=(const KeptTables&) = delete;
 
   /// Those of a table whose seeds were raised by `offset`; none when they are not there, damaged, or of
   /// another program, solver or table: they are made anew then.
   std::optional<TableNumbers> find(const ThesisTable& table, std::uint64_t offset) const;
 
-  /// Throws ArchiveError.
+  /// Makes the folder unless it is there. Throws ArchiveError.
   void keep(const ThesisTable& table, std::uint64_t offset, const TableNumbers& numbers) const;
 
   /// Removes the folder with everything in it: the page is written.

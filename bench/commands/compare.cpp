@@ -147,8 +147,7 @@ void assess(Comparison& comparison, const CompareArguments& options, Progress& p
 ExitCode compare_part(const Campaign& campaign, ComparisonOptions comparison_options,
                       const CompareArguments& options, Progress& progress, const std::string& command_line) {
   const ShardNumber& shard = *comparison_options.shard;
-  const std::filesystem::path folder =
-      parts_folder_of(options.output) / fmt::format("{}-of-{}", shard.number, shard.of);
+  const std::filesystem::path folder = parts_folder_of(options.output) / part_name("", shard);
   make_output_folder(folder.parent_path(), "parts");
   comparison_options.kept->shards = folder;
   comparison_options.kept->parts.clear();
@@ -223,8 +222,13 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
     assess(*comparison, options, progress, command_line);
     comparison->add_to(campaign, command_line);
   }
-  if (!options.output.empty()) {
+  if (comparison_options.shard) {
+    print_result("every loop is assessed already\n");
+    return ExitCode::done;
+  }
+  if (!options.output.empty())
     write_archive(options.output, campaign, findings_of(campaign));
+  if (comparison && !options.output.empty()) {
     comparison.reset();
     remove_shards(options.output);
   }

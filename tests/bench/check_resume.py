@@ -210,6 +210,14 @@ def check_comparison(program, folder):
     compare(folder / "other.h5", "--discard")
     assert contents(folder / "other.h5") == reference
 
+    # Where nothing is missing, shards that a run of this name has left are none of its business.
+    left = folder / "copied.h5.shards" / "00000001.shard"
+    left.parent.mkdir()
+    left.write_text("of a run")
+    subprocess.run([program, "compare", whole, "--methods", "sse", "--quiet", "-o", folder / "copied.h5"], check=True,
+                   timeout=PATIENCE, stdout=subprocess.DEVNULL)
+    assert left.read_text() == "of a run" and contents(folder / "copied.h5") == reference
+
     in_parts = folder / "parted.h5"
     dry = compare(in_parts, "--dry-run", "--shard", "1/3")
     assert "methods: counterfactual\n" in dry and " of 84 " in dry and not list(folder.glob("parted*")), dry

@@ -80,6 +80,25 @@ TEST_CASE(
   check_same(chosen.calibration, serial.calibration);
 }
 
+TEST_CASE("comparison: an archive may lack experiments between those that it has") {
+  RunOptions options = few();
+  options.methods = {"botelho"};
+  Campaign whole = run_campaign(calibrated_wood_berry(), options);
+  Campaign part = whole;
+  part.records.erase(part.records.begin() + 1, part.records.begin() + 3);
+  const ComparisonOptions comparison{.methods = {"sse"}, .experiments = {}};
+  add_methods(whole, comparison, {});
+  add_methods(part, comparison, {});
+  whole.records.erase(whole.records.begin() + 1, whole.records.begin() + 3);
+  REQUIRE(part.records.size() == whole.records.size());
+  for (std::size_t i = 0; i < part.records.size(); ++i) {
+    INFO("record " << i);
+    CHECK(part.records[i].by("sse")->status == whole.records[i].by("sse")->status);
+    CHECK(std::bit_cast<std::uint64_t>(part.records[i].by("sse")->score) ==
+          std::bit_cast<std::uint64_t>(whole.records[i].by("sse")->score));
+  }
+}
+
 TEST_CASE("calibration: stopped in its loops and resumed, it is what one go gives; its shards go as well") {
   const TemporaryFolder folder;
   const fs::path output = folder / "a.h5", shards = shard_folder_of(output);

@@ -8,14 +8,13 @@ and what was there before. An interruption (EINTR) and a short write must be got
 command makes fewer calls of the kind do not count. Exit code 1 when an invariant does not hold.
 """
 
-import argparse
 import collections
 import json
 import random
 import subprocess
 import sys
 
-from trials import PATIENCE, Bench
+from trials import PATIENCE, Bench, arguments
 
 KINDS = {"open": ["EIO", "ENOSPC", "EDQUOT"], "write": ["EIO", "ENOSPC", "EDQUOT", "EINTR", "short"],
          "fsync": ["EIO", "ENOSPC", "EDQUOT"], "rename": ["EIO", "ENOSPC", "EDQUOT"], "close": ["EIO", "ENOSPC", "EINTR"],
@@ -59,15 +58,7 @@ def trial(bench, case, call, kind, nth, environment):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("source")
-    parser.add_argument("--count", type=int, default=300)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--fmu")
-    parser.add_argument("--only", default="")
-    parser.add_argument("--log", help="a line of JSON for each trial is added here")
-    options = parser.parse_args()
+    options = arguments(__doc__, 300)
     bench = Bench(options.program, options.source, options.fmu, options.only)
     draws = random.Random(options.seed)
     calls = list(WEIGHTS)

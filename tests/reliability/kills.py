@@ -7,7 +7,6 @@ SIGKILL before or after a call that writes, flushes, renames, makes or removes a
 Exit code 1 when an invariant does not hold.
 """
 
-import argparse
 import collections
 import json
 import random
@@ -16,7 +15,7 @@ import subprocess
 import sys
 import time
 
-from trials import PATIENCE, Bench
+from trials import PATIENCE, Bench, arguments
 
 
 def kill_by_time(bench, case, draws):
@@ -63,16 +62,7 @@ def trial(bench, case, draws):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("source")
-    parser.add_argument("--count", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--fmu")
-    parser.add_argument("--only", default="")
-    parser.add_argument("--log", help="a line of JSON for each trial is added here")
-    options = parser.parse_args()
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell lets what is in the background ignore it
+    options = arguments(__doc__, 1000)
     bench = Bench(options.program, options.source, options.fmu, options.only)
     draws = random.Random(options.seed)
     counts, findings, kills, number = collections.Counter(), collections.Counter(), 0, 0

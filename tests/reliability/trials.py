@@ -5,6 +5,7 @@ output; the same command again (`run` with --resume) must end with exit code 0 a
 undisturbed one, and no process may live on.
 """
 
+import argparse
 import json
 import os
 import pathlib
@@ -74,6 +75,19 @@ name = "cd1"
 affected = ["h1"]
 parameter = [{name = "cd1", factor = 1.2}]
 """
+
+
+def arguments(description, count):
+    """The command line of both."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("source")
+    parser.add_argument("--count", type=int, default=count)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--fmu")
+    parser.add_argument("--only", default="")
+    parser.add_argument("--log", help="a line of JSON for each trial is added here")
+    return parser.parse_args()
 
 
 class Case:
