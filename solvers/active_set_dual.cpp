@@ -167,7 +167,8 @@ bool DualActiveSet::find_violated(const QpData& data, double tolerance, LimitSid
                                                 .value = row_value_.data(),
                                                 .lower = data.hard_lower.data(),
                                                 .upper = data.hard_upper.data(),
-                                                .dual = nullptr});
+                                                .dual = nullptr,
+                                                .slack = nullptr});
   for (Eigen::Index i = 0; i < row_value_.size() && hard > largest; ++i)
     look(LimitKind::hard, i, data.hard_lower(i) - row_value_(i), row_value_(i) - data.hard_upper(i));
   for (Eigen::Index i = 0; i < row_value_.size(); ++i) {

@@ -16,8 +16,7 @@ ActiveSetFactor::ActiveSetFactor(Eigen::Index size)
       gathered_(size, padded(size)),
       lower_(size, padded(size)),
       inverse_(LaneKernels::kInverse * padded(size)),
-      packed_(size),
-      scratch_(4 * padded(size)) {
+      packed_(size) {
   free_.reserve(static_cast<std::size_t>(size));
 }
 
@@ -28,7 +27,7 @@ bool ActiveSetFactor::compute(const LaneMatrix& matrix, const std::vector<int>& 
     gather(matrix);
   const LaneMatrix& source = count < size_ ? gathered_ : matrix;
   return lane_kernels().factor(source.data(), source.stride(), padded(count), kSmallestPivot, lower_.data(),
-                               inverse_.data(), scratch_.data());
+                               inverse_.data());
 }
 
 // M_FF, and the unit matrix in the rest of the last eight rows.

@@ -29,7 +29,7 @@ class ActiveSetFactor {
 
   Eigen::Index size_;
   LaneMatrix gathered_, lower_;
-  LaneVector inverse_, packed_, scratch_;  ///< of the blocks on the diagonal of L
+  LaneVector inverse_, packed_;  ///< of the blocks on the diagonal of L
   std::vector<int> free_;
 };
 

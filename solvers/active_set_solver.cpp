@@ -230,7 +230,8 @@ bool ActiveSetSolver::hard_limits_kept(const QpData& data) const {
                                    .value = newton_.row_value.data(),
                                    .lower = data.hard_lower.data(),
                                    .upper = data.hard_upper.data(),
-                                   .dual = nullptr}) <= options_.tolerance;
+                                   .dual = nullptr,
+                                   .slack = nullptr}) <= options_.tolerance;
 }
 
 // The method of multipliers: the forces become the multipliers. Returns how far that is from a solution: the

@@ -36,6 +36,32 @@ bool all_finite(const QpResult& result) {
          finite(result.soft_dual);
 }
 
+bool has_own_slacks(const QpStructure& structure) {
+  Eigen::Index i = 0;
+  while (i < structure.row_count() && structure.slack_of_row(i) == i)
+    ++i;
+  return i == structure.row_count() && i == structure.slack_count();
+}
+
+SlackArrays slack_arrays(const QpStructure& structure, const QpResult& result, const double* pull) {
+  return {.count = structure.slack_count(),
+          .slack = result.slack.data(),
+          .quadratic = structure.slack_quadratic.data(),
+          .linear = structure.slack_linear.data(),
+          .pull = pull};
+}
+
+// Without a slack a row has no soft limits.
+void gather_slacks(const QpStructure& structure, const QpResult& result, KktWorkspace& w) {
+  w.pull.setZero();
+  for (Eigen::Index i = 0; i < structure.row_count(); ++i) {
+    const int q = structure.slack_of_row(i);
+    w.row_slack(i) = q < 0 ? kInfinity : result.slack(q);
+    if (q >= 0)
+      w.pull(q) += std::abs(result.soft_dual(i));
+  }
+}
+
 }  // namespace
 
 void QpStructure::validate() const {
@@ -114,18 +140,17 @@ double objective(const QpStructure& structure, const QpData& data, const QpResul
   double value = 0.0;
   for (Eigen::Index i = 0; i < structure.variable_count(); ++i)
     value += result.x(i) * (0.5 * structure.hessian.col(i).dot(result.x) + data.gradient(i));
-  return value + lane_kernels().squares(result.slack.data(), structure.slack_quadratic.data(),
-                                        structure.slack_linear.data(), structure.slack_count());
+  return value + lane_kernels().slack_cost(slack_arrays(structure, result, nullptr));
 }
 
 KktWorkspace::KktWorkspace(const QpStructure& structure)
     : lanes(std::make_shared<const LaneProgram>(structure.hessian, structure.rows)),
+      own_slacks(has_own_slacks(structure)),
       row_value(structure.row_count()),
       row_dual(structure.row_count()),
-      soft_lower(structure.row_count()),
-      soft_upper(structure.row_count()),
-      stationarity(structure.variable_count()),
-      slack_force(structure.slack_count()) {
+      row_slack(own_slacks ? 0 : structure.row_count()),
+      pull(own_slacks ? 0 : structure.slack_count()),
+      stationarity(structure.variable_count()) {
   pushing.reserve(static_cast<std::size_t>(structure.row_count()));
 }
 
@@ -138,44 +163,33 @@ double kkt_residual(const QpStructure& structure, const QpData& data, const QpRe
                     KktWorkspace& workspace) {
   if (!all_finite(result))  // comparisons below would let NaN pass
     return kInfinity;
+  const LaneKernels& kernels = lane_kernels();
   KktWorkspace& w = workspace;
   w.lanes->multiply_rows(result.x.data(), w.row_value);
-  w.slack_force = structure.slack_linear;
-  w.slack_force.array() += 2.0 * structure.slack_quadratic.array() * result.slack.array();
-  w.row_dual = result.hard_dual + result.soft_dual;
-  w.pushing.clear();
-  for (Eigen::Index i = 0; i < w.row_dual.size(); ++i) {
-    const int q = structure.slack_of_row(i);
-    const double s = q < 0 ? kInfinity : result.slack(q);  // without a slack there are no soft limits
-    w.soft_lower(i) = data.soft_lower(i) - s;
-    w.soft_upper(i) = data.soft_upper(i) + s;
-    if (w.row_dual(i) != 0.0)
-      w.pushing.push_back(static_cast<int>(i));
-    if (q >= 0 && result.soft_dual(i) != 0.0)
-      w.slack_force(q) -= std::abs(result.soft_dual(i));
-  }
+  if (!w.own_slacks)
+    gather_slacks(structure, result, w);
   w.stationarity.vector() = data.gradient + result.bound_dual;
   w.lanes->add_hessian(result.x.data(), w.stationarity);
+  w.row_dual = result.hard_dual + result.soft_dual;
+  w.pushing.resize(static_cast<std::size_t>(w.row_dual.size()));
+  const long pushing = kernels.non_zero(w.row_dual.data(), w.row_dual.size(), w.pushing.data());
+  w.pushing.resize(static_cast<std::size_t>(pushing));
   w.lanes->add_rows(w.pushing, w.row_dual.data(), w.stationarity);
 
-  const LaneKernels& kernels = lane_kernels();
-  double scaled = w.stationarity.vector().lpNorm<Eigen::Infinity>();
-  double absolute = 0.0;
+  const auto slack_pull = w.own_slacks ? result.soft_dual.data() : w.pull.data();
+  double scaled = std::max(w.stationarity.vector().lpNorm<Eigen::Infinity>(),
+                           kernels.slack_residual(slack_arrays(structure, result, slack_pull)));
+  double absolute = kernels.below_zero(result.slack.data(), result.slack.size());
   const auto look = [&](const double* value, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
-                        const Eigen::VectorXd& dual) {
-    const LimitArrays limits{dual.size(), value, lower.data(), upper.data(), dual.data()};
+                        const Eigen::VectorXd& dual, const double* slack) {
+    const LimitArrays limits{dual.size(), value, lower.data(), upper.data(), dual.data(), slack};
     absolute = std::max(absolute, kernels.violation(limits));
     scaled = std::max(scaled, kernels.complementarity(limits));
   };
-  look(result.x.data(), data.lower, data.upper, result.bound_dual);
-  look(w.row_value.data(), data.hard_lower, data.hard_upper, result.hard_dual);
-  look(w.row_value.data(), w.soft_lower, w.soft_upper, result.soft_dual);
-  if (w.slack_force.size() > 0) {
-    absolute = std::max(absolute, -result.slack.minCoeff());
-    // What is left of the force is the multiplier of s >= 0: not negative, and zero where s > 0.
-    const double product = w.slack_force.cwiseProduct(result.slack).lpNorm<Eigen::Infinity>();
-    scaled = std::max({scaled, -w.slack_force.minCoeff(), product});
-  }
+  look(result.x.data(), data.lower, data.upper, result.bound_dual, nullptr);
+  look(w.row_value.data(), data.hard_lower, data.hard_upper, result.hard_dual, nullptr);
+  look(w.row_value.data(), data.soft_lower, data.soft_upper, result.soft_dual,
+       w.own_slacks ? result.slack.data() : w.row_slack.data());
   return std::max(absolute, scaled / std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>()));
 }
 

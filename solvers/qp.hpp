@@ -101,11 +101,12 @@ struct KktWorkspace {
   explicit KktWorkspace(const QpStructure& structure);
 
   std::shared_ptr<const LaneProgram> lanes;
-  LaneVector row_value;                              ///< m
-  Eigen::VectorXd row_dual, soft_lower, soft_upper;  ///< limits with the slacks, m
-  std::vector<int> pushing;                          ///< rows with a multiplier
-  LaneVector stationarity;                           ///< n
-  Eigen::VectorXd slack_force;                       ///< q
+  bool own_slacks;                  ///< every row has a slack of its own, in the order of the rows
+  LaneVector row_value;             ///< m
+  Eigen::VectorXd row_dual;         ///< m
+  Eigen::VectorXd row_slack, pull;  ///< without own slacks: the slack of each row, m, and what pushes it, q
+  std::vector<int> pushing;         ///< rows with a multiplier
+  LaneVector stationarity;          ///< n
 };
 
 /// The same, with memory that the caller keeps: allocates nothing.

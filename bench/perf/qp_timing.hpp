@@ -32,7 +32,7 @@ QpTimes program_times(const std::vector<std::vector<double>>& microseconds);
 /// Solves a sequence again and again and times every program by itself.
 class QpTiming {
  public:
-  /// `sequence` must outlive this.
+  /// `sequence` has a program at least and must outlive this.
   QpTiming(const QpSequence& sequence, const QpSolverFactory& factory, StartOfSolve start);
 
   /// All programs once; returns the seconds of processor time in `QpSolver::solve`, checks and certificate
@@ -45,6 +45,7 @@ class QpTiming {
  private:
   const QpSequence& sequence_;
   std::unique_ptr<QpSolver> solver_;
+  QpData data_;
   StartOfSolve start_;
   std::vector<std::vector<double>> microseconds_;  ///< one line a program, one number a pass
   QpTimes quality_;                                ///< of the last pass: everything but the times

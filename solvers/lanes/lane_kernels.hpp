@@ -2,15 +2,30 @@
 
 namespace mpm {
 
-/// Rows in blocks of eight as the kernels see them: the eight numbers of block k in column j begin at
-/// numbers[start[k] + offset[j]]. Blocks may share numbers.
+/// A column of the rows as the kernels see them, or two: the eight numbers of a block in the column `partner`
+/// are those that the block before has, or would have, in `column`.
+struct RowTap {
+  long offset;
+  int column;
+  int partner;
+};
+
+/// Blocks of eight rows, `distance` apart: the eight numbers of block k in the column of a tap begin at
+/// numbers[start + k distance + offset]. With partners the distance is 8.
+struct RowRun {
+  long start, distance, blocks;
+};
+
+/// Rows in blocks of eight; blocks may share numbers. Every row is summed in the order of the taps, the
+/// column before its partner.
 struct RowWindows {
   const double* numbers;
-  long columns;
-  const long* offset;  ///< of each column
-  long blocks;
-  const long* start;  ///< of each block, in any order
-  const long* row;    ///< the first row of each block, a multiple of 8
+  const RowTap* taps;
+  long pair_count;  ///< taps that have a partner: the first ones
+  long tap_count;
+  const RowRun* runs;
+  long run_count;
+  const long* row;  ///< the first row of each block, run after run; a multiple of 8
 };
 
 /// Springs of a family (LimitSprings) as the kernels see them: padded vectors of 8 `blocks` numbers.
@@ -22,18 +37,26 @@ struct SpringArrays {
 };
 
 /// What a residual is made of for the limits of rows or variables: vectors of `count` numbers, not padded.
+/// A `slack` widens both limits; null: there is none.
 struct LimitArrays {
   long count;
-  const double *value, *lower, *upper, *dual;
+  const double *value, *lower, *upper, *dual, *slack;
+};
+
+/// Slacks s with the costs q s^2 + c s, and the sum of what pushes each: vectors of `count` numbers, not
+/// padded.
+struct SlackArrays {
+  long count;
+  const double *slack, *quadratic, *linear, *pull;
 };
 
 /// The inner loops of the active-set method, of its certificate, and of fits to long records. They work on
 /// eight numbers side by side in an order that is the same for every instruction set, without fused
 /// operations: the bits of the result do not depend on the processor.
 ///
-/// All pointers but those of LimitArrays, RowWindows and lag_sums are multiples of 64 bytes, strides
-/// multiples of 8, and what is padded is zero where nothing else is said (LaneVector). A matrix with a
-/// `stride` has its columns (rows, in `rows`) that far apart.
+/// All pointers but those of LimitArrays, SlackArrays, RowWindows, `below_zero`, `non_zero` and lag_sums are
+/// multiples of 64 bytes, strides multiples of 8, and what is padded is zero where nothing else is said
+/// (LaneVector). A matrix with a `stride` has its columns (rows, in `rows`) that far apart.
 struct LaneKernels {
   const char* name;  ///< "baseline", "avx2", "avx512"
   bool (*runs_here)();
@@ -57,9 +80,9 @@ struct LaneKernels {
 
   /// S = L L' from the lower triangle of S, of `size` rows, a multiple of 8. L is written below its diagonal,
   /// zero elsewhere in the blocks on it, whose inverses go to `inverse` (see invert). False when a pivot is
-  /// not above `smallest` times its diagonal in S. `scratch`: 4 * stride numbers.
+  /// not above `smallest` times its diagonal in S.
   bool (*factor)(const double* matrix, long stride, long size, double smallest, double* lower,
-                 double* inverse, double* scratch);
+                 double* inverse);
   /// The inverse of each block of eight on the diagonal of L, column by column and then row by row,
   /// kInverse * size numbers in all. `reciprocal`: of the diagonal of L.
   void (*invert)(const double* lower, long stride, long size, const double* reciprocal, double* inverse);
@@ -91,9 +114,14 @@ struct LaneKernels {
   double (*complementarity)(const LimitArrays& limits);
   /// True when lower <= upper, lower < inf and upper > -inf everywhere; false with a NaN.
   bool (*ordered)(const double* lower, const double* upper, long count);
-  bool (*finite)(const double* values, long count);  ///< no NaN and no infinity
-  /// sum of x (q x + c), the numbers not padded.
-  double (*squares)(const double* x, const double* q, const double* c, long count);
+  bool (*finite)(const double* values, long count);        ///< no NaN and no infinity
+  double (*below_zero)(const double* values, long count);  ///< the largest -value, and 0 at least
+  /// The places of what is not zero, in order, and how many they are.
+  long (*non_zero)(const double* values, long count, int* places);
+  /// The multiplier of s >= 0 is 2 q s + c - |pull|: how far one is below zero, or |multiplier s|, the
+  /// largest.
+  double (*slack_residual)(const SlackArrays& slacks);
+  double (*slack_cost)(const SlackArrays& slacks);  ///< sum of s (q s + c)
 };
 
 }  // namespace mpm

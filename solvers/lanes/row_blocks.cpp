@@ -1,9 +1,9 @@
 #include "solvers/lanes/row_blocks.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "solvers/lanes/kernel_choice.hpp"
-#include "solvers/lanes/lane_kernels.hpp"
 
 namespace mpm {
 namespace {
@@ -57,6 +57,23 @@ RowBlocks::RowBlocks(const Rows& rows) {
   add_whole(rows);
 }
 
+// The window of move i + 8 in a block is that of move i in the block before: such pairs share it.
+void RowBlocks::add_taps(Eigen::Index period, Eigen::Index moves, Eigen::Index length) {
+  std::vector<RowTap> single;
+  for (Eigen::Index j = 0; j < period; ++j) {
+    for (Eigen::Index i = 0; i < moves; ++i) {
+      if (i % (2 * kBlock) >= kBlock)
+        continue;  // a partner
+      const RowTap tap{j * length + moves - 1 - i, static_cast<int>(i * period + j),
+                       static_cast<int>((i + kBlock) * period + j)};
+      (i + kBlock < moves ? windows_.taps : single).push_back(tap);
+    }
+    single.push_back({(period + j) * length + moves - 1, static_cast<int>(moves * period + j), 0});
+  }
+  windows_.pairs = static_cast<long>(windows_.taps.size());
+  windows_.taps.insert(windows_.taps.end(), single.begin(), single.end());
+}
+
 // A series of a run is as long as the longest run and the number of its columns ask for; number t of it,
 // which stands at t + moves - 1, is what the column of the first move has in row t of the run.
 void RowBlocks::add_windows(const Rows& rows, Eigen::Index period, const std::vector<Run>& runs) {
@@ -65,11 +82,7 @@ void RowBlocks::add_windows(const Rows& rows, Eigen::Index period, const std::ve
   for (const Run& run : runs)
     longest = std::max(longest, run.last - run.first);
   const Eigen::Index length = moves - 1 + longest;
-  for (Eigen::Index j = 0; j < rows.cols(); ++j) {
-    const bool last = j >= moves * period;
-    const Eigen::Index series = last ? j % period + period : j % period;
-    windows_.offset.push_back(series * length + moves - 1 - (last ? 0 : j / period));
-  }
+  add_taps(period, moves, length);
   windows_.numbers.assign(runs.size() * static_cast<std::size_t>(2 * period * length), 0.0);
   double* numbers = windows_.numbers.data();
   for (const Run& run : runs) {
@@ -83,27 +96,44 @@ void RowBlocks::add_windows(const Rows& rows, Eigen::Index period, const std::ve
       for (Eigen::Index t = 1; t < moves; ++t)
         first[-t] = rows(run.first, t * period + j);
     }
-    for (Eigen::Index block = first_block(run.first); block < end_block(run.last); ++block) {
-      windows_.start.push_back(numbers - windows_.numbers.data() + block * kBlock - run.first);
-      windows_.row.push_back(block * kBlock);
-    }
+    const Eigen::Index block = first_block(run.first);
+    const Eigen::Index count = end_block(run.last) - block;
+    windows_.runs.push_back({numbers - windows_.numbers.data() + block * kBlock - run.first, kBlock, count});
+    for (Eigen::Index k = 0; k < count; ++k)
+      windows_.row.push_back((block + k) * kBlock);
     numbers += 2 * period * length;
   }
 }
 
 // What has no windows, a block column by column.
 void RowBlocks::add_whole(const Rows& rows) {
-  for (Eigen::Index j = 0; j < rows.cols(); ++j)
-    whole_.offset.push_back(j * kBlock);
+  std::vector<int> order = column_order();
+  if (order.empty()) {
+    order.resize(static_cast<std::size_t>(rows.cols()));
+    std::iota(order.begin(), order.end(), 0);
+  }
+  for (const int j : order)
+    whole_.taps.push_back({kBlock * static_cast<long>(whole_.taps.size()), j, 0});
   for (Eigen::Index first = 0; first < rows.rows(); first += kBlock) {
     if (std::binary_search(windows_.row.begin(), windows_.row.end(), first))
       continue;
-    whole_.start.push_back(static_cast<long>(whole_.numbers.size()));
     whole_.row.push_back(first);
-    for (Eigen::Index j = 0; j < rows.cols(); ++j)
+    for (const int j : order)
       for (Eigen::Index i = first; i < first + kBlock; ++i)
         whole_.numbers.push_back(i < rows.rows() ? rows(i, j) : 0.0);
   }
+  whole_.runs.push_back({0, kBlock * rows.cols(), static_cast<long>(whole_.row.size())});
+}
+
+std::vector<int> RowBlocks::column_order() const {
+  const Set& set = windows_.taps.empty() ? whole_ : windows_;
+  std::vector<int> order;
+  for (const RowTap& tap : set.taps) {
+    order.push_back(tap.column);
+    if (&tap < set.taps.data() + set.pairs)
+      order.push_back(tap.partner);
+  }
+  return order;
 }
 
 void RowBlocks::multiply(const double* x, LaneVector& out) const {
@@ -113,10 +143,11 @@ void RowBlocks::multiply(const double* x, LaneVector& out) const {
 
 void RowBlocks::Set::multiply(const double* x, LaneVector& out) const {
   lane_kernels().multiply({.numbers = numbers.data(),
-                           .columns = static_cast<long>(offset.size()),
-                           .offset = offset.data(),
-                           .blocks = static_cast<long>(start.size()),
-                           .start = start.data(),
+                           .taps = taps.data(),
+                           .pair_count = pairs,
+                           .tap_count = static_cast<long>(taps.size()),
+                           .runs = runs.data(),
+                           .run_count = static_cast<long>(runs.size()),
                            .row = row.data()},
                           x, out.data());
 }

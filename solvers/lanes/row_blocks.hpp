@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "solvers/lanes/lane_kernels.hpp"
 #include "solvers/lanes/lane_vector.hpp"
 
 namespace mpm {
@@ -27,13 +28,19 @@ class RowBlocks {
   /// out = A x; `out` is followed by room for a multiple of eight.
   void multiply(const double* x, LaneVector& out) const;
 
+  /// The columns in the order in which their products are added, the same in all rows.
+  std::vector<int> column_order() const;
+
   /// Numbers that are kept for A.
   std::size_t number_count() const { return windows_.numbers.size() + whole_.numbers.size(); }
 
  private:
   struct Set {
     LaneMemory numbers;
-    std::vector<long> offset, start, row;
+    std::vector<RowTap> taps;
+    long pairs = 0;
+    std::vector<RowRun> runs;
+    std::vector<long> row;
 
     void multiply(const double* x, LaneVector& out) const;
   };
@@ -43,6 +50,7 @@ class RowBlocks {
   };
 
   static std::vector<Run> find_runs(const Rows& rows, Eigen::Index period);
+  void add_taps(Eigen::Index period, Eigen::Index moves, Eigen::Index length);
   void add_windows(const Rows& rows, Eigen::Index period, const std::vector<Run>& runs);
   void add_whole(const Rows& rows);
 

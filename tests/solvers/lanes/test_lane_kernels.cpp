@@ -93,14 +93,14 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
   for (Eigen::Index i = 0; i < m; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
       blocks(8 * j + i % 8, i / 8) = rows(j, i);
-  std::vector<long> offset, start, row;
+  std::vector<RowTap> taps;
   for (Eigen::Index j = 0; j < n; ++j)
-    offset.push_back(8 * j);
-  for (Eigen::Index k = blocks.columns() - 1; k >= 0; --k) {
-    start.push_back(k * blocks.stride());
+    taps.push_back({8 * j, static_cast<int>(j), 0});
+  std::vector<long> row;
+  for (Eigen::Index k = 0; k < blocks.columns(); ++k)
     row.push_back(8 * k);
-  }
-  const RowWindows windows{blocks.data(), n, offset.data(), blocks.columns(), start.data(), row.data()};
+  const RowRun run{0, blocks.stride(), blocks.columns()};
+  const RowWindows windows{blocks.data(), taps.data(), 0, n, &run, 1, row.data()};
   Eigen::VectorXd listed = Eigen::VectorXd::Zero(m);
   for (const int i : list)
     listed(i) = factor(i);
@@ -214,9 +214,7 @@ TEST_CASE("outer products, factor and solution are those of Eigen, with the same
     LaneMatrix factor(n, stride);
     LaneVector inverse(LaneKernels::kInverse * stride);
     LaneVector x = right;
-    LaneVector panel(4 * stride);
-    REQUIRE(
-        kernels->factor(matrix.data(), stride, stride, 1e-15, factor.data(), inverse.data(), panel.data()));
+    REQUIRE(kernels->factor(matrix.data(), stride, stride, 1e-15, factor.data(), inverse.data()));
     kernels->solve(factor.data(), stride, stride, inverse.data(), x.data());
     CHECK((x.vector() - expected.llt().solve(right.vector())).norm() <= kSumRounding);
     solutions.add(x.vector());
@@ -230,12 +228,9 @@ TEST_CASE("outer products, factor and solution are those of Eigen, with the same
   }
 }
 
-TEST_CASE("limits in order, finite numbers and sums of squares are found by every kernel", "[lanes]") {
+TEST_CASE("limits in order and finite numbers are found by every kernel", "[lanes]") {
   const Eigen::Index m = sizes().rows;
   Numbers numbers(4);
-  const LaneVector q = numbers.vector(m);
-  const LaneVector c = numbers.vector(m);
-  SameBits squares;
   for (const LaneKernels* kernels : lane_kernel_sets()) {
     CAPTURE(kernels->name);
     Eigen::VectorXd lower = Eigen::VectorXd::Constant(m, -kInfinity);
@@ -257,10 +252,43 @@ TEST_CASE("limits in order, finite numbers and sums of squares are found by ever
       x(last) = value;
       CHECK_FALSE(kernels->finite(x.data(), m));
     }
-    const double sum = kernels->squares(c.data(), q.data(), c.data(), m);
-    const Eigen::ArrayXd s = c.vector().array();
-    CHECK(std::abs(sum - (s * (q.vector().array() * s + s)).sum()) <= kSumRounding);
-    squares.add(Eigen::VectorXd::Constant(1, sum));
+  }
+}
+
+TEST_CASE("slacks and places of numbers are the same from all kernels", "[lanes]") {
+  const Eigen::Index m = sizes().rows;
+  Numbers numbers(4);
+  const LaneVector slack = numbers.vector(m);
+  const LaneVector quadratic = numbers.vector(m);
+  const LaneVector linear = numbers.vector(m);
+  const LaneVector pull = numbers.vector(m);
+  const SlackArrays slacks{m, slack.data(), quadratic.data(), linear.data(), pull.data()};
+  double below = 0.0;
+  double residual = 0.0;
+  Eigen::VectorXd some = slack.vector();
+  std::vector<int> kept;
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const double multiplier = linear(i) + 2.0 * quadratic(i) * slack(i) - std::abs(pull(i));
+    below = std::max(below, -slack(i));
+    residual = std::max({residual, -multiplier, std::abs(multiplier * slack(i))});
+    if (i % 3 == 1)
+      some(i) = i % 2 == 0 ? 0.0 : -0.0;
+    else
+      kept.push_back(static_cast<int>(i));
+  }
+  SameBits costs;
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name);
+    const Eigen::ArrayXd s = slack.vector().array();
+    const double cost = kernels->slack_cost(slacks);
+    CHECK(std::abs(cost - (s * (quadratic.vector().array() * s + linear.vector().array())).sum()) <=
+          kSumRounding);
+    costs.add(Eigen::VectorXd::Constant(1, cost));
+    CHECK(kernels->slack_residual(slacks) == residual);
+    CHECK(kernels->below_zero(slack.data(), m) == below);
+    std::vector<int> places(static_cast<std::size_t>(m));
+    places.resize(static_cast<std::size_t>(kernels->non_zero(some.data(), m, places.data())));
+    CHECK(places == kept);
   }
 }
 
@@ -274,6 +302,7 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
   }();
   const LaneVector start = numbers.vector(m);
   const LaneVector step = numbers.vector(m);
+  const LaneVector slack = stiffness;
   LaneVector lower(m), upper(m);
   lower.vector().setConstant(-0.3);
   upper.vector().setConstant(0.4);
@@ -315,18 +344,25 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
     advanced.add(force.vector());
     CHECK((value.vector() - (start.vector() + 1.25 * step.vector())).norm() <= kSumRounding);
 
-    const LimitArrays limits{m, value.data(), lower.data(), upper.data(), force.data()};
-    double violation = 0.0;
-    double complementarity = 0.0;
-    for (Eigen::Index i = 0; i < m; ++i) {
-      violation = std::max({violation, lower(i) - value(i), value(i) - upper(i)});
-      const double limit = force(i) > 0.0 ? upper(i) : lower(i);
-      complementarity = std::max(complementarity, std::abs(force(i) * (limit - value(i))));
+    const LimitArrays limits{m, value.data(), lower.data(), upper.data(), force.data(), nullptr};
+    LimitArrays widened = limits;
+    widened.slack = slack.data();
+    for (const LimitArrays& some : {limits, widened}) {
+      double violation = 0.0;
+      double complementarity = 0.0;
+      for (Eigen::Index i = 0; i < m; ++i) {
+        const double wider = some.slack == nullptr ? 0.0 : slack(i);
+        violation = std::max({violation, lower(i) - wider - value(i), value(i) - (upper(i) + wider)});
+        const double limit = force(i) > 0.0 ? upper(i) + wider : lower(i) - wider;
+        complementarity = std::max(complementarity, std::abs(force(i) * (limit - value(i))));
+      }
+      CHECK(kernels->violation(some) == violation);
+      CHECK(kernels->complementarity(some) == complementarity);
+      const double pushed = force(0);
+      force(0) = -2.0;  // pushes at a limit that is not there
+      CHECK(kernels->complementarity(some) == std::max(2.0, complementarity));
+      force(0) = pushed;
     }
-    CHECK(kernels->violation(limits) == violation);
-    CHECK(kernels->complementarity(limits) == complementarity);
-    force(0) = -2.0;  // pushes at a limit that is not there
-    CHECK(kernels->complementarity(limits) == std::max(2.0, complementarity));
   }
 }
 
@@ -334,14 +370,14 @@ TEST_CASE("a matrix that is not definite has no factor in any kernel", "[lanes]"
   for (const LaneKernels* kernels : lane_kernel_sets()) {
     CAPTURE(kernels->name);
     LaneMatrix matrix(10, 16), factor(10, 16);
-    LaneVector inverse(LaneKernels::kInverse * 16), scratch(64);
+    LaneVector inverse(LaneKernels::kInverse * 16);
     for (Eigen::Index j = 0; j < 16; ++j)
       matrix(j, j) = 1.0;
-    CHECK(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data(), scratch.data()));
+    CHECK(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data()));
     matrix(9, 3) = 1.0;  // rows 3 and 9 are the same
-    CHECK_FALSE(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data(), scratch.data()));
+    CHECK_FALSE(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data()));
     matrix(9, 3) = kNaN;
-    CHECK_FALSE(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data(), scratch.data()));
+    CHECK_FALSE(kernels->factor(matrix.data(), 16, 16, 1e-15, factor.data(), inverse.data()));
   }
 }
 
