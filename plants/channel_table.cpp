@@ -50,13 +50,20 @@ std::vector<Entry> discretise_channels(const TransferMatrix& G, double sample_ti
   return entries;
 }
 
-FirstOrderChannel first_order_channel(const Entry& entry) {
+void append(FirstOrderChannels& channels, const Entry& entry) {
   const DiscreteChannel& model = entry.model;
-  if (model.A.rows() == 0) {
-    return {0, 0, 0, model.d, entry.wiring};
-  }
-  const double c = model.c(0);
-  return {model.A(0, 0), c * model.b_now(0), c * model.b_previous(0), model.d, entry.wiring};
+  const bool pole = model.A.rows() > 0;
+  const double c = pole ? model.c(0) : 0.0;
+  const Eigen::Index place = channels.size();
+  const auto set = [place](Eigen::ArrayXd& numbers, double value) {
+    numbers.conservativeResize(place + 1);
+    numbers(place) = value;
+  };
+  set(channels.b_now, pole ? c * model.b_now(0) : 0.0);
+  set(channels.b_previous, pole ? c * model.b_previous(0) : 0.0);
+  set(channels.d, model.d);
+  set(channels.a, pole ? model.A(0, 0) : 0.0);
+  channels.wiring.push_back(entry.wiring);
 }
 
 /// With c = 1, and one unused state for a channel without poles.
@@ -81,7 +88,7 @@ void append_states(ChannelTable& table, const Eigen::VectorXd& state_per_input, 
 void sort_into(ChannelTable& table, const std::vector<Entry>& entries) {
   for (const Entry& entry : entries) {
     if (entry.model.A.rows() <= 1) {
-      table.first_order.push_back(first_order_channel(entry));
+      append(table.first_order, entry);
       append_states(table, first_order_steady_state(entry), entry.wiring.col);
     }
   }

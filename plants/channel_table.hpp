@@ -18,13 +18,13 @@ struct ChannelWiring {
   std::ptrdiff_t input_previous = 0;  ///< place of u(k - delay - 1)
 };
 
-/// A channel with at most one pole. Its state is its own output without direct effect (c = 1).
-struct FirstOrderChannel {
-  double a = 0;
-  double b_now = 0;
-  double b_previous = 0;
-  double d = 0;
-  ChannelWiring wiring;
+/// The channels with at most one pole, side by side: one number, and one place, a channel. The state of each
+/// is its own output without direct effect (c = 1).
+struct FirstOrderChannels {
+  Eigen::ArrayXd a, b_now, b_previous, d;
+  std::vector<ChannelWiring> wiring;
+
+  Eigen::Index size() const { return a.size(); }
 };
 
 /// A channel with two poles, symbols as in DiscreteChannel.
@@ -54,7 +54,7 @@ struct ChannelTable {
   double sample_time = 0;
   int history_length = 0;  ///< input vectors that must be kept: the largest delay + 2
 
-  std::vector<FirstOrderChannel> first_order;
+  FirstOrderChannels first_order;
   std::vector<SecondOrderChannel> second_order;
   std::vector<GeneralChannel> general;
 

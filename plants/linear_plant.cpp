@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -44,7 +45,11 @@ LinearPlant::LinearPlant(const TransferMatrix& G, double sample_time)
       next_state_(Eigen::VectorXd::Zero(table_->max_order)),
       output_(Eigen::VectorXd::Zero(G.rows())),
       history_(Eigen::MatrixXd::Zero(G.cols(), 2 * table_->history_length)),
-      newest_(table_->history_length) {}
+      newest_(table_->history_length),
+      repeats_(table_->history_length),
+      now_(Eigen::ArrayXd::Zero(table_->first_order.size())),
+      previous_(now_),
+      part_(now_) {}
 
 double LinearPlant::sample_time() const {
   return table_->sample_time;
@@ -56,34 +61,51 @@ void LinearPlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) {
     state_(i) = table_->state_per_input(i) * steady_input(table_->state_col[static_cast<std::size_t>(i)]);
   }
   history_.colwise() = steady_input;
+  repeats_ = table_->history_length;
+  read_inputs();
+  previous_ = now_;
   measure();
 }
 
 PlantStatus LinearPlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
   require_input_size(input.size(), input_count_);
-  push_input(input);
+  if (push_input(input)) {
+    previous_ = now_;
+    read_inputs();
+  }
   const double* newest = history_.data() + newest_ * input_count_;
-  advance_first_order(newest);
+  advance_first_order();
   advance_second_order(newest);
   advance_general(newest);
   measure();
   return PlantStatus::ok;
 }
 
-void LinearPlant::push_input(const Eigen::Ref<const Eigen::VectorXd>& input) {
+/// False when there is nothing to do: all inputs that are kept are this one, as in most of a free response.
+bool LinearPlant::push_input(const Eigen::Ref<const Eigen::VectorXd>& input) {
   const Eigen::Index length = table_->history_length;
+  repeats_ = input == history_.col(newest_) ? repeats_ + 1 : 1;
+  if (repeats_ > length) {
+    return false;
+  }
   newest_ = newest_ + 1 < 2 * length ? newest_ + 1 : length;
   history_.col(newest_) = input;
   history_.col(newest_ - length) = input;
+  return true;
 }
 
-void LinearPlant::advance_first_order(const double* newest) {
-  double* x = state_.data();
-  for (const FirstOrderChannel& channel : table_->first_order) {
-    *x = channel.a * *x + channel.b_now * newest[channel.wiring.input_now] +
-         channel.b_previous * newest[channel.wiring.input_previous];
-    ++x;
+void LinearPlant::read_inputs() {
+  const double* newest = history_.data() + newest_ * input_count_;
+  double* now = now_.data();
+  for (const ChannelWiring& wiring : table_->first_order.wiring) {
+    *now++ = newest[wiring.input_now];
   }
+}
+
+void LinearPlant::advance_first_order() {
+  const FirstOrderChannels& channels = table_->first_order;
+  auto x = state_.head(channels.size()).array();
+  x = channels.a * x + channels.b_now * now_ + channels.b_previous * previous_;
 }
 
 void LinearPlant::advance_second_order(const double* newest) {
@@ -100,7 +122,7 @@ void LinearPlant::advance_second_order(const double* newest) {
 }
 
 void LinearPlant::advance_general(const double* newest) {
-  double* x = state_.data() + table_->first_order.size() + 2 * table_->second_order.size();
+  double* x = state_.data() + table_->first_order.size() + 2 * std::ssize(table_->second_order);
   for (const GeneralChannel& channel : table_->general) {
     const DiscreteChannel& model = channel.model;
     Eigen::Map<Eigen::VectorXd> state(x, model.A.rows());
@@ -117,12 +139,14 @@ void LinearPlant::advance_general(const double* newest) {
 /// 1).
 void LinearPlant::measure() {
   const double* newest = history_.data() + newest_ * input_count_;
-  const double* x = state_.data();
+  const FirstOrderChannels& first_order = table_->first_order;
+  part_ = state_.head(first_order.size()).array() + first_order.d * now_;
   output_.setZero();
-  for (const FirstOrderChannel& channel : table_->first_order) {
-    output_(channel.wiring.row) += *x + channel.d * newest[channel.wiring.input_now];
-    ++x;
+  const double* part = part_.data();
+  for (const ChannelWiring& wiring : first_order.wiring) {
+    output_(wiring.row) += *part++;
   }
+  const double* x = state_.data() + first_order.size();
   for (const SecondOrderChannel& channel : table_->second_order) {
     output_(channel.wiring.row) +=
         channel.c1 * x[0] + channel.c2 * x[1] + channel.d * newest[channel.wiring.input_now];

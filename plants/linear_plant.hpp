@@ -49,8 +49,9 @@ class LinearPlant final : public Plant {
   PlantStatus advance(const Eigen::Ref<const Eigen::VectorXd>& input) override;
 
  private:
-  void push_input(const Eigen::Ref<const Eigen::VectorXd>& input);
-  void advance_first_order(const double* newest);
+  bool push_input(const Eigen::Ref<const Eigen::VectorXd>& input);
+  void read_inputs();
+  void advance_first_order();
   void advance_second_order(const double* newest);
   void advance_general(const double* newest);
   void measure();
@@ -64,6 +65,9 @@ class LinearPlant final : public Plant {
   // the newest one, in column newest_, then always stand side by side and no index has to be wrapped.
   Eigen::MatrixXd history_;
   Eigen::Index newest_;
+  Eigen::Index repeats_;  // of the newest input: so many in succession are equal
+  // Of the first-order channels: the inputs that act at this sample and at the one before, and the outputs.
+  Eigen::ArrayXd now_, previous_, part_;
 };
 
 /// The response of G from rest to `inputs` (n_in x N): outputs (ny x N), of which column k is sampled just
