@@ -42,6 +42,8 @@ target_compile_definitions(mpm_build_flags INTERFACE EIGEN_DONT_PARALLELIZE)
 
 if(MPMBENCH_SANITIZERS)
   # Every target, so that no allocation crosses from instrumented into plain code. A report ends the program.
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -O1)
+  # GCC 12 takes members of an empty std::optional for uninitialised ones when its code is instrumented.
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -O1
+                      -Wno-maybe-uninitialized)
   add_link_options(-fsanitize=address,undefined)
 endif()
