@@ -46,16 +46,21 @@ void require_identification_data(const Eigen::Ref<const Eigen::VectorXd>& y,
     throw InputError("inputs", "a value that is not finite", "finite values only");
 }
 
-double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y,
-                   const Eigen::Ref<const Eigen::VectorXd>& y_est) {
+double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y, double squared_error) {
   require_signal("output", y, 2);
-  require_same_length("output", y, "its estimate", y_est);
-  if (!y_est.allFinite())
+  if (!std::isfinite(squared_error))
     return -kInfinity;
   const double spread = (y.array() - y.mean()).matrix().squaredNorm();
   if (spread <= static_cast<double>(y.size()) * variance_floor(y))
     return kNaN;
-  return 100.0 * (1.0 - std::sqrt((y - y_est).squaredNorm() / spread));
+  return 100.0 * (1.0 - std::sqrt(squared_error / spread));
+}
+
+double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y,
+                   const Eigen::Ref<const Eigen::VectorXd>& y_est) {
+  require_signal("output", y, 2);
+  require_same_length("output", y, "its estimate", y_est);
+  return percent_fit(y, y_est.allFinite() ? (y - y_est).squaredNorm() : kInfinity);
 }
 
 }  // namespace mpm

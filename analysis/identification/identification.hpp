@@ -65,5 +65,7 @@ void require_identification_data(const Eigen::Ref<const Eigen::VectorXd>& y,
 ///   estimate that is not finite, of an unstable model, gives -infinity.
 double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y,
                    const Eigen::Ref<const Eigen::VectorXd>& y_est);
+/// The same from |y - y_est|^2, where this is known.
+double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y, double squared_error);
 
 }  // namespace mpm

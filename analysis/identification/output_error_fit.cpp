@@ -39,27 +39,24 @@ std::vector<OutputErrorFit> OutputErrorFits::fit(const Eigen::Ref<const Eigen::V
                                                  Eigen::Index delay) const {
   const double largest_radius = PredictionErrorOptions{}.largest_radius;
   const Eigen::Index nu = u_.rows(), N = u_.cols();
-  Eigen::Index memory = 0;
+  Eigen::Index rows = 0;
   for (const Eigen::Index order : orders) {
-    require_identification_data(y, u_, output_error_order(nu, coefficients_of(order, delay), order, delay),
-                                0);
-    memory = std::max(memory, 2 * order + 1 + delay);
+    const Eigen::Index nb = coefficients_of(order, delay);
+    require_identification_data(y, u_, output_error_order(nu, nb, order, delay), 0);
+    rows = std::max({rows, order + 1, nb + delay});
   }
-  SignalBank u(nu, N, memory);
-  for (Eigen::Index j = 0; j < nu; ++j)
-    u[j] = u_.row(j).transpose() / unit_(j);
+  const Eigen::MatrixXd scaled_u = unit_.cwiseInverse().asDiagonal() * u_;
   const double unit = unit_of(y);
   const Eigen::VectorXd scaled_y = y / unit;
-  const OutputErrorProblem problem{u, scaled_y, delay, max_iterations_, largest_radius};
+  OutputErrors errors(scaled_u, scaled_y, delay, rows);
   // The search refuses what is not inside; rounding must not put a start at the border outside.
-  const OutputErrorProblem inner{u, scaled_y, delay, max_iterations_, 1.0 - 2.0 * (1.0 - largest_radius)};
-  OutputErrorStarts starts(inner);
+  OutputErrorStarts starts(scaled_u, scaled_y, delay, rows, 1.0 - 2.0 * (1.0 - largest_radius), errors);
   std::vector<OutputErrorFit> fits;
   for (const Eigen::Index order : orders) {
-    const OutputErrorCoefficients found =
-        search_output_error(problem, starts.best(coefficients_of(order, delay), order));
-    OutputErrorFit fit{polynomial_model(found, delay, unit, unit_),
-                       unit * unit * output_error_loss(problem, found) / static_cast<double>(N)};
+    const OutputErrorMinimum found = search_output_error(
+        errors, starts.best(coefficients_of(order, delay), order), {max_iterations_, largest_radius});
+    OutputErrorFit fit{polynomial_model(found.model, delay, unit, unit_),
+                       unit * unit * found.loss / static_cast<double>(N)};
     fit.model.noise_variance = fit.loss;
     fits.push_back(std::move(fit));
   }

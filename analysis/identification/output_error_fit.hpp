@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 
 #include "analysis/identification/polynomial_model.hpp"
-#include "analysis/identification/signal_bank.hpp"
 
 namespace mpm {
 

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <vector>
 
-#include <Eigen/Cholesky>
-
-#include "analysis/statistics/discrete_filter.hpp"
+#include "analysis/identification/lane_cholesky.hpp"
 #include "plants/non_finite.hpp"
 
 namespace mpm {
@@ -39,64 +36,6 @@ OutputErrorCoefficients moved(const OutputErrorCoefficients& model, const Eigen:
   return result;
 }
 
-/// The errors of a model, their gradient, and the products of both.
-class OutputErrors {
- public:
-  OutputErrors(const OutputErrorProblem& problem, const OutputErrorCoefficients& model)
-      : problem_(problem),
-        order_(model.F.rows() - 1),
-        memory_(model.B.rows() + order_ + problem.delay),
-        filtered_(problem.u.count(), problem.u.samples(), memory_),
-        path_(problem.u.count(), problem.u.samples(), memory_),
-        filtered_path_(problem.u.count(), problem.u.samples(), memory_),
-        shifted_(2 * problem.u.count() + 1, problem.u.samples(), memory_),
-        one_(Eigen::MatrixXd::Ones(1, problem.u.count())) {
-    const Eigen::Index nu = problem.u.count(), nb = model.B.rows();
-    sign_.resize(nu * (nb + order_));
-    for (Eigen::Index j = 0; j < nu; ++j) {
-      columns_.push_back({j, problem.delay, nb});
-      columns_.push_back({nu + j, 1, order_});
-      sign_.segment(j * (nb + order_), nb).setConstant(-1.0);
-      sign_.segment(j * (nb + order_) + nb, order_).setOnes();
-    }
-  }
-
-  /// Half the sum of e^2, and `errors` of this model from here on; infinity for one that is refused.
-  double cost(const OutputErrorCoefficients& model) {
-    if (!model.B.allFinite() || !model.F.allFinite() || !roots_within(model.F, problem_.largest_radius))
-      return kInfinity;
-    filter_bank(one_, model.F, 0, problem_.u, filtered_);
-    filter_bank(model.B, one_, problem_.delay, filtered_, path_);
-    errors_ = problem_.y;
-    for (Eigen::Index j = 0; j < path_.count(); ++j)
-      errors_ -= path_[j];
-    const double sum = errors_.squaredNorm();
-    return std::isfinite(sum) ? 0.5 * sum : kInfinity;
-  }
-
-  /// J'J and J'e at the model of the last `cost`.
-  void products(const OutputErrorCoefficients& model, Eigen::MatrixXd& JJ, Eigen::VectorXd& Je) {
-    filter_bank(one_, model.F, 0, path_, filtered_path_);
-    const Eigen::Index nu = filtered_.count();
-    for (Eigen::Index j = 0; j < nu; ++j) {
-      shifted_[j] = filtered_[j];
-      shifted_[nu + j] = filtered_path_[j];
-    }
-    shifted_[2 * nu] = errors_;
-    JJ = sign_.asDiagonal() * lagged_products(shifted_, columns_, 0) * sign_.asDiagonal();
-    Je = sign_.asDiagonal() * lagged_products_with(shifted_, columns_, 2 * nu, 0);
-  }
-
- private:
-  const OutputErrorProblem& problem_;
-  Eigen::Index order_, memory_;
-  SignalBank filtered_, path_, filtered_path_;  // u/F, B u/F, B u/F^2
-  ShiftedSignals shifted_;                      // u/F, B u/F^2 and e
-  Eigen::MatrixXd one_;
-  Eigen::VectorXd errors_, sign_;
-  std::vector<LaggedColumns> columns_;
-};
-
 /// The step from (J'J + diagonal/radius) step = -J'e, and by how much the linear model falls; none where
 /// rounding leaves no such step.
 struct Step {
@@ -104,11 +43,11 @@ struct Step {
   double predicted;
 };
 
-std::optional<Step> damped_step(const Eigen::MatrixXd& JJ, const Eigen::VectorXd& Je, double radius) {
+std::optional<Step> damped_step(const Eigen::MatrixXd& JJ, const Eigen::VectorXd& Je, double radius,
+                                LaneCholesky& factor) {
   Eigen::MatrixXd damped = JJ;
   damped.diagonal() += JJ.diagonal().cwiseMax(kSmallestDiagonal) / radius;
-  const Eigen::LLT<Eigen::MatrixXd> factor(damped);
-  if (factor.info() != Eigen::Success)
+  if (!factor.compute(damped, 0.0))
     return std::nullopt;
   Step result{-factor.solve(Je), 0.0};
   result.predicted = -result.step.dot(Je) - 0.5 * result.step.dot(JJ * result.step);
@@ -119,37 +58,31 @@ std::optional<Step> damped_step(const Eigen::MatrixXd& JJ, const Eigen::VectorXd
 
 }  // namespace
 
-bool roots_within(const Eigen::MatrixXd& F, double radius) {
-  for (Eigen::Index j = 0; j < F.cols(); ++j)
-    if (!has_roots_within(F.col(j), radius))
-      return false;
-  return true;
-}
-
-double output_error_loss(const OutputErrorProblem& problem, const OutputErrorCoefficients& model) {
-  return 2.0 * OutputErrors(problem, model).cost(model);
-}
-
-OutputErrorCoefficients search_output_error(const OutputErrorProblem& problem,
-                                            const OutputErrorCoefficients& start) {
-  OutputErrors errors(problem, start);
+OutputErrorMinimum search_output_error(OutputErrors& errors, const OutputErrorCoefficients& start,
+                                       const OutputErrorSearch& search) {
+  const auto cost_of = [&](const OutputErrorCoefficients& model) {
+    const bool allowed =
+        model.B.allFinite() && model.F.allFinite() && roots_within(model.F, search.largest_radius);
+    return allowed ? errors.cost(model) : kInfinity;
+  };
   OutputErrorCoefficients best = start;
-  double cost = errors.cost(best);
+  double cost = cost_of(best);
   if (!std::isfinite(cost))
-    return best;
+    return {best, kInfinity};
   Eigen::MatrixXd JJ;
   Eigen::VectorXd Je;
-  errors.products(best, JJ, Je);
+  errors.products(JJ, Je);
   const Eigen::VectorXd scale = (1.0 + JJ.diagonal().cwiseMax(0.0).cwiseSqrt().array()).inverse();
   const auto rescale = [&] {
     JJ = scale.asDiagonal() * JJ * scale.asDiagonal();
     Je = scale.asDiagonal() * Je;
   };
   rescale();
+  LaneCholesky factor;
   double radius = kFirstRadius, shrink = 2.0;
   int invalid = 0;
-  for (int iteration = 0; iteration < problem.max_iterations && radius > kSmallestRadius; ++iteration) {
-    const std::optional<Step> step = damped_step(JJ, Je, radius);
+  for (int iteration = 0; iteration < search.max_iterations && radius > kSmallestRadius; ++iteration) {
+    const std::optional<Step> step = damped_step(JJ, Je, radius, factor);
     if (!step && ++invalid > kInvalidSteps)
       break;
     double quality = 0.0;
@@ -159,14 +92,14 @@ OutputErrorCoefficients search_output_error(const OutputErrorProblem& problem,
       if (change.norm() <= kStepTolerance * (free_coefficients(best).norm() + kStepTolerance))
         break;
       const OutputErrorCoefficients next = moved(best, change);
-      const double next_cost = errors.cost(next);
+      const double next_cost = cost_of(next);
       if (std::abs(cost - next_cost) <= kFunctionTolerance * cost)
         break;
       quality = (cost - next_cost) / step->predicted;
       if (quality > kLeastQuality) {
         best = next;
         cost = next_cost;
-        errors.products(best, JJ, Je);
+        errors.products(JJ, Je);
         rescale();
       }
     }
@@ -178,7 +111,7 @@ OutputErrorCoefficients search_output_error(const OutputErrorProblem& problem,
       shrink *= 2.0;
     }
   }
-  return best;
+  return {best, 2.0 * cost};
 }
 
 }  // namespace mpm

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <utility>
+#include <vector>
 
-#include <Eigen/Cholesky>
-
+#include "analysis/identification/lane_cholesky.hpp"
 #include "analysis/identification/least_squares.hpp"
 #include "analysis/identification/prediction_error_start.hpp"
 #include "analysis/statistics/discrete_filter.hpp"
@@ -18,24 +18,6 @@ namespace {
 constexpr double kSameDenominator = 1e-9;
 // Least pivot of X'X with a diagonal of 1. The rounding of the products, 1e-16, is then 1e-4 of it.
 constexpr double kLeastPivot = 1e-12;
-
-/// The coefficients x of the regression of signal `target` on the columns, from their products; where these
-/// leave too few digits, by `least_squares` from the columns.
-Eigen::VectorXd lagged_regression(const ShiftedSignals& signals, const std::vector<LaggedColumns>& columns,
-                                  Eigen::Index target, Eigen::Index first) {
-  const Eigen::MatrixXd products = lagged_products(signals, columns, first);
-  const Eigen::VectorXd with = lagged_products_with(signals, columns, target, first);
-  const Eigen::VectorXd norms = products.diagonal().cwiseMax(0.0).cwiseSqrt();
-  if (norms.minCoeff() > 0.0) {
-    const Eigen::VectorXd scale = norms.cwiseInverse();
-    const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * products * scale.asDiagonal());
-    if (factor.info() == Eigen::Success && factor.matrixLLT().diagonal().minCoeff() > std::sqrt(kLeastPivot))
-      return scale.asDiagonal() * factor.solve(scale.asDiagonal() * with);
-  }
-  return least_squares(lagged_matrix(signals, columns, first),
-                       signals[target].tail(signals.samples() - first))
-      .x;
-}
 
 /// Lengths of the ARX models to start from, as `prediction_error_starts` has them.
 std::vector<Eigen::Index> arx_lengths(Eigen::Index nu, Eigen::Index nf, Eigen::Index samples) {
@@ -55,21 +37,79 @@ Eigen::VectorXd stable_monic(const Eigen::Ref<const Eigen::VectorXd>& tail, doub
   return stabilised(polynomial, radius);
 }
 
+// Where the response to input j and the input itself stand among the responses.
+Eigen::Index response_place(Eigen::Index j) {
+  return 8 * (j / 4) + j % 4;
+}
+Eigen::Index input_place(Eigen::Index j) {
+  return response_place(j) + 4;
+}
+Eigen::Index places(Eigen::Index inputs) {
+  return 8 * ((inputs + 3) / 4);
+}
+
+/// For each of the four responses of a group the sum of the squares of what `path`, of their inputs, leaves.
+Eigen::Array4d squared_distances(const SignalBank& responses, const SignalBank& path, Eigen::Index group) {
+  constexpr Eigen::Index kTogether = 4;  // as many sums as do not wait for each other
+  Eigen::Array<double, 4, kTogether> sums = Eigen::Array<double, 4, kTogether>::Zero();
+  const double* w = responses.at(group, 0);
+  const double* from = path.at(group, 0) + 4;
+  const Eigen::Index N = responses.samples();
+  for (Eigen::Index k = 0; k < N; k += kTogether)
+    for (Eigen::Index i = 0; i < std::min(kTogether, N - k); ++i, w += 8, from += 8)
+      sums.col(i) += (Eigen::Map<const Eigen::Array4d>(w) - Eigen::Map<const Eigen::Array4d>(from)).square();
+  return sums.rowwise().sum();
+}
+
 }  // namespace
 
-OutputErrorStarts::OutputErrorStarts(const OutputErrorProblem& problem) : problem_(problem) {}
+OutputErrorStarts::OutputErrorStarts(const Eigen::Ref<const Eigen::MatrixXd>& u,
+                                     const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Index delay,
+                                     Eigen::Index rows, double largest_radius, OutputErrors& errors)
+    : nu_(u.rows()),
+      delay_(delay),
+      largest_radius_(largest_radius),
+      errors_(errors),
+      signals_(nu_ + 1, u.cols(), 0),
+      inputs_(places(nu_), u.cols(), std::max(rows, kLongestArx + delay)),
+      filtered_signals_(nu_ + 1, u.cols(), rows),
+      filtered_(places(nu_), u.cols(), rows),
+      path_(places(nu_), u.cols(), rows) {
+  for (Eigen::Index j = 0; j < nu_; ++j)
+    signals_[j] = inputs_[response_place(j)] = inputs_[input_place(j)] = u.row(j).transpose();
+  signals_[nu_] = y;
+}
+
+/// The coefficients x of the regression of signal `target` on the columns, from their products of the last
+/// sums; where these leave too few digits, by `least_squares` from the columns.
+Eigen::VectorXd OutputErrorStarts::regression(const SignalBank& signals,
+                                              const std::vector<LaggedColumns>& columns, Eigen::Index target,
+                                              Eigen::Index first) {
+  Eigen::MatrixXd products = sums_.products(columns);
+  const Eigen::VectorXd norms = products.diagonal().cwiseMax(0.0).cwiseSqrt();
+  if (norms.minCoeff() > 0.0) {
+    const Eigen::VectorXd scale = norms.cwiseInverse();
+    products.array().colwise() *= scale.array();
+    products.array().rowwise() *= scale.transpose().array();
+    if (factor_.compute(products, kLeastPivot))
+      return factor_.solve(sums_.products_with(columns, target).cwiseProduct(scale)).cwiseProduct(scale);
+  }
+  return least_squares(lagged_matrix(signals, columns, first),
+                       signals[target].tail(signals.samples() - first))
+      .x;
+}
 
 OutputErrorCoefficients OutputErrorStarts::best(Eigen::Index nb, Eigen::Index nf) {
-  const Eigen::Index nu = problem_.u.count();
-  OutputErrorCoefficients best{Eigen::MatrixXd::Zero(nb, nu), Eigen::MatrixXd::Zero(nf + 1, nu)};
+  OutputErrorCoefficients best{Eigen::MatrixXd::Zero(nb, nu_), Eigen::MatrixXd::Zero(nf + 1, nu_)};
   best.F.row(0).setOnes();
   double least = kInfinity;
-  for (const Eigen::Index length : arx_lengths(nu, nf, problem_.y.size())) {
+  for (const Eigen::Index length : arx_lengths(nu_, nf, signals_.samples())) {
     OutputErrorCoefficients model = reduced(responses({length, std::max(nb, length)}), nb, nf);
     fit_numerators(model);
-    const double loss = output_error_loss(problem_, model);
-    if (loss < least) {
-      least = loss;
+    const bool allowed = model.B.allFinite() && model.F.allFinite() && roots_within(model.F, largest_radius_);
+    const double cost = allowed ? errors_.cost(model) : kInfinity;
+    if (cost < least) {
+      least = cost;
       best = model;
     }
   }
@@ -80,66 +120,62 @@ const SignalBank& OutputErrorStarts::responses(const ArxOrder& order) {
   if (const auto found = responses_.find(order); found != responses_.end())
     return found->second;
   const auto [na, nb] = order;
-  const Eigen::Index nu = problem_.u.count(), N = problem_.y.size();
-  const Eigen::Index first = std::max(na, problem_.delay + nb - 1);
-  ShiftedSignals signals(nu + 1, N, first);
-  signals[nu] = problem_.y;
-  std::vector<LaggedColumns> columns{{nu, 1, na}};
-  for (Eigen::Index j = 0; j < nu; ++j) {
-    signals[j] = problem_.u[j];
-    columns.push_back({j, problem_.delay, nb});
-  }
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(na + nu * nb);
+  const Eigen::Index N = signals_.samples();
+  const Eigen::Index first = std::max(na, delay_ + nb - 1);
+  std::vector<LaggedColumns> columns{{nu_, 1, na}};
+  for (Eigen::Index j = 0; j < nu_; ++j)
+    columns.push_back({j, delay_, nb});
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(na + nu_ * nb);
+  sums_.compute(signals_, nu_ + 1, first, first);
   if (N - first >= x.size())
-    x = lagged_regression(signals, columns, nu, first);
+    x = regression(signals_, columns, nu_, first);
 
-  const Eigen::VectorXd A = stable_monic(-x.head(na), problem_.largest_radius);
-  SignalBank inputs(nu, N, problem_.delay + nb);
-  SignalBank w(nu, N, na);
-  for (Eigen::Index j = 0; j < nu; ++j)
-    inputs[j] = problem_.u[j];
-  filter_bank(x.tail(nu * nb).reshaped(nb, nu), A.replicate(1, nu), problem_.delay, inputs, w);
-  SignalBank both(2 * nu, N, 0);
-  for (Eigen::Index j = 0; j < nu; ++j) {
-    both[j] = w[j];
-    both[nu + j] = problem_.u[j];
+  const Eigen::VectorXd A = stable_monic(-x.head(na), largest_radius_);
+  Eigen::MatrixXd numerators = Eigen::MatrixXd::Zero(delay_ + nb, inputs_.count());
+  Eigen::MatrixXd denominators = Eigen::MatrixXd::Zero(na + 1, inputs_.count());
+  for (Eigen::Index j = 0; j < nu_; ++j) {
+    numerators.col(response_place(j)).tail(nb) = x.segment(na + j * nb, nb);
+    denominators.col(response_place(j)) = A;
+    numerators(0, input_place(j)) = 1.0;
   }
-  return responses_.emplace(order, std::move(both)).first->second;
+  SignalBank responses(inputs_.count(), N, na);
+  filter_bank(numerators, denominators, 0, inputs_, responses);
+  return responses_.emplace(order, std::move(responses)).first->second;
 }
 
 /// F of each path nearest to the response w_j of its input, by Steiglitz and McBride; B is not set.
 OutputErrorCoefficients OutputErrorStarts::reduced(const SignalBank& responses, Eigen::Index nb,
-                                                   Eigen::Index nf) const {
-  const Eigen::Index nu = responses.count() / 2, N = responses.samples();
-  const Eigen::Index first = std::max(nf, problem_.delay + nb - 1);
-  OutputErrorCoefficients model{Eigen::MatrixXd::Zero(nb, nu), Eigen::MatrixXd::Zero(nf + 1, nu)};
+                                                   Eigen::Index nf) {
+  const Eigen::Index N = responses.samples();
+  const Eigen::Index first = std::max(nf, delay_ + nb - 1);
+  OutputErrorCoefficients model{Eigen::MatrixXd::Zero(nb, nu_), Eigen::MatrixXd::Zero(nf + 1, nu_)};
   model.F.row(0).setOnes();
-  Eigen::MatrixXd F = model.F, B = model.B;
-  Eigen::VectorXd least = Eigen::VectorXd::Constant(nu, kInfinity);
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 2 * nu);
-  SignalBank filtered(2 * nu, N, first + 1);
-  SignalBank path(2 * nu, N, first + 1);
-  ShiftedSignals shifted(2 * nu, N, first);
-  filter_bank(one, one, 0, responses, filtered);
   if (N - first < nf + nb)
     return model;
+  Eigen::MatrixXd F = model.F;
+  Eigen::MatrixXd denominators = Eigen::MatrixXd::Zero(first + 1, responses.count());
+  Eigen::MatrixXd numerators = denominators;  // none for the responses
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(nu_, kInfinity);
+  for (Eigen::Index group = 0; group < responses.groups(); ++group)
+    std::copy_n(responses.at(group, 0), 8 * N, filtered_.at(group, 0));
   for (int round = 0; round < kReductionRounds; ++round) {
     const Eigen::MatrixXd before = F;
-    for (Eigen::Index j = 0; j < 2 * nu; ++j)
-      shifted[j] = filtered[j];
-    for (Eigen::Index j = 0; j < nu; ++j) {
-      const Eigen::VectorXd x =
-          lagged_regression(shifted, {{j, 1, nf}, {nu + j, problem_.delay, nb}}, j, first);
-      F.col(j) = stable_monic(-x.head(nf), problem_.largest_radius);
-      B.col(j) = x.tail(nb);
+    sums_.compute(filtered_, responses.count(), first, first, LagPairs::partners);
+    for (Eigen::Index j = 0; j < nu_; ++j) {
+      const Eigen::Index w = response_place(j), u = input_place(j);
+      const Eigen::VectorXd x = regression(filtered_, {{w, 1, nf}, {u, delay_, nb}}, w, first);
+      F.col(j) = stable_monic(-x.head(nf), largest_radius_);
+      denominators.col(w).head(nf + 1) = denominators.col(u).head(nf + 1) = F.col(j);
+      numerators.col(u).segment(delay_, nb) = x.tail(nb);
     }
-    filter_bank(one, F.replicate(1, 2), 0, responses, filtered);
-    filter_bank(B.replicate(1, 2), one, problem_.delay, filtered, path);
-    for (Eigen::Index j = 0; j < nu; ++j) {
-      const double error = (responses[j] - path[nu + j]).squaredNorm();
-      if (error < least(j)) {
-        least(j) = error;
-        model.F.col(j) = F.col(j);
+    filter_paths(denominators, numerators, nullptr, responses, path_, filtered_);
+    for (Eigen::Index group = 0; group < responses.groups(); ++group) {
+      const Eigen::Array4d errors = squared_distances(responses, path_, group);
+      for (Eigen::Index j = 4 * group; j < std::min(nu_, 4 * group + 4); ++j) {
+        if (errors(j % 4) < least(j)) {
+          least(j) = errors(j % 4);
+          model.F.col(j) = F.col(j);
+        }
       }
     }
     if ((F - before).cwiseAbs().maxCoeff() < kSameDenominator)
@@ -149,19 +185,16 @@ OutputErrorCoefficients OutputErrorStarts::reduced(const SignalBank& responses, 
 }
 
 /// All B by least squares on y, the F being known.
-void OutputErrorStarts::fit_numerators(OutputErrorCoefficients& model) const {
-  const Eigen::Index nu = model.B.cols(), nb = model.B.rows(), N = problem_.y.size();
-  const Eigen::Index memory = std::max(nb + problem_.delay, model.F.rows());
-  SignalBank filtered(nu, N, memory);
-  filter_bank(Eigen::MatrixXd::Ones(1, nu), model.F, 0, problem_.u, filtered);
-  ShiftedSignals shifted(nu + 1, N, memory);
-  shifted[nu] = problem_.y;
+void OutputErrorStarts::fit_numerators(OutputErrorCoefficients& model) {
+  const Eigen::Index nb = model.B.rows();
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(model.F.rows(), nu_ + 1);  // the output as it is
+  F.leftCols(nu_) = model.F;
+  filter_bank(Eigen::MatrixXd::Ones(1, nu_ + 1), F, 0, signals_, filtered_signals_);
   std::vector<LaggedColumns> columns;
-  for (Eigen::Index j = 0; j < nu; ++j) {
-    shifted[j] = filtered[j];
-    columns.push_back({j, problem_.delay, nb});
-  }
-  model.B = lagged_regression(shifted, columns, nu, 0).reshaped(nb, nu);
+  for (Eigen::Index j = 0; j < nu_; ++j)
+    columns.push_back({j, delay_, nb});
+  sums_.compute(filtered_signals_, nu_, delay_ + nb - 1, 0);
+  model.B = regression(filtered_signals_, columns, nu_, 0).reshaped(nb, nu_);
 }
 
 }  // namespace mpm

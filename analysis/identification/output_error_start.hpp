@@ -2,8 +2,14 @@
 
 #include <map>
 #include <utility>
+#include <vector>
 
-#include "analysis/identification/output_error_search.hpp"
+#include <Eigen/Core>
+
+#include "analysis/identification/lag_sums.hpp"
+#include "analysis/identification/lane_cholesky.hpp"
+#include "analysis/identification/output_error_errors.hpp"
+#include "analysis/identification/signal_bank.hpp"
 
 namespace mpm {
 
@@ -13,8 +19,10 @@ namespace mpm {
 /// tell.
 class OutputErrorStarts {
  public:
-  /// `problem` must outlive the object.
-  explicit OutputErrorStarts(const OutputErrorProblem& problem);
+  /// `errors`: those of models of y from u, which must outlive the object; `rows`: how many the polynomials
+  /// need at most. Every F has its roots within `largest_radius`.
+  OutputErrorStarts(const Eigen::Ref<const Eigen::MatrixXd>& u, const Eigen::Ref<const Eigen::VectorXd>& y,
+                    Eigen::Index delay, Eigen::Index rows, double largest_radius, OutputErrors& errors);
 
   /// The start with the smallest loss for nb coefficients of B and F of order nf; 0 when no loss is finite.
   OutputErrorCoefficients best(Eigen::Index nb, Eigen::Index nf);
@@ -22,13 +30,24 @@ class OutputErrorStarts {
  private:
   using ArxOrder = std::pair<Eigen::Index, Eigen::Index>;  ///< na, nb
 
-  /// What each input alone does by an ARX model, w_j = B_j/A u_j, and behind them the inputs.
+  /// What each input alone does by an ARX model, w_j = B_j/A u_j, and the inputs: four of them and then their
+  /// inputs in each group of eight.
   const SignalBank& responses(const ArxOrder& order);
-  OutputErrorCoefficients reduced(const SignalBank& responses, Eigen::Index nb, Eigen::Index nf) const;
-  void fit_numerators(OutputErrorCoefficients& model) const;
+  OutputErrorCoefficients reduced(const SignalBank& responses, Eigen::Index nb, Eigen::Index nf);
+  void fit_numerators(OutputErrorCoefficients& model);
+  Eigen::VectorXd regression(const SignalBank& signals, const std::vector<LaggedColumns>& columns,
+                             Eigen::Index target, Eigen::Index first);
 
-  const OutputErrorProblem& problem_;
+  Eigen::Index nu_, delay_;
+  double largest_radius_;
+  OutputErrors& errors_;
+  SignalBank signals_;  ///< the inputs and the output
+  SignalBank inputs_;   ///< the inputs, in the places of the responses and in their own
   std::map<ArxOrder, SignalBank> responses_;
+  // What is filtered again and again; memory that is given back each time costs as much as a filter.
+  SignalBank filtered_signals_, filtered_, path_;
+  LagSums sums_;
+  LaneCholesky factor_;
 };
 
 }  // namespace mpm

@@ -6,13 +6,10 @@
 
 #include "solvers/lanes/lane_vector.hpp"
 
-// Many signals of one length at once, for fits that filter them and take products of their shifts again and
-// again: side by side for the filters, one behind the other for the products.
-
 namespace mpm {
 
 /// `count` signals of `samples` numbers, eight of them side by side, with `memory` zeros before the first
-/// one.
+/// one: for fits that filter them and take products of their shifts again and again.
 class SignalBank {
  public:
   using Signal = Eigen::Map<Eigen::VectorXd, Eigen::Unaligned, Eigen::InnerStride<8>>;
@@ -21,6 +18,7 @@ class SignalBank {
   SignalBank(Eigen::Index count, Eigen::Index samples, Eigen::Index memory);
 
   Eigen::Index count() const { return count_; }
+  Eigen::Index groups() const { return (count_ + 7) / 8; }
   Eigen::Index samples() const { return samples_; }
   Eigen::Index memory() const { return memory_; }
   Signal operator[](Eigen::Index a) { return {at(a / 8, 0) + a % 8, samples_, Eigen::InnerStride<8>()}; }
@@ -49,44 +47,14 @@ class SignalBank {
 /// | F      | denominators, their first row is taken for 1   | nf + 1 x count |
 ///
 /// `out` may be `in` only without a numerator of more than one coefficient and without a delay. The memory of
-/// the banks must reach nb - 1 + delay and nf samples back.
+/// the banks must reach nb - 1 + delay and nf samples back, and 1 at least.
 void filter_bank(const Eigen::Ref<const Eigen::MatrixXd>& B, const Eigen::Ref<const Eigen::MatrixXd>& F,
                  Eigen::Index delay, const SignalBank& in, SignalBank& out);
 
-/// Signals one behind the other, each with zeros before it, as far as `memory` says.
-class ShiftedSignals {
- public:
-  ShiftedSignals(Eigen::Index count, Eigen::Index samples, Eigen::Index memory);
-
-  Eigen::Index samples() const { return values_.rows() - memory_; }
-  auto operator[](Eigen::Index a) { return values_.col(a).tail(samples()); }
-  auto operator[](Eigen::Index a) const { return values_.col(a).tail(samples()); }
-  /// Sample 0; those before it are zeros.
-  const double* data(Eigen::Index a) const { return values_.col(a).data() + memory_; }
-
- private:
-  Eigen::Index memory_;
-  Eigen::MatrixXd values_;
-};
-
-/// Columns of a regression: signal `signal` delayed by `lag`, `lag` + 1, ..., `count` of them.
-struct LaggedColumns {
-  Eigen::Index signal, lag, count;
-};
-
-Eigen::Index column_count(const std::vector<LaggedColumns>& columns);
-
-/// The columns themselves, samples `first` and later.
-Eigen::MatrixXd lagged_matrix(const ShiftedSignals& signals, const std::vector<LaggedColumns>& columns,
-                              Eigen::Index first);
-
-/// X'X of these columns X. A product of two columns follows from that of the two columns before them by two
-/// samples, so that only the products of the first columns are sums over the record.
-Eigen::MatrixXd lagged_products(const ShiftedSignals& signals, const std::vector<LaggedColumns>& columns,
-                                Eigen::Index first);
-
-/// X'x, x being signal `with`.
-Eigen::VectorXd lagged_products_with(const ShiftedSignals& signals, const std::vector<LaggedColumns>& columns,
-                                     Eigen::Index with, Eigen::Index first);
+/// Two filters one behind the other, from rest, of each signal x: path = B x/F1, and out = B x/(F1 F2), or
+/// out = x/F1 without F2. All polynomials have as many rows, 2 or more, and a column a signal; the first rows
+/// of F1 and F2 are taken for 1. The memory of the banks must reach as far back as the polynomials.
+void filter_paths(const Eigen::Ref<const Eigen::MatrixXd>& F1, const Eigen::Ref<const Eigen::MatrixXd>& B,
+                  const Eigen::MatrixXd* F2, const SignalBank& x, SignalBank& path, SignalBank& out);
 
 }  // namespace mpm

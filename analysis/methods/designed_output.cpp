@@ -57,9 +57,10 @@ double merit_of(const OutputErrorFit& found, const Eigen::VectorXd& target, cons
     const auto p = static_cast<double>(found.model.order().parameter_count());
     return -n * std::log(found.loss) - p * std::log(n);
   }
-  const Eigen::Index judged =
-      criterion == DesignedOrderCriterion::record_fit ? samples : target.size() - samples;
-  return percent_fit(target.tail(judged), simulate(found.model, inputs.moving).tail(judged));
+  if (criterion == DesignedOrderCriterion::record_fit)
+    return percent_fit(target.head(samples), found.loss * static_cast<double>(samples));
+  const Eigen::Index kept = target.size() - samples;
+  return percent_fit(target.tail(kept), simulate(found.model, inputs.moving).tail(kept));
 }
 
 /// How many samples the models are found from that are compared.

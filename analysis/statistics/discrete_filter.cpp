@@ -100,9 +100,12 @@ bool has_roots_within(const Eigen::Ref<const Eigen::VectorXd>& a, double radius)
     const double reflection = scaled(degree);
     if (!(std::abs(reflection) < 1.0))
       return false;
-    const Eigen::VectorXd mirrored = scaled.head(degree + 1).reverse();
-    scaled.head(degree) =
-        (scaled.head(degree) - reflection * mirrored.head(degree)) / (1.0 - reflection * reflection);
+    const double share = 1.0 - reflection * reflection;
+    for (Eigen::Index i = 0, j = degree; i <= j; ++i, --j) {  // the polynomial less its mirror image
+      const double low = scaled(i), high = scaled(j);
+      scaled(i) = (low - reflection * high) / share;
+      scaled(j) = (high - reflection * low) / share;
+    }
   }
   return true;
 }

@@ -54,9 +54,9 @@ struct SlackArrays {
 /// eight numbers side by side in an order that is the same for every instruction set, without fused
 /// operations: the bits of the result do not depend on the processor.
 ///
-/// All pointers but those of LimitArrays, SlackArrays, RowWindows, `below_zero`, `non_zero` and lag_sums are
-/// multiples of 64 bytes, strides multiples of 8, and what is padded is zero where nothing else is said
-/// (LaneVector). A matrix with a `stride` has its columns (rows, in `rows`) that far apart.
+/// All pointers but those of LimitArrays, SlackArrays, RowWindows, `below_zero` and `non_zero` are multiples
+/// of 64 bytes, strides multiples of 8, and what is padded is zero where nothing else is said (LaneVector). A
+/// matrix with a `stride` has its columns (rows, in `rows`) that far apart.
 struct LaneKernels {
   const char* name;  ///< "baseline", "avx2", "avx512"
   bool (*runs_here)();
@@ -92,13 +92,21 @@ struct LaneKernels {
 
   double (*dot)(const double* a, const double* b, long size);  ///< `size` a multiple of 8
 
-  /// sums[l] = sum over k < size of a[k] b[k - l], l = 0 ... lags-1. Nothing is aligned or padded, and
-  /// b[-(lags - 1)] is the first number that is read.
-  void (*lag_sums)(const double* a, const double* b, long size, long lags, double* sums);
   /// Eight filters side by side, B/(1 + a_1 q^-1 + ...): eight numbers a sample and eight a coefficient, of
   /// which denominators[0..7] are not read. `nb` - 1 samples before x and `na` before y are read.
   void (*filter_eight)(const double* numerators, long nb, const double* denominators, long na,
                        const double* x, long samples, double* y);
+  /// From rest, of eight signals x at once: x/F1, path = B x/F1, and out = B x/(F1 F2), without `second`
+  /// out = x/F1. Polynomials of `order` + 1 coefficients, `order` from 1 to kPathOrder.
+  void (*filter_paths)(const double* first, const double* numerators, const double* second, long order,
+                       const double* x, long samples, double* path, double* out);
+  static constexpr long kPathOrder = 8;
+  /// sums[8 (lags s + l) + i] = sum over k of a[8 k + i] b[8 (k - l) + s], for s < `signals` <= 8 and
+  /// l < `lags`: the products of eight signals with each of some signals before. `lags` - 1 samples before b
+  /// are read.
+  void (*lag_products)(const double* a, const double* b, long samples, long signals, long lags, double* sums);
+  /// sums[8 l + i] = sum over k of a[8 k + i] b[8 (k - l) + i]; b is any address.
+  void (*lane_products)(const double* a, const double* b, long samples, long lags, double* sums);
 
   void (*pull)(const SpringArrays& springs);                      ///< LimitSprings::pull
   void (*pull_stretched)(const SpringArrays& springs);            ///< LimitSprings::pull_stretched

@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/identification.hpp"
+#include "analysis/identification/lag_sums.hpp"
+#include "analysis/identification/lane_cholesky.hpp"
 #include "analysis/identification/model_order.hpp"
 #include "analysis/identification/output_error_fit.hpp"
 #include "analysis/identification/polynomial_model.hpp"
@@ -19,7 +21,6 @@
 using mpm::OutputErrorFit;
 using mpm::OutputErrorFits;
 using mpm::PolynomialModel;
-using mpm::ShiftedSignals;
 using mpm::SignalBank;
 using mpm::testing::noisy_output;
 using mpm::testing::random_steps;
@@ -60,20 +61,82 @@ TEST_CASE("signal bank: more signals than eight at once are each filtered as one
   }
 }
 
-TEST_CASE("signal bank: products of shifted signals are those of their columns") {
+TEST_CASE("signal bank: two filters one behind the other, of any order") {
+  const Eigen::Index count = 10, samples = 120;
+  const Eigen::Index rows = GENERATE(2, 9, 12);  // the last of an order that the kernels do not have
+  const Eigen::MatrixXd x = white_inputs(count, samples, 70);
+  const Eigen::MatrixXd B = 0.3 * white_inputs(rows, count, 71);
+  Eigen::MatrixXd F1 = 0.1 * white_inputs(rows, count, 72), F2 = 0.1 * white_inputs(rows, count, 73);
+  F1.row(0).setOnes();
+  F2.row(0).setOnes();
+  SignalBank in(count, samples, rows), path(count, samples, rows), out(count, samples, rows);
+  for (Eigen::Index a = 0; a < count; ++a)
+    in[a] = x.row(a).transpose();
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
+  const bool twice = GENERATE(true, false);
+  filter_paths(F1, B, twice ? &F2 : nullptr, in, path, out);
+  for (Eigen::Index a = 0; a < count; ++a) {
+    const Eigen::VectorXd between = mpm::filter(B.col(a), F1.col(a), x.row(a).transpose());
+    CHECK((path[a] - between).cwiseAbs().maxCoeff() < kExact);
+    const Eigen::VectorXd end =
+        twice ? mpm::filter(one, F2.col(a), between) : mpm::filter(one, F1.col(a), x.row(a).transpose());
+    CHECK((out[a] - end).cwiseAbs().maxCoeff() < kExact);
+  }
+}
+
+TEST_CASE("lag sums: products of shifted signals are those of their columns") {
   const Eigen::Index samples = 157;
-  ShiftedSignals signals(3, samples, 9);
-  for (Eigen::Index a = 0; a < 3; ++a)
-    signals[a] = white_inputs(3, samples, 63).row(a).transpose();
-  const Eigen::Index first = GENERATE(0, 9);  // with zeros from before the record, and without
-  const std::vector<mpm::LaggedColumns> columns{{0, 1, 5}, {1, 0, 7}, {2, 3, 1}, {0, 2, 7}};
+  const Eigen::Index count = GENERATE(4, 11);  // of one group of eight, and of two
+  SignalBank signals(count, samples, 9);
+  for (Eigen::Index a = 0; a < count; ++a)
+    signals[a] = white_inputs(count, samples, 63).row(a).transpose();
+  const Eigen::Index first = GENERATE(0, 3, 9);  // with zeros from before the record, and without
+  const std::vector<mpm::LaggedColumns> columns{{0, 1, 5}, {1, 0, 7}, {count - 2, 3, 1}, {0, 2, 7}};
   const Eigen::MatrixXd X = lagged_matrix(signals, columns, first);
   REQUIRE(X.cols() == 20);
   CHECK(X(10, 0) == signals[0](first + 9));
-  CHECK((lagged_products(signals, columns, first) - X.transpose() * X).cwiseAbs().maxCoeff() < kExact);
-  const Eigen::VectorXd x = signals[1].tail(samples - first);
-  CHECK((lagged_products_with(signals, columns, 1, first) - X.transpose() * x).cwiseAbs().maxCoeff() <
-        kExact);
+  CHECK(X(0, 4) == (first < 5 ? 0.0 : signals[0](first - 5)));
+  mpm::LagSums sums;
+  sums.compute(signals, count - 1, 8, first);
+  CHECK((sums.products(columns) - X.transpose() * X).cwiseAbs().maxCoeff() < kExact);
+  const Eigen::VectorXd x = signals[count - 1].tail(samples - first);  // without columns
+  CHECK((sums.products_with(columns, count - 1) - X.transpose() * x).cwiseAbs().maxCoeff() < kExact);
+}
+
+TEST_CASE("lag sums: of partners, in both halves of a group of eight") {
+  const Eigen::Index samples = 157, first = 6;
+  SignalBank signals(16, samples, 9);
+  for (Eigen::Index a = 0; a < 16; ++a)
+    signals[a] = white_inputs(16, samples, 74).row(a).transpose();
+  mpm::LagSums sums;
+  sums.compute(signals, 16, 6, first, mpm::LagPairs::partners);
+  const Eigen::Index a = GENERATE(0, 3, 10);
+  const Eigen::Index delay = GENERATE(0, 1);
+  const std::vector<mpm::LaggedColumns> columns{{a, 1, 5}, {a + 4, delay, 6}};
+  const Eigen::MatrixXd X = lagged_matrix(signals, columns, first);
+  CHECK((sums.products(columns) - X.transpose() * X).cwiseAbs().maxCoeff() < kExact);
+  for (const Eigen::Index with : {a, a + 4})
+    CHECK((sums.products_with(columns, with) - X.transpose() * signals[with].tail(samples - first))
+              .cwiseAbs()
+              .maxCoeff() < kExact);
+}
+
+TEST_CASE(
+    "Cholesky factor by kernels: solves matrices of one size after another, refuses what is not definite") {
+  mpm::LaneCholesky factor;
+  for (const Eigen::Index n : {5, 5, 8, 13, 3}) {
+    CAPTURE(n);
+    const Eigen::MatrixXd X = white_inputs(n, 40, static_cast<unsigned>(75 + n));
+    const Eigen::MatrixXd S = X * X.transpose();
+    const Eigen::VectorXd x = white_inputs(1, n, 76).transpose();
+    REQUIRE(factor.compute(S, 0.0));
+    CHECK((factor.solve(S * x) - x).cwiseAbs().maxCoeff() < kExact);
+    Eigen::MatrixXd singular = S;
+    singular.col(n - 1) = S.col(0);
+    singular.row(n - 1) = singular.col(n - 1).transpose();
+    singular(n - 1, n - 1) = S(0, 0);
+    CHECK(!factor.compute(singular, 1e-12));
+  }
 }
 
 TEST_CASE("roots are within a radius when their largest magnitude is below it") {
@@ -126,6 +189,27 @@ TEST_CASE("output-error fits end where the search over an orthogonal factorisati
   // Starts differ by rounding, minima by the tolerance of the search.
   CHECK((fast.model.parameters() - slow.model.parameters()).cwiseAbs().maxCoeff() < 1e-6);
   CHECK(fast.loss == Approx(prediction_errors(fast.model, y, u).squaredNorm() / 500.0));
+}
+
+TEST_CASE("output-error fits of more inputs, and of a higher order, than fit side by side") {
+  const bool many = GENERATE(true, false);
+  const Eigen::Index nu = many ? 5 : 1, order = many ? 1 : 9;
+  const Eigen::MatrixXd u = white_inputs(nu, 600, 77);
+  PolynomialModel truth;
+  for (Eigen::Index j = 0; j < nu; ++j) {
+    const double pole = 0.3 + 0.1 * static_cast<double>(j);
+    truth.inputs.push_back({Eigen::VectorXd::Constant(1, 1.0), Eigen::Vector2d(1.0, -pole), 1});
+  }
+  truth.noise_variance = 0.01;
+  const Eigen::VectorXd y = noisy_output(truth, u, 78);
+  mpm::PredictionErrorOptions options;
+  options.max_iterations = 1;
+  options.max_starts = 1;
+  const mpm::Identification slow =
+      identify_prediction_error(y, u, mpm::output_error_order(nu, order, order, 1), options);
+  const OutputErrorFit fast = OutputErrorFits(u, options.max_iterations).fit(y, {order}, 1).front();
+  CHECK(fast.loss == Approx(slow.loss).epsilon(1e-9));
+  CHECK((fast.model.parameters() - slow.model.parameters()).cwiseAbs().maxCoeff() < 1e-6);
 }
 
 TEST_CASE(

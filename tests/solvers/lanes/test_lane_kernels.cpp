@@ -142,43 +142,102 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
   }
 }
 
-TEST_CASE("sums over lags and filters side by side are those of their definitions, with the same bits",
-          "[lanes]") {
-  constexpr Eigen::Index kLags = 7, kOrder = 3;
-  const Eigen::Index size = GENERATE(1, 8, 61);
+// B/(1 + a_1 q^-1 + ...) of signals with one in each row, from rest, sample by sample.
+Eigen::MatrixXd filtered_rows(const Eigen::MatrixXd& B, const Eigen::MatrixXd& A, const Eigen::MatrixXd& x) {
+  Eigen::MatrixXd y = Eigen::MatrixXd::Zero(x.rows(), x.cols());
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    for (Eigen::Index i = 0; i < std::min(B.cols(), k + 1); ++i)
+      y.col(k).array() += B.col(i).array() * x.col(k - i).array();
+    for (Eigen::Index i = 1; i < std::min(A.cols(), k + 1); ++i)
+      y.col(k).array() -= A.col(i).array() * y.col(k - i).array();
+  }
+  return y;
+}
+
+TEST_CASE("filters side by side are those of their definitions, with the same bits", "[lanes]") {
+  const Eigen::Index size = GENERATE(1, 61);
+  const Eigen::Index order = GENERATE(0, 1, 3, 7, 8, 11);  // in registers, and too many for them
+  constexpr Eigen::Index kNumerators = 3, kBefore = kNumerators - 1;
   Numbers numbers(5);
-  const LaneVector a = numbers.vector(size + kLags);
-  const LaneVector b = numbers.vector(size + kLags);
-  const LaneMatrix numerators = numbers.matrix(8, kOrder), denominators = numbers.matrix(8, kOrder + 1);
-  LaneMatrix x(8, kOrder - 1 + size);  // a sample a column, zeros before the first
-  for (Eigen::Index k = kOrder - 1; k < x.columns(); ++k)
+  const LaneMatrix numerators = numbers.matrix(8, kNumerators), denominators = numbers.matrix(8, order + 1);
+  LaneMatrix x(8, kBefore + size);  // a sample a column, zeros before the first
+  for (Eigen::Index k = kBefore; k < x.columns(); ++k)
     for (Eigen::Index lane = 0; lane < 8; ++lane)
       x(lane, k) = numbers.next();
-  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(8, kOrder + size);
-  for (Eigen::Index k = 0; k < size; ++k)
-    for (Eigen::Index lane = 0; lane < 8; ++lane) {
-      for (Eigen::Index i = 0; i < kOrder; ++i)
-        expected(lane, kOrder + k) += numerators(lane, i) * x(lane, kOrder - 1 + k - i);
-      for (Eigen::Index i = 1; i <= kOrder; ++i)
-        expected(lane, kOrder + k) -= denominators(lane, i) * expected(lane, kOrder + k - i);
-    }
+  const Eigen::MatrixXd expected =
+      filtered_rows(all_of(numerators), all_of(denominators), all_of(x).rightCols(size));
 
-  SameBits sums, filtered;
+  const Eigen::Index memory = std::max<Eigen::Index>(1, order);
+  SameBits filtered;
   for (const LaneKernels* kernels : lane_kernel_sets()) {
-    CAPTURE(kernels->name);
-    Eigen::VectorXd sum(kLags);
-    kernels->lag_sums(a.data() + 1, b.data() + kLags, size, kLags, sum.data());
-    for (Eigen::Index lag = 0; lag < kLags; ++lag)
-      CHECK(std::abs(sum(lag) - a.vector().segment(1, size).dot(b.vector().segment(kLags - lag, size))) <=
-            kSumRounding);
-    sums.add(sum);
-
-    LaneMatrix y(8, kOrder + size);
-    kernels->filter_eight(numerators.data(), kOrder, denominators.data(), kOrder, x.column(kOrder - 1), size,
-                          y.column(kOrder));
+    CAPTURE(kernels->name, order);
+    LaneMatrix y(8, memory + size);
+    kernels->filter_eight(numerators.data(), kNumerators, denominators.data(), order, x.column(kBefore), size,
+                          y.column(memory));
     // Filters with random denominators grow.
-    CHECK((all_of(y) - expected).norm() <= kSumRounding * expected.norm());
+    CHECK((all_of(y).rightCols(size) - expected).norm() <= kSumRounding * expected.norm());
+    CHECK(all_of(y).leftCols(memory).isZero(0.0));
     filtered.add(all_of(y).reshaped());
+  }
+}
+
+TEST_CASE("two filters one behind the other are those that one kernel after another gives", "[lanes]") {
+  const Eigen::Index size = 61;
+  const Eigen::Index order = GENERATE(range(1, static_cast<int>(LaneKernels::kPathOrder) + 1));
+  Numbers numbers(6);
+  const LaneMatrix first = numbers.matrix(8, order + 1), numerators = numbers.matrix(8, order + 1);
+  const LaneMatrix second = numbers.matrix(8, order + 1), x = numbers.matrix(8, size);
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(8, 1);
+  const Eigen::MatrixXd once = filtered_rows(one, all_of(first), all_of(x));
+  const Eigen::MatrixXd path = filtered_rows(all_of(numerators), one, once);
+  const Eigen::MatrixXd twice = filtered_rows(one, all_of(second), path);
+
+  SameBits bits;
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name, order);
+    LaneMatrix between(8, size), out(8, size), halfway(8, size);
+    kernels->filter_paths(first.data(), numerators.data(), second.data(), order, x.data(), size,
+                          between.data(), out.data());
+    CHECK((all_of(between) - path).norm() <= kSumRounding * path.norm());
+    CHECK((all_of(out) - twice).norm() <= kSumRounding * twice.norm());
+    bits.add(all_of(out).reshaped());
+    kernels->filter_paths(first.data(), numerators.data(), nullptr, order, x.data(), size, between.data(),
+                          halfway.data());
+    CHECK((all_of(between) - path).norm() <= kSumRounding * path.norm());
+    CHECK((all_of(halfway) - once).norm() <= kSumRounding * once.norm());
+  }
+}
+
+TEST_CASE("products with signals before are sums over the samples, with the same bits", "[lanes]") {
+  const Eigen::Index size = GENERATE(1, 128, 300);  // of one part of the record, and of several
+  const Eigen::Index lags = GENERATE(1, 5, 8, 26);
+  const Eigen::Index signals = GENERATE(1, 3, 6, 8);
+  Numbers numbers(7);
+  const LaneMatrix a = numbers.matrix(8, size), b = numbers.matrix(8, lags + size);
+  const auto before = [&](Eigen::Index lag) { return all_of(b).middleCols(lags - lag, size); };
+  SameBits bits;
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name, size, lags, signals);
+    LaneMatrix sums(8, signals * lags), own(8, lags), shifted(8, lags);
+    kernels->lag_products(a.data(), b.column(lags), size, signals, lags, sums.data());
+    kernels->lane_products(a.data(), b.column(lags), size, lags, own.data());
+    kernels->lane_products(a.data(), b.column(lags) - 4, size, lags, shifted.data());
+    double largest = 0.0;
+    for (Eigen::Index l = 0; l < lags; ++l) {
+      const Eigen::MatrixXd all_pairs = all_of(a) * before(l).transpose();
+      for (Eigen::Index s = 0; s < signals; ++s)
+        largest =
+            std::max(largest, (all_of(sums).col(s * lags + l) - all_pairs.col(s)).cwiseAbs().maxCoeff());
+      largest = std::max(largest, (all_of(own).col(l) - all_pairs.diagonal()).cwiseAbs().maxCoeff());
+      for (Eigen::Index lane = 4; lane < 8; ++lane)
+        largest = std::max(largest, std::abs(shifted(lane, l) - all_pairs(lane, lane - 4)));
+      for (Eigen::Index lane = 0; lane < 4; ++lane)
+        largest = std::max(largest,
+                           std::abs(shifted(lane, l) - all_of(a).row(lane).dot(before(l + 1).row(lane + 4))));
+    }
+    CHECK(largest <= kSumRounding);
+    bits.add(all_of(sums).reshaped());
+    bits.add(all_of(own).reshaped());
   }
 }
 

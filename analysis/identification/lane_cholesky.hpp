@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "solvers/lanes/lane_vector.hpp"
+
+namespace mpm {
+
+/// S = L L' of a positive definite matrix, by the kernels of the active-set method. Matrices of one size
+/// after another share its memory.
+class LaneCholesky {
+ public:
+  /// From the lower triangle of S.
+  /// @returns false when a pivot is not above `smallest` times its diagonal
+  bool compute(const Eigen::Ref<const Eigen::MatrixXd>& S, double smallest);
+  /// x of S x = b.
+  Eigen::VectorXd solve(const Eigen::Ref<const Eigen::VectorXd>& b);
+
+ private:
+  Eigen::Index n_ = 0;
+  LaneMatrix matrix_{0, 0};  ///< S, and the unit matrix in the rest of the last eight rows
+  LaneMatrix lower_{0, 0};
+  LaneVector inverse_, x_;
+};
+
+}  // namespace mpm
