@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cerrno>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -10,14 +9,13 @@
 #include <system_error>
 #include <type_traits>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
-#include <unistd.h>
 
 #include "plants/non_finite.hpp"
+#include "results/archive/disk_file.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/file_seal.hpp"
 #include "results/files/utf8.hpp"
@@ -320,36 +318,25 @@ std::vector<T> read_dataset(const Place& place, const Handle& dataset) {
 
 // --- Files on the disk ------------------------------------------------------------------------------------
 
-/// The number of the first error of the system, 0 before.
-using DiskError = std::shared_ptr<int>;
+/// The driver of a file that is made on the disk. The library crashes when it ends with a file that it could
+/// not write, so that it hears of no error; finish() tells.
+struct DiskDriver {
+  H5FD_t base = {};  ///< first, as the library wants it
+  DiskFile disk;
+  haddr_t end_of_allocation = 0, end_of_file = 0;
 
-/// A file that is made on the disk. The library crashes when it ends with a file that it could not write, so
-/// that it hears of no error: what cannot be written is lost, and finish() tells.
-struct DiskFile {
-  H5FD_t base;  ///< first, as the library wants it
-  int descriptor;
-  int* error;
-  haddr_t end_of_allocation, end_of_file;
+  static DiskDriver& of(H5FD_t* file) { return *reinterpret_cast<DiskDriver*>(file); }
+  static const DiskDriver& of(const H5FD_t* file) { return *reinterpret_cast<const DiskDriver*>(file); }
 
-  static DiskFile& of(H5FD_t* file) { return *reinterpret_cast<DiskFile*>(file); }
-  static const DiskFile& of(const H5FD_t* file) { return *reinterpret_cast<const DiskFile*>(file); }
-
-  void note_error() {
-    if (*error == 0)
-      *error = errno;
-  }
+  DiskDriver(const char* path, int* error) : disk(path, error) {}
 
   static H5FD_t* open(const char* name, unsigned, hid_t access, haddr_t) {
-    const int descriptor = ::open(name, O_RDWR | O_TRUNC | O_CLOEXEC);
-    if (descriptor < 0)
-      return nullptr;
     auto* const error = *static_cast<int* const*>(H5Pget_driver_info(access));
-    return &(new DiskFile{{}, descriptor, error, 0, 0})->base;
+    auto file = std::make_unique<DiskDriver>(name, error);
+    return file->disk.is_open() ? &file.release()->base : nullptr;
   }
   static herr_t close(H5FD_t* file) {
-    const std::unique_ptr<DiskFile> closed(&of(file));
-    if (::close(closed->descriptor) != 0)
-      closed->note_error();
+    const std::unique_ptr<DiskDriver> closed(&of(file));
     return 0;
   }
   static herr_t query(const H5FD_t*, unsigned long* flags) {
@@ -364,42 +351,20 @@ struct DiskFile {
   }
   static haddr_t get_eof(const H5FD_t* file, H5FD_mem_t) { return of(file).end_of_file; }
 
-  /// Zeros beyond the end, and where an error was.
   static herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t begin, std::size_t size, void* buffer) {
-    auto* const bytes = static_cast<char*>(buffer);
-    std::size_t done = 0;
-    while (done < size) {
-      const ssize_t got =
-          ::pread(of(file).descriptor, bytes + done, size - done, static_cast<off_t>(begin + done));
-      if (got < 0 && errno == EINTR)
-        continue;
-      if (got < 0)
-        of(file).note_error();
-      if (got <= 0)
-        break;
-      done += static_cast<std::size_t>(got);
-    }
-    std::fill(bytes + done, bytes + size, '\0');
+    of(file).disk.read(begin, {static_cast<char*>(buffer), size});
     return 0;
   }
   static herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t begin, std::size_t size, const void* buffer) {
-    DiskFile& to = of(file);
-    const auto* const bytes = static_cast<const char*>(buffer);
-    for (std::size_t done = 0; done < size && *to.error == 0;) {
-      const ssize_t put =
-          ::pwrite(to.descriptor, bytes + done, size - done, static_cast<off_t>(begin + done));
-      if (put < 0 && errno != EINTR)
-        to.note_error();
-      done += put < 0 ? 0 : static_cast<std::size_t>(put);
-    }
+    DiskDriver& to = of(file);
+    to.disk.write(begin, {static_cast<const char*>(buffer), size});
     to.end_of_file = std::max<haddr_t>(to.end_of_file, begin + size);
     return 0;
   }
   static herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
-    DiskFile& cut = of(file);
-    if (cut.end_of_file != cut.end_of_allocation &&
-        ::ftruncate(cut.descriptor, static_cast<off_t>(cut.end_of_allocation)) != 0)
-      cut.note_error();
+    DiskDriver& cut = of(file);
+    if (cut.end_of_file != cut.end_of_allocation)
+      cut.disk.truncate(cut.end_of_allocation);
     cut.end_of_file = cut.end_of_allocation;
     return 0;
   }
@@ -824,7 +789,7 @@ Hdf5File Hdf5File::create_at(const std::filesystem::path& path, const std::strin
   auto disk = std::make_shared<int>(0);
   const Handle access = file_access(place);
   int* const error = disk.get();
-  place.check(H5Pset_driver(access.get(), DiskFile::driver(), &error), "make properties");
+  place.check(H5Pset_driver(access.get(), DiskDriver::driver(), &error), "make properties");
   return Hdf5File(
       Hdf5Group::State::root_of(create_file(place, path.string(), access), place, std::move(disk)));
 }
