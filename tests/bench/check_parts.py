@@ -18,7 +18,7 @@ from archives import check_same
 
 EXPERIMENTS, CALIBRATION = 24, 10
 LOOPS = EXPERIMENTS + CALIBRATION
-STOPPED = 300  # experiments of a campaign that is to be stopped before its end
+STOPPED = 150  # experiments of a campaign that is to be stopped before its end
 OPTIONS = {"--experiments": EXPERIMENTS, "--jobs": 1, "--audit": 0.002, "--methods": "botelho,sse"}
 PATIENCE = 300  # s, for a machine that is busy with other things
 LAUNCHERS = ("OMPI_", "PMI_", "PMIX_", "SLURM_", "JOB_COMPLETION_INDEX")
