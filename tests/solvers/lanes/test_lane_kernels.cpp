@@ -215,7 +215,7 @@ TEST_CASE("products with signals before are sums over the samples, with the same
   Numbers numbers(7);
   const LaneMatrix a = numbers.matrix(8, size), b = numbers.matrix(8, lags + size);
   const auto before = [&](Eigen::Index lag) { return all_of(b).middleCols(lags - lag, size); };
-  SameBits bits;
+  SameBits all_bits, own_bits;
   for (const LaneKernels* kernels : lane_kernel_sets()) {
     CAPTURE(kernels->name, size, lags, signals);
     LaneMatrix sums(8, signals * lags), own(8, lags), shifted(8, lags);
@@ -236,8 +236,8 @@ TEST_CASE("products with signals before are sums over the samples, with the same
                            std::abs(shifted(lane, l) - all_of(a).row(lane).dot(before(l + 1).row(lane + 4))));
     }
     CHECK(largest <= kSumRounding);
-    bits.add(all_of(sums).reshaped());
-    bits.add(all_of(own).reshaped());
+    all_bits.add(all_of(sums).reshaped());
+    own_bits.add(all_of(own).reshaped());
   }
 }
 
