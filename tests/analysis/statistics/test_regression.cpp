@@ -312,8 +312,8 @@ TEST_CASE("bootstraps without enough clusters or without variation have no inter
 }
 
 TEST_CASE("resamples of one x only are left out where x does not vary within clusters") {
-  // Six clusters, five of them with the same x: a resample of five of these, probability (5/6)^5, or of the sixth
-  // alone has no line.
+  // Six clusters, five of them with the same x: a resample of five of these, probability (5/6)^5, or of the
+  // sixth alone has no line.
   VectorXd x = VectorXd::Constant(12, 1.0);
   x.tail(2).setConstant(3.0);
   const VectorXd y = x + white_noise(12, 10);
