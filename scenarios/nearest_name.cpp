@@ -8,7 +8,7 @@ namespace mpm {
 namespace {
 
 /// Longer names are no misspellings, and comparing them costs time in proportion to their length.
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kLongestMisspelt = 64;
 
 /// Row by row of the table of distances between the beginnings of `a` and `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -29,7 +29,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
-  if (name.size() > kLongestName) {
+  if (name.size() > kLongestMisspelt) {
     return {};
   }
   std::string nearest;

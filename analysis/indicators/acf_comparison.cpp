@@ -16,7 +16,7 @@ namespace {
 
 using Signal = Eigen::Ref<const Eigen::VectorXd>;
 
-constexpr Eigen::Index kFewestSamples = 8;  // a quarter of them are 2 lags
+constexpr Eigen::Index kFewestCompared = 8;  // a quarter of them are 2 lags
 
 void require_inside(const char* name, double value, double lower, double upper) {
   if (!(value > lower && value < upper)) {
@@ -190,7 +190,7 @@ AcfComparison compare_autocorrelations(const Signal& y, const Signal& y0, const 
                                        const std::optional<Eigen::VectorXd>& y_set,
                                        const AcfComparisonOptions& options) {
   options.validate();
-  require_signal("y", y, kFewestSamples);
+  require_signal("y", y, kFewestCompared);
   require_same_length("y", y, "y0", y0);
   require_same_length("y", y, "y0_diag", y0_diag);
   if (y_set) {

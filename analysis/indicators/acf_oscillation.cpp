@@ -12,7 +12,7 @@ namespace mpm {
 namespace {
 
 /// A point of the autocorrelation function.
-struct Point {
+struct Turn {
   Eigen::Index lag = 0;
   double value = 0.0;
 };
@@ -21,7 +21,7 @@ constexpr Eigen::Index kLongestHalfPeriod = 2;  // times the shortest
 
 /// The first three turning points after lag 0, where the function starts from its maximum 1.
 struct Turns {
-  Point minimum, maximum, second_minimum;
+  Turn minimum, maximum, second_minimum;
 
   bool regular() const {
     const auto [shortest, longest] =
@@ -32,8 +32,8 @@ struct Turns {
 
 /// The next turning point after `from`: the lowest point (for sign = 1; the highest for -1) before the first
 /// one that lies `ripple` beyond it. None when the function ends before that.
-std::optional<Point> next_turn(const Eigen::VectorXd& r, Point from, double sign, double ripple) {
-  Point turn = from;
+std::optional<Turn> next_turn(const Eigen::VectorXd& r, Turn from, double sign, double ripple) {
+  Turn turn = from;
   for (Eigen::Index lag = from.lag + 1; lag < r.size(); ++lag) {
     const double step = sign * (r[lag] - turn.value);
     if (step < 0.0) {
@@ -62,7 +62,7 @@ std::optional<Turns> first_turns(const Autocorrelation& acf) {
 }
 
 /// Value at `lag` of the line through two points.
-double line_at(Point from, Point to, Eigen::Index lag) {
+double line_at(Turn from, Turn to, Eigen::Index lag) {
   const double share = static_cast<double>(lag - from.lag) / static_cast<double>(to.lag - from.lag);
   return from.value + share * (to.value - from.value);
 }

@@ -54,18 +54,18 @@ struct LinearFitIntervals {
 };
 
 /// The line with intervals by the studentised cluster bootstrap (Davison and Hinkley 1997, sections 3.8 and
-/// 5.2), m out of n: half as many whole clusters as there are (but 5) are drawn with replacement, and the line
-/// is fitted to their pairs. With t = (result of a resample - result)/standard error of the resample, by the
-/// influences of its clusters, and the jackknife's standard error s, the interval is
+/// 5.2), m out of n: half as many whole clusters as there are (but 5) are drawn with replacement, and the
+/// line is fitted to their pairs. With t = (result of a resample - result)/standard error of the resample, by
+/// the influences of its clusters, and the jackknife's standard error s, the interval is
 ///
 ///   result - s t(1 - a/2) to result - s t(a/2),   a = 1 - confidence
 ///
 /// with the quantiles t() of the resamples (interpolated between order statistics). R^2 is studentised as
 /// Fisher's z = artanh r. Where a few experiments carry the line, as those with a large Ivar do, percentile
-/// intervals are too short, and so are, a little, those of resamples of full size: the bootstrap of fewer than n
-/// observations holds for heavy tails, too (Bickel, Goetze and van Zwet 1997, Statistica Sinica 7). The coverage
-/// of all three is in docs/methods_thesis.md. Clusters are the experiments, because the controlled variables of
-/// one experiment share its mismatch and disturbance and are no independent pairs.
+/// intervals are too short, and so are, a little, those of resamples of full size: the bootstrap of fewer
+/// than n observations holds for heavy tails, too (Bickel, Goetze and van Zwet 1997, Statistica Sinica 7).
+/// The coverage of all three is in docs/methods_thesis.md. Clusters are the experiments, because the
+/// controlled variables of one experiment share its mismatch and disturbance and are no independent pairs.
 ///
 /// The pairs of a cluster enter through their sums only, so that a resample costs O(clusters). The result
 /// depends on the numbers of `stream` and on the order of the pairs within a cluster, not on the order of the

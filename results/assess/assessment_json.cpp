@@ -12,10 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string mv_name(const Study& study, Eigen::Index mv) {
-  return study.plant.mvs[static_cast<std::size_t>(mv)].name;
-}
-
 Json cvs_json(const RecordAssessment& of, const AssessmentRecord& said) {
   Json cvs = Json::array();
   for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv) {

@@ -106,8 +106,7 @@ void add_repair(const RecordAssessment& of, Sentences& sentences) {
       "Identified again from this record, {}/{} has {:.3g} times the gain ({:.3g} to {:.3g}), {:.3g} times "
       "the "
       "time constants ({:.3g} to {:.3g}) and a dead time longer by {:.3g} {} ({:.3g} to {:.3g})",
-      cv_name(of.study, repair.channel.cv),
-      of.study.plant.mvs[static_cast<std::size_t>(repair.channel.mv)].name, fit.gain_factor.value,
+      cv_name(of.study, repair.channel.cv), mv_name(of.study, repair.channel.mv), fit.gain_factor.value,
       fit.gain_factor.lower, fit.gain_factor.upper, fit.time_factor.value, fit.time_factor.lower,
       fit.time_factor.upper, fit.dead_time_shift.value, of.study.plant.time_unit, fit.dead_time_shift.lower,
       fit.dead_time_shift.upper);
@@ -169,7 +168,7 @@ std::vector<std::string> named_mvs(const Study& study, const AssessmentRecord& s
   std::vector<std::string> mvs;
   for (Eigen::Index mv = 0; cv < channels.rows() && mv < channels.cols(); ++mv)
     if (channels(cv, mv) == 1.0)
-      mvs.push_back(study.plant.mvs[static_cast<std::size_t>(mv)].name);
+      mvs.push_back(mv_name(study, mv));
   return mvs;
 }
 
@@ -182,8 +181,8 @@ std::string named_candidate(const RecordAssessment& assessment, const Assessment
 }
 
 std::string mismatch_sentence(const Study& study, const NamedMismatch& named) {
-  const std::string channel = fmt::format("{}/{}", cv_name(study, named.channel.cv),
-                                          study.plant.mvs[static_cast<std::size_t>(named.channel.mv)].name);
+  const std::string channel =
+      fmt::format("{}/{}", cv_name(study, named.channel.cv), mv_name(study, named.channel.mv));
   const std::string interval =
       std::isnan(named.lower) ? "" : fmt::format(" ({:.3g} to {:.3g})", named.lower, named.upper);
   const std::string size = std::isnan(named.size) ? "another" : fmt::format("{:.3g}{}", named.size, interval);

@@ -46,10 +46,6 @@ Panel rga_panel(const Study& study, const LoopInteraction& interaction) {
   return panel.finish("Magnitude of each diagonal element of the dynamic RGA against frequency.");
 }
 
-const std::string& mv_name(const Study& study, Eigen::Index mv) {
-  return study.plant.mvs[static_cast<std::size_t>(mv)].name;
-}
-
 /// The RGA at the frequency of the largest RPN.
 std::string relative_gain_table(const Study& study, const LoopInteraction& interaction) {
   std::vector<HtmlTable::Column> columns{{"", HtmlTable::Align::left}};

@@ -104,7 +104,7 @@ std::string change_table(const ReportInput& input) {
 std::string fixed_names(const Study& study) {
   std::string names;
   for (const Eigen::Index mv : study.s0_perturbation.fixed_mvs)
-    names += (names.empty() ? "" : ", ") + study.plant.mvs[static_cast<std::size_t>(mv)].name;
+    names += (names.empty() ? "" : ", ") + mv_name(study, mv);
   return names;
 }
 

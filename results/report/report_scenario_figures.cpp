@@ -23,7 +23,7 @@ const Pen kOutside{colour::kGreen, Dash::none, Mark::square, 1.0, 1.2};
 constexpr double kRowHeight = 24;  // pixels
 
 /// Few digits, so that a field of a heat map holds them.
-std::string short_number(double value) {
+std::string field_number(double value) {
   if (!std::isfinite(value))
     return "-";
   return fmt::format("{:.{}f}", value, value < 9.995 ? 2 : value < 99.95 ? 1 : 0);
@@ -72,7 +72,7 @@ Panel index_panel(const Campaign& campaign, const char* name, const char* title,
       const bool outside = study.diagnosis.has_impact(values(cv));
       const bool affected = judged && is_affected(record, cv);
       const std::string_view fill = !judged ? colour::kGreen : affected ? colour::kSky : colour::kOrange;
-      const std::string number = short_number(values(cv));
+      const std::string number = field_number(values(cv));
       panel.field(static_cast<double>(cv), last - static_cast<double>(row), fill,
                   outside ? depth_of_index(values(cv)) : 0.0,
                   affected && !outside ? "[" + number + "]" : number);

@@ -59,7 +59,7 @@ Json interaction_json(const Study& study, const BasisCase& basis) {
   for (std::size_t i = 0; i < interaction.mvs.size(); ++i)
     for (std::size_t j = 0; j < interaction.mvs.size(); ++j)
       gains.push_back({{"cv", study.plant.cvs[static_cast<std::size_t>(interaction.cvs[i])].name},
-                       {"mv", study.plant.mvs[static_cast<std::size_t>(interaction.mvs[j])].name},
+                       {"mv", mv_name(study, interaction.mvs[j])},
                        {"value", interaction.relative_gain_at_maximum(static_cast<Eigen::Index>(i),
                                                                       static_cast<Eigen::Index>(j))}});
   return {{"rpn_frequency", interaction.rpn_frequency},

@@ -45,7 +45,7 @@ void add_structures(SummaryLines& text, const Study& study, const std::vector<St
     return;
   std::string fixed;
   for (const Eigen::Index mv : study.s0_perturbation.fixed_mvs)
-    fixed += (fixed.empty() ? "" : ", ") + study.plant.mvs[static_cast<std::size_t>(mv)].name;
+    fixed += (fixed.empty() ? "" : ", ") + mv_name(study, mv);
   text.line("");
   text.line("{:<{}}  {:>8}  {:>6}  {:>10}  {:>10}", "S0 with " + fixed + " fixed", kCvWidth, "tau", "xi",
             "tau times", "xi times");

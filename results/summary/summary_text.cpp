@@ -54,8 +54,7 @@ std::string interaction_sentence(const Study& study, const BasisCase& basis) {
     const auto at = static_cast<Eigen::Index>(i);
     sentence += fmt::format("{} {}-{} {:.3g}", i == 0 ? "; |RGA| there:" : ",",
                             study.plant.cvs[static_cast<std::size_t>(interaction.cvs[i])].name,
-                            study.plant.mvs[static_cast<std::size_t>(interaction.mvs[i])].name,
-                            interaction.relative_gain_at_maximum(at, at));
+                            mv_name(study, interaction.mvs[i]), interaction.relative_gain_at_maximum(at, at));
   }
   return sentence;
 }

@@ -72,7 +72,7 @@ std::string parameter_text(const Study& study, const ParameterChange& change) {
 
 std::string place_text(const Study& study, const Disturbance& disturbance) {
   if (disturbance.mv)
-    return study.plant.mvs[static_cast<std::size_t>(*disturbance.mv)].name;
+    return mv_name(study, *disturbance.mv);
   return disturbance.inner_input
              ? study.nonlinear->model.inner_inputs[static_cast<std::size_t>(*disturbance.inner_input)]
              : cv_name(study, disturbance.cv);
@@ -176,6 +176,10 @@ std::string source_name(FaultSource source) {
 
 std::string cv_name(const Study& study, Eigen::Index cv) {
   return cv < 0 ? "none" : study.plant.cvs[static_cast<std::size_t>(cv)].name;
+}
+
+std::string mv_name(const Study& study, Eigen::Index mv) {
+  return study.plant.mvs[static_cast<std::size_t>(mv)].name;
 }
 
 std::string fault_text(const Study& study, const ExperimentDraw& draw) {

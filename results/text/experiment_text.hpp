@@ -19,6 +19,9 @@ std::string source_name(FaultSource source);
 /// The name of a CV, "none" for -1.
 std::string cv_name(const Study& study, Eigen::Index cv);
 
+/// The name of an MV.
+std::string mv_name(const Study& study, Eigen::Index mv);
+
 /// What is wrong in the experiment: "gain of y1/u2 x 0.45; disturbance on y1: gain 1.2, time constant 90
 /// min".
 std::string fault_text(const Study& study, const ExperimentDraw& draw);
