@@ -20,7 +20,7 @@ using Signal = Eigen::Ref<const Eigen::VectorXd>;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kFewestPairs = 3.0;
-constexpr std::size_t kFewestClusters = 5;  // of a sample, and of a resample
+constexpr std::size_t kFewestClusters = 5;           // of a sample, and of a resample
 constexpr double kLargestCorrelation = 1.0 - 1e-15;  // where Fisher's z is still finite
 
 struct Pair {
@@ -185,7 +185,9 @@ struct Studentised {
 };
 
 /// Number of clusters in a resample: half of them.
-std::size_t resample_size(std::size_t clusters) { return std::max((clusters + 1) / 2, kFewestClusters); }
+std::size_t resample_size(std::size_t clusters) {
+  return std::max((clusters + 1) / 2, kFewestClusters);
+}
 
 /// One resample, unless it has no line.
 void add_resample(const std::vector<Sums>& clusters, const Centre& centre, const Results& results,
