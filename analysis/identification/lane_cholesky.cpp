@@ -1,5 +1,7 @@
 #include "analysis/identification/lane_cholesky.hpp"
 
+#include <algorithm>
+
 #include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {
@@ -18,6 +20,16 @@ bool LaneCholesky::compute(const Eigen::Ref<const Eigen::MatrixXd>& S, double sm
   for (Eigen::Index j = 0; j < n; ++j)
     Eigen::Map<Eigen::VectorXd>(matrix_.column(j), n) = S.col(j);
   return lane_kernels().factor(matrix_.data(), size, size, smallest, lower_.data(), inverse_.data());
+}
+
+double LaneCholesky::least_pivot() const {
+  constexpr Eigen::Index kBlock = 8;
+  double largest = 0.0;  // on the diagonals of the inverses of the blocks of L
+  for (Eigen::Index j = 0; j < n_; ++j) {
+    const double* inverse = inverse_.data() + LaneKernels::kInverse * (j - j % kBlock);
+    largest = std::max(largest, inverse[(kBlock + 1) * (j % kBlock)]);
+  }
+  return 1.0 / (largest * largest);
 }
 
 Eigen::VectorXd LaneCholesky::solve(const Eigen::Ref<const Eigen::VectorXd>& b) {

@@ -13,6 +13,8 @@ class LaneCholesky {
   /// From the lower triangle of S.
   /// @returns false when a pivot is not above `smallest` times its diagonal
   bool compute(const Eigen::Ref<const Eigen::MatrixXd>& S, double smallest);
+  /// The least pivot: the square of the least element on the diagonal of L.
+  double least_pivot() const;
   /// x of S x = b.
   Eigen::VectorXd solve(const Eigen::Ref<const Eigen::VectorXd>& b);
 

@@ -16,8 +16,11 @@ namespace {
 
 // Rounds that move no coefficient of F by more than this give what the one before gave.
 constexpr double kSameDenominator = 1e-9;
-// Least pivot of X'X with a diagonal of 1. The rounding of the products, 1e-16, is then 1e-4 of it.
+// Least pivot of X'X with a diagonal of 1. The rounding of the products, 1e-16, is then 1e-4 of it, and one
+// step of refinement makes 1e-8 of that.
 constexpr double kLeastPivot = 1e-12;
+// Above this pivot the products alone leave 6 digits.
+constexpr double kSafePivot = 1e-10;
 
 /// Lengths of the ARX models to start from, as `prediction_error_starts` has them.
 std::vector<Eigen::Index> arx_lengths(Eigen::Index nu, Eigen::Index nf, Eigen::Index samples) {
@@ -80,23 +83,29 @@ OutputErrorStarts::OutputErrorStarts(const Eigen::Ref<const Eigen::MatrixXd>& u,
   signals_[nu_] = y;
 }
 
-/// The coefficients x of the regression of signal `target` on the columns, from their products of the last
-/// sums; where these leave too few digits, by `least_squares` from the columns.
+/// The coefficients x of the regression of signal `target` on the columns X, from their products of the last
+/// sums: X'X x = X'y, refined by X'(y - X x) where the products leave few digits, and by `least_squares` from
+/// the columns where they leave too few.
 Eigen::VectorXd OutputErrorStarts::regression(const SignalBank& signals,
                                               const std::vector<LaggedColumns>& columns, Eigen::Index target,
                                               Eigen::Index first) {
+  const auto y = signals[target].tail(signals.samples() - first);
   Eigen::MatrixXd products = sums_.products(columns);
   const Eigen::VectorXd norms = products.diagonal().cwiseMax(0.0).cwiseSqrt();
-  if (norms.minCoeff() > 0.0) {
-    const Eigen::VectorXd scale = norms.cwiseInverse();
-    products.array().colwise() *= scale.array();
-    products.array().rowwise() *= scale.transpose().array();
-    if (factor_.compute(products, kLeastPivot))
-      return factor_.solve(sums_.products_with(columns, target).cwiseProduct(scale)).cwiseProduct(scale);
+  const Eigen::VectorXd scale = norms.cwiseInverse();
+  products.array().colwise() *= scale.array();
+  products.array().rowwise() *= scale.transpose().array();
+  if (!(norms.minCoeff() > 0.0) || !factor_.compute(products, kLeastPivot))
+    return least_squares(lagged_matrix(signals, columns, first), y).x;
+  const auto solved = [&](const Eigen::VectorXd& right) -> Eigen::VectorXd {
+    return factor_.solve(right.cwiseProduct(scale)).cwiseProduct(scale);
+  };
+  Eigen::VectorXd x = solved(sums_.products_with(columns, target));
+  if (factor_.least_pivot() < kSafePivot) {
+    const Eigen::MatrixXd X = lagged_matrix(signals, columns, first);
+    x += solved(X.transpose() * (y - X * x));
   }
-  return least_squares(lagged_matrix(signals, columns, first),
-                       signals[target].tail(signals.samples() - first))
-      .x;
+  return x;
 }
 
 OutputErrorCoefficients OutputErrorStarts::best(Eigen::Index nb, Eigen::Index nf) {

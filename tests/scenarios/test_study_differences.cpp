@@ -7,15 +7,12 @@
 #include "scenarios/study_differences.hpp"
 #include "scenarios/study_file.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/scenarios/study_texts.hpp"
 
 namespace mpm {
 namespace {
 
-std::string replaced(std::string text, const std::string& from, const std::string& by) {
-  const std::size_t place = text.find(from);
-  REQUIRE(place != std::string::npos);
-  return text.replace(place, from.size(), by);
-}
+using testing::replaced;
 
 /// "key: before -> now"
 std::vector<std::string> lines(const Study& before, const Study& now) {

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 
@@ -131,6 +132,8 @@ TEST_CASE(
     const Eigen::VectorXd x = white_inputs(1, n, 76).transpose();
     REQUIRE(factor.compute(S, 0.0));
     CHECK((factor.solve(S * x) - x).cwiseAbs().maxCoeff() < kExact);
+    const Eigen::MatrixXd L = S.llt().matrixL();
+    CHECK(factor.least_pivot() == Approx(L.diagonal().array().square().minCoeff()));
     Eigen::MatrixXd singular = S;
     singular.col(n - 1) = S.col(0);
     singular.row(n - 1) = singular.col(n - 1).transpose();
