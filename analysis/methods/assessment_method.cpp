@@ -59,7 +59,7 @@ std::optional<std::string> unmet_requirement(const AssessmentRequirements& requi
 }
 
 Assessor::Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context)
-    : requirements_(info.requirements), context_(context), make_(info.make) {}
+    : requirements_(info.requirements), locates_cvs_(info.locates_cvs), context_(context), make_(info.make) {}
 
 Assessment Assessor::assess(const AssessedLoop& loop) {
   if (const std::optional<std::string> unmet = unmet_requirement(requirements_, context_, loop))
@@ -69,6 +69,9 @@ Assessment Assessor::assess(const AssessedLoop& loop) {
   try {
     Assessment assessment = method_->assess(loop);
     assert(assessment.cvs.empty() || static_cast<Eigen::Index>(assessment.cvs.size()) == loop.y.rows());
+    if (assessment.status == AssessmentStatus::ok && assessment.flagged && locates_cvs_ &&
+        !assessment.worst_cv())
+      return Assessment::failed("it flags the loop and names no CV");
     return assessment;
   } catch (const InputError& error) {
     return Assessment::failed(error.what());

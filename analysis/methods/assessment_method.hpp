@@ -104,12 +104,14 @@ class Assessor {
   Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context);
 
   /// The verdict on a loop of the study of the context: `failed` with what the method refuses of this loop,
-  /// so that one odd loop does not cost the verdicts on the others. Throws InputError as
+  /// so that one odd loop does not cost the verdicts on the others, and where a method that locates CVs flags
+  /// the loop and has a score of none. Throws InputError as
   /// AssessmentMethodInfo::make.
   Assessment assess(const AssessedLoop& loop);
 
  private:
   AssessmentRequirements requirements_;
+  bool locates_cvs_;
   const AssessmentContext& context_;
   std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext&)> make_;
   std::unique_ptr<AssessmentMethod> method_;  ///< made for the first loop to which it applies

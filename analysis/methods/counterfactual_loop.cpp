@@ -65,10 +65,16 @@ Eigen::VectorXd CounterfactualLoop::ivar_diag(const AssessedLoop& loop) {
   return found;
 }
 
-CvAssessment CounterfactualLoop::located(double ivar_diag) const {
-  if (std::isnan(ivar_diag))
-    return {};
-  return {study_.diagnosis.has_impact(ivar_diag), distance(ivar_diag)};
+std::vector<CvAssessment> CounterfactualLoop::located(const Eigen::VectorXd& ivar_diag,
+                                                      const Assessment& impact) const {
+  const bool has_none = ivar_diag.array().isNaN().all();
+  std::vector<CvAssessment> cvs(static_cast<std::size_t>(ivar_diag.size()));
+  for (Eigen::Index cv = 0; cv < ivar_diag.size(); ++cv) {
+    const double ivar = has_none ? impact.number("ivar", cv) : ivar_diag(cv);
+    if (!std::isnan(ivar))
+      cvs[static_cast<std::size_t>(cv)] = {study_.diagnosis.has_impact(ivar), distance(ivar)};
+  }
+  return cvs;
 }
 
 /// Of a variance index from 1, as the study measures it to locate a CV.

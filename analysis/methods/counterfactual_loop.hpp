@@ -36,8 +36,9 @@ class CounterfactualLoop {
   /// Ivar_diag of each CV, ny; NaN when its loop does not run to its end. Costs a closed loop a CV.
   Eigen::VectorXd ivar_diag(const AssessedLoop& loop);
 
-  /// What an Ivar_diag says of its CV; nothing when it is NaN.
-  CvAssessment located(double ivar_diag) const;
+  /// What Ivar_diag says of each CV of a flagged loop; nothing of one where it is NaN. Where all are, no loop
+  /// runs to its end under the errors of the others: then Ivar of `impact` says it.
+  std::vector<CvAssessment> located(const Eigen::VectorXd& ivar_diag, const Assessment& impact) const;
 
  private:
   /// A loop that was simulated, with what it was simulated under.

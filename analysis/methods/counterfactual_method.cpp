@@ -2,7 +2,6 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/counterfactual_loop.hpp"
-#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {
@@ -16,12 +15,14 @@ class Counterfactual final : public AssessmentMethod {
     Assessment assessment = nominal_.impact(loop);
     if (assessment.status != AssessmentStatus::ok)
       return assessment;
-    const Eigen::VectorXd ivar_diag =
-        assessment.flagged ? nominal_.ivar_diag(loop) : Eigen::VectorXd::Constant(loop.y.rows(), kNaN).eval();
-    for (Eigen::Index cv = 0; cv < ivar_diag.size(); ++cv) {
-      assessment.cvs.push_back(nominal_.located(ivar_diag(cv)));
-      assessment.numbers.push_back({"ivar_diag", ivar_diag(cv), cv});
+    if (!assessment.flagged) {
+      assessment.cvs.resize(static_cast<std::size_t>(loop.y.rows()));
+      return assessment;
     }
+    const Eigen::VectorXd ivar_diag = nominal_.ivar_diag(loop);
+    assessment.cvs = nominal_.located(ivar_diag, assessment);
+    for (Eigen::Index cv = 0; cv < ivar_diag.size(); ++cv)
+      assessment.numbers.push_back({"ivar_diag", ivar_diag(cv), cv});
     return assessment;
   }
 

@@ -62,8 +62,7 @@ class Mpmbench final : public AssessmentMethod {
     else if (order.status == AssessmentStatus::ok)
       assessment.cvs = order.cvs;
     else
-      for (const double ivar_diag : nominal_.ivar_diag(loop))
-        assessment.cvs.push_back(nominal_.located(ivar_diag));
+      assessment.cvs = nominal_.located(nominal_.ivar_diag(loop), assessment);
     const std::optional<Eigen::Index> worst = assessment.worst_cv();
     if (!worst)
       return;

@@ -63,8 +63,14 @@ std::string plant_and_unit(const Leaderboard& board, const CellScores& cell) {
 
 namespace {
 
+/// With this many digits, and all of those before the point: 1616 instead of 1.62e+03.
+std::string plain_number(double value, int digits) {
+  return value + 0.5 < std::pow(10.0, digits) ? fmt::format("{:.{}g}", value, digits)
+                                              : fmt::format("{:.0f}", value);
+}
+
 std::string time_words(double time) {
-  return std::isinf(time) ? "never" : fmt::format("{:.3g}", time);
+  return std::isinf(time) ? "never" : plain_number(time, 3);
 }
 
 }  // namespace
@@ -76,7 +82,7 @@ std::string delay_words(const MethodScores& scores) {
   std::string text = delay.count == 0 ? "-" : time_words(delay.value);
   if (delay.count > 0 && !std::isnan(delay.interval.lower))
     text += fmt::format(" ({} to {})", time_words(delay.interval.lower), time_words(delay.interval.upper));
-  return alarms.count == 0 ? text : fmt::format("{}; {:.2g}", text, alarms.value);
+  return alarms.count == 0 ? text : text + "; " + plain_number(alarms.value, 2);
 }
 
 std::vector<std::string> passed_by_nobody(const Leaderboard& board, LeaderboardTask task) {

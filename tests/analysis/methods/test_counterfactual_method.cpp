@@ -2,9 +2,11 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/methods/counterfactual_loop.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "analysis/statistics/variance.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/signals.hpp"
 #include "scenarios/study_library.hpp"
@@ -60,6 +62,26 @@ TEST_CASE("windows: methods that simulate or filter a loop do so from the start 
   const Assessment said = chain.assess(window_of(record, 150, 200));
   for (Eigen::Index cv = 0; cv < expected.size(); ++cv)
     CHECK(said.number("ivar", cv) == expected(cv));
+}
+
+TEST_CASE("counterfactual: where no loop runs under the errors of the others, Ivar names the CV") {
+  const Study study = find_study("chapter6");
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
+  CounterfactualLoop nominal(context);
+  const ExperimentDraw draw = draw_experiment(study, 15);
+  Assessment impact =
+      nominal.impact(assessed_loop(study, basis.point, simulate_experiment(study, draw, testing::kFactory)));
+  REQUIRE(impact.flagged);
+  Eigen::VectorXd ivar_diag = Eigen::VectorXd::Constant(study.cv_count(), kNaN);
+  impact.cvs = nominal.located(ivar_diag, impact);
+  CHECK(impact.worst_cv() == draw.true_cv());
+  CHECK(impact.cvs[static_cast<std::size_t>(draw.true_cv())].flagged == true);
+  ivar_diag(1) = 1.0;  // the one that does run is asked
+  impact.cvs = nominal.located(ivar_diag, impact);
+  CHECK(impact.worst_cv() == 1);
+  CHECK(impact.cvs[1].flagged == false);
+  CHECK_FALSE(impact.cvs[0].flagged.has_value());
 }
 
 TEST_CASE("counterfactual: with the simulation errors of all CVs added, the loop of the model gives y back") {

@@ -1,3 +1,5 @@
+#include <cstddef>
+#include <memory>
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -5,6 +7,7 @@
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {
 namespace {
@@ -71,6 +74,29 @@ TEST_CASE("every method describes itself, and each of its numbers once") {
       CHECK((!number.summarised || (number.scope == NumberScope::loop && !number.label.empty())));
     }
   }
+}
+
+TEST_CASE("a method that locates CVs, flags a loop and names none has no verdict on it") {
+  class Undecided final : public AssessmentMethod {
+   public:
+    Assessment assess(const AssessedLoop& loop) override {
+      Assessment assessment;
+      assessment.flagged = true;
+      assessment.cvs.resize(static_cast<std::size_t>(loop.y.rows()));
+      return assessment;
+    }
+  };
+  const Study study = find_study("chapter6");
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
+  const AssessedLoop loop = assessed_loop(study, basis.point, basis.trajectory);
+  AssessmentMethodInfo info;
+  info.make = [](const AssessmentContext&) { return std::make_unique<Undecided>(); };
+  CHECK(Assessor(info, context).assess(loop).flagged);
+  info.locates_cvs = true;
+  const Assessment said = Assessor(info, context).assess(loop);
+  CHECK(said.status == AssessmentStatus::failed);
+  CHECK(said.reason == "it flags the loop and names no CV");
 }
 
 }  // namespace mpm
