@@ -40,7 +40,7 @@ void LagSums::compute(const SignalBank& signals, Eigen::Index delayed, Eigen::In
   groups_ = signals.groups();
   before_.setZero(lags_, delayed);
   last_.setZero(lags_, delayed);
-  assert(signals.memory() + first >= largest_lag + (pairs == LagPairs::partners ? 1 : 0));
+  signals.require_memory(largest_lag + (pairs == LagPairs::partners ? 1 : 0) - first);
   for (Eigen::Index a = 0; a < delayed; ++a)
     for (Eigen::Index t = 1; t < lags_; ++t) {
       before_(t, a) = first >= t ? signals[a](first - t) : 0.0;

@@ -74,7 +74,7 @@ OutputErrorStarts::OutputErrorStarts(const Eigen::Ref<const Eigen::MatrixXd>& u,
       largest_radius_(largest_radius),
       errors_(errors),
       signals_(nu_ + 1, u.cols(), 0),
-      inputs_(places(nu_), u.cols(), std::max(rows, kLongestArx + delay)),
+      inputs_(places(nu_), u.cols(), std::max(nu_ * rows, kLongestArx) + delay),
       filtered_signals_(nu_ + 1, u.cols(), rows),
       filtered_(places(nu_), u.cols(), rows),
       path_(places(nu_), u.cols(), rows) {

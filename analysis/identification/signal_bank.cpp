@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <stdexcept>
 
 #include "solvers/lanes/kernel_choice.hpp"
 
@@ -41,10 +42,16 @@ SignalBank::SignalBank(Eigen::Index count, Eigen::Index samples, Eigen::Index me
       memory_(memory),
       memory_of_(static_cast<std::size_t>((count + 7) / 8 * 8 * (memory + samples)), 0.0) {}
 
+void SignalBank::require_memory(Eigen::Index samples) const {
+  if (memory_ < samples)
+    throw std::logic_error("a bank of signals is read before its memory");
+}
+
 void filter_bank(const Eigen::Ref<const Eigen::MatrixXd>& B, const Eigen::Ref<const Eigen::MatrixXd>& F,
                  Eigen::Index delay, const SignalBank& in, SignalBank& out) {
   assert(B.cols() == in.count() && F.cols() == in.count() && out.count() == in.count());
-  assert(in.memory() >= B.rows() - 1 + delay && out.memory() >= std::max<Eigen::Index>(1, F.rows() - 1));
+  in.require_memory(B.rows() - 1 + delay);
+  out.require_memory(std::max<Eigen::Index>(1, F.rows() - 1));
   for (Eigen::Index group = 0; group < in.groups(); ++group) {
     const LaneMatrix numerators = coefficients(B, group);
     const LaneMatrix denominators = coefficients(F, group);

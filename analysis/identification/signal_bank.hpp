@@ -25,6 +25,8 @@ class SignalBank {
   ConstSignal operator[](Eigen::Index a) const {
     return {at(a / 8, 0) + a % 8, samples_, Eigen::InnerStride<8>()};
   }
+  /// Throws std::logic_error when the memory has fewer samples: kernels would read what is none of the bank.
+  void require_memory(Eigen::Index samples) const;
   /// Sample k, -memory() or later, of the eight signals of a group.
   double* at(Eigen::Index group, Eigen::Index k) { return memory_of_.data() + place(group, k); }
   const double* at(Eigen::Index group, Eigen::Index k) const { return memory_of_.data() + place(group, k); }

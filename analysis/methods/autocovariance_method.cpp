@@ -198,7 +198,7 @@ class Autocovariance final : public AssessmentMethod {
   ChannelDifference difference_of(const GriddedFamily& family, double x) const {
     const auto [cv, mv] = family.channel;
     return channel_difference(study_.plant.G(cv, mv), family.family.channel(x), cv, mv,
-                              study_.controller.sample_time, linear_->noise.front().size());
+                              study_.controller.sample_time, linear_->s.front().cols());
   }
 
   SquaredDistance distance_about(const FittedFamily& fit) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "analysis/methods/channel_regressors.hpp"
 #include "analysis/methods/noise_model.hpp"
@@ -22,6 +23,14 @@ Eigen::VectorXd convolved(const Eigen::VectorXd& h, const Eigen::VectorXd& x) {
     const Eigen::Index n = std::min(k + 1, h.size());
     y(k) = reversed.tail(n).dot(x.segment(k + 1 - n, n));
   }
+  return y;
+}
+
+/// The same of each row of h.
+Eigen::MatrixXd convolved_rows(const Eigen::MatrixXd& h, const Eigen::VectorXd& x) {
+  Eigen::MatrixXd y(h.rows(), x.size());
+  for (Eigen::Index row = 0; row < h.rows(); ++row)
+    y.row(row) = convolved(h.row(row), x);
   return y;
 }
 
@@ -59,31 +68,38 @@ void require_ok(const Trajectory& loop) {
     throw InputError("controller", "one without a solution when no limit is left", "one with");
 }
 
-/// n of the CVs under an impulse in w_l, ny x L.
-Eigen::MatrixXd noise_response(const LinearLoop& loop, std::size_t l, const ChannelDifference* changed) {
-  const Eigen::Index ny = loop.s.front().rows();
-  const Eigen::VectorXd& v = loop.noise[l];
-  Eigen::VectorXd of_change;
-  if (changed) {
-    const auto i = static_cast<std::size_t>(changed->cv);
-    const Eigen::VectorXd f = convolved(loop.q[i].row(changed->mv).transpose(), changed->D);
-    const Eigen::VectorXd u = closed(f, convolved(loop.q[l].row(changed->mv).transpose(), v));
-    of_change = convolved(changed->D, u);
-  }
-  Eigen::MatrixXd response(ny, v.size());
-  for (Eigen::Index m = 0; m < ny; ++m) {
-    response.row(m) = convolved(loop.s[l].row(m).transpose(), v).transpose();
-    if (changed)
-      response.row(m) +=
-          convolved(loop.s[static_cast<std::size_t>(changed->cv)].row(m).transpose(), of_change).transpose();
-  }
-  return response;
+/// What a channel that is another than in the model adds to the CVs when what moves the loop moves its MV so,
+/// were the channel that of the model: S_i D / (1 - Q_ji D), as long as that moves, ny x N.
+struct AddedPath {
+  Eigen::Index mv;
+  Eigen::MatrixXd response;
+};
+
+std::optional<AddedPath> added_path(const LinearLoop& loop, const ChannelDifference* changed,
+                                    Eigen::Index samples) {
+  if (!changed)
+    return std::nullopt;
+  const auto i = static_cast<std::size_t>(changed->cv);
+  const Eigen::VectorXd f = convolved(loop.q[i].row(changed->mv), changed->D);
+  const Eigen::Index n = std::min(samples, changed->D.size());
+  Eigen::VectorXd D = Eigen::VectorXd::Zero(samples);
+  D.head(n) = changed->D.head(n);
+  return AddedPath{changed->mv, convolved_rows(loop.s[i], closed(f, D))};
 }
 
-std::vector<Eigen::MatrixXd> noise_responses(const LinearLoop& loop, const ChannelDifference* changed) {
-  std::vector<Eigen::MatrixXd> responses;
-  for (std::size_t l = 0; l < loop.noise.size(); ++l)
-    responses.push_back(noise_response(loop, l, changed));
+/// Adds what goes along the path to CVs, ny x n, when these MVs move.
+void add_along(const std::optional<AddedPath>& path, const Eigen::MatrixXd& u, Eigen::MatrixXd& cvs) {
+  if (!path)
+    return;
+  for (Eigen::Index m = 0; m < cvs.rows(); ++m)
+    cvs.row(m) += convolved(path->response.row(m), u.row(path->mv)).transpose();
+}
+
+/// n of the CVs under an impulse in each w_l, ny x L.
+std::vector<Eigen::MatrixXd> noise_responses(const LinearLoop& loop, const std::optional<AddedPath>& path) {
+  std::vector<Eigen::MatrixXd> responses = loop.noise_outputs;
+  for (std::size_t l = 0; l < responses.size(); ++l)
+    add_along(path, loop.noise_moves[l], responses[l]);
   return responses;
 }
 
@@ -101,16 +117,9 @@ double noise_covariance(const std::vector<Eigen::MatrixXd>& psi, Eigen::Index i,
 }
 
 /// z_d, ny x N.
-Eigen::MatrixXd moved_outputs(const LinearLoop& loop, const OutsideMoves& moves,
-                              const ChannelDifference* changed) {
+Eigen::MatrixXd moved_outputs(const OutsideMoves& moves, const std::optional<AddedPath>& path) {
   Eigen::MatrixXd z = moves.z0;
-  if (changed) {
-    const auto i = static_cast<std::size_t>(changed->cv);
-    const Eigen::VectorXd f = convolved(loop.q[i].row(changed->mv).transpose(), changed->D);
-    const Eigen::VectorXd e = convolved(changed->D, closed(f, moves.u0.row(changed->mv).transpose()));
-    for (Eigen::Index m = 0; m < z.rows(); ++m)
-      z.row(m) += convolved(loop.s[i].row(m).transpose(), e).transpose();
-  }
+  add_along(path, moves.u0, z);
   return z.middleCols(moves.first, moves.samples);
 }
 
@@ -170,7 +179,7 @@ LinearLoop linear_loop(const AssessmentContext& context, const AssessedLoop& ben
   const Study study = unlimited_study(context.study, samples);
   const Eigen::Index ny = study.cv_count();
   const Eigen::MatrixXd still = Eigen::MatrixXd::Zero(ny, samples);
-  LinearLoop loop{.sample_time = study.controller.sample_time, .q = {}, .s = {}, .noise = {}};
+  LinearLoop loop{.sample_time = study.controller.sample_time};
   Eigen::VectorXd impulse = Eigen::VectorXd::Zero(samples);
   impulse(0) = 1.0;
   for (Eigen::Index cv = 0; cv < ny; ++cv) {
@@ -183,8 +192,10 @@ LinearLoop linear_loop(const AssessmentContext& context, const AssessedLoop& ben
     loop.s.push_back(differences(step.y, study.sensitivity.step_size));
     const Eigen::VectorXd v = (benchmark.y.row(cv) - benchmark.y_sim.row(cv)).transpose();
     const NoiseModel model = autoregressive_noise((v.array() - v.mean()).matrix(), kHighestNoiseOrder);
-    loop.noise.emplace_back(std::sqrt(innovation_variance(v, kHighestNoiseOrder)) *
-                            filter(model.C, model.D, impulse));
+    const Eigen::VectorXd noise =
+        std::sqrt(innovation_variance(v, kHighestNoiseOrder)) * filter(model.C, model.D, impulse);
+    loop.noise_moves.push_back(convolved_rows(loop.q.back(), noise));
+    loop.noise_outputs.push_back(convolved_rows(loop.s.back(), noise));
   }
   return loop;
 }
@@ -220,8 +231,9 @@ ChannelDifference channel_difference(const TransferFunction& nominal, const Tran
 Eigen::VectorXd theoretical_autocovariance(const LinearLoop& loop, const OutsideMoves& moves,
                                            const std::vector<Eigen::Index>& lags,
                                            const ChannelDifference* changed) {
-  Eigen::VectorXd mean = loop_autocovariance(moved_outputs(loop, moves, changed), lags);
-  const std::vector<Eigen::MatrixXd> psi = noise_responses(loop, changed);
+  const std::optional<AddedPath> path = added_path(loop, changed, moves.u0.cols());
+  Eigen::VectorXd mean = loop_autocovariance(moved_outputs(moves, path), lags);
+  const std::vector<Eigen::MatrixXd> psi = noise_responses(loop, path);
   const auto count = static_cast<Eigen::Index>(lags.size());
   for (Eigen::Index i = 0; i < moves.z0.rows(); ++i)
     for (Eigen::Index a = 0; a < count; ++a) {
@@ -235,8 +247,9 @@ Eigen::VectorXd theoretical_autocovariance(const LinearLoop& loop, const Outside
 Eigen::MatrixXd autocovariance_covariance(const LinearLoop& loop, const OutsideMoves& moves,
                                           const std::vector<Eigen::Index>& lags,
                                           const ChannelDifference* changed, double noise_share) {
-  const Eigen::MatrixXd z = moved_outputs(loop, moves, changed);
-  const std::vector<Eigen::MatrixXd> psi = noise_responses(loop, changed);
+  const std::optional<AddedPath> path = added_path(loop, changed, moves.u0.cols());
+  const Eigen::MatrixXd z = moved_outputs(moves, path);
+  const std::vector<Eigen::MatrixXd> psi = noise_responses(loop, path);
   const auto count = static_cast<Eigen::Index>(lags.size());
   const auto N = static_cast<double>(moves.samples);
   Eigen::MatrixXd covariance(z.rows() * count, z.rows() * count);

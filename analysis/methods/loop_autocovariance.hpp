@@ -36,11 +36,12 @@ Eigen::VectorXd loop_autocovariance(const Eigen::Ref<const Eigen::MatrixXd>& z,
 /// |--------|------------|-----------------|--------------------------------------------------|
 /// | Q      | q[l]       | nu x L          | impulse response of the MVs to e_l               |
 /// | S      | s[l]       | ny x L          | impulse response of the CVs to e_l               |
-/// | v      | noise[l]   | L               | impulse response of 1 / A_l, times the deviation of w_l |
+/// | Q v_l  | noise_moves[l]   | nu x L    | of the MVs to w_l, with v_l 1 / A_l times the deviation of w_l |
+/// | S v_l  | noise_outputs[l] | ny x L    | of the CVs                                       |
 struct LinearLoop {
   double sample_time = 1.0;
-  std::vector<Eigen::MatrixXd> q, s;
-  std::vector<Eigen::VectorXd> noise;
+  std::vector<Eigen::MatrixXd> q = {}, s = {};
+  std::vector<Eigen::MatrixXd> noise_moves = {}, noise_outputs = {};
 };
 
 /// The loop of a study without limits, with the noise of the benchmark: v is the simulation error of its
@@ -86,7 +87,8 @@ Eigen::MatrixXd control_errors(const AssessedLoop& loop, const Eigen::Ref<const 
 ///
 ///   u_j = u_0j + Q_ji D u_j + sum_l Q_jl v_l,   y = y_0 + S e
 ///
-/// are solved sample by sample, for u_0 and for an impulse in each w_l. With z = z_d + n of the two,
+/// that is y = y_0 + S_i D / (1 - Q_ji D) u_j of the loop on its model, for u_0 and for an impulse in each
+/// w_l. With z = z_d + n of the two,
 ///
 ///   E c_i(tau) = 1/N sum_k z_d,i(k) z_d,i(k + tau) + (N - tau)/N g_ii(tau),  g_im(tau) = E n_i(k) n_m(k+tau)
 ///   N cov(c_i(a), c_m(b)) = h sum_t g_im(t) g_im(t + b - a) + g_im(t + b) g_im(t - a)     (Bartlett 1946)

@@ -215,6 +215,28 @@ TEST_CASE("output-error fits of more inputs, and of a higher order, than fit sid
   CHECK((fast.model.parameters() - slow.model.parameters()).cwiseAbs().maxCoeff() < 1e-6);
 }
 
+TEST_CASE("output-error fits start from ARX models longer than those of every order") {
+  // 5 x 6 = 30 coefficients an input, above 25. What is read before the memory of the inputs is refused.
+  const Eigen::MatrixXd u = white_inputs(5, 600, 77);
+  PolynomialModel truth;
+  for (Eigen::Index j = 0; j < 5; ++j)
+    truth.inputs.push_back({Eigen::VectorXd::Constant(1, 1.0), Eigen::Vector2d(1.0, -0.3), 1});
+  truth.noise_variance = 0.01;
+  const std::vector<OutputErrorFit> fits = OutputErrorFits(u, 20).fit(noisy_output(truth, u, 78), {1, 6}, 1);
+  CHECK(fits[0].loss == Approx(0.01).epsilon(0.15));
+  CHECK(fits[1].loss < fits[0].loss);
+  CHECK(fits[1].loss == Approx(0.01).epsilon(0.15));
+}
+
+TEST_CASE("signal bank: a filter longer than its memory is refused") {
+  mpm::SignalBank in(1, 10, 1), out(1, 10, 1);
+  CHECK_THROWS_AS(filter_bank(Eigen::MatrixXd::Ones(3, 1), Eigen::MatrixXd::Ones(1, 1), 0, in, out),
+                  std::logic_error);
+  CHECK_THROWS_AS(filter_bank(Eigen::MatrixXd::Ones(2, 1), Eigen::MatrixXd::Ones(3, 1), 0, in, out),
+                  std::logic_error);
+  CHECK_THROWS_AS(mpm::LagSums().compute(in, 1, 3, 1), std::logic_error);
+}
+
 TEST_CASE(
     "output-error fits bear inputs that depend on each other, and refuse what no model can be found from") {
   Eigen::MatrixXd u = random_steps(2, 300, 68);

@@ -30,7 +30,11 @@ Eigen::MatrixXd unit_impulse(double size) {
 /// rho = -beta kappa, v white.
 struct FirstOrderLoop {
   double kappa = 0.8, beta = -0.7, sigma = 0.5;
-  LinearLoop loop{1.0, {unit_impulse(-kappa)}, {unit_impulse(1.0)}, {unit_impulse(sigma).transpose()}};
+  LinearLoop loop{1.0,
+                  {unit_impulse(-kappa)},
+                  {unit_impulse(1.0)},
+                  {unit_impulse(-kappa * sigma)},
+                  {unit_impulse(sigma)}};
   ChannelDifference changed{0, 0, delayed_beta()};
 
   double rho() const { return -beta * kappa; }
