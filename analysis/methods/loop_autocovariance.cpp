@@ -11,27 +11,26 @@
 #include "analysis/statistics/discrete_filter.hpp"
 #include "plants/error.hpp"
 #include "scenarios/closed_loop.hpp"
+#include "solvers/lanes/kernel_choice.hpp"
+#include "solvers/lanes/lane_vector.hpp"
 
 namespace mpm {
 namespace {
 
-/// sum_l h(l) x(k - l), as long as x.
-Eigen::VectorXd convolved(const Eigen::VectorXd& h, const Eigen::VectorXd& x) {
-  const Eigen::VectorXd reversed = h.reverse();
-  Eigen::VectorXd y(x.size());
-  for (Eigen::Index k = 0; k < x.size(); ++k) {
-    const Eigen::Index n = std::min(k + 1, h.size());
-    y(k) = reversed.tail(n).dot(x.segment(k + 1 - n, n));
-  }
-  return y;
-}
-
-/// The same of each row of h.
+/// sum_l h(l) x(k - l) of each row of h, as long as x.
 Eigen::MatrixXd convolved_rows(const Eigen::MatrixXd& h, const Eigen::VectorXd& x) {
-  Eigen::MatrixXd y(h.rows(), x.size());
-  for (Eigen::Index row = 0; row < h.rows(); ++row)
-    y.row(row) = convolved(h.row(row), x);
-  return y;
+  const Eigen::Index n = padded(x.size());
+  Eigen::VectorXd past = Eigen::VectorXd::Zero(LaneKernels::kConvolutionBefore + n);
+  past.segment(LaneKernels::kConvolutionBefore, x.size()) = x;
+  LaneVector y(n);
+  Eigen::MatrixXd rows(h.rows(), x.size());
+  for (Eigen::Index row = 0; row < h.rows(); ++row) {
+    const Eigen::VectorXd response = h.row(row);
+    lane_kernels().convolve(response.data(), response.size(), past.data() + LaneKernels::kConvolutionBefore,
+                            n, y.data());
+    rows.row(row) = y.vector().head(x.size());
+  }
+  return rows;
 }
 
 /// u = x + f u with f(0) = 0.
@@ -80,7 +79,7 @@ std::optional<AddedPath> added_path(const LinearLoop& loop, const ChannelDiffere
   if (!changed)
     return std::nullopt;
   const auto i = static_cast<std::size_t>(changed->cv);
-  const Eigen::VectorXd f = convolved(loop.q[i].row(changed->mv), changed->D);
+  const Eigen::VectorXd f = convolved_rows(loop.q[i].row(changed->mv), changed->D).transpose();
   const Eigen::Index n = std::min(samples, changed->D.size());
   Eigen::VectorXd D = Eigen::VectorXd::Zero(samples);
   D.head(n) = changed->D.head(n);
@@ -89,10 +88,8 @@ std::optional<AddedPath> added_path(const LinearLoop& loop, const ChannelDiffere
 
 /// Adds what goes along the path to CVs, ny x n, when these MVs move.
 void add_along(const std::optional<AddedPath>& path, const Eigen::MatrixXd& u, Eigen::MatrixXd& cvs) {
-  if (!path)
-    return;
-  for (Eigen::Index m = 0; m < cvs.rows(); ++m)
-    cvs.row(m) += convolved(path->response.row(m), u.row(path->mv)).transpose();
+  if (path)
+    cvs += convolved_rows(path->response, u.row(path->mv));
 }
 
 /// n of the CVs under an impulse in each w_l, ny x L.

@@ -108,6 +108,11 @@ struct LaneKernels {
   /// sums[8 l + i] = sum over k of a[8 k + i] b[8 (k - l) + i]; b is any address.
   void (*lane_products)(const double* a, const double* b, long samples, long lags, double* sums);
 
+  /// y(k) = sum over l < `nh` of h(l) x(k - l), in that order, for `samples` samples, a multiple of 8. h and
+  /// x are any addresses; x is zero, and read, up to kConvolutionBefore samples before its first.
+  void (*convolve)(const double* h, long nh, const double* x, long samples, double* y);
+  static constexpr long kConvolutionBefore = 32;
+
   void (*pull)(const SpringArrays& springs);                      ///< LimitSprings::pull
   void (*pull_stretched)(const SpringArrays& springs);            ///< LimitSprings::pull_stretched
   void (*advance)(const SpringArrays& springs, double t);         ///< value += t step, then `pull`

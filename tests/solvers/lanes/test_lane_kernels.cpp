@@ -241,6 +241,28 @@ TEST_CASE("products with signals before are sums over the samples, with the same
   }
 }
 
+TEST_CASE("a convolution is the sum over its past, with the same bits", "[lanes]") {
+  const Eigen::Index size = GENERATE(8, 40, 104);
+  const Eigen::Index nh = GENERATE(1, 7, 33, 200);  // shorter and longer than the signal
+  constexpr Eigen::Index kBefore = LaneKernels::kConvolutionBefore;
+  Numbers numbers(9);
+  const Eigen::VectorXd h = numbers.vector(nh).vector();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(kBefore + size);
+  x.tail(size) = numbers.vector(size).vector();
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(size);
+  for (Eigen::Index k = 0; k < size; ++k)
+    for (Eigen::Index l = 0; l < std::min(nh, k + 1); ++l)
+      expected(k) += h(l) * x(kBefore + k - l);
+  SameBits bits;
+  for (const LaneKernels* kernels : lane_kernel_sets()) {
+    CAPTURE(kernels->name, size, nh);
+    LaneVector y(size);
+    kernels->convolve(h.data(), nh, x.data() + kBefore, size, y.data());
+    CHECK((y.vector() - expected).norm() <= kSumRounding * expected.norm());
+    bits.add(y.vector());
+  }
+}
+
 TEST_CASE("outer products, factor and solution are those of Eigen, with the same bits from all kernels",
           "[lanes]") {
   const auto [n, m] = sizes();
