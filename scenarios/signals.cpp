@@ -15,7 +15,9 @@ namespace {
 
 void add_steps(const std::vector<SignalStep>& steps, Eigen::MatrixXd& signal) {
   for (const SignalStep& step : steps)
-    signal.row(step.variable).tail(signal.cols() - step.sample).setConstant(step.level);
+    signal.row(step.variable)
+        .tail(std::max<Eigen::Index>(0, signal.cols() - step.sample))
+        .setConstant(step.level);
 }
 
 void add_random_steps(const Study& study, Eigen::MatrixXd& d) {

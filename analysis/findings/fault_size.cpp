@@ -23,15 +23,16 @@ MismatchParameter parameter_of(FaultSize size) {
   }
 }
 
-/// The size of the only fault of a random experiment; none when it is of another sort.
+/// The size of the only fault of a random experiment; none when it is of another sort, as a changed actuator
+/// or a changed number of a nonlinear plant is.
 std::optional<double> size_of(const Study& study, const ExperimentDraw& draw, FaultSize size) {
   if (size == FaultSize::disturbance_deviation) {
-    if (draw.kind != ExperimentKind::ud || draw.named)
+    if (draw.kind != ExperimentKind::ud || draw.named || draw.disturbances.empty())
       return std::nullopt;
     return disturbance_deviation(draw.disturbances.front(), study.disturbance.v_standard_deviation,
                                  study.controller.sample_time);
   }
-  if (draw.kind != ExperimentKind::mpm || draw.named ||
+  if (draw.kind != ExperimentKind::mpm || draw.named || draw.mismatches.empty() ||
       draw.mismatches.front().parameter != parameter_of(size))
     return std::nullopt;
   return draw.mismatches.front().value;

@@ -54,6 +54,11 @@ TEST_CASE("fault size: only experiments with a verdict and that single fault cou
                                         record(5, MismatchParameter::gain, 0.6, true, true)};
   records[4] = testing::without_verdict(records[4], ExperimentStatus::infeasible);
   records[5].draw.kind = ExperimentKind::mpm_ud;
+  records.push_back(record(6, MismatchParameter::gain, 0.6, true, true));
+  records.back().draw.mismatches.clear();  // a changed actuator, or a changed number of a nonlinear plant
+  records.push_back(records.back());
+  records.back().draw.kind = ExperimentKind::ud;
+  CHECK(faults_by_size(study, 0, records, FaultSize::disturbance_deviation).empty());
   const auto faults = faults_by_size(study, 0, records, FaultSize::gain_factor);
   REQUIRE(faults.size() == 3);
   CHECK(faults[0].record->draw.index == 1);

@@ -281,7 +281,7 @@ TEST_CASE("rates of a method: channel, parameter and size of a mismatch with imp
   Case made;
   for (const AssessmentRecord& said :
        {says({1, 2}, kGain, 0.55), says({1, 2}, kGain, 0.8), says({1, 2}, MismatchParameter::dead_time, 3.0),
-        says({1, 3}, kGain, 0.5), says({1, 2}, kGain, 0.5, false)})
+        says({1, 1}, kGain, 0.5), says({1, 2}, kGain, 0.5, false)})
     made.add(truth(3.0), said, said);
   made.add(truth(1.0), says({1, 2}, kGain, 0.7), verdict(false));  // without impact
   const MethodRates rates = made.rates();
