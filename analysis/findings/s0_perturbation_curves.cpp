@@ -14,7 +14,7 @@ namespace {
 
 bool is_looked_at(const Study& study, const ExperimentRecord& record) {
   const auto multipliers = static_cast<Eigen::Index>(study.s0_perturbation.multipliers.size());
-  return multipliers > 0 && record.status == ExperimentStatus::ok &&
+  return multipliers > 0 && record.status == ExperimentStatus::ok && record.draw.true_cv() >= 0 &&
          record.perturbed.time_constant.size() == multipliers &&
          record.perturbed.damping.size() == multipliers && record.by(kChainMethod) != nullptr;
 }

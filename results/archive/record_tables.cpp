@@ -538,7 +538,12 @@ RecordTable loops_alone(const Study& study) {
       .group = "truth_alone",
       .dimension = "stored",
       .title = "The loops of experiments with two faults that have one of them alone",
-      .has = [](const Record& record) { return record.truth && record.truth->mpm_alone.y.size() > 0; }};
+      .has = [](const Record& record) { return record.truth && record.truth->mpm_alone.y.size() > 0; },
+      .make =
+          [](Record& record) {
+            if (!record.truth)  // in an archive without the group of the others
+              record.truth.emplace();
+          }};
   const Eigen::Index samples = study.simulation.samples;
   const auto add = [&](const char* name, const char* meaning, LoopTruth::Alone LoopTruth::*fault,
                        Eigen::MatrixXd LoopTruth::Alone::*signal) {
