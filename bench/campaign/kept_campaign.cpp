@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "analysis/methods/method_table.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
@@ -54,8 +56,8 @@ Campaign resumed(const fs::path& archive, const Study& study, RunOptions options
 
 }  // namespace
 
-std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& study,
-                                      const RunOptions& options) {
+std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& study, const RunOptions& options,
+                                      const std::function<void(const std::string&)>& warn) {
   std::error_code no_status;
   if (!fs::is_regular_file(archive, no_status))
     return std::nullopt;
@@ -66,8 +68,10 @@ std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& stud
     if (fs::exists(shard_folder_of(archive), no_status))
       remove_shards(archive);  // of a run that was killed between archive and clean-up
     return campaign;
-  } catch (const ArchiveError&) {
-    return std::nullopt;  // it is replaced
+  } catch (const ArchiveError& error) {
+    if (warn)
+      warn(fmt::format("{}; it is made anew", error.what()));
+    return std::nullopt;
   }
 }
 

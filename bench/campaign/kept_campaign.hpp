@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -12,9 +13,11 @@ namespace mpm {
 
 /// The campaign in this archive, when it is there and whole and what this run would make of the study: the
 /// same text, seed, methods, solver, number of experiments and program. Shards beside it are removed: they
-/// are of a run that was killed between archive and clean-up.
+/// are of a run that was killed between archive and clean-up. Of an archive that cannot be read `warn`,
+/// unless it is empty, is told why it will be replaced.
 std::optional<Campaign> kept_campaign(const std::filesystem::path& archive, const Study& study,
-                                      const RunOptions& options);
+                                      const RunOptions& options,
+                                      const std::function<void(const std::string&)>& warn);
 
 /// Runs the study, going on with the shards that an interrupted run has left unless they are of another study
 /// or program, and writes the archive. Errors: as run_campaign() and write_archive().

@@ -23,7 +23,8 @@ std::vector<CellScores> run_suite(const Suite& suite, const SuiteRun& options) {
       continue;
     const SuiteCell& cell = suite.cells[place];
     const fs::path archive = suite_archive(suite, cell, options.folder);
-    const std::optional<Campaign> kept = kept_campaign(archive, cell.study, options.run);
+    const std::optional<Campaign> kept =
+        kept_campaign(archive, cell.study, options.run, options.hooks.on_warning);
     if (options.on_cell)
       options.on_cell(place, kept.has_value());
     if (kept) {

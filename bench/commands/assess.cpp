@@ -140,12 +140,13 @@ void add_trial(RecordAssessment& assessment, const AssessArguments& options, Pro
   run.audit_share = 0.0;
   run.allow_unhealthy_basis = true;
   const int faulty = options.trials / 2;
+  const CampaignHooks hooks = hooks_of(progress);
   try {
     const Study study = trial_study(assessment.study, options.trials - faulty, faulty);
-    std::optional<Campaign> campaign = kept_campaign(archive, study, run);
+    std::optional<Campaign> campaign = kept_campaign(archive, study, run, hooks.on_warning);
     if (!campaign) {
       require_output_archive(archive, "calibration run");
-      campaign = run_and_keep(archive, study, run, hooks_of(progress), command);
+      campaign = run_and_keep(archive, study, run, hooks, command);
     }
     RecordTrial trial{archive.filename().string(), std::ssize(campaign->records), {}};
     for (std::size_t method = 0; method < assessment.said.size(); ++method)

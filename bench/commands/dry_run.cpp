@@ -93,7 +93,7 @@ std::string dry_run_text(const std::vector<IntendedStudy>& studies, const RunOpt
   std::string text;
   std::int64_t loops = 0;
   for (const IntendedStudy& study : studies) {
-    const bool kept = kept_campaign(study.archive, study.study, options).has_value();
+    const bool kept = kept_campaign(study.archive, study.study, options, {}).has_value();
     const std::int64_t of_study = experiment_count(study.study, options) + calibration_loops(study.study);
     loops += kept ? 0 : of_study;
     text += fmt::format("{}: {} loops, {}{}\n", study.name, of_study, study.archive.string(),

@@ -48,7 +48,7 @@ SweepRow row_of(const SweepVariant& variant, const fs::path& archive, const RunO
   SweepRow row{
       .choice = variant.choice, .value = variant.value, .healthy = true, .trouble = "", .findings = {}};
   try {
-    std::optional<Campaign> campaign = kept_campaign(archive, variant.study, options);
+    std::optional<Campaign> campaign = kept_campaign(archive, variant.study, options, hooks.on_warning);
     if (!campaign)
       campaign = run_and_keep(archive, variant.study, options, hooks, command_line);
     row.healthy = campaign->basis.healthy;

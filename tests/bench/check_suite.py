@@ -144,6 +144,16 @@ def check_kept(tiny, shown):
     check_same(tiny.folder / "private" / "column.classic.h5", tiny.folder / "one" / "column.classic.h5")
 
 
+def check_damaged(tiny, shown):
+    """An archive that cannot be read is named, and made anew."""
+    archive = tiny.folder / "one" / "column.classic.h5"
+    archive.write_bytes(archive.read_bytes()[:-100])
+    for is_damaged in True, False:
+        done = subprocess.run(tiny.command("one", "--jobs", 2, "--quiet", "--json"), capture_output=True, text=True)
+        assert (done.returncode, done.stdout) == (0, shown), done
+        assert (str(archive) in done.stderr and "it is made anew" in done.stderr) == is_damaged, done.stderr
+
+
 def check_interrupted(tiny, shown):
     """Stopped when the first archive is there, and again by a kill: the leaderboard is that of one go."""
     for number, code in (signal.SIGINT, 3), (signal.SIGKILL, -signal.SIGKILL):
@@ -234,6 +244,7 @@ def main():
         shown = check_leaderboard(tiny)
         check_texts(tiny)
         check_kept(tiny, shown)
+        check_damaged(tiny, shown)
         check_interrupted(tiny, shown)
         check_parts(tiny, shown)
         check_program(tiny, source)
