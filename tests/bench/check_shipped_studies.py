@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that every shipped study runs with every method, and that its archive has a summary and a page.
+"""Checks that every shipped study runs, and that its archive has a summary and a page.
 
 usage: check_shipped_studies.py MPMBENCH
 """
@@ -12,6 +12,7 @@ import tempfile
 
 # Refused by their self-check, which docs/reproduction.md explains: their tables are made by `reproduce`.
 REFUSED = {"chapter3-tank-soft": "T0 is zero"}
+METHODS = "botelho,mpmbench"  # that of the thesis, and one that names all that a method can name
 
 
 def main(program):
@@ -28,12 +29,12 @@ def main(program):
     with tempfile.TemporaryDirectory() as folder:
         archive, page = pathlib.Path(folder, "a.h5"), pathlib.Path(folder, "a.html")
         for name in names:
-            run = call("run", name, "-o", archive, "--methods", "all", "--experiments", 2, "--quiet")
+            run = call("run", name, "-o", archive, "--methods", METHODS, "--experiments", 2, "--quiet")
             if name in REFUSED:
                 assert run.returncode == 2 and REFUSED[name] in run.stderr, (name, run)
                 continue
             assert run.returncode == 0, (name, run)
-            assert len(json.loads(succeed("summary", archive, "--json"))["methods"]) > 15, name
+            assert len(json.loads(succeed("summary", archive, "--json"))["methods"]) == 2, name
             succeed("report", archive, "-o", page)
             assert "</html>" in page.read_text(encoding="utf-8"), name
             archive.unlink()
