@@ -30,8 +30,6 @@ Eigen::VectorXd steady_state_per_input(const DiscreteChannel& model) {
   return difference.fullPivLu().solve(model.b_now + model.b_previous);
 }
 
-/// Channel after channel of one input: neighbours then add to different outputs, and no addition has to wait
-/// for the one before it.
 std::vector<Entry> discretise_channels(const TransferMatrix& G, double sample_time) {
   std::vector<Entry> entries;
   for (Eigen::Index col = 0; col < G.cols(); ++col) {
@@ -50,25 +48,41 @@ std::vector<Entry> discretise_channels(const TransferMatrix& G, double sample_ti
   return entries;
 }
 
-void append(FirstOrderChannels& channels, const Entry& entry) {
-  const DiscreteChannel& model = entry.model;
-  const bool pole = model.A.rows() > 0;
-  const double c = pole ? model.c(0) : 0.0;
-  const Eigen::Index place = channels.size();
-  const auto set = [place](Eigen::ArrayXd& numbers, double value) {
-    numbers.conservativeResize(place + 1);
-    numbers(place) = value;
+/// The channels with at most one pole, their steady states and the inputs of these.
+void place_first_order(ChannelTable& table, const std::vector<Entry>& entries) {
+  std::vector<Eigen::Index> filled(static_cast<std::size_t>(table.output_count), 0);  // columns, by row
+  const auto next_column = [&](const Entry& entry) {
+    return filled[static_cast<std::size_t>(entry.wiring.row)]++;
   };
-  set(channels.b_now, pole ? c * model.b_now(0) : 0.0);
-  set(channels.b_previous, pole ? c * model.b_previous(0) : 0.0);
-  set(channels.d, model.d);
-  set(channels.a, pole ? model.A(0, 0) : 0.0);
-  channels.wiring.push_back(entry.wiring);
-}
+  Eigen::Index columns = 0;
+  for (const Entry& entry : entries)
+    if (entry.model.A.rows() <= 1)
+      columns = std::max(columns, next_column(entry) + 1);
 
-/// With c = 1, and one unused state for a channel without poles.
-Eigen::VectorXd first_order_steady_state(const Entry& entry) {
-  return Eigen::VectorXd::Constant(1, entry.model.c.dot(entry.state_per_input));
+  FirstOrderChannels& channels = table.first_order;
+  constexpr Eigen::Index kRows = FirstOrderChannels::Rows::SizeAtCompileTime;
+  channels.rows = (table.output_count + kRows - 1) / kRows * kRows;
+  channels.a.setZero(channels.rows * columns);
+  channels.b_now = channels.b_previous = channels.d = channels.a;
+  table.state_per_input.setZero(channels.size());
+  table.state_col.assign(static_cast<std::size_t>(channels.size()), 0);
+  std::fill(filled.begin(), filled.end(), 0);
+  for (const Entry& entry : entries) {
+    const DiscreteChannel& model = entry.model;
+    if (model.A.rows() > 1)
+      continue;
+    const Eigen::Index place = next_column(entry) * channels.rows + entry.wiring.row;
+    channels.places.push_back({place, entry.wiring.input_now});
+    channels.d(place) = model.d;
+    table.state_col[static_cast<std::size_t>(place)] = entry.wiring.col;
+    if (model.A.rows() == 0)
+      continue;
+    const double c = model.c(0);
+    channels.a(place) = model.A(0, 0);
+    channels.b_now(place) = c * model.b_now(0);
+    channels.b_previous(place) = c * model.b_previous(0);
+    table.state_per_input(place) = c * entry.state_per_input(0);
+  }
 }
 
 SecondOrderChannel second_order_channel(const Entry& entry) {
@@ -86,12 +100,7 @@ void append_states(ChannelTable& table, const Eigen::VectorXd& state_per_input, 
 
 /// Three passes, because the states stand in the order of the lists.
 void sort_into(ChannelTable& table, const std::vector<Entry>& entries) {
-  for (const Entry& entry : entries) {
-    if (entry.model.A.rows() <= 1) {
-      append(table.first_order, entry);
-      append_states(table, first_order_steady_state(entry), entry.wiring.col);
-    }
-  }
+  place_first_order(table, entries);
   for (const Entry& entry : entries) {
     if (entry.model.A.rows() == 2) {
       table.second_order.push_back(second_order_channel(entry));

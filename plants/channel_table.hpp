@@ -18,11 +18,19 @@ struct ChannelWiring {
   std::ptrdiff_t input_previous = 0;  ///< place of u(k - delay - 1)
 };
 
-/// The channels with at most one pole, side by side: one number, and one place, a channel. The state of each
-/// is its own output without direct effect (c = 1).
+/// The channels with at most one pole, side by side: column c has the c-th of each output, in the order of
+/// the inputs, and zeros for an output that has fewer. Four rows of all columns then make four outputs. The
+/// state of each is its own output without direct effect (c = 1).
 struct FirstOrderChannels {
-  Eigen::ArrayXd a, b_now, b_previous, d;
-  std::vector<ChannelWiring> wiring;
+  using Rows = Eigen::Array4d;
+  struct Place {
+    Eigen::Index index;  ///< in the arrays, which have one column after the other
+    std::ptrdiff_t input_now;
+  };
+
+  Eigen::Index rows = 0;                   ///< of a column: outputs, and zeros up to a multiple of four
+  Eigen::ArrayXd a, b_now, b_previous, d;  ///< rows x columns
+  std::vector<Place> places;               ///< of the channels
 
   Eigen::Index size() const { return a.size(); }
 };
@@ -46,8 +54,8 @@ struct GeneralChannel {
 /// The discretised non-zero channels of a transfer matrix, sorted by number of poles. Immutable once built,
 /// so that all copies of a plant share one.
 ///
-/// The states of all channels stand in one vector: first those of `first_order` (one each), then those of
-/// `second_order` (two each), then those of `general`, in the order of these lists.
+/// The states of all channels stand in one vector: first those of `first_order` (one each, zeros too), then
+/// those of `second_order` (two each), then those of `general`, in the order of these lists.
 struct ChannelTable {
   Eigen::Index output_count = 0;
   Eigen::Index input_count = 0;

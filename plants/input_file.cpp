@@ -1,7 +1,9 @@
 #include "plants/input_file.hpp"
 
 #include <cerrno>
+#include <sstream>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -26,6 +28,12 @@ std::ifstream open_input(const std::filesystem::path& path, const std::string& a
   if (!file)
     refuse(fmt::format("a file that cannot be opened ({})", std::generic_category().message(errno)));
   return file;
+}
+
+std::string content_of(std::istream& stream) {
+  std::ostringstream content;
+  content << stream.rdbuf();
+  return std::move(content).str();
 }
 
 }  // namespace mpm

@@ -1,5 +1,6 @@
 #include "plants/linear_plant.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -48,8 +49,9 @@ LinearPlant::LinearPlant(const TransferMatrix& G, double sample_time)
       newest_(table_->history_length),
       repeats_(table_->history_length),
       now_(Eigen::ArrayXd::Zero(table_->first_order.size())),
-      previous_(now_),
-      part_(now_) {}
+      forced_now_(now_),
+      forced_previous_(now_),
+      direct_(now_) {}
 
 double LinearPlant::sample_time() const {
   return table_->sample_time;
@@ -63,21 +65,20 @@ void LinearPlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) {
   history_.colwise() = steady_input;
   repeats_ = table_->history_length;
   read_inputs();
-  previous_ = now_;
-  measure();
+  read_inputs();  // the input before is the same
+  add_up_first_order([](const auto&, Eigen::Index) {});
+  add_up_others();
 }
 
 PlantStatus LinearPlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
   require_input_size(input.size(), input_count_);
-  if (push_input(input)) {
-    previous_ = now_;
+  if (push_input(input))
     read_inputs();
-  }
   const double* newest = history_.data() + newest_ * input_count_;
   advance_first_order();
   advance_second_order(newest);
   advance_general(newest);
-  measure();
+  add_up_others();
   return PlantStatus::ok;
 }
 
@@ -95,17 +96,41 @@ bool LinearPlant::push_input(const Eigen::Ref<const Eigen::VectorXd>& input) {
 }
 
 void LinearPlant::read_inputs() {
+  const FirstOrderChannels& channels = table_->first_order;
+  forced_previous_ = channels.b_previous * now_;
   const double* newest = history_.data() + newest_ * input_count_;
-  double* now = now_.data();
-  for (const ChannelWiring& wiring : table_->first_order.wiring) {
-    *now++ = newest[wiring.input_now];
+  for (const FirstOrderChannels::Place& place : channels.places)
+    now_(place.index) = newest[place.input_now];
+  forced_now_ = channels.b_now * now_;
+  direct_ = channels.d * now_;
+}
+
+/// Four outputs at a time, and with them what they get from these channels: `update` sees the states of a
+/// column first.
+template <class Update>
+void LinearPlant::add_up_first_order(const Update& update) {
+  using Rows = FirstOrderChannels::Rows;
+  const FirstOrderChannels& channels = table_->first_order;
+  for (Eigen::Index row = 0; row < output_.size(); row += Rows::SizeAtCompileTime) {
+    Rows y = Rows::Zero();
+    for (Eigen::Index place = row; place < channels.size(); place += channels.rows) {
+      Eigen::Map<Rows> x(state_.data() + place);
+      update(x, place);
+      y += x + Eigen::Map<const Rows>(direct_.data() + place);
+    }
+    std::copy_n(y.data(), std::min<Eigen::Index>(Rows::SizeAtCompileTime, output_.size() - row),
+                output_.data() + row);
   }
 }
 
 void LinearPlant::advance_first_order() {
   const FirstOrderChannels& channels = table_->first_order;
-  auto x = state_.head(channels.size()).array();
-  x = channels.a * x + channels.b_now * now_ + channels.b_previous * previous_;
+  add_up_first_order([&](Eigen::Map<FirstOrderChannels::Rows>& x, Eigen::Index place) {
+    const auto at_place = [place](const Eigen::ArrayXd& numbers) {
+      return Eigen::Map<const FirstOrderChannels::Rows>(numbers.data() + place);
+    };
+    x = at_place(channels.a) * x + at_place(forced_now_) + at_place(forced_previous_);
+  });
 }
 
 void LinearPlant::advance_second_order(const double* newest) {
@@ -137,16 +162,9 @@ void LinearPlant::advance_general(const double* newest) {
 
 /// After an advance to sample k the newest input is u(k-1), so that input_now is the place of u(k - delay -
 /// 1).
-void LinearPlant::measure() {
+void LinearPlant::add_up_others() {
   const double* newest = history_.data() + newest_ * input_count_;
-  const FirstOrderChannels& first_order = table_->first_order;
-  part_ = state_.head(first_order.size()).array() + first_order.d * now_;
-  output_.setZero();
-  const double* part = part_.data();
-  for (const ChannelWiring& wiring : first_order.wiring) {
-    output_(wiring.row) += *part++;
-  }
-  const double* x = state_.data() + first_order.size();
+  const double* x = state_.data() + table_->first_order.size();
   for (const SecondOrderChannel& channel : table_->second_order) {
     output_(channel.wiring.row) +=
         channel.c1 * x[0] + channel.c2 * x[1] + channel.d * newest[channel.wiring.input_now];

@@ -51,10 +51,12 @@ class LinearPlant final : public Plant {
  private:
   bool push_input(const Eigen::Ref<const Eigen::VectorXd>& input);
   void read_inputs();
+  template <class Update>
+  void add_up_first_order(const Update& update);
   void advance_first_order();
   void advance_second_order(const double* newest);
   void advance_general(const double* newest);
-  void measure();
+  void add_up_others();
 
   std::shared_ptr<const ChannelTable> table_;
   Eigen::Index input_count_;
@@ -66,8 +68,9 @@ class LinearPlant final : public Plant {
   Eigen::MatrixXd history_;
   Eigen::Index newest_;
   Eigen::Index repeats_;  // of the newest input: so many in succession are equal
-  // Of the first-order channels: the inputs that act at this sample and at the one before, and the outputs.
-  Eigen::ArrayXd now_, previous_, part_;
+  // Of the first-order channels: the input that acts at this sample, and what it and the one before add to
+  // the state and to the output.
+  Eigen::ArrayXd now_, forced_now_, forced_previous_, direct_;
 };
 
 /// The response of G from rest to `inputs` (n_in x N): outputs (ny x N), of which column k is sampled just
