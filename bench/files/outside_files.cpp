@@ -2,13 +2,13 @@
 
 #include <cstddef>
 #include <fstream>
-#include <iterator>
 #include <span>
 #include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "plants/input_file.hpp"
 #include "results/files/sha256.hpp"
 
 namespace mpm {
@@ -20,8 +20,7 @@ std::string digest_of(std::string_view content) {
 
 std::string digest_of_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(file), {}};
-  return digest_of(content);
+  return digest_of(content_of(file));
 }
 
 std::string command_identity(const std::vector<std::string>& command) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <span>
 #include <system_error>
@@ -14,6 +13,7 @@
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
+#include "plants/input_file.hpp"
 #include "results/files/atomic_file.hpp"
 #include "scenarios/study_file.hpp"
 
@@ -95,7 +95,7 @@ void write_part_description(const PartFolder& part) {
 PartFolder read_part(const fs::path& folder) {
   const std::string file = (folder / kCampaignDescription).string();
   std::ifstream stream(file);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = content_of(stream);
   try {
     return part_folder_in(Json::parse(text), folder, file);
   } catch (const InputError&) {

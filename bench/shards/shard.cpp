@@ -1,7 +1,6 @@
 #include "bench/shards/shard.hpp"
 
 #include <fstream>
-#include <iterator>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -11,6 +10,7 @@
 
 #include "bench/outcome/outcome_bytes.hpp"
 #include "plants/error.hpp"
+#include "plants/input_file.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/byte_stream.hpp"
 #include "results/files/file_seal.hpp"
@@ -64,7 +64,7 @@ template <class Read>
 auto read_whole(const std::filesystem::path& path, const ShardIdentity& identity, const Read& read)
     -> std::optional<decltype(read(std::declval<ByteReader&>(), std::size_t{}, 0.0))> {
   std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string bytes = content_of(file);
   std::optional<std::string_view> content = unsealed(bytes);
   if (!content)
     return std::nullopt;

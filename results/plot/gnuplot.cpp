@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <string_view>
 #include <system_error>
@@ -19,6 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "plants/input_file.hpp"
 #include "plants/temporary_folder.hpp"
 #include "results/files/utf8.hpp"
 
@@ -39,7 +39,7 @@ std::unique_ptr<TemporaryFolder> folder_for_gnuplot() {
 
 std::string content(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return content_of(file);
 }
 
 void write(const std::string& path, const std::string& text) {

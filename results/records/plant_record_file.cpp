@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -496,7 +495,7 @@ PlantRecord read_plant_record(const Study& study, std::string_view text, const s
 
 PlantRecord load_plant_record(const Study& study, const std::filesystem::path& path) {
   std::ifstream stream = open_input(path, "a CSV or netCDF-4 file of records (docs/own_records.md)");
-  const std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const std::string content = content_of(stream);
   const std::string file = path.filename().string();
   if (!is_netcdf4(content))
     return read_plant_record(study, content, file);

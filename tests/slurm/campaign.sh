@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A long campaign as docs/scale.md has it, under a real Slurm (one_node.sh): an array of four tasks with `mpirun -n 2`
 # each, so eight parts, and `merge`; the memory and the processor time of each. With COMPARE=yes the same in one go,
-# whose data sets must be equal.
+# whose data sets must be equal. Loops are shorter than the shipped ones unless LENGTH=shipped.
 #
 # usage: campaign.sh   in the environment: MPMBENCH, the program (build/release/bench/mpmbench), EXPERIMENTS (1000000)
 set -euo pipefail
@@ -12,10 +12,11 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-# wood-berry with shorter loops.
-sed -e 's/^samples = 400$/samples = 100/' -e 's/^prediction_horizon = 60$/prediction_horizon = 20/' \
-  -e 's/^control_horizon = 10$/control_horizon = 4/' "$root/scenarios/studies/wood-berry.toml" > short.toml
-run="$mpmbench run short.toml --experiments ${EXPERIMENTS:-1000000} --methods sse --audit 0 --solver active-set
+cp "$root/scenarios/studies/wood-berry.toml" study.toml
+[[ ${LENGTH:-short} == shipped ]] ||
+  sed -i -e 's/^samples = 400$/samples = 100/' -e 's/^prediction_horizon = 60$/prediction_horizon = 20/' \
+    -e 's/^control_horizon = 10$/control_horizon = 4/' study.toml
+run="$mpmbench run study.toml --experiments ${EXPERIMENTS:-1000000} --methods sse --audit 0 --solver active-set
   --store none --allow-unhealthy-basis --quiet --resume"
 run=${run//$'\n'/ }
 measure='/usr/bin/time --append --output=costs --format=%U,%S,%M'  # s, s and KiB
