@@ -19,7 +19,7 @@ enum class NewtonOutcome { converged, iteration_limit, singular };
 ///     theta(z) = 1/2 z'Qz + c'z + 1/2 sum_j sigma_j (z_j - centre_j)^2 + penalties of the springs,
 ///     lower <= z <= upper,
 ///
-/// by Newton's method on the free variables with an exact line search (docs/methods.md, active-set method).
+/// by Newton's method on the free variables with an exact line search (docs/active_set.md).
 /// All memory is taken at construction; z, the factor and the curvature are kept from call to call.
 class ActiveSetNewton {
  public:

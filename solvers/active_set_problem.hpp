@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// The constant part of a QP as the active-set method works on it (docs/methods.md, active-set method).
+/// The constant part of a QP as the active-set method works on it (docs/active_set.md).
 ///
 /// A slack that belongs to one row and has quadratic cost only is eliminated: what is left of it is the
 /// penalty w dist(a_i x, [soft_lower_i, soft_upper_i])^2. Every other slack stays a variable, so that the

@@ -74,11 +74,15 @@ ActiveSetSolver::ActiveSetSolver(std::shared_ptr<const QpStructure> structure,
   certificate_.setZero(this->structure().row_count());
   change_.setZero(this->structure().row_count());
   scratch_.setZero(this->structure().variable_count());
+  if (LinearVertex::applies(this->structure()))
+    vertex_.emplace(this->structure());
 }
 
 void ActiveSetSolver::do_reset() {
   reset_newton();
   dual_.reset();
+  if (vertex_)
+    vertex_->forget();
 }
 
 void ActiveSetSolver::reset_newton() {
@@ -91,6 +95,16 @@ void ActiveSetSolver::reset_newton() {
 
 void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
   certificate_.setZero();
+  if (vertex_ && vertex_->solve(data, result)) {
+    result.iterations = 1;
+    return;
+  }
+  search(data, result);
+  if (vertex_ && result.status == QpStatus::solved)
+    vertex_->take(data, result);
+}
+
+void ActiveSetSolver::search(const QpData& data, QpResult& result) {
   result.iterations = 0;
   bind(data);
   // Few limits are active where slacks are shared, and those nearly parallel: the dual method's case.

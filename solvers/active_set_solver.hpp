@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,6 +10,7 @@
 #include "solvers/active_set_newton.hpp"
 #include "solvers/active_set_problem.hpp"
 #include "solvers/active_set_springs.hpp"
+#include "solvers/linear_vertex.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {
@@ -32,7 +34,8 @@ struct ActiveSetOptions {
 /// minimiser of the resulting piecewise quadratic over the box in a few steps, exactly. Limits that must hold
 /// (hard limits, soft limits that share a slack) are handled by the method of multipliers around it, shared
 /// slacks by a dual active-set method first. Where the Hessian is only semidefinite (the target optimizer, a
-/// linear program) proximal terms are added and taken back (docs/methods.md, active-set method).
+/// linear program) proximal terms are added and taken back (docs/active_set.md); while the
+/// active limits of a linear program stay, its next answer is their vertex.
 ///
 /// `infeasible` is returned only with a certificate, see `certificate`. `iteration_limit` and
 /// `numerical_error` say honestly that there is no answer; an unbounded problem ends so.
@@ -55,6 +58,7 @@ class ActiveSetSolver final : public QpSolver {
   void do_solve(const QpData& data, QpResult& result) override;
   void do_reset() override;
 
+  void search(const QpData& data, QpResult& result);
   void reset_newton();
   bool solve_by_dual(const QpData& data, QpResult& result);
   DualOutcome iterate_dual(const QpData& data, int& iterations);
@@ -74,6 +78,7 @@ class ActiveSetSolver final : public QpSolver {
   std::vector<LimitSprings> families_;
   ActiveSetNewton newton_;
   DualActiveSet dual_;
+  std::optional<LinearVertex> vertex_;    ///< of a linear program
   Eigen::VectorXd centre_, dual_linear_;  ///< of the proximal term, and the costs with it, of the dual method
   Eigen::VectorXd certificate_;
   Eigen::VectorXd change_;  ///< of the multipliers of the hard rows in the last round

@@ -48,7 +48,7 @@ ReturnToService=2
 KillWait=20
 MpiDefault=none
 NodeName=$node NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
-PartitionName=all Nodes=$node Default=YES MaxTime=60 State=UP
+PartitionName=all Nodes=$node Default=YES MaxTime=INFINITE State=UP
 END
 export SLURM_CONF=$folder/slurm.conf
 

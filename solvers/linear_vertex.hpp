@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "solvers/qp.hpp"
+
+namespace mpm {
+
+/// The vertex at which the last answer of a linear program lies. While its limits stay the active ones, and
+/// from sample to sample they mostly do, the next answer takes n equations: with N the normals of these
+/// limits (n x n), b where they lie, and c the gradient g with the prices l_q of the rows beyond a soft
+/// limit, plus l_q a_i beyond the upper and minus l_q a_i beyond the lower one,
+///
+///     N x = b,    N' lambda = -c.
+///
+/// x is the only minimiser when the other limits are kept, rows beyond a soft limit stay there, and every
+/// multiplier is on the side of its limit and, where that is soft, below the price (the simplex method's test
+/// of a vertex, with strict complementarity).
+class LinearVertex {
+ public:
+  /// Whether programs of this structure are linear, with a slack for each soft row alone.
+  static bool applies(const QpStructure& structure);
+
+  /// `structure` must apply and outlive it.
+  explicit LinearVertex(const QpStructure& structure);
+
+  /// Goes to the vertex of an answer; to none when the answer is degenerate or one of several.
+  void take(const QpData& data, const QpResult& answer);
+  void forget() { active_.clear(); }
+
+  /// Fills x, slack and multipliers of `result`, if the vertex is the only minimiser; else false. Allocates
+  /// nothing.
+  bool solve(const QpData& data, QpResult& result);
+
+ private:
+  enum class Limit { bound, hard, soft };
+  struct Active {
+    Limit limit;
+    Eigen::Index index;  ///< of the variable or of the row
+    bool upper;
+
+    bool operator==(const Active&) const = default;
+  };
+
+  void find_active(const QpResult& answer, double margin);
+  void factor();
+  double price(Eigen::Index row) const { return structure_.slack_linear(structure_.slack_of_row(row)); }
+  bool solve_equations(const QpData& data);
+  bool multipliers_fit(double margin) const;
+  bool others_are_kept(const QpData& data) const;
+  void report(const QpData& data, QpResult& result) const;
+
+  const QpStructure& structure_;
+  std::vector<Active> active_, found_;  ///< n of them; none without a vertex
+  Eigen::VectorXi beyond_;  ///< of each row: 1 beyond its upper soft limit, -1 beyond its lower one
+  Eigen::VectorXi held_, hard_held_, soft_held_;  ///< 1 for a variable, a row with a limit that is active
+  Eigen::MatrixXd normals_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factor_,
+      transposed_;  ///< of N, and of N', which solves without memory
+  Eigen::VectorXd place_, x_, cost_, multiplier_, row_value_;
+};
+
+}  // namespace mpm
