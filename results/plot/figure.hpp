@@ -47,7 +47,7 @@ struct LegendEntry {
   Pen pen;
 };
 
-/// One plot: made by PanelScript, drawn by draw_panel() and draw_figure().
+/// One plot: made by PanelScript, drawn by draw_panels() and draw_figure().
 struct Panel {
   std::string title;                                ///< label
   std::string description;                          ///< what it shows, for people who do not see it

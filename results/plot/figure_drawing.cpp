@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -160,10 +162,23 @@ std::string described(const Figure& figure) {
 
 }  // namespace
 
-std::string draw_panel(const Panel& panel, const std::string& id) {
-  const std::string svg = run_gnuplot(terminal(FigureFormat::svg, kPanelWidth, panel.height) + kHouseStyle +
-                                      panel.data + panel.commands);
-  return svg_element(svg, {id, panel.description, panel.names, panel.anchors});
+std::vector<std::string> draw_panels(const Figure& figure) {
+  constexpr std::string_view kPrologue = "<?xml";  // of each drawing; their text has no '<'
+  std::string script;
+  for (const Panel& panel : figure.panels)
+    script +=
+        terminal(FigureFormat::svg, kPanelWidth, panel.height) + kHouseStyle + panel.data + panel.commands;
+  const std::string drawings = figure.panels.empty() ? "" : run_gnuplot(script);
+  std::vector<std::string> panels;
+  std::size_t begin = 0;
+  for (const Panel& panel : figure.panels) {
+    const std::size_t end = std::min(drawings.find(kPrologue, begin + kPrologue.size()), drawings.size());
+    panels.push_back(svg_element(
+        drawings.substr(begin, end - begin),
+        {fmt::format("{}-{}", figure.name, panels.size()), panel.description, panel.names, panel.anchors}));
+    begin = end;
+  }
+  return panels;
 }
 
 std::string draw_figure(const Figure& figure, FigureFormat format) {

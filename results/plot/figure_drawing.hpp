@@ -1,16 +1,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "results/plot/figure.hpp"
 #include "results/plot/figure_format.hpp"
 
 namespace mpm {
 
-/// One panel as an SVG element for a page: it takes the width it is given, names its points with <title>
-/// elements, needs no script, and its ids begin with `id`, so that many fit into one page.
-/// Errors: GnuplotError.
-std::string draw_panel(const Panel& panel, const std::string& id);
+/// The panels of a figure, in their order, as SVG elements for a page: each takes the width it is given,
+/// names its points with <title> elements, needs no script, and its ids begin with the name of the figure and
+/// the number of the panel, so that many fit into one page. One run of gnuplot draws them all. Errors:
+/// GnuplotError.
+std::vector<std::string> draw_panels(const Figure& figure);
 
 /// All panels of a figure in a grid, with the legend above it, as the content of a file. The bytes of an SVG
 /// depend on the figure and the version of gnuplot only; a PDF has the time in it.

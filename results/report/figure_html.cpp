@@ -59,8 +59,8 @@ std::string legend_html(const std::vector<LegendEntry>& legend) {
 std::string figure_html(const Figure& figure) {
   std::string html = fmt::format("<figure id=\"figure-{}\">\n{}<div class=\"panels{}\">\n", figure.name,
                                  legend_html(figure.legend), figure.panels.size() == 1 ? " one" : "");
-  for (std::size_t i = 0; i < figure.panels.size(); ++i)
-    html += draw_panel(figure.panels[i], fmt::format("{}-{}", figure.name, i));
+  for (const std::string& panel : draw_panels(figure))
+    html += panel;
   html += "</div>\n";
   if (!figure.caption.empty())
     html += "<figcaption>" + html_label(figure.caption) + "</figcaption>\n";

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -37,6 +38,17 @@ Panel small_panel(const std::string& name, const std::string& title) {
   return panel.finish("A small panel & its description.");
 }
 
+std::vector<std::string> drawn(const std::vector<Panel>& panels) {
+  Figure figure;
+  figure.name = "fig";
+  figure.panels = panels;
+  return draw_panels(figure);
+}
+
+std::string draw_panel(const Panel& panel) {
+  return drawn({panel}).at(0);
+}
+
 TEST_CASE("figures: a loop is drawn to its own scale, with the limits that are near") {
   const Study study = find_study("wood-berry");  // xD: soft [0, 1], hard [-4, 4]
   Trajectory loop;
@@ -52,7 +64,7 @@ TEST_CASE("figures: a loop is drawn to its own scale, with the limits that are n
 }
 
 TEST_CASE("figures: every point names itself without a script, and what cannot be shown is left out") {
-  const std::string svg = draw_panel(small_panel("p", "title"), "fig");
+  const std::string svg = draw_panel(small_panel("p", "title"));
   CHECK(svg.rfind("<svg ", 0) == 0);
   CHECK_THAT(svg, Contains("<title>first &lt;point&gt;</title>") &&
                       Contains("<title>second 'point'</title>") && Contains("<title>a mean</title>"));
@@ -62,9 +74,9 @@ TEST_CASE("figures: every point names itself without a script, and what cannot b
 }
 
 TEST_CASE("figures: ids begin with the name of the drawing, and references follow") {
-  const std::string svg = draw_panel(small_panel("p", "title"), "fig-7");
-  CHECK(count(svg, " id=\"") == count(svg, " id=\"fig-7-"));
-  CHECK(count(svg, "href=\"#") == count(svg, "href=\"#fig-7-"));
+  const std::string svg = draw_panel(small_panel("p", "title"));
+  CHECK(count(svg, " id=\"") == count(svg, " id=\"fig-0-"));
+  CHECK(count(svg, "href=\"#") == count(svg, "href=\"#fig-0-"));
   CHECK(count(svg, "href=\"#") > 4);
 }
 
@@ -81,7 +93,24 @@ TEST_CASE("figures: a drawing keeps its content, without what says nothing") {
 }
 
 TEST_CASE("figures: the same panel gives the same bytes") {
-  CHECK(draw_panel(small_panel("p", "t"), "x") == draw_panel(small_panel("p", "t"), "x"));
+  CHECK(draw_panel(small_panel("p", "t")) == draw_panel(small_panel("p", "t")));
+}
+
+TEST_CASE("figures: a panel is drawn in the same way whichever stands before it") {
+  PanelScript other("a", "other", {.label = "", .words = {"one", "two"}}, {.label = "", .logarithmic = true});
+  other.points({{0, 10, "other point"}}, {colour::kOrange, Dash::none, Mark::square});
+  const Panel panel = small_panel("p", "title");
+  const std::vector<std::string> svgs = drawn({other.finish("other"), panel, panel});
+  REQUIRE(svgs.size() == 3);
+  CHECK_THAT(svgs[0], Contains("other point") && Contains("fig-0-") && !Contains("fig-1-"));
+  const auto as_first = [](std::string svg, const std::string& id) {
+    for (std::size_t at = svg.find(id); at != std::string::npos; at = svg.find(id, at))
+      svg.replace(at, id.size(), "fig-0-");
+    return svg;
+  };
+  CHECK(as_first(svgs[1], "fig-1-") == draw_panel(panel));
+  CHECK(as_first(svgs[2], "fig-2-") == draw_panel(panel));
+  CHECK(drawn({}).empty());
 }
 
 TEST_CASE("figures: a foreign title runs no command") {
@@ -90,7 +119,7 @@ TEST_CASE("figures: a foreign title runs no command") {
   for (const std::string& title :
        {"`touch " + trap + "`", "' . system('touch " + trap + "') . '",
         "$(touch " + trap + ")\nsystem 'touch " + trap + "'", std::string("@x {/*9 %d")})
-    CHECK_NOTHROW(draw_panel(small_panel("p", as_label(title)), "x"));
+    CHECK_NOTHROW(draw_panel(small_panel("p", as_label(title))));
   CHECK_FALSE(std::filesystem::exists(trap));
 }
 
@@ -112,14 +141,14 @@ TEST_CASE("figures: a figure with heading, legend and panels in each format") {
 }
 
 TEST_CASE("figures: a panel without data, with one point, and on logarithmic axes can be drawn") {
-  CHECK_THAT(draw_panel(PanelScript("a", "", {}, {}).finish("nothing"), "x"), Contains("</svg>"));
+  CHECK_THAT(draw_panel(PanelScript("a", "", {}, {}).finish("nothing")), Contains("</svg>"));
   PanelScript one("a", "", {}, {});
   one.points({{5, 5, "only"}}, {colour::kBlue, Dash::none, Mark::dot});
-  CHECK_THAT(draw_panel(one.finish("one"), "x"), Contains("<title>only</title>"));
+  CHECK_THAT(draw_panel(one.finish("one")), Contains("<title>only</title>"));
   PanelScript logarithmic("a", "", {.label = "", .logarithmic = true}, {.label = "", .logarithmic = true});
   logarithmic.points({{1e-3, 1e5, "shown"}, {0, 1, "zero"}, {-1, 1, "negative"}},
                      {colour::kBlue, Dash::none, Mark::dot});
-  const std::string svg = draw_panel(logarithmic.finish("log"), "x");
+  const std::string svg = draw_panel(logarithmic.finish("log"));
   CHECK_THAT(svg, Contains("<title>shown</title>") && !Contains("zero") && !Contains("negative"));
 }
 
@@ -129,7 +158,7 @@ TEST_CASE("figures: a heat map with foreign names on its axes") {
                   {.label = "", .words = {awkward, "two"}});
   map.field(0, 0, colour::kSky, 0.8, "12");
   map.field(1, 1, colour::kOrange, 0.2, "34");
-  const std::string svg = draw_panel(map.finish("map"), "x");
+  const std::string svg = draw_panel(map.finish("map"));
   CHECK(count(svg, "100 %d `x` \xE2\x80\x99y\xE2\x80\x99 {_^") == 2);
   CHECK_THAT(svg, Contains(">12</tspan>") && Contains(">34</tspan>"));
 }
