@@ -21,6 +21,7 @@ using Signal = Eigen::Ref<const Eigen::VectorXd>;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kFewestPairs = 3.0;
 constexpr std::size_t kFewestClusters = 5;           // of a sample, and of a resample
+constexpr double kExact = 1e-12;                     // 1 - R^2 within the rounding of the sums
 constexpr double kLargestCorrelation = 1.0 - 1e-15;  // where Fisher's z is still finite
 
 struct Pair {
@@ -99,7 +100,8 @@ LinearFit line(const Sums& sums, const Centre& centre) {
   if (xx > 0.0) {
     fit.slope = xy / xx;
     fit.intercept = (centre.y + mean_y) - fit.slope * (centre.x + mean_x);
-    fit.r_squared = yy > 0.0 ? std::min(1.0, (xy / xx) * (xy / yy)) : kNaN;
+    const double r_squared = yy > 0.0 ? (xy / xx) * (xy / yy) : kNaN;
+    fit.r_squared = r_squared > 1.0 - kExact ? 1.0 : r_squared;
   }
   return fit;
 }
@@ -189,7 +191,7 @@ std::size_t resample_size(std::size_t clusters) {
   return std::max((clusters + 1) / 2, kFewestClusters);
 }
 
-/// One resample, unless it has no line.
+/// One resample, unless it has no line, or nothing beside it: no standard error then.
 void add_resample(const std::vector<Sums>& clusters, const Centre& centre, const Results& results,
                   RandomStream& stream, Studentised& studentised) {
   std::vector<int> times(clusters.size(), 0);
@@ -201,7 +203,7 @@ void add_resample(const std::vector<Sums>& clusters, const Centre& centre, const
   }
   const LinearFit fit = line(all, centre);
   const Results again = results_of(fit);
-  if (!again.are_finite())
+  if (!again.are_finite() || fit.r_squared == 1.0)
     return;
   const Results errors = standard_errors(clusters, times, all, centre, fit);
   const Results t{(again.slope - results.slope) / errors.slope,
@@ -267,6 +269,12 @@ LinearFitIntervals cluster_bootstrap(const Signal& x, const Signal& y, std::span
   const Results results = results_of(result.fit);
   if (clusters.size() < kFewestClusters || !results.are_finite())
     return result;
+  if (result.fit.r_squared == 1.0) {  // so are all resamples
+    result.slope = {results.slope, results.slope};
+    result.intercept = {results.intercept, results.intercept};
+    result.r_squared = {1.0, 1.0};
+    return result;
+  }
 
   Studentised t;
   for (int i = 0; i < options.replications; ++i)

@@ -76,8 +76,9 @@ struct LinearFitIntervals {
 /// | x, y    | pairs   | n     | any  |
 /// | cluster | number of the experiment that a pair belongs to | n | - |
 ///
-/// Resamples without a line or an R^2 are left out and counted. With fewer than 5 clusters, or when more than
-/// half of the resamples are left out, the ends of the intervals are NaN.
+/// Resamples without a line or an R^2, or all on their line within rounding, are left out and counted. With
+/// fewer than 5 clusters, or when more than half of the resamples are left out, the ends of the intervals are
+/// NaN. When all pairs are on the line, both ends are the result.
 /// @throws InputError when the lengths differ or the options are invalid
 LinearFitIntervals cluster_bootstrap(const Eigen::Ref<const Eigen::VectorXd>& x,
                                      const Eigen::Ref<const Eigen::VectorXd>& y,

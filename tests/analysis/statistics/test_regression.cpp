@@ -325,6 +325,35 @@ TEST_CASE("resamples of one x only are left out where x does not vary within clu
   CHECK(std::isnan(result.slope.lower));  // one cluster alone makes the line: nothing tells how it scatters
 }
 
+TEST_CASE("a line through all pairs has intervals without length, whatever the rounding") {
+  const VectorXd x = 3.0 + white_noise(30, 11).array();
+  for (const double slope : {1.0, -0.3, 1e-3}) {
+    const VectorXd y = 0.7 + slope * x.array();
+    RandomStream stream(7, 0, StreamId::bootstrap);
+    const auto result = cluster_bootstrap(x, y, one_cluster_a_pair(30), stream);
+    CHECK(result.fit.r_squared == 1.0);
+    CHECK(result.slope.lower == result.fit.slope);
+    CHECK(result.slope.upper == result.fit.slope);
+    CHECK(result.intercept.lower == Approx(0.7).epsilon(1e-10));
+    CHECK(result.r_squared.lower == 1.0);
+  }
+}
+
+TEST_CASE("a resample on its line within rounding does not decide the interval") {
+  // Seven clusters of a pair: of 2000 resamples of five some have two of them only, and always a line.
+  const VectorXd x = white_noise(7, 12), y = x + 0.5 * white_noise(7, 13);
+  const auto intervals = [&](double factor) {
+    RandomStream stream(7, 0, StreamId::bootstrap);
+    return cluster_bootstrap(factor * x, factor * y, one_cluster_a_pair(7), stream);
+  };
+  const auto result = intervals(1.0), rounded_otherwise = intervals(1.0 / 3.0);
+  CHECK(result.replications_used < 2000);
+  CHECK(rounded_otherwise.replications_used == result.replications_used);
+  CHECK(rounded_otherwise.slope.lower == Approx(result.slope.lower).epsilon(1e-9));
+  CHECK(rounded_otherwise.slope.upper == Approx(result.slope.upper).epsilon(1e-9));
+  CHECK(rounded_otherwise.r_squared.lower == Approx(result.r_squared.lower).epsilon(1e-9));
+}
+
 TEST_CASE("regression refuses impossible input") {
   using mpm::InputError;
   RandomStream stream(1, 0, StreamId::bootstrap);
