@@ -65,7 +65,7 @@ void LinearPlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) {
   history_.colwise() = steady_input;
   repeats_ = table_->history_length;
   read_inputs();
-  read_inputs();  // the input before is the same
+  forced_previous_ = table_->first_order.b_previous * now_;  // the input before is the same
   add_up_first_order([](const auto&, Eigen::Index) {});
   add_up_others();
 }

@@ -95,7 +95,7 @@ void ActiveSetSolver::reset_newton() {
 
 void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
   certificate_.setZero();
-  if (vertex_ && vertex_->solve(data, result)) {
+  if (vertex_ && vertex_->solve(data, result) && is_certified(data, result)) {
     result.iterations = 1;
     return;
   }

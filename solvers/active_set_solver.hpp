@@ -34,8 +34,8 @@ struct ActiveSetOptions {
 /// minimiser of the resulting piecewise quadratic over the box in a few steps, exactly. Limits that must hold
 /// (hard limits, soft limits that share a slack) are handled by the method of multipliers around it, shared
 /// slacks by a dual active-set method first. Where the Hessian is only semidefinite (the target optimizer, a
-/// linear program) proximal terms are added and taken back (docs/active_set.md); while the
-/// active limits of a linear program stay, its next answer is their vertex.
+/// linear program) proximal terms are added and taken back (docs/active_set.md); while the active limits of a
+/// linear program stay, its next answer is their vertex.
 ///
 /// `infeasible` is returned only with a certificate, see `certificate`. `iteration_limit` and
 /// `numerical_error` say honestly that there is no answer; an unbounded problem ends so.

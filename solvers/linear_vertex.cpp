@@ -35,9 +35,6 @@ bool LinearVertex::applies(const QpStructure& structure) {
 LinearVertex::LinearVertex(const QpStructure& structure)
     : structure_(structure),
       beyond_(Eigen::VectorXi::Zero(structure.row_count())),
-      held_(Eigen::VectorXi::Zero(structure.variable_count())),
-      hard_held_(beyond_),
-      soft_held_(beyond_),
       normals_(structure.variable_count(), structure.variable_count()),
       factor_(structure.variable_count()),
       transposed_(structure.variable_count()),
@@ -82,18 +79,13 @@ void LinearVertex::find_active(const QpResult& answer, double margin) {
 
 void LinearVertex::factor() {
   active_ = found_;
-  held_.setZero();
-  hard_held_.setZero();
-  soft_held_.setZero();
   for (Eigen::Index k = 0; k < normals_.rows(); ++k) {
     const Active& active = active_[static_cast<std::size_t>(k)];
     if (active.limit == Limit::bound) {
       normals_.row(k).setZero();
       normals_(k, active.index) = 1.0;
-      held_(active.index) = 1;
     } else {
       normals_.row(k) = structure_.rows.row(active.index);
-      (active.limit == Limit::hard ? hard_held_ : soft_held_)(active.index) = 1;
     }
   }
   factor_.compute(normals_);
@@ -105,13 +97,13 @@ void LinearVertex::factor() {
 
 bool LinearVertex::solve(const QpData& data, QpResult& result) {
   if (active_.empty() || !solve_equations(data) || !multipliers_fit(margin_of(data)) ||
-      !others_are_kept(data))
+      !limits_are_kept(data))
     return false;
   report(data, result);
   return true;
 }
 
-/// False when a limit of the vertex is absent.
+/// False when a limit of the vertex is absent. What is at a limit is there exactly, in spite of rounding.
 bool LinearVertex::solve_equations(const QpData& data) {
   const auto place = [&](const Active& active) {
     switch (active.limit) {
@@ -129,15 +121,15 @@ bool LinearVertex::solve_equations(const QpData& data) {
   if (!place_.allFinite())
     return false;
   x_.noalias() = factor_.solve(place_);
-  for (std::size_t k = 0; k < active_.size(); ++k)  // exactly, in spite of rounding
-    if (active_[k].limit == Limit::bound)
-      x_(active_[k].index) = place_(static_cast<Eigen::Index>(k));
+  row_value_.noalias() = structure_.rows * x_;
+  for (std::size_t k = 0; k < active_.size(); ++k)
+    (active_[k].limit == Limit::bound ? x_ : row_value_)(active_[k].index) =
+        place_(static_cast<Eigen::Index>(k));
   cost_ = -data.gradient;
   for (Eigen::Index i = 0; i < beyond_.size(); ++i)
     if (beyond_(i) != 0)
       cost_ -= beyond_(i) * price(i) * structure_.rows.row(i).transpose();
   multiplier_.noalias() = transposed_.solve(cost_);
-  row_value_.noalias() = structure_.rows * x_;
   return true;
 }
 
@@ -151,18 +143,16 @@ bool LinearVertex::multipliers_fit(double margin) const {
   return true;
 }
 
-bool LinearVertex::others_are_kept(const QpData& data) const {
+bool LinearVertex::limits_are_kept(const QpData& data) const {
   for (Eigen::Index j = 0; j < x_.size(); ++j)
-    if (held_(j) == 0 && !within(x_(j), data.lower(j), data.upper(j)))
+    if (!within(x_(j), data.lower(j), data.upper(j)))
       return false;
   for (Eigen::Index i = 0; i < row_value_.size(); ++i) {
     const double value = row_value_(i);
-    if (hard_held_(i) == 0 && !within(value, data.hard_lower(i), data.hard_upper(i)))
-      return false;
     const bool as_before = beyond_(i) > 0   ? value >= data.soft_upper(i)
                            : beyond_(i) < 0 ? value <= data.soft_lower(i)
                                             : within(value, data.soft_lower(i), data.soft_upper(i));
-    if (soft_held_(i) == 0 && !as_before)
+    if (!as_before || !within(value, data.hard_lower(i), data.hard_upper(i)))
       return false;
   }
   return true;

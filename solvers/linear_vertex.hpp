@@ -50,16 +50,15 @@ class LinearVertex {
   double price(Eigen::Index row) const { return structure_.slack_linear(structure_.slack_of_row(row)); }
   bool solve_equations(const QpData& data);
   bool multipliers_fit(double margin) const;
-  bool others_are_kept(const QpData& data) const;
+  bool limits_are_kept(const QpData& data) const;
   void report(const QpData& data, QpResult& result) const;
 
   const QpStructure& structure_;
   std::vector<Active> active_, found_;  ///< n of them; none without a vertex
   Eigen::VectorXi beyond_;  ///< of each row: 1 beyond its upper soft limit, -1 beyond its lower one
-  Eigen::VectorXi held_, hard_held_, soft_held_;  ///< 1 for a variable, a row with a limit that is active
   Eigen::MatrixXd normals_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factor_,
-      transposed_;  ///< of N, and of N', which solves without memory
+  Eigen::PartialPivLU<Eigen::MatrixXd> factor_;      ///< of N
+  Eigen::PartialPivLU<Eigen::MatrixXd> transposed_;  ///< of N': that of N would allocate to solve with N'
   Eigen::VectorXd place_, x_, cost_, multiplier_, row_value_;
 };
 

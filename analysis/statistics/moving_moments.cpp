@@ -22,7 +22,7 @@ constexpr double kSmallestVariance = 1e-150;
 /// With r = max(S4/n)/m2^2, the maximum over the windows since the centre was set, k the additions since then
 /// and u the unit roundoff, every power sum obeys |error of S_l|/n <= k u (r m2^2)^(l/4). Through the
 /// formulas of `central_moments` this becomes at most 39 k u r in m4/m2^2, 13 k u r in m3/m2^1.5 and 3 k u r
-/// in m2/m2, hence 45 k u r in the stated errors; evaluating the formulas adds less than 90 u r, and k is 4
+/// in m2/m2, hence 45 k u r in the stated errors; evaluating the formulas adds less than 110 u r, and k is 4
 /// or more where it is asked. Divisions are what takes the time here, so that 1/n is computed once, and the
 /// bound is compared without one.
 constexpr double kErrorFactor = 80.0;
