@@ -83,10 +83,14 @@ class Browser:
         return result["result"].get("value")
 
     def wait_for(self, expression):
+        """Until this is true, and drawn: Chromium goes to the target of a link once more, with its focus, when it draws
+        the next frame, which would undo a click or a key that comes before."""
         end = time.monotonic() + 60
         while not self.evaluate(expression):
             assert time.monotonic() < end, expression
             time.sleep(0.02)
+        two_frames = "new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)))"
+        self.call("Runtime.evaluate", expression=two_frames, awaitPromise=True)
 
     def click(self, x, y):
         for kind in "mousePressed", "mouseReleased":
