@@ -9,39 +9,51 @@
 namespace mpm {
 namespace {
 
-std::string fault(const ExperimentDraw& draw) {
-  return fmt::format("{} on CV {}", to_string(draw.kind), draw.true_cv());
+/// What is kept of an experiment of the earlier run.
+struct Earlier {
+  std::int64_t index;
+  ExperimentKind kind;
+  Eigen::Index cv;
+  Correctness judgement;
+};
+
+std::string fault(ExperimentKind kind, Eigen::Index cv) {
+  return fmt::format("{} on CV {}", to_string(kind), cv);
 }
 
-/// The record of the same experiment in an earlier run.
-const ExperimentRecord& counterpart(std::span<const ExperimentRecord> before, const ExperimentRecord& now) {
-  const auto found =
-      std::lower_bound(before.begin(), before.end(), now.draw.index,
-                       [](const ExperimentRecord& record, std::int64_t i) { return record.draw.index < i; });
-  if (found == before.end() || found->draw.index != now.draw.index)
-    throw InputError("experiments", fmt::format("number {}, which the earlier run has not", now.draw.index),
+/// The same experiment in the earlier run.
+const Earlier& counterpart(const std::vector<Earlier>& before, const ExperimentDraw& now) {
+  const auto found = std::lower_bound(before.begin(), before.end(), now.index,
+                                      [](const Earlier& each, std::int64_t i) { return each.index < i; });
+  if (found == before.end() || found->index != now.index)
+    throw InputError("experiments", fmt::format("number {}, which the earlier run has not", now.index),
                      "experiments of the earlier run");
-  if (found->draw.kind != now.draw.kind || found->draw.true_cv() != now.draw.true_cv())
-    throw InputError(fmt::format("experiment {}", now.draw.index), fault(now.draw),
-                     fmt::format("what the earlier run has, {}", fault(found->draw)));
+  if (found->kind != now.kind || found->cv != now.true_cv())
+    throw InputError(fmt::format("experiment {}", now.index), fault(now.kind, now.true_cv()),
+                     fmt::format("what the earlier run has, {}", fault(found->kind, found->cv)));
   return *found;
 }
 
 }  // namespace
 
-JudgementChanges judgement_changes(std::span<const ExperimentRecord> before,
-                                   std::span<const ExperimentRecord> now, const Question& question) {
+JudgementChanges judgement_changes(const RecordRange& before, const RecordRange& now,
+                                   const Question& question) {
+  std::vector<Earlier> earlier;
+  before.each([&](const ExperimentRecord& record) {
+    earlier.push_back({record.draw.index, record.draw.kind, record.draw.true_cv(), question(record)});
+  });
   JudgementChanges changes;
-  for (const ExperimentRecord& record : now) {
-    const JudgementPair pair{record.draw.index, question(counterpart(before, record)), question(record)};
+  now.each([&](const ExperimentRecord& record) {
+    const JudgementPair pair{record.draw.index, counterpart(earlier, record.draw).judgement,
+                             question(record)};
     if (pair.before == Correctness::not_judged && pair.now == Correctness::not_judged)
-      continue;
+      return;
     ++changes.pairs;
     if (pair.before == Correctness::right && pair.now != Correctness::right)
       changes.lost.push_back(pair);
     if (pair.before != Correctness::right && pair.now == Correctness::right)
       changes.gained.push_back(pair);
-  }
+  });
   changes.test = mcnemar_test(static_cast<std::int64_t>(changes.lost.size()),
                               static_cast<std::int64_t>(changes.gained.size()));
   return changes;

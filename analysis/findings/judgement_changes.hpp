@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/experiment/record_range.hpp"
 #include "analysis/statistics/mcnemar.hpp"
 
 namespace mpm {
@@ -33,7 +33,7 @@ using Question = std::function<Correctness(const ExperimentRecord&)>;
 /// Compares the experiments of `now` with the same ones of `before`, which may have more of them; both in the
 /// order of the index.
 /// @throws InputError for an experiment that `before` has not, or has with another fault
-JudgementChanges judgement_changes(std::span<const ExperimentRecord> before,
-                                   std::span<const ExperimentRecord> now, const Question& question);
+JudgementChanges judgement_changes(const RecordRange& before, const RecordRange& now,
+                                   const Question& question);
 
 }  // namespace mpm

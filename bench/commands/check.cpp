@@ -24,11 +24,11 @@ struct CheckArguments {
 };
 
 ExitCode check(const CheckArguments& options) {
-  const Campaign campaign = read_input(options.archive);
+  const Campaign campaign = stream_input(options.archive);
   const GateFile gates = load_gates(options.gates, gate_findings(campaign));
   std::optional<Campaign> baseline;
   if (gates.baseline)
-    baseline = read_input(gates.baseline->archive.string());
+    baseline = stream_input(gates.baseline->archive.string());
   const GateCheck result = check_gates(campaign, gates, baseline ? &*baseline : nullptr);
   if (!options.junit.empty())
     write_text(options.junit, gates_junit(result, campaign, options.archive));

@@ -8,12 +8,32 @@
 
 namespace mpm {
 
-Campaign read_input(const std::string& archive) {
+namespace {
+
+/// What `read` returns, with its errors as those of an archive that a command was given.
+template <class Read>
+auto as_input(Read read) {
   try {
-    return read_archive(archive);
+    return read();
   } catch (const ArchiveError& error) {
     throw BadArchive(error.what());
   }
+}
+
+}  // namespace
+
+Campaign read_input(const std::string& archive) {
+  return as_input([&] { return read_archive(archive); });
+}
+
+Campaign stream_input(const std::string& archive) {
+  Campaign campaign = as_input([&] { return stream_archive(archive); });
+  if (campaign.streamed)
+    campaign.streamed = RecordRange(campaign.streamed->size(),
+                                    [records = *campaign.streamed](const RecordRange::Visit& visit) {
+                                      as_input([&] { records.each(visit); });
+                                    });
+  return campaign;
 }
 
 const ExperimentRecord& experiment_of(const Campaign& campaign, std::int64_t index) {

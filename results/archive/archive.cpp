@@ -1,5 +1,6 @@
 #include "results/archive/archive.hpp"
 
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "results/archive/archive_groups.hpp"
+#include "results/archive/record_reader.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/file_seal.hpp"
@@ -15,15 +17,20 @@
 namespace mpm {
 namespace {
 
-Campaign read_groups(const std::filesystem::path& path) {
+enum class RecordPlace { memory, file };
+
+Campaign read_groups(const std::filesystem::path& path, RecordPlace place) {
   const std::string file = path.string();
   const Hdf5Group root = Hdf5File::open(path).root();
   Campaign campaign = read_heading(root, file);
   const Study& study = campaign.study;
   campaign.methods = read_methods(root, study, file);
   campaign.study.methods = method_names(campaign);
-  campaign.records = read_records(root, study, forms_of(campaign), file);
-  read_method_times(root, campaign);
+  const auto reader = std::make_shared<const RecordReader>(root, study, forms_of(campaign), file);
+  if (place == RecordPlace::file && !study.names_scenarios())
+    campaign.streamed = streamed(reader);
+  else
+    campaign.records = reader->read(0, reader->size());
   campaign.calibration = read_calibration(root, campaign, file);
   campaign.audit = read_audit(root, file);
   campaign.basis = read_basis(root, study, read_nominal(root, study, file), file);
@@ -56,6 +63,16 @@ void write_groups(const std::filesystem::path& path, const std::string& name, co
   throw ArchiveError(fmt::format("{}: it, or a variable in it, does not fit into the memory", path.string()));
 }
 
+Campaign read_archive(const std::filesystem::path& path, RecordPlace place) {
+  try {
+    return read_groups(path, place);
+  } catch (const std::bad_alloc&) {
+    refuse_size(path);
+  } catch (const std::length_error&) {
+    refuse_size(path);
+  }
+}
+
 }  // namespace
 
 void write_archive(const std::filesystem::path& path, const Campaign& campaign,
@@ -67,13 +84,11 @@ void write_archive(const std::filesystem::path& path, const Campaign& campaign,
 }
 
 Campaign read_archive(const std::filesystem::path& path) {
-  try {
-    return read_groups(path);
-  } catch (const std::bad_alloc&) {
-    refuse_size(path);
-  } catch (const std::length_error&) {
-    refuse_size(path);
-  }
+  return read_archive(path, RecordPlace::memory);
+}
+
+Campaign stream_archive(const std::filesystem::path& path) {
+  return read_archive(path, RecordPlace::file);
 }
 
 }  // namespace mpm

@@ -19,10 +19,8 @@ void write_heading(Hdf5Group& root, const Campaign& campaign);
 Campaign read_heading(const Hdf5Group& root, const std::string& file);
 
 /// Every table of record_tables(): the root group, /methods/NAME, /trajectories (no such group when no loop
-/// was kept) and /s0_perturbation.
+/// was kept) and /s0_perturbation. They are read by RecordReader.
 void write_records(Hdf5Group& root, const Campaign& campaign);
-std::vector<ExperimentRecord> read_records(const Hdf5Group& root, const Study& study,
-                                           const AssessmentForms& forms, const std::string& file);
 
 /// The numbers of one assessment as variables of a group that has the dimensions `cv` and `lag`; `assessment`
 /// must have its form, and the status ok.
@@ -33,8 +31,8 @@ void read_numbers(const Hdf5Group& group, AssessmentRecord& assessment, const st
 void write_methods(Hdf5Group& root, const Campaign& campaign, const StudyFindings& findings);
 /// The methods of an archive, also those that this program does not have.
 std::vector<CampaignMethod> read_methods(const Hdf5Group& root, const Study& study, const std::string& file);
-/// Their processor time, which is in no record.
-void read_method_times(const Hdf5Group& root, Campaign& campaign);
+/// Their processor times, which are in no record.
+std::vector<double> read_method_times(const Hdf5Group& root, const AssessmentForms& forms);
 
 /// /nominal: T0.
 void write_nominal(Hdf5Group& root, const Study& study, const NominalSensitivity& sensitivity);

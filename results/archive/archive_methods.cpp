@@ -49,15 +49,12 @@ std::vector<CampaignMethod> read_methods(const Hdf5Group& root, const Study& stu
   return methods;
 }
 
-void read_method_times(const Hdf5Group& root, Campaign& campaign) {
-  for (std::size_t m = 0; m < campaign.methods.size(); ++m) {
-    const double milliseconds = root.group(kMethodsGroup)
-                                    .group(campaign.methods[m].form->method().name)
-                                    .attribute<double>("milliseconds");
-    for (ExperimentRecord& record : campaign.records)
-      if (record.assessments[m].answered())
-        record.assessments[m].milliseconds = milliseconds;
-  }
+std::vector<double> read_method_times(const Hdf5Group& root, const AssessmentForms& forms) {
+  std::vector<double> milliseconds;
+  for (const auto& form : forms)
+    milliseconds.push_back(
+        root.group(kMethodsGroup).group(form->method().name).attribute<double>("milliseconds"));
+  return milliseconds;
 }
 
 }  // namespace mpm

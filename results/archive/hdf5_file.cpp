@@ -221,7 +221,6 @@ std::vector<T> read_attribute_values(const Place& place, hid_t object) {
 constexpr unsigned kTrackOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
 constexpr double kFillValue = kNaN;
 constexpr std::size_t kCompressFromBytes = 4096;
-constexpr hsize_t kChunkValues = 65536;
 constexpr unsigned kCompressionLevel = 4;
 
 /// Whole rows of the first dimension, as many as give a chunk of about kChunkValues values.
@@ -304,16 +303,44 @@ Shape shape_of_dataset(const Place& place, const Handle& dataset) {
   return shape_of(place, space.get());
 }
 
+/// A variable that has this shape.
+Handle open_dataset(const Place& place, hid_t group, const std::vector<std::size_t>& shape) {
+  Handle dataset = open_dataset(place, group);
+  const Shape found = shape_of_dataset(place, dataset);
+  if (!std::equal(found.begin(), found.end(), shape.begin(), shape.end()))
+    place.fail(
+        fmt::format("shape ({}) where ({}) is expected", fmt::join(found, ", "), fmt::join(shape, ", ")));
+  return dataset;
+}
+
+/// The space of a variable of this shape with `count` rows from `first` on chosen.
+Handle rows_of_space(const Place& place, const Shape& shape, hsize_t first, hsize_t count) {
+  Handle space = make_space(place, shape);
+  Shape begin(shape.size(), 0), size = shape;
+  begin.front() = first;
+  size.front() = count;
+  place.check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, begin.data(), nullptr, size.data(), nullptr),
+              "select rows of it");
+  return space;
+}
+
+/// What is chosen in the space of a variable.
 template <class T>
-std::vector<T> read_dataset(const Place& place, const Handle& dataset) {
+std::vector<T> read_dataset(const Place& place, const Handle& dataset, const Handle& chosen) {
   const Handle type = place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type");
   require_type<T>(place, type.get());
-  const Handle space = place.own(H5Dget_space(dataset.get()), H5Sclose, "read its shape");
-  const std::size_t count = product(shape_of(place, space.get()));
-  return from_buffer<T>(count, type.get(), space.get(), [&](void* buffer) {
+  const auto count = static_cast<hsize_t>(H5Sget_select_npoints(chosen.get()));
+  const Handle here = make_space(place, {count});
+  return from_buffer<T>(count, type.get(), here.get(), [&](void* buffer) {
     if (count > 0)
-      place.check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer), "read it");
+      place.check(H5Dread(dataset.get(), type.get(), here.get(), chosen.get(), H5P_DEFAULT, buffer),
+                  "read it");
   });
+}
+
+template <class T>
+std::vector<T> read_dataset(const Place& place, const Handle& dataset) {
+  return read_dataset<T>(place, dataset, place.own(H5Dget_space(dataset.get()), H5Sclose, "read its shape"));
 }
 
 // --- Files on the disk ------------------------------------------------------------------------------------
@@ -500,18 +527,14 @@ struct Hdf5Rows<T>::State {
   void write() {
     if (waiting.empty())
       return;
-    Shape count = shape, begin(shape.size(), 0);
-    count.front() = waiting.size() / row;
-    begin.front() = written;
-    const Handle type = type_of<T>(place), there = make_space(place, shape), here = make_space(place, count);
-    place.check(
-        H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, begin.data(), nullptr, count.data(), nullptr),
-        "select rows of it");
+    const hsize_t count = waiting.size() / row;
+    const Handle type = type_of<T>(place), there = rows_of_space(place, shape, written, count),
+                 here = make_space(place, {waiting.size()});
     with_buffer(waiting, [&](const void* buffer) {
       place.check(H5Dwrite(dataset.get(), type.get(), here.get(), there.get(), H5P_DEFAULT, buffer),
                   "write it");
     });
-    written += count.front();
+    written += count;
     waiting.clear();
   }
 };
@@ -570,12 +593,15 @@ T Hdf5Group::attribute(const std::string& name) const {
 template <class T>
 std::vector<T> Hdf5Group::read(const std::string& name, const std::vector<std::size_t>& shape) const {
   const Place place = state_->place("variable", name);
-  const Handle dataset = open_dataset(place, state_->group.get());
-  const Shape found = shape_of_dataset(place, dataset);
-  if (!std::equal(found.begin(), found.end(), shape.begin(), shape.end()))
-    place.fail(
-        fmt::format("shape ({}) where ({}) is expected", fmt::join(found, ", "), fmt::join(shape, ", ")));
-  return read_dataset<T>(place, dataset);
+  return read_dataset<T>(place, open_dataset(place, state_->group.get(), shape));
+}
+
+template <class T>
+std::vector<T> Hdf5Group::read_rows(const std::string& name, const std::vector<std::size_t>& shape,
+                                    std::size_t first, std::size_t count) const {
+  const Place place = state_->place("variable", name);
+  return read_dataset<T>(place, open_dataset(place, state_->group.get(), shape),
+                         rows_of_space(place, {shape.begin(), shape.end()}, first, count));
 }
 
 template <class T>
@@ -847,6 +873,8 @@ std::vector<std::byte> Hdf5File::image() const {
                                                  const Attributes&);                                         \
   template class Hdf5Rows<T>;                                                                                \
   template std::vector<T> Hdf5Group::read<T>(const std::string&, const std::vector<std::size_t>&) const;     \
+  template std::vector<T> Hdf5Group::read_rows<T>(const std::string&, const std::vector<std::size_t>&,       \
+                                                  std::size_t, std::size_t) const;                           \
   template std::vector<T> Hdf5Group::read_list<T>(const std::string&) const
 
 MPM_INSTANTIATE_VARIABLE(std::int8_t);

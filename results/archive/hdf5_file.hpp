@@ -21,6 +21,9 @@ using AttributeValue =
 /// Attributes in the order in which they are written.
 using Attributes = std::vector<std::pair<std::string, AttributeValue>>;
 
+/// A large variable is stored in chunks of whole rows with about so many values.
+inline constexpr std::size_t kChunkValues = 16384;
+
 /// A variable that is written row by row, a row being its values at one place of the first dimension, and
 /// goes to the file in blocks: what waits is a chunk at most. Errors: as Hdf5Group.
 template <class T>
@@ -87,6 +90,12 @@ class Hdf5Group {
   /// All values of a variable. T must be the type in the file, `shape` the lengths of its dimensions.
   template <class T>
   std::vector<T> read(const std::string& name, const std::vector<std::size_t>& shape) const;
+
+  /// The same of `count` rows from the row `first` on, a row being the values at one place of the first
+  /// dimension.
+  template <class T>
+  std::vector<T> read_rows(const std::string& name, const std::vector<std::size_t>& shape, std::size_t first,
+                           std::size_t count) const;
 
   /// All values of a variable of one dimension, whatever its length is.
   template <class T>

@@ -67,9 +67,9 @@ BaselineComparison compare(const Campaign& campaign, const Campaign& baseline, c
     return {archive,
             baseline.info,
             {{"located", "located",
-              judgement_changes(baseline.records, campaign.records, question(&Judgement::location))},
+              judgement_changes(records_of(baseline), records_of(campaign), question(&Judgement::location))},
              {"source_recognised", "source recognised",
-              judgement_changes(baseline.records, campaign.records, question(&Judgement::source))}}};
+              judgement_changes(records_of(baseline), records_of(campaign), question(&Judgement::source))}}};
   } catch (const InputError& error) {
     throw InputError(fmt::format("baseline {}: {}", archive, error.what()));
   }
@@ -124,7 +124,7 @@ GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Camp
   Study study = campaign.study;
   study.aggregate.confidence = check.confidence = file.confidence.value_or(study.aggregate.confidence);
   const StudyFindings total =
-      study_findings(study, forms_of(campaign), campaign.records, campaign.calibration);
+      study_findings(study, forms_of(campaign), records_of(campaign), campaign.calibration);
   judge_campaign(campaign, total, file, check.results);
   for (const Gate& gate : file.gates) {
     const Finding* const finding = find_finding(total.rows, gate.name);

@@ -10,7 +10,9 @@
 #include "results/archive/hdf5_file.hpp"
 #include "results/archive/method_json.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "results/archive/record_reader.hpp"
 #include "results/files/archive_error.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/study_file.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -268,6 +270,48 @@ TEST_CASE("archive: records with gaps in their indices keep their indices and lo
   Campaign campaign = made_up_campaign();
   campaign.records.erase(campaign.records.begin() + 2, campaign.records.begin() + 9);
   check_same(there_and_back(campaign), campaign);
+}
+
+TEST_CASE("archive: records that are read in blocks of any size are those that are read at once") {
+  const TemporaryFolder folder;
+  Campaign campaign = made_up_campaign();
+  campaign.records.erase(campaign.records.begin() + 2, campaign.records.begin() + 9);
+  write_archive(folder / "a.h5", campaign, findings_of(campaign));
+  const RecordReader reader(Hdf5File::open(folder / "a.h5").root(), campaign.study, forms_of(campaign),
+                            "a.h5");
+  const RecordBytes bytes(campaign.study, forms_of(campaign));
+  const std::size_t size = campaign.records.size();
+  REQUIRE(reader.size() == size);
+  for (const std::size_t block : {std::size_t{1}, std::size_t{3}, size}) {
+    for (std::size_t first = 0; first < size; first += block) {
+      INFO("from " << first << " in blocks of " << block);
+      const std::size_t count = std::min(block, size - first);
+      const std::vector<ExperimentRecord> records = reader.read(first, count);
+      REQUIRE(records.size() == count);
+      for (std::size_t i = 0; i < count; ++i)
+        CHECK(bytes.differences(records[i], campaign.records[first + i]) == std::vector<std::string>{});
+    }
+  }
+}
+
+TEST_CASE("archive: a campaign whose records stay in the file has the same summary, and says what is wrong") {
+  const TemporaryFolder folder;
+  const auto streamed = [&](const Campaign& campaign) {
+    write_archive(folder / "a.h5", campaign, findings_of(campaign));
+    return stream_archive(folder / "a.h5");
+  };
+  for (const Campaign& campaign :
+       {made_up_campaign(), rich_campaign(), empty_campaign(), scenario_campaign()}) {
+    const Campaign read = streamed(campaign);
+    CHECK(read.streamed.has_value() != campaign.study.names_scenarios());
+    CHECK(records_of(read).size() == campaign.records.size());
+    CHECK(summary_text(read, findings_of(read), "a.h5") ==
+          summary_text(campaign, findings_of(campaign), "a.h5"));
+  }
+  Campaign healthy = made_up_campaign();
+  healthy.records[5].draw = basis_draw();
+  healthy.records[5].draw.index = 5;
+  CHECK_THROWS_WITH(findings_of(streamed(healthy)), Catch::Contains("'kind': found none in experiment 5"));
 }
 
 TEST_CASE("archive: bytes that are no UTF-8, and NUL, become U+FFFD; the file can be read") {
