@@ -80,13 +80,14 @@ class MvAssessment {
  private:
   void assess(Eigen::Index mv, double confidence) {
     const Eigen::MatrixXd others = u_(without(mvs_, mv), Eigen::all);
-    const Decorrelation own = decorrelate(u_.row(mv), others, 0, models_);
+    const Decorrelator decorrelator(others, models_);
+    const Decorrelation own = decorrelator.decorrelate(u_.row(mv), 0);
     result_.unusable += own.unusable;
     if (mean_square(own.residuals) < options_.smallest_own_share * mean_square(u_.row(mv))) {
       result_.mv_use[static_cast<std::size_t>(mv)] = MvUse::dependent;
       return;
     }
-    const Decorrelation errors = decorrelate(e_, others, 1, models_);
+    const Decorrelation errors = decorrelator.decorrelate(e_, 1);
     result_.unusable += errors.unusable;
     for (Eigen::Index cv = 0; cv < e_.rows(); ++cv) {
       ChannelAssessment& channel = result_.channels[static_cast<std::size_t>(cv * u_.rows() + mv)];

@@ -1,8 +1,10 @@
 #include "analysis/methods/decorrelation.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <fmt/format.h>
 
 #include "analysis/identification/least_squares.hpp"
@@ -17,41 +19,37 @@ Eigen::MatrixXd about_means(const Eigen::Ref<const Eigen::MatrixXd>& signals) {
   return signals.colwise() - signals.rowwise().mean();
 }
 
-void require_record(const Eigen::Ref<const Eigen::MatrixXd>& signals,
-                    const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index parameters) {
-  if (signals.cols() != inputs.cols())
-    throw InputError("samples of signals and inputs", fmt::format("{} and {}", signals.cols(), inputs.cols()),
-                     "the same number");
-  if (!signals.allFinite() || !inputs.allFinite())
-    throw InputError("signals to be decorrelated", "a value that is not finite", "finite values only");
-  if (signals.cols() <= parameters)
-    throw InputError("samples of a decorrelation", fmt::format("{}", signals.cols()),
-                     fmt::format("more than its {} coefficients", parameters));
+/// An orthonormal basis of the span of the columns of A, which has more rows than columns.
+Eigen::MatrixXd span_of(const Eigen::MatrixXd& A) {
+  const Eigen::Index n = A.cols();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
+  const Eigen::MatrixXd R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  Eigen::BDCSVD<Eigen::MatrixXd> svd(R, Eigen::ComputeThinU);
+  svd.setThreshold(kRankTolerance);
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(A.rows(), svd.rank());
+  basis.topRows(n) = svd.matrixU().leftCols(svd.rank());
+  return qr.householderQ() * basis;
 }
 
-/// What is left of the columns of x outside of the span of the columns of A.
-Eigen::MatrixXd projected_out(const Eigen::MatrixXd& A, const Eigen::MatrixXd& x) {
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A.rows(), A.cols());
-  qr.setThreshold(kRankTolerance);
-  qr.compute(A);
-  Eigen::MatrixXd rotated = x;
-  rotated.applyOnTheLeft(qr.householderQ().setLength(qr.nonzeroPivots()).adjoint());
-  rotated.topRows(qr.rank()).setZero();
-  rotated.applyOnTheLeft(qr.householderQ().setLength(qr.nonzeroPivots()));
-  return rotated;
-}
-
-Eigen::MatrixXd regression_residuals(const Eigen::MatrixXd& signals,
-                                     const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                     const DecorrelationOptions& options) {
-  Eigen::MatrixXd regressors(inputs.cols(), inputs.rows() * options.fir_length + 1);
-  regressors << Eigen::VectorXd::Ones(inputs.cols()),
+Eigen::MatrixXd regressors(const Eigen::MatrixXd& inputs, const DecorrelationOptions& options) {
+  Eigen::MatrixXd columns(inputs.cols(), inputs.rows() * options.fir_length + 1);
+  columns << Eigen::VectorXd::Ones(inputs.cols()),
       laguerre_responses(inputs, options.fir_length, options.fir_pole);
   // Columns of unit norm: the rank must not depend on the units of the inputs.
-  for (Eigen::Index column = 0; column < regressors.cols(); ++column)
-    if (const double norm = regressors.col(column).norm(); norm > 0.0)
-      regressors.col(column) /= norm;
-  return projected_out(regressors, signals.transpose()).transpose();
+  for (Eigen::Index column = 0; column < columns.cols(); ++column)
+    if (const double norm = columns.col(column).norm(); norm > 0.0)
+      columns.col(column) /= norm;
+  return columns;
+}
+
+Eigen::Index coefficients(const Eigen::MatrixXd& inputs, const DecorrelationOptions& options) {
+  return inputs.rows() *
+         (options.model == DecorrelationModel::fir ? options.fir_length : options.nb + options.nf);
+}
+
+void require_finite(const Eigen::Ref<const Eigen::MatrixXd>& signals) {
+  if (!signals.allFinite())
+    throw InputError("signals to be decorrelated", "a value that is not finite", "finite values only");
 }
 
 }  // namespace
@@ -69,30 +67,44 @@ void DecorrelationOptions::validate() const {
   search.validate();
 }
 
-Decorrelation decorrelate(const Eigen::Ref<const Eigen::MatrixXd>& signals,
-                          const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index delay,
-                          const DecorrelationOptions& options) {
-  options.validate();
+Decorrelator::Decorrelator(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                           const DecorrelationOptions& options)
+    : inputs_(inputs), options_(options) {
+  options_.validate();
+  require_finite(inputs_);
+  if (inputs_.cols() <= coefficients(inputs_, options_) + 1)
+    throw InputError("samples of a decorrelation", fmt::format("{}", inputs_.cols()),
+                     fmt::format("more than its {} coefficients", coefficients(inputs_, options_) + 1));
+  if (options_.model == DecorrelationModel::fir && inputs_.rows() > 0)
+    span_ = span_of(regressors(inputs_, options_));
+}
+
+Decorrelation Decorrelator::decorrelate(const Eigen::Ref<const Eigen::MatrixXd>& signals,
+                                        Eigen::Index delay) const {
   if (delay < 0)
     throw InputError("delay of a decorrelation", fmt::format("{} samples", delay), "0 or more");
-  const bool search = options.model == DecorrelationModel::output_error;
-  Decorrelation result;
-  result.parameters = inputs.rows() * (search ? options.nb + options.nf : options.fir_length);
-  require_record(signals, inputs, result.parameters + 1);
-  result.residuals = about_means(signals);
-  if (inputs.rows() == 0 || signals.rows() == 0)
+  if (signals.cols() != inputs_.cols())
+    throw InputError("samples of signals and inputs",
+                     fmt::format("{} and {}", signals.cols(), inputs_.cols()), "the same number");
+  require_finite(signals);
+  Decorrelation result{about_means(signals), coefficients(inputs_, options_)};
+  if (inputs_.rows() == 0 || signals.rows() == 0)
     return result;
-  if (!search) {
-    result.residuals = regression_residuals(result.residuals, inputs, options);
-    return result;
-  }
-  const Eigen::MatrixXd u = about_means(inputs);
-  const ModelOrder order = output_error_order(u.rows(), options.nb, options.nf, delay);
-  for (Eigen::Index row = 0; row < signals.rows(); ++row) {
+  if (options_.model == DecorrelationModel::output_error)
+    return search(std::move(result), delay);
+  const Eigen::MatrixXd explained = result.residuals * span_;
+  result.residuals.noalias() -= explained * span_.transpose();
+  return result;
+}
+
+Decorrelation Decorrelator::search(Decorrelation result, Eigen::Index delay) const {
+  const Eigen::MatrixXd u = about_means(inputs_);
+  const ModelOrder order = output_error_order(u.rows(), options_.nb, options_.nf, delay);
+  for (Eigen::Index row = 0; row < result.residuals.rows(); ++row) {
     const Eigen::VectorXd x = result.residuals.row(row).transpose();
-    const Identification found = identify_prediction_error(x, u, order, options.search);
+    const Identification found = identify_prediction_error(x, u, order, options_.search);
     result.unusable += is_usable(found.status) ? 0 : 1;
-    const Eigen::VectorXd left = x - simulate(found.model, u, options.search.start);
+    const Eigen::VectorXd left = x - simulate(found.model, u, options_.search.start);
     result.residuals.row(row) = (left.array() - left.mean()).transpose();
   }
   return result;

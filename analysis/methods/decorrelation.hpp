@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// Orders of the models of `decorrelate`.
+/// Orders of the models of a `Decorrelator`.
 struct DecorrelationOptions {
   DecorrelationModel model = DecorrelationModel::fir;
   /// Orders of B and F of each path of an output-error model.
@@ -32,29 +32,42 @@ struct Decorrelation {
   Eigen::Index unusable = 0;    ///< output-error models without a usable status (`is_usable`)
 };
 
-/// The residuals eps = x - V U of each signal x, in deviations from the means and from the steady state of
-/// the first sample, where V U is
+/// Frees signals of what these inputs explain. The residuals eps = x - V U of each signal x, in deviations
+/// from the means and from the steady state of the first sample, where V U is
 ///
 ///   output_error:  sum_j (B_j/F_j) u_j, B_j from lag `delay` on (2.5), (2.6)
 ///   fir:           c + sum_j sum_{i=0}^{n-1} h_ji L_i u_j,  L_0 = 1,
 ///                  L_i = sqrt(1 - a^2) q^-1/(1 - a q^-1) ((q^-1 - a)/(1 - a q^-1))^(i-1)
 ///
 /// Laguerre filters (Wahlberg 1991) reach as far back as a long impulse response with few coefficients; a = 0
-/// gives L_i = q^-i. The regression is the orthogonal projection, so that its residuals are orthogonal to
-/// every filtered input, and every signal costs one more right-hand side. Without inputs the residuals are
-/// the deviations from the means. The model of a search without a usable status serves as it is: its
-/// residuals are those of a stable model, though perhaps not of the best one; they are counted.
+/// gives L_i = q^-i. The regression is the orthogonal projection onto the filtered inputs: onto the singular
+/// vectors of them, each of norm 1, whose singular values are above 1e-10 of the largest. Filtered inputs are
+/// nearly dependent, with singular values of all sizes, and which columns a pivoted factorisation takes hangs
+/// on the last bits. Without inputs the residuals are the deviations from the means. The model of a search
+/// without a usable status serves as it is: its residuals are those of a stable model, though perhaps not of
+/// the best one; they are counted.
 ///
 /// | symbol | name    | shape | meaning                          |
 /// |--------|---------|-------|----------------------------------|
 /// | x      | signals | m x N | signals to be freed              |
 /// | u      | inputs  | n x N | what they are freed of           |
 ///
-/// @throws InputError for different lengths, values that are not finite, no more samples than coefficients,
-///   or invalid options
-Decorrelation decorrelate(const Eigen::Ref<const Eigen::MatrixXd>& signals,
-                          const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index delay,
-                          const DecorrelationOptions& options);
+/// All throw InputError for different lengths, values that are not finite, no more samples than coefficients,
+/// or invalid options.
+class Decorrelator {
+ public:
+  Decorrelator(const Eigen::Ref<const Eigen::MatrixXd>& inputs, const DecorrelationOptions& options);
+
+  /// The regression takes little time after the first signals.
+  Decorrelation decorrelate(const Eigen::Ref<const Eigen::MatrixXd>& signals, Eigen::Index delay) const;
+
+ private:
+  Decorrelation search(Decorrelation result, Eigen::Index delay) const;
+
+  Eigen::MatrixXd inputs_;
+  DecorrelationOptions options_;
+  Eigen::MatrixXd span_;  ///< of the filtered inputs: orthonormal columns; empty without a regression
+};
 
 /// The responses of the filters L_0 ... L_(n-1) to each input in turn, N x (inputs n), from the steady state
 /// of the first sample.

@@ -48,7 +48,7 @@ Eigen::MatrixXd externally_driven(const Eigen::Ref<const Eigen::MatrixXd>& u,
   const Eigen::MatrixXd moving = moving_rows(external);
   if (moving.rows() == 0)
     return u.rowwise().mean().replicate(1, u.cols());
-  return u - decorrelate(u, moving, 0, options).residuals;
+  return u - Decorrelator(moving, options).decorrelate(u, 0).residuals;
 }
 
 }  // namespace mpm

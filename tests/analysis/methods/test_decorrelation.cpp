@@ -8,10 +8,10 @@
 #include "plants/error.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
-using mpm::decorrelate;
 using mpm::Decorrelation;
 using mpm::DecorrelationModel;
 using mpm::DecorrelationOptions;
+using mpm::Decorrelator;
 using mpm::laguerre_responses;
 using mpm::noise_filtered;
 using mpm::NoiseFilter;
@@ -46,7 +46,7 @@ TEST_CASE("decorrelation by regression: the residuals are those of the normal eq
   x.row(0) += 3.0 * u.row(0);
   DecorrelationOptions options = decorrelation_with(DecorrelationModel::fir);
   options.fir_length = 6;
-  const Decorrelation result = decorrelate(x, u, 1, options);
+  const Decorrelation result = Decorrelator(u, options).decorrelate(x, 1);
   CHECK(result.parameters == 12);
 
   Eigen::MatrixXd A(300, 13);
@@ -55,6 +55,21 @@ TEST_CASE("decorrelation by regression: the residuals are those of the normal eq
   // Normal equations square a condition number of some hundreds.
   CHECK((result.residuals - (x.transpose() - A * theta).transpose()).cwiseAbs().maxCoeff() < 1e-9);
   CHECK((result.residuals * A).cwiseAbs().maxCoeff() < 1e-9);
+}
+
+TEST_CASE(
+    "decorrelation by regression: inputs that are nearly dependent leave what does not hang on rounding") {
+  // Slow inputs and many slow filters: singular values of all sizes.
+  const Eigen::MatrixXd steps = mpm::testing::random_steps(7, 300, 5);
+  const Eigen::MatrixXd u = laguerre_responses(steps, 4, 0.9)(Eigen::all, Eigen::seq(3, 27, 4)).transpose();
+  const Eigen::MatrixXd x = mpm::testing::white_inputs(2, 300, 6);
+  const DecorrelationOptions options = decorrelation_with(DecorrelationModel::fir);
+  const Eigen::MatrixXd left = Decorrelator(u, options).decorrelate(x, 1).residuals;
+  REQUIRE(left.norm() > 0.1 * x.norm());
+  for (const std::uint64_t seed : {8, 9, 10}) {
+    const Eigen::MatrixXd noise = 1e-13 * mpm::testing::white_inputs(7, 300, seed);
+    CHECK((Decorrelator(u + noise, options).decorrelate(x, 1).residuals - left).norm() < 1e-4 * left.norm());
+  }
 }
 
 TEST_CASE("decorrelation: what inputs make a signal do is taken away, and the rest is left") {
@@ -67,7 +82,7 @@ TEST_CASE("decorrelation: what inputs make a signal do is taken away, and the re
   for (const DecorrelationModel kind : {DecorrelationModel::output_error, DecorrelationModel::fir}) {
     DecorrelationOptions options = decorrelation_with(kind);
     options.fir_pole = 0.6;
-    const Decorrelation result = decorrelate(x, u, 1, options);
+    const Decorrelation result = Decorrelator(u, options).decorrelate(x, 1);
     CAPTURE(static_cast<int>(kind));
     CHECK(caused.squaredNorm() > 100.0 * noise.squaredNorm());
     for (Eigen::Index row = 0; row < 2; ++row) {
@@ -82,7 +97,8 @@ TEST_CASE("decorrelation: what inputs make a signal do is taken away, and the re
 TEST_CASE("decorrelation: without inputs the deviations from the means are left") {
   const Eigen::MatrixXd x = mpm::testing::white_inputs(2, 50, 9).array() + 4.0;
   for (const DecorrelationModel kind : {DecorrelationModel::output_error, DecorrelationModel::fir}) {
-    const Decorrelation result = decorrelate(x, Eigen::MatrixXd(0, 50), 1, decorrelation_with(kind));
+    const Decorrelation result =
+        Decorrelator(Eigen::MatrixXd(0, 50), decorrelation_with(kind)).decorrelate(x, 1);
     CHECK(result.parameters == 0);
     CHECK((result.residuals - (x.colwise() - x.rowwise().mean())).cwiseAbs().maxCoeff() < 1e-15);
   }
@@ -92,15 +108,16 @@ TEST_CASE("decorrelation refuses what cannot be meant") {
   const Eigen::MatrixXd u = mpm::testing::white_inputs(2, 41, 10);
   const Eigen::MatrixXd x = mpm::testing::white_inputs(1, 41, 11);
   DecorrelationOptions options;
-  CHECK_THROWS_WITH(decorrelate(x, u, 1, options), Catch::Contains("found 41; allowed: more than its 41"));
+  CHECK_THROWS_WITH(Decorrelator(u, options).decorrelate(x, 1),
+                    Catch::Contains("found 41; allowed: more than its 41"));
   options.fir_length = 5;
-  CHECK_THROWS_WITH(decorrelate(x, u, -1, options), Catch::Contains("-1 samples"));
-  CHECK_THROWS_WITH(decorrelate(x.leftCols(40), u, 1, options), Catch::Contains("40 and 41"));
+  CHECK_THROWS_WITH(Decorrelator(u, options).decorrelate(x, -1), Catch::Contains("-1 samples"));
+  CHECK_THROWS_WITH(Decorrelator(u, options).decorrelate(x.leftCols(40), 1), Catch::Contains("40 and 41"));
   Eigen::MatrixXd broken = x;
   broken(0, 3) = std::nan("");
-  CHECK_THROWS_WITH(decorrelate(broken, u, 1, options), Catch::Contains("not finite"));
+  CHECK_THROWS_WITH(Decorrelator(u, options).decorrelate(broken, 1), Catch::Contains("not finite"));
   options.fir_pole = 1.0;
-  CHECK_THROWS_WITH(decorrelate(x, u, 1, options), Catch::Contains("below 1"));
+  CHECK_THROWS_WITH(Decorrelator(u, options).decorrelate(x, 1), Catch::Contains("below 1"));
 }
 
 TEST_CASE("noise filters: means of the last samples, an exponential step response, linearity") {
