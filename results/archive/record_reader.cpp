@@ -161,10 +161,10 @@ RecordReader::RecordReader(const Hdf5Group& root, const Study& study, const Asse
       tables_(record_tables(study_, forms)),
       milliseconds_(read_method_times(root, forms)) {
   require_order(indices_, file_);
-  block_ = std::clamp<std::size_t>(kBlockBytes / bytes_of(tables_), 1, kBlockRecords);
   std::erase_if(tables_, [&root](const RecordTable& table) {
     return table.dimension == "stored" && !root.has_group(table.group);
   });
+  block_ = std::clamp<std::size_t>(kBlockBytes / bytes_of(tables_), 1, kBlockRecords);
   for (const RecordTable& table : tables_) {
     groups_.push_back(group_at(root, table.group));
     std::vector<std::size_t>& places =
