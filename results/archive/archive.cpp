@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "results/archive/archive_groups.hpp"
-#include "results/archive/record_reader.hpp"
+#include "results/archive/archive_record_reader.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/file_seal.hpp"
@@ -26,7 +26,7 @@ Campaign read_groups(const std::filesystem::path& path, RecordPlace place) {
   const Study& study = campaign.study;
   campaign.methods = read_methods(root, study, file);
   campaign.study.methods = method_names(campaign);
-  const auto reader = std::make_shared<const RecordReader>(root, study, forms_of(campaign), file);
+  const auto reader = std::make_shared<const ArchiveRecordReader>(root, study, forms_of(campaign), file);
   if (place == RecordPlace::file && !study.names_scenarios())
     campaign.streamed = streamed(reader);
   else

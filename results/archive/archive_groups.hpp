@@ -19,7 +19,7 @@ void write_heading(Hdf5Group& root, const Campaign& campaign);
 Campaign read_heading(const Hdf5Group& root, const std::string& file);
 
 /// Every table of record_tables(): the root group, /methods/NAME, /trajectories (no such group when no loop
-/// was kept) and /s0_perturbation. They are read by RecordReader.
+/// was kept) and /s0_perturbation. They are read by ArchiveRecordReader.
 void write_records(Hdf5Group& root, const Campaign& campaign);
 
 /// The numbers of one assessment as variables of a group that has the dimensions `cv` and `lag`; `assessment`

@@ -7,10 +7,10 @@
 
 #include "analysis/methods/chain_numbers.hpp"
 #include "results/archive/archive.hpp"
+#include "results/archive/archive_record_reader.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/archive/method_json.hpp"
 #include "results/archive/record_bytes.hpp"
-#include "results/archive/record_reader.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/study_file.hpp"
@@ -277,8 +277,8 @@ TEST_CASE("archive: records that are read in blocks of any size are those that a
   Campaign campaign = made_up_campaign();
   campaign.records.erase(campaign.records.begin() + 2, campaign.records.begin() + 9);
   write_archive(folder / "a.h5", campaign, findings_of(campaign));
-  const RecordReader reader(Hdf5File::open(folder / "a.h5").root(), campaign.study, forms_of(campaign),
-                            "a.h5");
+  const ArchiveRecordReader reader(Hdf5File::open(folder / "a.h5").root(), campaign.study, forms_of(campaign),
+                                   "a.h5");
   const RecordBytes bytes(campaign.study, forms_of(campaign));
   const std::size_t size = campaign.records.size();
   REQUIRE(reader.size() == size);

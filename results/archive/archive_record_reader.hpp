@@ -17,10 +17,11 @@ namespace mpm {
 /// In memory are the index of each experiment and, of tables that some experiments stand in, their places.
 /// Errors: ArchiveError, which names the file and what is wrong or missing in it; that of a single record
 /// comes when it is read.
-class RecordReader {
+class ArchiveRecordReader {
  public:
   /// `root` is that of the archive of this study; `file` is for messages.
-  RecordReader(const Hdf5Group& root, const Study& study, const AssessmentForms& forms, std::string file);
+  ArchiveRecordReader(const Hdf5Group& root, const Study& study, const AssessmentForms& forms,
+                      std::string file);
 
   std::size_t size() const { return indices_.size(); }
   /// How many are best read at a time.
@@ -43,6 +44,6 @@ class RecordReader {
 };
 
 /// The records, one block at a time.
-RecordRange streamed(std::shared_ptr<const RecordReader> reader);
+RecordRange streamed(std::shared_ptr<const ArchiveRecordReader> reader);
 
 }  // namespace mpm

@@ -1,4 +1,4 @@
-#include "results/archive/record_reader.hpp"
+#include "results/archive/archive_record_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -153,8 +153,8 @@ std::size_t bytes_of(const std::vector<RecordTable>& tables) {
 
 }  // namespace
 
-RecordReader::RecordReader(const Hdf5Group& root, const Study& study, const AssessmentForms& forms,
-                           std::string file)
+ArchiveRecordReader::ArchiveRecordReader(const Hdf5Group& root, const Study& study,
+                                         const AssessmentForms& forms, std::string file)
     : study_(study),
       file_(std::move(file)),
       indices_(root.read_list<std::int64_t>("experiment")),
@@ -180,7 +180,7 @@ RecordReader::RecordReader(const Hdf5Group& root, const Study& study, const Asse
   }
 }
 
-std::vector<ExperimentRecord> RecordReader::read(std::size_t first, std::size_t count) const {
+std::vector<ExperimentRecord> ArchiveRecordReader::read(std::size_t first, std::size_t count) const {
   std::vector<ExperimentRecord> records(count);
   for (std::size_t i = 0; i < count; ++i)
     records[i].draw.index = indices_[first + i];
@@ -197,8 +197,8 @@ std::vector<ExperimentRecord> RecordReader::read(std::size_t first, std::size_t 
   return records;
 }
 
-void RecordReader::read_table(std::size_t t, std::size_t first,
-                              std::vector<ExperimentRecord>& records) const {
+void ArchiveRecordReader::read_table(std::size_t t, std::size_t first,
+                                     std::vector<ExperimentRecord>& records) const {
   const RecordTable& table = tables_[t];
   Rows rows{{}, first, indices_.size()};
   if (!table.has) {
@@ -220,7 +220,7 @@ void RecordReader::read_table(std::size_t t, std::size_t first,
       rows.read(groups_[t], variable, file_);
 }
 
-RecordRange streamed(std::shared_ptr<const RecordReader> reader) {
+RecordRange streamed(std::shared_ptr<const ArchiveRecordReader> reader) {
   const std::size_t size = reader->size();
   return {size, [reader = std::move(reader), size](const RecordRange::Visit& visit) {
             const std::size_t block = reader->block();
