@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
 #include "analysis/identification/least_squares.hpp"
@@ -19,23 +18,23 @@ Eigen::MatrixXd about_means(const Eigen::Ref<const Eigen::MatrixXd>& signals) {
   return signals.colwise() - signals.rowwise().mean();
 }
 
-/// An orthonormal basis of the span of the columns of A, which has more rows than columns.
-Eigen::MatrixXd span_of(const Eigen::MatrixXd& A) {
-  const Eigen::Index n = A.cols();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
-  const Eigen::MatrixXd R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-  Eigen::BDCSVD<Eigen::MatrixXd> svd(R, Eigen::ComputeThinU);
-  svd.setThreshold(kRankTolerance);
-  Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(A.rows(), svd.rank());
-  basis.topRows(n) = svd.matrixU().leftCols(svd.rank());
-  return qr.householderQ() * basis;
+/// Q, with which Q Q'x is A b, where |x - A b|^2 + r^2 |b|^2 is least and r = kRankTolerance |A|: the upper
+/// rows of the orthogonal factor of (A; r I), so that no singular value is squared.
+Eigen::MatrixXd ridge_basis(const Eigen::MatrixXd& A) {
+  const Eigen::Index rows = A.rows(), n = A.cols();
+  Eigen::MatrixXd augmented = Eigen::MatrixXd::Zero(rows + n, n);
+  augmented.topRows(rows) = A;
+  augmented.bottomRows(n).diagonal().setConstant(kRankTolerance * A.norm());
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(augmented);
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(rows + n, n);
+  return Q.topRows(rows);
 }
 
 Eigen::MatrixXd regressors(const Eigen::MatrixXd& inputs, const DecorrelationOptions& options) {
   Eigen::MatrixXd columns(inputs.cols(), inputs.rows() * options.fir_length + 1);
   columns << Eigen::VectorXd::Ones(inputs.cols()),
       laguerre_responses(inputs, options.fir_length, options.fir_pole);
-  // Columns of unit norm: the rank must not depend on the units of the inputs.
+  // Columns of unit norm: the residuals must not depend on the units of the inputs.
   for (Eigen::Index column = 0; column < columns.cols(); ++column)
     if (const double norm = columns.col(column).norm(); norm > 0.0)
       columns.col(column) /= norm;
@@ -76,7 +75,7 @@ Decorrelator::Decorrelator(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
     throw InputError("samples of a decorrelation", fmt::format("{}", inputs_.cols()),
                      fmt::format("more than its {} coefficients", coefficients(inputs_, options_) + 1));
   if (options_.model == DecorrelationModel::fir && inputs_.rows() > 0)
-    span_ = span_of(regressors(inputs_, options_));
+    basis_ = ridge_basis(regressors(inputs_, options_));
 }
 
 Decorrelation Decorrelator::decorrelate(const Eigen::Ref<const Eigen::MatrixXd>& signals,
@@ -92,8 +91,8 @@ Decorrelation Decorrelator::decorrelate(const Eigen::Ref<const Eigen::MatrixXd>&
     return result;
   if (options_.model == DecorrelationModel::output_error)
     return search(std::move(result), delay);
-  const Eigen::MatrixXd explained = result.residuals * span_;
-  result.residuals.noalias() -= explained * span_.transpose();
+  const Eigen::MatrixXd explained = result.residuals * basis_;
+  result.residuals.noalias() -= explained * basis_.transpose();
   return result;
 }
 
