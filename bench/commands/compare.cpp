@@ -135,11 +135,9 @@ void assess(Comparison& comparison, const CompareArguments& options, Progress& p
   try {
     comparison.run(hooks_of(progress));
   } catch (const Interrupted& error) {
-    throw std::runtime_error(progress.explain(error) +
-                             (options.output.empty()
-                                  ? ""
-                                  : fmt::format("\nWhat is done is kept beside {}. To go on with it:\n  {}",
-                                                options.output, command_line)));
+    throw std::runtime_error(
+        progress.explain(error) +
+        (options.output.empty() ? "" : how_to_go_on("beside " + options.output, command_line)));
   }
 }
 

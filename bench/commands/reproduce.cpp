@@ -80,11 +80,9 @@ std::vector<std::vector<ReproducedTable>> run_tables(TableRuns runs, const Repro
   try {
     return run_tables(runs);
   } catch (const Interrupted& error) {
-    throw std::runtime_error(progress.explain(error) +
-                             (runs.kept == nullptr
-                                  ? ""
-                                  : fmt::format("\nWhat is done is kept in {}. To go on with it:\n  {}",
-                                                runs.kept->folder().string(), command_line)));
+    throw std::runtime_error(
+        progress.explain(error) +
+        (runs.kept == nullptr ? "" : how_to_go_on("in " + runs.kept->folder().string(), command_line)));
   }
 }
 

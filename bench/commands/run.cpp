@@ -49,15 +49,16 @@ struct RunArguments {
 };
 
 /// The end of a message about a run that was not finished; empty when no shard is left to go on with.
-std::string how_to_go_on(const RunArguments& options, const std::filesystem::path& shards,
-                         std::string command_line) {
+std::string how_to_resume(const RunArguments& options, const std::filesystem::path& shards,
+                          std::string command_line) {
   if (shards_in(shards).empty() && shards_in(calibration_shard_folder(shards)).empty())
     return "";
   constexpr std::string_view kDiscard = " --discard";
   if (options.run.leftovers == Leftovers::discard)
     command_line.erase(command_line.rfind(kDiscard), kDiscard.size());
-  return fmt::format("\nWhat is done is kept in {}. To go on with it:\n  {}{}", shards.string(), command_line,
-                     options.run.leftovers == Leftovers::resume ? "" : " --resume");
+  if (options.run.leftovers != Leftovers::resume)
+    command_line += " --resume";
+  return how_to_go_on("in " + shards.string(), command_line);
 }
 
 /// What one should look at, without the advice, which `validate` gives.
@@ -145,7 +146,7 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
     warn_of(of_run, basis, progress);
   };
   const auto go_on = [&] {
-    return how_to_go_on(options, part ? part->path : shard_folder_of(options.output), command_line);
+    return how_to_resume(options, part ? part->path : shard_folder_of(options.output), command_line);
   };
   try {
     if (part)

@@ -88,8 +88,8 @@ ExitCode run_suite_command(const SuiteArguments& options, const std::string& com
   try {
     cells = run_suite(suite, run);
   } catch (const Interrupted& error) {
-    throw std::runtime_error(fmt::format("{}, in {}\nWhat is done is kept in {}. To go on with it:\n  {}",
-                                         progress.explain(error), cell_name, options.output, command_line));
+    throw std::runtime_error(fmt::format("{}, in {}{}", progress.explain(error), cell_name,
+                                         how_to_go_on("in " + options.output, command_line)));
   }
   for (const CellScores& cell : cells)
     if (!cell.trouble.empty())

@@ -97,8 +97,8 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
     try {
       rows.push_back(row_of(variant, archive_of(folder, i), options.run, hooks_of(progress), command_line));
     } catch (const Interrupted& error) {
-      throw std::runtime_error(fmt::format("{}, in {}\nWhat is done is kept in {}. To go on with it:\n  {}",
-                                           progress.explain(error), name, options.output, command_line));
+      throw std::runtime_error(fmt::format("{}, in {}{}", progress.explain(error), name,
+                                           how_to_go_on("in " + options.output, command_line)));
     }
     if (!rows.back().trouble.empty())
       progress.warn(fmt::format("{}: {}", name, rows.back().trouble));

@@ -21,6 +21,10 @@ void print_note(std::string_view text) {
   std::fwrite(plain.data(), 1, plain.size(), stderr);
 }
 
+std::string how_to_go_on(std::string_view where, std::string_view command) {
+  return fmt::format("\nWhat is done is kept {}. To go on with it:\n  {}", where, command);
+}
+
 std::string duration_text(double seconds) {
   return seconds < 120.0    ? fmt::format("{:.1f} s", seconds)
          : seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0)

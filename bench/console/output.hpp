@@ -15,6 +15,10 @@ void print_result(std::string_view text);
 /// Writes on stderr. What is lost there is lost.
 void print_note(std::string_view text);
 
+/// The end of a message about work that was stopped: what is done is kept `where` ("in FOLDER"), and
+/// `command` goes on with it.
+std::string how_to_go_on(std::string_view where, std::string_view command);
+
 /// "3.2 s", "12 min", "3.1 h"
 std::string duration_text(double seconds);
 
