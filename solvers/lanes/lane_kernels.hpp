@@ -10,22 +10,18 @@ struct RowTap {
   int partner;
 };
 
-/// Blocks of eight rows, `distance` apart: the eight numbers of block k in the column of a tap begin at
-/// numbers[start + k distance + offset]. With partners the distance is 8.
-struct RowRun {
-  long start, distance, blocks;
-};
-
-/// Rows in blocks of eight; blocks may share numbers. Every row is summed in the order of the taps, the
-/// column before its partner.
+/// Runs of `blocks` blocks of eight rows, whose columns are windows of series: the eight numbers of block k
+/// of run r in the column of a tap begin at numbers[starts[r] + 8 k + offset], and are those of the rows from
+/// rows[r] + 8 k on. Every row is summed in the order of the taps, the column before its partner.
 struct RowWindows {
   const double* numbers;
   const RowTap* taps;
   long pair_count;  ///< taps that have a partner: the first ones
   long tap_count;
-  const RowRun* runs;
+  long blocks;
+  const long* starts;
+  const long* rows;
   long run_count;
-  const long* row;  ///< the first row of each block, run after run; a multiple of 8
 };
 
 /// Springs of a family (LimitSprings) as the kernels see them: padded vectors of 8 `blocks` numbers.
@@ -54,14 +50,14 @@ struct SlackArrays {
 /// eight numbers side by side in an order that is the same for every instruction set, without fused
 /// operations: the bits of the result do not depend on the processor.
 ///
-/// All pointers but those of LimitArrays, SlackArrays, RowWindows, `below_zero` and `non_zero` are multiples
-/// of 64 bytes, strides multiples of 8, and what is padded is zero where nothing else is said (LaneVector). A
-/// matrix with a `stride` has its columns (rows, in `rows`) that far apart.
+/// All pointers but those of LimitArrays, SlackArrays, RowWindows, `below_zero` and `non_zero`, and where A x
+/// goes, are multiples of 64 bytes, strides multiples of 8, and what is padded is zero where nothing else is
+/// said (LaneVector). A matrix with a `stride` has its columns (rows, in `rows`) that far apart.
 struct LaneKernels {
   const char* name;  ///< "baseline", "avx2", "avx512"
   bool (*runs_here)();
 
-  /// out = A x in the blocks of rows that there are.
+  /// out = A x in the rows that there are.
   void (*multiply)(const RowWindows& rows, const double* x, double* out);
   /// out = A x, for the blocks of eight rows, a block column by column, whose columns are those of the listed
   /// numbers of x.

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "solvers/lanes/kernel_choice.hpp"
+#include "solvers/lanes/row_basis.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr Eigen::Index kBlock = 8;
+constexpr Eigen::Index kMostCoordinates = 512;  // rows of all bases, whose products stand on the stack
 
 /// True when row i + 1 is row i moved by a period, but for the first and the last columns.
 bool follows(const RowBlocks::Rows& rows, Eigen::Index i, Eigen::Index period) {
@@ -16,16 +20,36 @@ bool follows(const RowBlocks::Rows& rows, Eigen::Index i, Eigen::Index period) {
   return std::equal(rows.row(i).data(), rows.row(i).data() + count, rows.row(i + 1).data() + period);
 }
 
-/// Blocks of eight rows within the rows first to last - 1.
-Eigen::Index first_block(Eigen::Index first) {
-  return padded(first) / kBlock;
+/// Numbers first, first + 1, ...
+std::vector<int> numbered(Eigen::Index count, Eigen::Index first = 0) {
+  std::vector<int> numbers(static_cast<std::size_t>(count));
+  std::iota(numbers.begin(), numbers.end(), static_cast<int>(first));
+  return numbers;
 }
-Eigen::Index end_block(Eigen::Index last) {
-  return last / kBlock;
+
+Eigen::Index blocks_of(Eigen::Index rows) {
+  return padded(rows) / kBlock;
 }
 
 }  // namespace
 
+// Rows that there are not are zero.
+RowBlocks::Blocks RowBlocks::make_blocks(const Rows& rows, Eigen::Index first, Eigen::Index last,
+                                         std::vector<int> columns) {
+  Blocks blocks{first, std::move(columns), blocks_of(last - first)};
+  for (Eigen::Index block = first; block < last; block += kBlock)
+    for (const int j : blocks.columns)
+      for (Eigen::Index i = block; i < block + kBlock; ++i)
+        blocks.numbers.push_back(i < rows.rows() ? rows(i, j) : 0.0);
+  return blocks;
+}
+
+void RowBlocks::Blocks::multiply(const double* x, double* out) const {
+  lane_kernels().multiply_some(numbers.data(), columns.data(), static_cast<long>(columns.size()), count, x,
+                               out + first);
+}
+
+// Those that are as long as the windows, which end with the moves.
 std::vector<RowBlocks::Run> RowBlocks::find_runs(const Rows& rows, Eigen::Index period) {
   std::vector<Run> runs;
   for (Eigen::Index i = 0; i < rows.rows(); ++i)
@@ -33,28 +57,40 @@ std::vector<RowBlocks::Run> RowBlocks::find_runs(const Rows& rows, Eigen::Index 
       runs.back().last = i + 1;
     else
       runs.push_back({i, i + 1});
-  std::erase_if(runs, [](const Run& run) { return first_block(run.first) >= end_block(run.last); });
+  std::erase_if(runs, [&](const Run& run) { return run.last - run.first < padded(rows.cols() / period); });
   return runs;
 }
 
-RowBlocks::RowBlocks(const Rows& rows) {
-  // The period that leaves the fewest numbers; with fewer than four groups of columns nothing is gained.
+// The period with the most rows in runs; 0 when there is none. With fewer than four groups of columns nothing
+// is gained.
+Eigen::Index RowBlocks::find_period(const Rows& rows) {
   Eigen::Index best = 0;
   Eigen::Index most = 0;
   for (Eigen::Index period = 1; 4 * period <= rows.cols(); ++period) {
     if (rows.cols() % period != 0)
       continue;
-    Eigen::Index blocks = 0;
+    Eigen::Index count = 0;
     for (const Run& run : find_runs(rows, period))
-      blocks += end_block(run.last) - first_block(run.first);
-    if (blocks > most) {
-      most = blocks;
+      count += run.last - run.first;
+    if (count > most) {
+      most = count;
       best = period;
     }
   }
-  if (best > 0)
-    add_windows(rows, best, find_runs(rows, best));
-  add_whole(rows);
+  return best;
+}
+
+RowBlocks::RowBlocks(const Rows& rows) {
+  std::vector<Run> runs;
+  if (const Eigen::Index period = find_period(rows); period > 0) {
+    runs = find_runs(rows, period);
+    window_blocks_ = blocks_of(rows.cols() / period);
+    add_windows(rows, period, runs);
+  } else {
+    order_ = numbered(rows.cols());
+  }
+  add_whole(rows, runs);
+  add_late(rows, runs);
 }
 
 // The window of move i + 8 in a block is that of move i in the block before: such pairs share it.
@@ -66,89 +102,111 @@ void RowBlocks::add_taps(Eigen::Index period, Eigen::Index moves, Eigen::Index l
         continue;  // a partner
       const RowTap tap{j * length + moves - 1 - i, static_cast<int>(i * period + j),
                        static_cast<int>((i + kBlock) * period + j)};
-      (i + kBlock < moves ? windows_.taps : single).push_back(tap);
+      (i + kBlock < moves ? taps_ : single).push_back(tap);
     }
     single.push_back({(period + j) * length + moves - 1, static_cast<int>(moves * period + j), 0});
   }
-  windows_.pairs = static_cast<long>(windows_.taps.size());
-  windows_.taps.insert(windows_.taps.end(), single.begin(), single.end());
+  pairs_ = static_cast<long>(taps_.size());
+  for (const RowTap& tap : taps_)
+    order_.insert(order_.end(), {tap.column, tap.partner});
+  for (const RowTap& tap : single)
+    order_.push_back(tap.column);
+  taps_.insert(taps_.end(), single.begin(), single.end());
 }
 
-// A series of a run is as long as the longest run and the number of its columns ask for; number t of it,
-// which stands at t + moves - 1, is what the column of the first move has in row t of the run.
+// A series of a run is as long as its blocks and the number of its columns ask for; number t of it, which
+// stands at t + moves - 1, is what the column of the first move has in row t of the run.
 void RowBlocks::add_windows(const Rows& rows, Eigen::Index period, const std::vector<Run>& runs) {
   const Eigen::Index moves = rows.cols() / period - 1;
-  Eigen::Index longest = 0;
-  for (const Run& run : runs)
-    longest = std::max(longest, run.last - run.first);
-  const Eigen::Index length = moves - 1 + longest;
+  const Eigen::Index count = kBlock * window_blocks_;
+  const Eigen::Index length = moves - 1 + count;
   add_taps(period, moves, length);
-  windows_.numbers.assign(runs.size() * static_cast<std::size_t>(2 * period * length), 0.0);
-  double* numbers = windows_.numbers.data();
+  numbers_.assign(runs.size() * static_cast<std::size_t>(2 * period * length), 0.0);
+  double* numbers = numbers_.data();
   for (const Run& run : runs) {
     for (Eigen::Index j = 0; j < period; ++j) {
       double* first = numbers + j * length + moves - 1;
       double* last = first + period * length;
-      for (Eigen::Index t = 0; t < run.last - run.first; ++t) {
+      for (Eigen::Index t = 0; t < count; ++t) {
         first[t] = rows(run.first + t, j);
         last[t] = rows(run.first + t, moves * period + j);
       }
       for (Eigen::Index t = 1; t < moves; ++t)
         first[-t] = rows(run.first, t * period + j);
     }
-    const Eigen::Index block = first_block(run.first);
-    const Eigen::Index count = end_block(run.last) - block;
-    windows_.runs.push_back({numbers - windows_.numbers.data() + block * kBlock - run.first, kBlock, count});
-    for (Eigen::Index k = 0; k < count; ++k)
-      windows_.row.push_back((block + k) * kBlock);
+    starts_.push_back(numbers - numbers_.data());
+    window_rows_.push_back(run.first);
     numbers += 2 * period * length;
   }
 }
 
-// What has no windows, a block column by column.
-void RowBlocks::add_whole(const Rows& rows) {
-  std::vector<int> order = column_order();
-  if (order.empty()) {
-    order.resize(static_cast<std::size_t>(rows.cols()));
-    std::iota(order.begin(), order.end(), 0);
+// Rows that are in no run, in blocks that begin at multiples of eight; rows of runs that are among them are
+// written again by those.
+void RowBlocks::add_whole(const Rows& rows, const std::vector<Run>& runs) {
+  Eigen::Index first = 0;
+  for (const Run& run : runs) {
+    if (first < run.first)
+      whole_.push_back(make_blocks(rows, first / kBlock * kBlock, run.first, order_));
+    first = run.last;
   }
-  for (const int j : order)
-    whole_.taps.push_back({kBlock * static_cast<long>(whole_.taps.size()), j, 0});
-  for (Eigen::Index first = 0; first < rows.rows(); first += kBlock) {
-    if (std::binary_search(windows_.row.begin(), windows_.row.end(), first))
+  if (first < rows.rows())
+    whole_.push_back(make_blocks(rows, first / kBlock * kBlock, rows.rows(), order_));
+}
+
+// The rows of the runs behind their windows, in blocks that reach back from the end of the run: as P and Q
+// where that is less work, else as they are.
+void RowBlocks::add_late(const Rows& rows, const std::vector<Run>& runs) {
+  Rows all(0, rows.cols());
+  for (const Run& run : runs) {
+    const Eigen::Index count = run.last - run.first - kBlock * window_blocks_;
+    const Eigen::Index blocks = blocks_of(count);
+    const Eigen::Index first = run.last - kBlock * blocks;
+    const Eigen::Index worth = (kBlock * blocks * rows.cols() - 1) / (kBlock * blocks + rows.cols());
+    const auto basis =
+        row_basis(rows.middleRows(run.last - count, count), std::min(worth, kMostCoordinates - all.rows()));
+    if (!basis) {
+      whole_.push_back(make_blocks(rows, first, run.last, order_));
       continue;
-    whole_.row.push_back(first);
-    for (const int j : order)
-      for (Eigen::Index i = first; i < first + kBlock; ++i)
-        whole_.numbers.push_back(i < rows.rows() ? rows(i, j) : 0.0);
+    }
+    const Rows parts = rows.middleRows(first, kBlock * blocks) * basis->transpose();
+    late_.push_back(make_blocks(parts, 0, parts.rows(), numbered(basis->rows())));
+    late_.back().first = first;
+    late_.back().columns = numbered(basis->rows(), all.rows());
+    all.conservativeResize(all.rows() + basis->rows(), Eigen::NoChange);
+    all.bottomRows(basis->rows()) = *basis;
   }
-  whole_.runs.push_back({0, kBlock * rows.cols(), static_cast<long>(whole_.row.size())});
+  basis_ = make_blocks(all, 0, all.rows(), numbered(rows.cols()));
 }
 
-std::vector<int> RowBlocks::column_order() const {
-  const Set& set = windows_.taps.empty() ? whole_ : windows_;
-  std::vector<int> order;
-  for (const RowTap& tap : set.taps) {
-    order.push_back(tap.column);
-    if (&tap < set.taps.data() + set.pairs)
-      order.push_back(tap.partner);
-  }
-  return order;
+Eigen::Index RowBlocks::late_row_count() const {
+  return std::accumulate(late_.begin(), late_.end(), Eigen::Index{0},
+                         [](Eigen::Index sum, const Blocks& late) { return sum + kBlock * late.count; });
 }
 
+std::size_t RowBlocks::number_count() const {
+  std::size_t count = numbers_.size() + basis_.numbers.size();
+  for (const std::vector<Blocks>* list : {&whole_, &late_})
+    for (const Blocks& blocks : *list)
+      count += blocks.numbers.size();
+  return count;
+}
+
+// What is written twice, at the ends of blocks, is right by the last.
 void RowBlocks::multiply(const double* x, LaneVector& out) const {
-  windows_.multiply(x, out);
-  whole_.multiply(x, out);
-}
-
-void RowBlocks::Set::multiply(const double* x, LaneVector& out) const {
-  lane_kernels().multiply({.numbers = numbers.data(),
-                           .taps = taps.data(),
-                           .pair_count = pairs,
-                           .tap_count = static_cast<long>(taps.size()),
-                           .runs = runs.data(),
-                           .run_count = static_cast<long>(runs.size()),
-                           .row = row.data()},
+  for (const Blocks& blocks : whole_)
+    blocks.multiply(x, out.data());
+  alignas(64) double coordinates[kMostCoordinates];
+  basis_.multiply(x, coordinates);
+  for (const Blocks& late : late_)
+    late.multiply(coordinates, out.data());
+  lane_kernels().multiply({.numbers = numbers_.data(),
+                           .taps = taps_.data(),
+                           .pair_count = pairs_,
+                           .tap_count = static_cast<long>(taps_.size()),
+                           .blocks = window_blocks_,
+                           .starts = starts_.data(),
+                           .rows = window_rows_.data(),
+                           .run_count = static_cast<long>(starts_.size())},
                           x, out.data());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,7 +20,10 @@ namespace mpm {
 /// in all columns but the last p, whose moves do not end with the horizon. Where that holds to the bit, only
 /// one series of numbers is kept for each of the first and of the last p columns of a run, and the columns of
 /// a block are windows of them: a few kilobytes, which stay in the nearest cache, instead of all of A.
-/// Blocks across the end of a run, and rows without such an order, are kept as they are.
+///
+/// After the last move a CV is on its own: the rows of a run from there on are the free response of a model
+/// of low order, and hence combinations of a few rows Q, A = P Q with P = A Q' (row_basis). Where that is
+/// less work, they are kept as P and Q, and their product is P (Q x), whose rounding is that of A x.
 class RowBlocks {
  public:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -28,33 +32,49 @@ class RowBlocks {
   /// out = A x; `out` is followed by room for a multiple of eight.
   void multiply(const double* x, LaneVector& out) const;
 
-  /// The columns in the order in which their products are added, the same in all rows.
-  std::vector<int> column_order() const;
+  /// The columns in the order in which their products are added, the same in all rows but those of P.
+  const std::vector<int>& column_order() const { return order_; }
+
+  /// Rows that are kept as P, blocks of eight.
+  Eigen::Index late_row_count() const;
 
   /// Numbers that are kept for A.
-  std::size_t number_count() const { return windows_.numbers.size() + whole_.numbers.size(); }
+  std::size_t number_count() const;
 
  private:
-  struct Set {
-    LaneMemory numbers;
-    std::vector<RowTap> taps;
-    long pairs = 0;
-    std::vector<RowRun> runs;
-    std::vector<long> row;
-
-    void multiply(const double* x, LaneVector& out) const;
-  };
-  /// Rows first to last - 1 of a run.
+  /// Rows first to last - 1, each of which is the one before moved by a period.
   struct Run {
     Eigen::Index first, last;
   };
+  /// Blocks that follow each other from row `first` on, each column by column.
+  struct Blocks {
+    Eigen::Index first = 0;
+    std::vector<int> columns = {};
+    long count = 0;
+    LaneMemory numbers = {};
+
+    void multiply(const double* x, double* out) const;
+  };
 
   static std::vector<Run> find_runs(const Rows& rows, Eigen::Index period);
+  static Eigen::Index find_period(const Rows& rows);
+  static Blocks make_blocks(const Rows& rows, Eigen::Index first, Eigen::Index last,
+                            std::vector<int> columns);
   void add_taps(Eigen::Index period, Eigen::Index moves, Eigen::Index length);
   void add_windows(const Rows& rows, Eigen::Index period, const std::vector<Run>& runs);
-  void add_whole(const Rows& rows);
+  void add_whole(const Rows& rows, const std::vector<Run>& runs);
+  void add_late(const Rows& rows, const std::vector<Run>& runs);
 
-  Set windows_, whole_;
+  std::vector<int> order_;
+  LaneMemory numbers_;  ///< series
+  std::vector<RowTap> taps_;
+  long pairs_ = 0;
+  Eigen::Index window_blocks_ = 0;  ///< of every run: its first ones
+  std::vector<long> starts_, window_rows_;
+
+  std::vector<Blocks> whole_;  ///< times x
+  Blocks basis_;               ///< Q of all runs, one below the other
+  std::vector<Blocks> late_;   ///< P of each, times its part of Q x
 };
 
 }  // namespace mpm

@@ -96,11 +96,22 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
   std::vector<RowTap> taps;
   for (Eigen::Index j = 0; j < n; ++j)
     taps.push_back({8 * j, static_cast<int>(j), 0});
-  std::vector<long> row;
-  for (Eigen::Index k = 0; k < blocks.columns(); ++k)
+  // The same blocks as runs of one block each, and as one run whose columns lie one behind the other.
+  std::vector<long> starts, row;
+  for (Eigen::Index k = 0; k < blocks.columns(); ++k) {
+    starts.push_back(k * blocks.stride());
     row.push_back(8 * k);
-  const RowRun run{0, blocks.stride(), blocks.columns()};
-  const RowWindows windows{blocks.data(), taps.data(), 0, n, &run, 1, row.data()};
+  }
+  const RowWindows runs{blocks.data(), taps.data(), 0, n, 1, starts.data(), row.data(), blocks.columns()};
+  LaneMatrix columns_of_rows(m, n);
+  std::vector<RowTap> column_taps;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i < m; ++i)
+      columns_of_rows(i, j) = rows(j, i);
+    column_taps.push_back({j * columns_of_rows.stride(), static_cast<int>(j), 0});
+  }
+  const RowWindows one_run{columns_of_rows.data(), column_taps.data(), 0,          n,
+                           blocks.columns(),       starts.data(),      row.data(), 1};
   Eigen::VectorXd listed = Eigen::VectorXd::Zero(m);
   for (const int i : list)
     listed(i) = factor(i);
@@ -109,9 +120,13 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
   for (const LaneKernels* kernels : lane_kernel_sets()) {
     CAPTURE(kernels->name);
     LaneVector product(m);
-    kernels->multiply(windows, x.data(), product.data());
+    kernels->multiply(runs, x.data(), product.data());
     CHECK((product.vector() - all_of(rows).topRows(n).transpose() * x.vector()).norm() <= kSumRounding);
     products.add(product.vector());
+
+    LaneVector same_product(m);
+    kernels->multiply(one_run, x.data(), same_product.data());
+    CHECK(same_product.vector() == product.vector());
 
     // Of x every second number, last first.
     LaneVector twice(2 * n);
@@ -120,7 +135,6 @@ TEST_CASE("products with rows and columns are those of Eigen, with the same bits
       places.push_back(static_cast<int>(2 * (n - 1 - j)));
       twice(places.back()) = x(j);
     }
-    LaneVector same_product(m);
     kernels->multiply_some(blocks.data(), places.data(), n, padded(m) / 8, twice.data(), same_product.data());
     CHECK(same_product.vector() == product.vector());
 
