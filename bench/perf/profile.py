@@ -29,11 +29,13 @@ PARTS = [
     (4, "ActiveSetSolver::do_solve", "active set"),
     (5, "ActiveSetNewton::start", "warm start"),
     (5, "ActiveSetNewton::minimise", "Newton's method"),
-    (6, "ActiveSetCurvature::synchronise", "curvature"),
-    (6, "ActiveSetFactor::compute", "factor"),
     (6, "ActiveSetNewton::line_search", "line search"),
+    (6, "LaneProgram::add_outer", "curvature of the limits that come and go"),
+    (6, "factor", "factor"),
+    (6, "ActiveSetFactor::solve_in_place", "solutions with the factor"),
     (4, "IpoptSolver::do_solve", "Ipopt"),
     (4, "kkt_residual", "certificate"),
+    (4, "RowBlocks::multiply", "products with the rows, of all these"),
     (2, "LinearPlant::advance", "plant (and the models of controllers)"),
     (1, "simulated_output", "y_sim"),
     (1, "nominal_outputs", "nominal outputs"),
@@ -61,7 +63,7 @@ def inclusive_shares(program, options):
             check=True, capture_output=True, text=True).stdout
     shares = {}
     for line in report.splitlines():
-        match = re.match(r"\s*([\d.]+)%\s+\[[.k]\]\s+mpm::([\w:]+)", line)
+        match = re.match(r"\s*([\d.]+)%\s+\[[.k]\]\s+mpm::(?:\(anonymous namespace\)::)?([\w:]+)", line)
         if match:
             shares[match[2]] = max(shares.get(match[2], 0.0), float(match[1]))
     return shares

@@ -83,6 +83,17 @@ std::string asked(const ReportInput& input) {
       input.findings().experiments, kinds_text(input.campaign.study, input.parts.kinds));
 }
 
+/// Where no method names a source: of the one that finds the CV most often. Empty when none names a CV.
+std::string found_of_cvs(const ReportInput& input) {
+  const MethodFindings* const best = best_method(input, &MethodRates::located);
+  if (best == nullptr)
+    return "";
+  return fmt::format(
+      "no method names a source; <code>{}</code> flags {} of the loops with a fault and finds the CV most "
+      "often, in {} of those that it flags",
+      html_text(best->name()), share_words(best->rates.detected), share_words(best->rates.located));
+}
+
 std::string found(const ReportInput& input) {
   if (input.campaign.study.names_scenarios()) {
     const Rate right = right_scenarios(input);
@@ -103,6 +114,8 @@ std::string found(const ReportInput& input) {
       best != nullptr && best != input.findings().chain())
     text += fmt::format("{}<code>{}</code> names the source most often, in {} of those that it flags",
                         text.empty() ? "" : "; ", html_text(best->name()), share_words(best->rates.source));
+  if (text.empty())
+    text = found_of_cvs(input);
   return text.empty() ? "no loop has a verdict that could be right or wrong." : text + ".";
 }
 

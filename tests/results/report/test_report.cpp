@@ -11,6 +11,7 @@
 #include "analysis/methods/chain_numbers.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/report/report.hpp"
+#include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "tests/results/campaign_sample.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -208,6 +209,18 @@ TEST_CASE("report: a campaign without the chain has no section of it") {
   const std::string page = page_of(campaign, "f.h5");
   CHECK_THAT(page, Contains("Which method is right most often?") && !Contains("I<sub>MPM</sub>") &&
                        !Contains("botelho"));
+}
+
+TEST_CASE("report: the verdict on top is of the CV where no method names a source") {
+  Campaign campaign = made_up_campaign();
+  remove_methods(campaign, [](const std::string& name) { return name != "sse"; });
+  const StudyFindings findings = findings_of(campaign);
+  const MethodRates& rates = findings.methods.front().rates;
+  REQUIRE(rates.source.total == 0);
+  REQUIRE(rates.located.total > 0);
+  CHECK_THAT(page_of(campaign, "f.h5"),
+             Contains("no method names a source; <code>sse</code> flags " + share_words(rates.detected)) &&
+                 Contains("in " + share_words(rates.located) + " of those that it flags."));
 }
 
 TEST_CASE("report: false alarms have a section and rows where model and plant agree in some experiments") {
