@@ -14,9 +14,9 @@ LimitSprings::LimitSprings(double sign, const Eigen::VectorXd& k)
       lower(k.size()),
       upper(k.size()),
       multiplier(k.size()),
-      value(k.size()),
-      step(k.size()),
       force(k.size()),
+      value_{nullptr, LaneVector(sign == 0.0 ? 0 : k.size())},
+      step_(value_),
       everywhere_((k.array() > 0.0).all()),
       stretched_bits_(static_cast<std::size_t>(padded(k.size()) / 8), 0),
       changing_(static_cast<std::size_t>(padded(k.size()))) {
@@ -30,8 +30,8 @@ SpringArrays LimitSprings::arrays() {
           .stiffness = stiffness.data(),
           .lower = lower.data(),
           .upper = upper.data(),
-          .step = step.data(),
-          .value = value.data(),
+          .step = step_.data,
+          .value = value_.data,
           .force = force.data(),
           .stretched = stretched_bits_.data()};
 }
@@ -43,22 +43,25 @@ void LimitSprings::list_stretched() {
       stretched_rows_.push_back(static_cast<int>(8 * e) + std::countr_zero(left));
 }
 
-void LimitSprings::assign(LaneVector& to, const ActiveSetProblem& problem, const LaneVector& rows,
+void LimitSprings::assign(Numbers& to, const ActiveSetProblem& problem, const LaneVector& rows,
                           const LaneVector& z) const {
-  to.vector() = rows.vector();
-  if (slack_sign == 0.0)
+  if (slack_sign == 0.0) {
+    to.data = rows.data();
     return;
+  }
+  to.own = rows;
+  to.data = to.own.data();
   for (Eigen::Index i = 0; i < size(); ++i)
     if (const int column = problem.slack_column(i); column >= 0)
-      to(i) += slack_sign * z(column);
+      to.own(i) += slack_sign * z(column);
 }
 
 void LimitSprings::place(const ActiveSetProblem& problem, const LaneVector& row_value, const LaneVector& z) {
-  assign(value, problem, row_value, z);
+  assign(value_, problem, row_value, z);
 }
 
 void LimitSprings::aim(const ActiveSetProblem& problem, const LaneVector& row_step, const LaneVector& p) {
-  assign(step, problem, row_step, p);
+  assign(step_, problem, row_step, p);
 }
 
 void LimitSprings::set_limits(const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper) {
@@ -100,10 +103,12 @@ bool LimitSprings::find_changing() {
 }
 
 void LimitSprings::advance(double t, bool same) {
+  if (slack_sign != 0.0)
+    value_.own.vector() += t * step_.own.vector();
   if (same)
-    lane_kernels().advance_within(arrays());
+    lane_kernels().pull_within(arrays());
   else
-    lane_kernels().advance(arrays(), t);
+    lane_kernels().pull(arrays());
   list_stretched();
 }
 
@@ -111,17 +116,18 @@ double LimitSprings::steady_curvature() {
   double sum = lane_kernels().curvature(arrays());
   for (std::size_t k = 0; k < changing_count_; ++k)
     if (const int i = changing_[k]; force(i) != 0.0)
-      sum -= stiffness(i) * step(i) * step(i);
+      sum -= stiffness(i) * step_.data[i] * step_.data[i];
   return std::max(0.0, sum);
 }
 
 void LimitSprings::add_changing(double t, double& first, double& second) const {
   for (std::size_t k = 0; k < changing_count_; ++k) {
     const int i = changing_[k];
-    const double moved = value(i) + t * step(i);
+    const double step = step_.data[i];
+    const double moved = value_.data[i] + t * step;
     const double stretch = moved - std::min(std::max(moved, lower(i)), upper(i));
-    first += step(i) * (stiffness(i) * stretch - force(i));
-    second += stretch != 0.0 ? stiffness(i) * step(i) * step(i) : 0.0;
+    first += step * (stiffness(i) * stretch - force(i));
+    second += stretch != 0.0 ? stiffness(i) * step * step : 0.0;
   }
 }
 

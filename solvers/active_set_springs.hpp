@@ -32,12 +32,13 @@ struct LimitSprings {
   /// Sets the limits that the family has of these ones of the rows, shifted by the multipliers.
   void set_limits(const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper);
 
-  /// Sets `value` for the row values A x and z.
+  /// Sets the values v for the row values A x and z. Without slacks they are the row values, which must stay
+  /// where they are and follow every step before `advance`.
   void place(const ActiveSetProblem& problem, const LaneVector& row_value, const LaneVector& z);
-  /// Sets `step`, the change of `value` along a direction.
+  /// Sets the step, the change of v along a direction; `row_step` as row_value in `place`.
   void aim(const ActiveSetProblem& problem, const LaneVector& row_step, const LaneVector& p);
 
-  /// Sets `force` from `value`.
+  /// Sets `force` from v.
   void pull();
   /// The force of the springs that are stretched, at the same ends, as if they could push, too.
   void pull_stretched();
@@ -51,28 +52,35 @@ struct LimitSprings {
   /// Finds the springs that a whole step would stretch, release or take to their other end; false when there
   /// is none: then the penalty is one quadratic all along the step.
   bool find_changing();
-  /// Second derivative along `step` of the penalty of the springs that do not change, the same all along it:
-  /// a spring that is stretched (or not) at both ends of the step is so in between.
+  /// Second derivative along the step of the penalty of the springs that do not change, the same all along
+  /// it: a spring that is stretched (or not) at both ends of the step is so in between.
   double steady_curvature();
-  /// Adds, for the changing springs, the derivative of the penalty along `step` at t less that at 0, and the
-  /// second derivative at t.
+  /// Adds, for the changing springs, the derivative of the penalty along the step at t less that at 0, and
+  /// the second derivative at t.
   void add_changing(double t, double& first, double& second) const;
 
-  /// Moves by t along `step`. `same`: no spring changes and t = 1; the force is then advanced by k times the
-  /// step, which is more accurate than the difference of position and limit.
+  /// Moves by t along the step. `same`: no spring changes and t = 1; the force is then advanced by k times
+  /// the step, which is more accurate than the difference of position and limit.
   void advance(double t, bool same);
 
   double slack_sign;
   bool enabled = true;  ///< a family that is not is left out: its force is zero
   LaneVector stiffness, lower, upper, multiplier;
-  LaneVector value, step, force;
+  LaneVector force;
 
  private:
-  void assign(LaneVector& to, const ActiveSetProblem& problem, const LaneVector& rows,
+  /// Numbers of the springs: those of the rows, with the slacks' share in `own` where there are slacks.
+  struct Numbers {
+    const double* data = nullptr;
+    LaneVector own;
+  };
+
+  void assign(Numbers& to, const ActiveSetProblem& problem, const LaneVector& rows,
               const LaneVector& z) const;
   SpringArrays arrays();
   void list_stretched();
 
+  Numbers value_, step_;
   bool everywhere_;                            ///< every row has a spring
   std::vector<unsigned char> stretched_bits_;  ///< follow from `force`
   std::vector<int> stretched_rows_;

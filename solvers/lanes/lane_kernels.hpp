@@ -27,8 +27,8 @@ struct RowWindows {
 /// Springs of a family (LimitSprings) as the kernels see them: padded vectors of 8 `blocks` numbers.
 struct SpringArrays {
   long blocks;
-  const double *stiffness, *lower, *upper, *step;
-  double *value, *force;
+  const double *stiffness, *lower, *upper, *step, *value;
+  double* force;
   unsigned char* stretched;  ///< one bit a row (force != 0), eight rows a byte
 };
 
@@ -109,10 +109,9 @@ struct LaneKernels {
   void (*convolve)(const double* h, long nh, const double* x, long samples, double* y);
   static constexpr long kConvolutionBefore = 32;
 
-  void (*pull)(const SpringArrays& springs);                      ///< LimitSprings::pull
-  void (*pull_stretched)(const SpringArrays& springs);            ///< LimitSprings::pull_stretched
-  void (*advance)(const SpringArrays& springs, double t);         ///< value += t step, then `pull`
-  void (*advance_within)(const SpringArrays& springs);            ///< value += step, no spring changes
+  void (*pull)(const SpringArrays& springs);            ///< LimitSprings::pull
+  void (*pull_stretched)(const SpringArrays& springs);  ///< LimitSprings::pull_stretched
+  void (*pull_within)(const SpringArrays& springs);     ///< by the step that led to v, no spring changes
   long (*find_changing)(const SpringArrays& springs, int* rows);  ///< LimitSprings::find_changing
   double (*curvature)(const SpringArrays& springs);               ///< of the stretched springs along `step`
 

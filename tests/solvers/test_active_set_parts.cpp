@@ -130,17 +130,19 @@ TEST_CASE("the curvature follows the springs", "[active-set]") {
   for (int round = 0; round < 20; ++round) {
     Eigen::MatrixXd expected = problem.quadratic;
     for (LimitSprings& springs : families) {
+      LaneVector value(springs.size());
       for (Eigen::Index i = 0; i < springs.size(); ++i) {
         springs.lower(i) = -1.0;
         springs.upper(i) = 1.0;
-        springs.value(i) = springs.stiffness(i) > 0 && generator() % 2 == 0 ? 2.0 : 0.0;
+        value(i) = springs.stiffness(i) > 0 && generator() % 2 == 0 ? 2.0 : 0.0;
         Eigen::VectorXd normal = Eigen::VectorXd::Zero(6);
         normal.head(5) = qp.structure->rows.row(i).transpose();
         if (problem.slack_column(i) >= 0)
           normal(problem.slack_column(i)) = springs.slack_sign;
-        if (springs.value(i) > 1.0)
+        if (value(i) > 1.0)
           expected += springs.stiffness(i) * normal * normal.transpose();
       }
+      springs.place(problem, value, LaneVector(6));
       springs.pull();
     }
     curvature.synchronise(families);

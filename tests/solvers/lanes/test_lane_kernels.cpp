@@ -403,7 +403,7 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
   upper.vector().setConstant(0.4);
   lower(0) = -kInfinity;
 
-  SameBits within, stretched_again, advanced;
+  SameBits within, stretched_again, pulled_again;
   for (const LaneKernels* kernels : lane_kernel_sets()) {
     CAPTURE(kernels->name);
     LaneVector value = start;
@@ -411,6 +411,7 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
     std::vector<unsigned char> stretched(static_cast<std::size_t>(padded(m) / 8));
     const SpringArrays springs{padded(m) / 8, stiffness.data(), lower.data(), upper.data(),
                                step.data(),   value.data(),     force.data(), stretched.data()};
+    const auto advance = [&](double t) { value.vector() += t * step.vector(); };
     kernels->pull(springs);
     double curvature = 0.0;
     std::vector<int> expected_changes;
@@ -431,13 +432,14 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
     changes.resize(static_cast<std::size_t>(kernels->find_changing(springs, changes.data())));
     CHECK(changes == expected_changes);
 
-    kernels->advance_within(springs);
+    advance(1.0);
+    kernels->pull_within(springs);
     within.add(force.vector());
     kernels->pull_stretched(springs);
     stretched_again.add(force.vector());
-    kernels->advance(springs, 0.25);
-    advanced.add(force.vector());
-    CHECK((value.vector() - (start.vector() + 1.25 * step.vector())).norm() <= kSumRounding);
+    advance(0.25);
+    kernels->pull(springs);
+    pulled_again.add(force.vector());
 
     const LimitArrays limits{m, value.data(), lower.data(), upper.data(), force.data(), nullptr};
     LimitArrays widened = limits;
