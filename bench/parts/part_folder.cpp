@@ -94,7 +94,7 @@ void write_part_description(const PartFolder& part) {
 
 PartFolder read_part(const fs::path& folder) {
   const std::string file = (folder / kCampaignDescription).string();
-  std::ifstream stream(file);
+  std::ifstream stream = open_input(file, "a description of a part");
   const std::string text = content_of(stream);
   try {
     return part_folder_in(Json::parse(text), folder, file);
@@ -109,17 +109,21 @@ PartFolder read_part(const fs::path& folder) {
 std::vector<fs::path> find_parts(const std::vector<std::string>& folders) {
   std::set<fs::path> found;
   for (const std::string& folder : folders) {
-    const std::size_t before = found.size();
+    bool has_part = false;  // which another of the folders may have as well
+    const auto take = [&](const fs::path& part) {
+      found.insert(part.lexically_normal());
+      has_part = true;
+    };
     std::error_code error;
     if (fs::exists(fs::path(folder) / kCampaignDescription, error))
-      found.insert(fs::path(folder).lexically_normal());
+      take(folder);
     for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error))
       if (entry->path().filename() == kCampaignDescription)
-        found.insert(entry->path().parent_path().lexically_normal());
+        take(entry->path().parent_path());
     if (error)
       throw InputError(folder, error.message(), "a folder with parts of a campaign");
-    if (found.size() == before && !fs::exists(fs::path(folder) / kCampaignDescription))
+    if (!has_part)
       throw InputError(
           folder, "no part of a campaign",
           fmt::format("folders with {}, which `mpmbench run --shard` makes", kCampaignDescription));

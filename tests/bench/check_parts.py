@@ -110,6 +110,8 @@ def check_missing(trial, reference):
         (trial.parts / part).rename(elsewhere / part)
     trial.merge(trial.parts, elsewhere, "--quiet")
     check_same(trial.archive, reference)
+    trial.merge(trial.parts, elsewhere / "1-of-8", elsewhere, trial.parts, "--quiet")  # any of them more than once
+    check_same(trial.archive, reference)
     error = trial.merge(trial.folder / "none", code=2)
     assert "a folder with parts" in error, error
     (trial.folder / "empty").mkdir()
