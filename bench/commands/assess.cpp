@@ -242,8 +242,12 @@ RecordAssessment assessed(const AssessArguments& options, const Study& study) {
 ExitCode assess(AssessArguments options, const std::string& command) {
   const Study study = find_study(options.study);
   options.methods = known_methods(options.methods, "--methods");
-  if (!options.page.empty())
+  const std::filesystem::path calibration = calibration_archive(options);
+  require_no_input("--calibration", calibration, {options.study, options.data});
+  if (!options.page.empty()) {
+    require_no_input("--output", options.page, {options.study, options.data, calibration.string()});
     require_output_folder(options.page, "page");
+  }
   Progress progress(options.quiet);
   RecordAssessment assessment = assessed(options, study);
   try {

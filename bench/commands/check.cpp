@@ -24,11 +24,18 @@ struct CheckArguments {
 };
 
 ExitCode check(const CheckArguments& options) {
+  if (!options.junit.empty()) {
+    require_no_input("--junit", options.junit, {options.archive, options.gates});
+    require_output_folder(options.junit, "JUnit file");
+  }
   const Campaign campaign = stream_input(options.archive);
   const GateFile gates = load_gates(options.gates, gate_findings(campaign));
   std::optional<Campaign> baseline;
-  if (gates.baseline)
+  if (gates.baseline) {
+    if (!options.junit.empty())
+      require_no_input("--junit", options.junit, {gates.baseline->archive.string()});
     baseline = stream_input(gates.baseline->archive.string());
+  }
   const GateCheck result = check_gates(campaign, gates, baseline ? &*baseline : nullptr);
   if (!options.junit.empty())
     write_text(options.junit, gates_junit(result, campaign, options.archive));

@@ -49,8 +49,10 @@ ExitCode export_blind(const ExportArguments& options) {
     throw InputError(options.archive, "no loop that ran to its end", "one or more to export");
   if (options.output.empty())
     throw InputError("--output", "none", "with --blind a folder");
-  if (!options.key.empty())
+  if (!options.key.empty()) {
+    require_no_input("--key", options.key, {options.archive});
     require_output_folder(options.key, "key");
+  }
   make_output_folder(options.output, "loops");
   Progress progress(options.quiet);
   progress.begin(std::ssize(order));
@@ -71,8 +73,10 @@ ExitCode export_blind(const ExportArguments& options) {
 ExitCode export_table(const ExportArguments& options) {
   if (options.blind)
     return export_blind(options);
-  if (!options.output.empty())
+  if (!options.output.empty()) {
+    require_no_input("--output", options.output, {options.archive});
     require_output_folder(options.output, "table");
+  }
   if (options.index && options.table == "findings")
     throw InputError("--index", "the table findings", "a table with a row or more for each experiment");
   Campaign campaign = read_input(options.archive);

@@ -76,8 +76,10 @@ void write_merged(const MergeArguments& options, const PartMerge& parts, Progres
 }
 
 ExitCode merge(const MergeArguments& options, const std::string& command_line) {
-  if (!options.missing)
+  if (!options.missing) {
+    require_no_input("OUTPUT", options.output, options.method_files);
     require_output_archive(options.output, "archive");
+  }
   take_method_files(options.method_files);
   Progress progress(options.quiet);
   const PartMerge parts(

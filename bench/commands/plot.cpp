@@ -26,6 +26,7 @@ struct PlotArguments {
 
 ExitCode plot(const PlotArguments& options) {
   const FigureFormat format = figure_format_of(options.output);
+  require_no_input("--output", options.output, {options.archive});
   require_output_folder(options.output, "figure");
   const Campaign campaign = read_input(options.archive);
   const ExperimentRecord& record = experiment_of(campaign, options.index);

@@ -50,6 +50,7 @@ ExitCode report_change(const ReportArguments& options) {
                      "one, or two for what changed from the first to the second");
   if (!options.figures.empty())
     throw InputError("--figures", "two archives", "one archive; two give a page, -o FILE");
+  require_no_input("--output", options.output, options.archives);
   require_output_folder(options.output, "page");
   const Campaign before = read_input(options.archives[0]);
   const Campaign now = read_input(options.archives[1]);
@@ -63,8 +64,10 @@ ExitCode report(const ReportArguments& options) {
     return report_change(options);
   const std::string& archive = options.archives.front();
   const FigureFormat format = figure_format(options.format);
-  if (!options.output.empty())
+  if (!options.output.empty()) {
+    require_no_input("--output", options.output, options.archives);
     require_output_folder(options.output, "page");
+  }
   const Campaign campaign = read_input(archive);
   const StudyFindings findings = findings_of(campaign);
   if (!options.output.empty()) {

@@ -23,6 +23,7 @@
 #include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
+#include "results/files/atomic_file.hpp"
 #include "results/reproduction/reproduction.hpp"
 #include "results/reproduction/seeded_reproduction.hpp"
 #include "scenarios/study_change.hpp"
@@ -86,6 +87,11 @@ std::vector<std::vector<ReproducedTable>> run_tables(TableRuns runs, const Repro
   }
 }
 
+/// Whether something can be kept beside the page: beside a device or a pipe there is no place for it.
+bool has_place(const std::string& output) {
+  return !output.empty() && !is_stream(output);
+}
+
 /// What the command would do.
 std::string intended_text(const TableRuns& runs, const ReproduceArguments& options) {
   std::string text;
@@ -99,7 +105,9 @@ std::string intended_text(const TableRuns& runs, const ReproduceArguments& optio
              "together: {} tables with {} seeds, {} of {} to run, with {} at once by {}\nfiles: {}\nnothing "
              "was run, nothing was written\n",
              runs.tables.size(), runs.seeds, wanted, all, runs.run.jobs, runs.run.solver,
-             options.output.empty() ? "none" : fmt::format("{0}; until then {0}.tables", options.output));
+             options.output.empty()       ? "none"
+             : !has_place(options.output) ? options.output
+                                          : fmt::format("{0}; until then {0}.tables", options.output));
 }
 
 /// Done even when verdicts differ: they are results. A part leaves its numbers only, which another call
@@ -107,8 +115,9 @@ std::string intended_text(const TableRuns& runs, const ReproduceArguments& optio
 ExitCode reproduce_tables(const ReproduceArguments& options, const std::string& command_line) {
   if (!options.output.empty())
     require_output_folder(options.output, "page");
-  else if (!options.shard.empty())
-    throw InputError("--shard", "no --output", "with --output, beside which the parts wait");
+  if (!options.shard.empty() && !has_place(options.output))
+    throw InputError("--shard", options.output.empty() ? "no --output" : "a device or a pipe for the page",
+                     "with --output, a file beside which the parts wait");
   TableRuns runs{.tables = tables_of(options),
                  .seeds = options.seeds.value_or(1),
                  .run = options.run,
@@ -118,7 +127,7 @@ ExitCode reproduce_tables(const ReproduceArguments& options, const std::string& 
     return ExitCode::done;
   }
   std::optional<KeptTables> kept;
-  if (!options.output.empty())
+  if (has_place(options.output))
     runs.kept = &kept.emplace(options.output, options.run.solver);
   const std::vector<std::vector<ReproducedTable>> reproduced = run_tables(runs, options, command_line);
   if (runs.shard) {

@@ -124,10 +124,13 @@ void run_one_part(const RunArguments& options, const PartFolder& part, const Cam
 
 ExitCode run(const RunArguments& options, const std::string& command_line) {
   const Study study = find_study(options.study);
+  std::vector<std::string> inputs = options.method_files;
+  inputs.push_back(options.study);
+  require_no_input("--output", options.output, inputs);
+  require_output_archive(options.output, "archive");
   RunOptions run_options = options.run;
   run_options.methods =
       with_programs(options.run.methods, study.methods, take_method_files(options.method_files));
-  require_output_archive(options.output, "archive");
   std::optional<PartFolder> part;
   if (options.is_part())
     part = part_of(options, study, run_options);

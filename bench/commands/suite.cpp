@@ -75,6 +75,8 @@ ExitCode run_suite_command(const SuiteArguments& options, const std::string& com
     return ExitCode::done;
   }
   make_output_folder(run.folder, "archives");
+  for (const IntendedStudy& study : intended(suite, run))
+    require_output_archive(study.archive, "archive");
 
   Progress progress(options.quiet);
   std::string cell_name;

@@ -86,6 +86,8 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
     return ExitCode::done;
   }
   make_output_folder(folder, "archives");
+  for (const IntendedStudy& study : intended(sweep, shard, folder))
+    require_output_archive(study.archive, "archive");
   Progress progress(options.quiet);
   std::vector<SweepRow> rows;
   for (std::size_t i = 0; i < sweep.variants.size(); ++i) {

@@ -13,20 +13,41 @@
 namespace mpm {
 
 void require_output_folder(const std::filesystem::path& output, std::string_view what) {
-  const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder) || ::access(folder.c_str(), W_OK) != 0)
-    throw ArchiveError(fmt::format("{}: no {} can be written: its folder does not exist or is not writable",
-                                   output.string(), what));
-  if (std::filesystem::is_directory(output))
-    throw ArchiveError(fmt::format("{}: no {} can be written: it is a folder", output.string(), what));
+  const auto refuse = [&](const char* why) {
+    throw ArchiveError(fmt::format("{}: no {} can be written: {}", output.string(), what, why));
+  };
+  if (is_stream(output)) {  // nothing is made in its folder, which may be anybody's, as /dev
+    if (::access(output.c_str(), W_OK) != 0)
+      refuse("it is not writable");
+    return;
+  }
+  const std::filesystem::path target = link_target(output);
+  std::error_code error;  // what cannot be looked at is not there
+  if (std::filesystem::is_directory(target, error))
+    refuse("it is a folder");
+  if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error))
+    refuse("it is a device or a socket");
+  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, error) || ::access(folder.c_str(), W_OK) != 0)
+    refuse("its folder does not exist or is not writable");
+}
+
+void require_no_input(const std::string& option, const std::filesystem::path& output,
+                      const std::vector<std::string>& inputs) {
+  std::error_code error;  // one that is not there is no file of the other name
+  for (const std::string& input : inputs)
+    if (std::filesystem::equivalent(output, input, error) && !is_stream(output))
+      throw InputError(option, fmt::format("{}, which the command reads", output.string()),
+                       "another file: this one would be lost");
 }
 
 void require_output_archive(const std::filesystem::path& output, std::string_view what) {
-  require_output_folder(output, what);
   std::error_code error;  // what cannot be looked at is not there
-  if (std::filesystem::exists(output, error) && !std::filesystem::is_regular_file(output, error))
+  const auto status = std::filesystem::status(output, error);
+  if (is_stream(output) || std::filesystem::is_block_file(status) || std::filesystem::is_socket(status))
     throw InputError("--output", fmt::format("{}, a device or a pipe", output.string()),
                      fmt::format("a file: the {} is read again", what));
+  require_output_folder(output, what);
 }
 
 void make_output_folder(const std::filesystem::path& folder, std::string_view what) {

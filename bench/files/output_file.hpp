@@ -1,13 +1,20 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace mpm {
 
-/// Refuses an output that is sure to fail before work is spent on it; `what` is to be written. Throws
-/// ArchiveError.
+/// Refuses an output that is sure to fail before work is spent on it; `what` is to be written, and a device
+/// or a pipe takes it. Throws ArchiveError.
 void require_output_folder(const std::filesystem::path& output, std::string_view what);
+
+/// Refuses an output that would replace one of the files that the command reads; `option` names it. Throws
+/// InputError.
+void require_no_input(const std::string& option, const std::filesystem::path& output,
+                      const std::vector<std::string>& inputs);
 
 /// The same for an archive: InputError for a device or a pipe.
 void require_output_archive(const std::filesystem::path& output, std::string_view what);

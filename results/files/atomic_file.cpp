@@ -1,7 +1,9 @@
 #include "results/files/atomic_file.hpp"
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -37,16 +39,36 @@ void write_all(int descriptor, std::span<const std::byte> content, const std::fi
   }
 }
 
-/// Where a path leads that may be a link, also one to nothing.
-std::filesystem::path target_of(std::filesystem::path path) {
-  constexpr int kMostLinks = 40;  // as the kernel has it
-  for (int links = 0; std::filesystem::is_symlink(path); ++links) {
-    errno = ELOOP;
-    if (links == kMostLinks)
-      fail(path, "follow the link");
-    path = path.parent_path() / std::filesystem::read_symlink(path);
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+constexpr int kMostLinks = 40;  // as the kernel has it
+
+/// The link itself, which leads to nothing else, where a path is none.
+std::filesystem::path next_link(const std::filesystem::path& path) {
+  std::error_code error;  // what cannot be looked at is no link
+  const std::filesystem::path target = std::filesystem::read_symlink(path, error);
+  return error ? path : path.parent_path() / target;
+}
+
+/// The number of the open file of this process that a path stands for, as /dev/stdout does; none for other
+/// paths.
+std::optional<int> open_file_of(std::filesystem::path path) {
+  std::error_code error;  // without /proc no path stands for one
+  const std::filesystem::path open_files = std::filesystem::canonical("/proc/self/fd", error);
+  for (int links = 0; !error && links < kMostLinks; ++links) {
+    const std::string name = path.filename().string();
+    int number = 0;
+    const auto read = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (read.ec == std::errc() && read.ptr == name.data() + name.size() &&
+        std::filesystem::canonical(folder_of(path), error) == open_files && ::fcntl(number, F_GETFD) >= 0)
+      return number;
+    if (!std::filesystem::is_symlink(path, error))
+      break;
+    path = next_link(path);
   }
-  return path;
+  return std::nullopt;
 }
 
 bool is_locked_by_its_writer(int descriptor) {
@@ -110,10 +132,6 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
-std::filesystem::path folder_of(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : ".";
-}
-
 /// Whether `name` is one that TemporaryFile gives for the target of this name.
 bool is_temporary_name(std::string_view name, std::string_view target) {
   if (!name.starts_with(target) || !name.ends_with(kExtension) ||
@@ -135,7 +153,19 @@ void flush_folder(const std::filesystem::path& file) {
   ::close(descriptor);
 }
 
-/// Removes the temporary files of `target` that nobody has locked.
+}  // namespace
+
+std::filesystem::path link_target(std::filesystem::path path) {
+  std::error_code error;  // what cannot be looked at is no link
+  for (int links = 0; std::filesystem::is_symlink(path, error); ++links) {
+    errno = ELOOP;
+    if (links == kMostLinks)
+      fail(path, "follow the link");
+    path = next_link(path);
+  }
+  return path;
+}
+
 void remove_abandoned_files(const std::filesystem::path& target) {
   std::vector<std::filesystem::path> temporary;
   std::error_code error;  // what cannot be listed or removed stays
@@ -153,19 +183,18 @@ void remove_abandoned_files(const std::filesystem::path& target) {
   }
 }
 
-}  // namespace
-
 bool is_stream(const std::filesystem::path& path) {
   std::error_code error;  // what cannot be looked at is none
   const auto status = std::filesystem::status(path, error);
-  return std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status);
+  return std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status) ||
+         open_file_of(path).has_value();
 }
 
 namespace {
 
 template <class Write>
 void write_atomically(const std::filesystem::path& path, const Write& write) {
-  const std::filesystem::path target = target_of(path);
+  const std::filesystem::path target = link_target(path);
   std::error_code error;  // what cannot be looked at cannot be written either, which is said below
   if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error))
     throw ArchiveError(
@@ -191,7 +220,10 @@ void write_file_atomically(const std::filesystem::path& path,
 }
 
 void write_through(const std::filesystem::path& path, std::span<const std::byte> content) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  // A file that is open is not opened again: that would write over its beginning.
+  const std::optional<int> number = open_file_of(path);
+  const int descriptor =
+      number ? ::fcntl(*number, F_DUPFD_CLOEXEC, 0) : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor < 0)
     fail(path, "open");
   try {

@@ -21,11 +21,19 @@ void write_file_atomically(const std::filesystem::path& path, std::span<const st
 void write_file_atomically(const std::filesystem::path& path,
                            const std::function<void(const std::filesystem::path&)>& fill);
 
-/// Whether `path` is, or leads to, something that takes bytes and keeps no file: a terminal, /dev/null, a
-/// FIFO.
+/// Where a path leads that may be a link, also one to nothing: what write_file_atomically() replaces. Throws
+/// ArchiveError for links that go in a circle.
+std::filesystem::path link_target(std::filesystem::path path);
+
+/// Removes the temporary files of `target` that killed processes have left: those that nobody has locked.
+void remove_abandoned_files(const std::filesystem::path& target);
+
+/// Whether `path` is, or leads to, something that takes bytes and is no file of ours to replace: a terminal,
+/// /dev/null, a FIFO, and what this process has open already (/dev/stdout, /dev/fd/3), a file or not.
 bool is_stream(const std::filesystem::path& path);
 
-/// Writes the content into the stream `path`, and waits for the reader of a FIFO. Throws ArchiveError.
+/// Writes the content into the stream `path`, and waits for the reader of a FIFO; into a file that is open
+/// already, where it has been written to. Throws ArchiveError.
 void write_through(const std::filesystem::path& path, std::span<const std::byte> content);
 
 }  // namespace mpm

@@ -8,6 +8,7 @@ import fcntl
 import os
 import pathlib
 import resource
+import stat
 import subprocess
 import sys
 import tempfile
@@ -54,9 +55,89 @@ def check_outputs(run, folder, archive):
     circle.symlink_to("circle")
     assert "circle" in run("export", archive, "-o", circle, code=3)
 
+    # What the process has open already is written where it was written to, not replaced.
+    log = folder / "log"
+    for path in "/dev/stdout", "/dev/fd/1":
+        log.write_text("first\n")
+        with open(log, "a") as out:
+            run("export", archive, "-o", path, stdout=out)
+        assert log.read_text() == "first\n" + table, path
+        with open(log, "a") as out:
+            run(*RUN, "-o", path, stdout=out, code=2)
+        assert log.read_text() == "first\n" + table, path
+
+    for words in ((*RUN, "-o", ""), ("run", "wood-berry", "-o", "x.h5", "--shard", ""),
+                  ("run", "wood-berry", "-o", "x.h5", "--range", ""), ("compare", archive, "-o", "x.h5", "--shard", "")):
+        assert "found nothing" in run(*words, code=2), words
     for words in ((*RUN, "-o", ""), ("export", archive, "-o", ""), ("report", archive, "--figures", ""),
                   ("check", archive, "--gates", "g.toml", "--junit", "")):
         assert "allowed: a path" in run(*words, code=2)
+
+
+def check_no_input_replaced(run, folder, archive):
+    """An output in the place of an input, also by a link, is refused, and the input is as it was."""
+    study = folder / "study.toml"
+    study.write_text(run("init", "-", "--cvs", 1, "--mvs", 1, "--gains", 1, "--time-constants", 10))
+    gates = folder / "gates.toml"
+    gates.write_text('[[gate]]\naggregate = "mpm.located"\nminimum = 0.0\n')
+    methods = folder / "methods.toml"
+    methods.write_text('[method.own]\ncommand = ["own"]\n')
+    data = folder / "data.csv"
+    data.write_text("time\n")
+    link = folder / "link.svg"
+    link.symlink_to(archive.name)
+    inputs = (archive, study, gates, methods, data)
+    before = [path.read_bytes() for path in inputs]
+    for words in (("run", study, "-o", study), ("run", study, "-o", study, "--shard", "1/2"),
+                  ("run", study, "-o", methods, "--method-file", methods), ("merge", methods, "--method-file", methods),
+                  ("export", archive, "-o", archive), ("report", archive, "-o", archive),
+                  ("report", study, archive, "-o", archive), ("plot", archive, 0, "-o", link),
+                  ("check", archive, "--gates", gates, "--junit", archive),
+                  ("check", archive, "--gates", gates, "--junit", gates), ("assess", study, data, "-o", data),
+                  ("assess", study, data, "--calibration", data), ("assess", study, data, "-o", study),
+                  ("compare", archive, "--verdicts", f"v={data}", "-o", data)):
+        assert "which the command reads" in run(*words, code=2), words
+    assert [path.read_bytes() for path in inputs] == before
+
+
+def check_anybody(run, folder, archive):
+    """A device is written by whoever may write to it, though its folder is not theirs; nothing is kept beside it."""
+    if os.geteuid() != 0:
+        return
+    devices = folder / "dev"
+    devices.mkdir()
+    os.mknod(devices / "null", 0o666 | stat.S_IFCHR, os.makedev(1, 3))
+    os.chmod(devices / "null", 0o666)
+    os.mknod(devices / "block", 0o666 | stat.S_IFBLK, os.makedev(7, 99))
+    folder.chmod(0o755)
+    archive.chmod(0o644)
+
+    def nobody():
+        os.setuid(65534)
+
+    run("export", archive, "-o", devices / "null", preexec_fn=nobody)
+    run("reproduce", "2.4", "-o", devices / "null", preexec_fn=nobody)
+    assert "a device or a pipe" in run("reproduce", "2.4", "-o", devices / "null", "--shard", "1/2", code=2)
+    error = run("reproduce", "2.4", "-o", devices / "block", code=3)
+    assert "it is a device or a socket" in error and "tables" not in error, error
+    os.mknod(devices / "00.h5", 0o666 | stat.S_IFCHR, os.makedev(1, 3))
+    run("sweep", "chapter6", "-o", devices, "--experiments", 1, "--shard", "1/10", code=2)
+    assert (devices / "00.h5").is_char_device()
+    assert sorted(path.name for path in devices.iterdir()) == ["00.h5", "block", "null"]
+
+
+def check_pipes_in_parts(run, folder):
+    """A pipe among the files of a part is refused, or not taken for a shard."""
+    output = folder / "parts.h5"
+    run(*RUN, "-o", output, "--shard", "1/2")
+    part = folder / "parts.h5.parts" / "1-of-2"
+    os.mkfifo(part / "00000009.shard")
+    assert '"missing": 1' in subprocess.run([run.program, "merge", output, "--missing", "--json"], text=True,
+                                            capture_output=True, timeout=PATIENCE).stdout
+    (part / "campaign.json").unlink()
+    os.mkfifo(part / "campaign.json")
+    for words in ("merge", output), ("summary", output):
+        assert "a device or a pipe" in run(*words, code=2)
 
 
 def check_inputs(run, pipe):
@@ -135,6 +216,9 @@ def main(program):
         archive = folder / "a.h5"
         run(*RUN, "-o", archive)
         check_outputs(run, folder, archive)
+        check_no_input_replaced(run, folder, archive)
+        check_anybody(run, folder, archive)
+        check_pipes_in_parts(run, folder)
         check_inputs(run, folder / "pipe")
         check_streams(run, folder, archive)
         check_abandoned(run, folder, archive)
