@@ -272,7 +272,8 @@ void add_assess(CommandSet& commands) {
   add_path(app, "DATA", options->data, "Records of the loop (CSV or netCDF-4)")->required();
   add_methods_option(app, options->methods, "Methods, separated by commas; the first one gives the verdict");
   add_path(app, "-o,--output", options->page, "Page to write (HTML)");
-  app.add_option("--window", options->window, "Samples of a window that moves over the record");
+  app.add_option("--window", options->window, "Samples of a window that moves over the record")
+      ->check(whole_number(1, 1000000000));
   app.add_option("--stride", options->stride, "Samples from one window to the next")
       ->check(whole_number(1, 1000000000));
   app.add_option("--trials", options->trials,

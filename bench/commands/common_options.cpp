@@ -23,11 +23,26 @@ constexpr std::uint64_t kMostExperiments = 1'000'000'000;  // what indices of ex
 
 }  // namespace
 
+namespace {
+
+/// A word that is there.
+CLI::Validator word_that_is(const std::string& allowed) {
+  return {[allowed](const std::string& word) {
+            return word.empty() ? "found nothing; allowed: " + allowed : std::string();
+          },
+          ""};
+}
+
+}  // namespace
+
 CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path,
                       const std::string& description) {
-  return app.add_option(name, path, description)->check([](const std::string& word) {
-    return word.empty() ? std::string("found nothing; allowed: a path") : std::string();
-  });
+  return app.add_option(name, path, description)->check(word_that_is("a path"));
+}
+
+void add_part_option(CLI::App& app, const std::string& name, std::string& part, const std::string& allowed,
+                     const std::string& description) {
+  app.add_option(name, part, description)->check(word_that_is(allowed));
 }
 
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& description) {
@@ -105,8 +120,8 @@ std::vector<std::string> with_programs(const std::vector<std::string>& named, st
 }
 
 void add_shard_of(CLI::App& app, std::string& shard, const std::string& what) {
-  app.add_option(
-      "--shard", shard,
+  add_part_option(
+      app, "--shard", shard, "I/N, auto or auto/N",
       fmt::format("Do every Nth of the {} only, from the Ith on, given as I/N, or as auto or auto/N "
                   "as `run` takes it; without it the same command does what is missing and shows all",
                   what));

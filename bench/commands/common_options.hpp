@@ -20,6 +20,10 @@ namespace mpm {
 /// An option or argument that names a file or a folder, and is not empty.
 CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path,
                       const std::string& description);
+/// An option that says which part of the work is done, and is not empty: "" is what a shell makes of a
+/// variable that is not set, and would be all of it.
+void add_part_option(CLI::App& app, const std::string& name, std::string& part, const std::string& allowed,
+                     const std::string& description);
 /// The master seed of a study or a suite.
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& description);
 void add_archive(CLI::App& app, std::string& archive);

@@ -18,6 +18,7 @@
 #include "analysis/basis/basis_case.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/option_checks.hpp"
 #include "bench/commands/sketch_words.hpp"
 #include "bench/console/output.hpp"
 #include "plants/error.hpp"
@@ -169,7 +170,8 @@ void add_init(CommandSet& commands) {
          "y1,u1='4.05 / 50 1 @ 27'")
       ->allow_extra_args(false);
   app.add_option("--sample-time", options->words.sample_time,
-                 "Sample time; from the time constants without it");
+                 "Sample time; from the time constants without it")
+      ->check(positive_number());
   app.add_option("--range", options->words.ranges, "Range in which a CV is held, NAME=LOW:HIGH")
       ->allow_extra_args(false);
   app.add_option("--setpoint", options->words.setpoints,

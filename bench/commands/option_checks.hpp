@@ -15,6 +15,9 @@ CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 /// A number from `lowest` to `highest`, which NaN is not.
 CLI::Validator number_between(double lowest, double highest);
 
+/// A number > 0, not infinite.
+CLI::Validator positive_number();
+
 /// An option that takes one of several words, each of which stands for a value; its value now is the default.
 template <class Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,

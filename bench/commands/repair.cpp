@@ -12,6 +12,7 @@
 #include "analysis/findings/repair_findings.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
@@ -290,7 +291,8 @@ void add_repair(CommandSet& commands) {
       [options] { return repair(*options); });
   add_archive(app, options->archive);
   app.add_option("--index", options->index,
-                 "One experiment in full; without it all in which a channel is named");
+                 "One experiment in full; without it all in which a channel is named")
+      ->check(whole_number(0, 1000000000));
   app.add_option("--method", options->method,
                  "Whose word is taken for the channel; by default the first method "
                  "of the archive that names mismatches, or else channels");

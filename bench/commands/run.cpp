@@ -167,12 +167,13 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
 }
 
 void add_part(CLI::App& app, RunArguments& options) {
-  app.add_option("--shard", options.shard,
-                 "Run part I of N, given as I/N, into the folder OUTPUT.parts, for `merge`; auto: as srun, a "
-                 "Slurm array, mpirun or an indexed Kubernetes job says, the last with auto/N");
-  app.add_option("--range", options.range,
-                 "Run the loops A to B-1 as a part, given as A:B, or several, A:B,C:D; with --shard a part "
-                 "of these");
+  add_part_option(
+      app, "--shard", options.shard, "I/N, auto or auto/N",
+      "Run part I of N, given as I/N, into the folder OUTPUT.parts, for `merge`; auto: as srun, a "
+      "Slurm array, mpirun or an indexed Kubernetes job says, the last with auto/N");
+  add_part_option(app, "--range", options.range, "A:B",
+                  "Run the loops A to B-1 as a part, given as A:B, or several, A:B,C:D; with --shard a part "
+                  "of these");
 }
 
 void add_parallel(CLI::App& app, Parallel& parallel) {
