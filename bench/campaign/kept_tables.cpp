@@ -85,9 +85,12 @@ void KeptTables::keep(const ThesisTable& table, std::uint64_t offset, const Tabl
   write_file_atomically(file_of(table, offset), sealed({content.begin(), content.end()}));
 }
 
-void KeptTables::remove() const {
-  std::error_code no_folder;
-  std::filesystem::remove_all(folder_, no_folder);
+void KeptTables::remove(const ThesisTable& table, std::uint64_t offset) const {
+  const std::filesystem::path file = file_of(table, offset);
+  std::error_code stays;  // what cannot be removed is found, or made anew, by another run
+  remove_abandoned_files(file);
+  std::filesystem::remove(file, stays);
+  std::filesystem::remove(folder_, stays);  // when nothing is left in it
 }
 
 }  // namespace mpm

@@ -23,8 +23,9 @@ class KeptTables {
   /// Makes the folder unless it is there. Throws ArchiveError.
   void keep(const ThesisTable& table, std::uint64_t offset, const TableNumbers& numbers) const;
 
-  /// Removes the folder with everything in it: the page is written.
-  void remove() const;
+  /// Removes those of a table and seed, which are on the page, and the folder with the last of them: numbers
+  /// of other tables and seeds wait for another page.
+  void remove(const ThesisTable& table, std::uint64_t offset) const;
 
   const std::filesystem::path& folder() const { return folder_; }
 

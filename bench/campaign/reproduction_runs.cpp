@@ -76,4 +76,12 @@ std::vector<std::vector<ReproducedTable>> run_tables(const TableRuns& runs) {
   return result;
 }
 
+void remove_kept(const TableRuns& runs) {
+  if (runs.kept == nullptr)
+    return;
+  for (const ThesisTable& table : runs.tables)
+    for (int seed = 0; seed < runs.seeds; ++seed)
+      runs.kept->remove(table, static_cast<std::uint64_t>(seed));
+}
+
 }  // namespace mpm

@@ -31,4 +31,7 @@ struct TableRuns {
 /// table_numbers(), that of the first table and seed; Interrupted; ArchiveError.
 std::vector<std::vector<ReproducedTable>> run_tables(const TableRuns& runs);
 
+/// Removes what is kept of these tables with these seeds: the page is written.
+void remove_kept(const TableRuns& runs);
+
 }  // namespace mpm

@@ -146,8 +146,7 @@ ExitCode reproduce_tables(const ReproduceArguments& options, const std::string& 
       tables.push_back(of_table.front());
     show(options, tables);
   }
-  if (kept)
-    kept->remove();
+  remove_kept(runs);
   return ExitCode::done;
 }
 

@@ -61,6 +61,9 @@ def check_going_on(program, folder):
     assert reproduce(parted) == told and parted.read_bytes() == whole.read_bytes()
     result = subprocess.run([program, "reproduce", "4.5", "--shard", "1/2"], capture_output=True, text=True)
     assert result.returncode == 2 and "--output" in result.stderr, result
+    reproduce(parted, "--shard", "1/2")  # what waits for this page is not lost by another table on it
+    subprocess.run([program, "reproduce", "2.4", "--quiet", "-o", parted], check=True, stdout=subprocess.DEVNULL)
+    assert len(list((folder / "parted.html.tables").iterdir())) == 3
     for part in "1/2", "2/2":  # with another study nothing of it fits
         reproduce(parted, "--shard", part)
     assert reproduce(parted, "--set", "simulation.noise_standard_deviation=0.1") != told
