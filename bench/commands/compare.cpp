@@ -28,6 +28,7 @@
 #include "bench/parts/launcher.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard_folder.hpp"
+#include "bench/shards/shard_identity.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
@@ -89,14 +90,24 @@ std::vector<std::string> missing_methods(const Campaign& campaign, const std::ve
   return missing;
 }
 
+struct NamedVerdicts {
+  std::string name;
+  std::filesystem::path path;
+};
+
+/// FILE, which has the name of the file, or NAME=FILE.
+NamedVerdicts named_verdicts(const std::string& word) {
+  const auto equals = word.find('=');
+  const std::filesystem::path path = equals == std::string::npos ? word : word.substr(equals + 1);
+  return {equals == std::string::npos ? path.stem().string() : word.substr(0, equals), path};
+}
+
 /// Puts the verdicts of files beside those of the campaign. Returns the names of their methods.
 std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std::string>& files,
                                        const std::string& command_line) {
   std::vector<std::string> names;
   for (const std::string& file : files) {
-    const auto equals = file.find('=');
-    const std::filesystem::path path = equals == std::string::npos ? file : file.substr(equals + 1);
-    const std::string name = equals == std::string::npos ? path.stem().string() : file.substr(0, equals);
+    const auto [name, path] = named_verdicts(file);
     if (std::find(names.begin(), names.end(), name) != names.end())
       throw InputError("--verdicts", fmt::format("'{}' twice", name), "each name once");
     const OutsideVerdicts verdicts = read_verdicts(path, name, campaign);
@@ -111,22 +122,73 @@ std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std
   return names;
 }
 
+/// What a comparison keeps has a name of its own beside the output: a run of the same output keeps shards and
+/// parts as well, and parts stay after `merge`.
+std::string kept_name(const std::string& output) {
+  return output + ".compared";
+}
+
+std::filesystem::path kept_shards(const std::string& output) {
+  return shard_folder_of(kept_name(output));
+}
+
+std::filesystem::path kept_parts(const std::string& output) {
+  return parts_folder_of(kept_name(output));
+}
+
+/// Before the archive is read: what somebody writes into its place meanwhile has another.
+std::string digest_of_archive(const std::string& archive) {
+  std::error_code no_status;  // what is no file is refused by its reader
+  return std::filesystem::is_regular_file(archive, no_status) ? digest_of_file(archive) : "";
+}
+
+/// Refuses to replace an archive that another comparison has written since this one has read it.
+void require_unchanged(const CompareArguments& options, const std::string& digest) {
+  std::error_code no_status;
+  if (std::filesystem::equivalent(options.output, options.archive, no_status) &&
+      digest_of_archive(options.archive) != digest)
+    throw InputError(options.archive, "another content than a moment ago",
+                     "an archive that no other command writes; the same command again takes it as it is now");
+}
+
+/// The parts that others have left, or none when all is to begin anew: they are deleted then.
+std::vector<std::filesystem::path> parts_to_take(const std::string& output, bool discard) {
+  std::vector<std::filesystem::path> parts;
+  std::error_code no_folder;
+  for (const auto& part : std::filesystem::directory_iterator(kept_parts(output), no_folder))
+    parts.push_back(part.path());
+  std::sort(parts.begin(), parts.end());
+  if (!discard)
+    return parts;
+  for (const std::filesystem::path& part : parts)
+    remove_shard_folder(part);
+  std::filesystem::remove(kept_parts(output), no_folder);
+  return {};
+}
+
 /// Where the answers of a comparison wait; in memory when it has no output.
-std::optional<KeptAssessments> kept_assessments(const CompareArguments& options, Progress& progress) {
+std::optional<KeptAssessments> kept_assessments(const CompareArguments& options, std::string archive,
+                                                Progress& progress) {
   if (options.output.empty())
     return std::nullopt;
-  KeptAssessments kept{.shards = shard_folder_of(options.output),
+  KeptAssessments kept{.shards = kept_shards(options.output),
                        .parts = {},
-                       .archive = digest_of_file(options.archive),
+                       .archive = std::move(archive),
                        .leftovers = options.discard ? Leftovers::discard : Leftovers::resume,
                        .interval = options.shard_interval,
                        .warn = [&progress](const std::string& text) { progress.warn(text); }};
-  const std::filesystem::path parts = parts_folder_of(options.output);
-  std::error_code no_folder;
-  for (const auto& part : std::filesystem::directory_iterator(parts, no_folder))
-    kept.parts.push_back(part.path());
-  std::sort(kept.parts.begin(), kept.parts.end());
+  if (options.shard.empty())
+    kept.parts = parts_to_take(options.output, options.discard);
   return kept;
+}
+
+/// Throws InputError where what is kept belongs to another comparison.
+void open(std::optional<Comparison>& comparison, const Campaign& campaign, const ComparisonOptions& options) {
+  try {
+    comparison.emplace(campaign, options);
+  } catch (const OtherRun& error) {
+    throw error.with_advice();
+  }
 }
 
 /// Has the loops assessed by the methods that are missing; stopped, it says how to go on.
@@ -135,9 +197,10 @@ void assess(Comparison& comparison, const CompareArguments& options, Progress& p
   try {
     comparison.run(hooks_of(progress));
   } catch (const Interrupted& error) {
-    throw std::runtime_error(
-        progress.explain(error) +
-        (options.output.empty() ? "" : how_to_go_on("beside " + options.output, command_line)));
+    throw std::runtime_error(progress.explain(error) +
+                             (options.output.empty()
+                                  ? ""
+                                  : how_to_go_on("beside " + options.output, without_discard(command_line))));
   }
 }
 
@@ -145,14 +208,14 @@ void assess(Comparison& comparison, const CompareArguments& options, Progress& p
 ExitCode compare_part(const Campaign& campaign, ComparisonOptions comparison_options,
                       const CompareArguments& options, Progress& progress, const std::string& command_line) {
   const ShardNumber& shard = *comparison_options.shard;
-  const std::filesystem::path folder = parts_folder_of(options.output) / part_name("", shard);
+  const std::filesystem::path folder = kept_parts(options.output) / part_name("", shard);
   make_output_folder(folder.parent_path(), "parts");
   comparison_options.kept->shards = folder;
-  comparison_options.kept->parts.clear();
-  Comparison comparison(campaign, comparison_options);
-  const std::int64_t count = comparison.tally().count;
-  assess(comparison, options, progress, command_line);
-  comparison.compact();
+  std::optional<Comparison> comparison;
+  open(comparison, campaign, comparison_options);
+  const std::int64_t count = comparison->tally().count;
+  assess(*comparison, options, progress, command_line);
+  comparison->compact();
   print_result(
       fmt::format("{}: {} loops assessed, part {} of {}\n", folder.string(), count, shard.number, shard.of));
   return ExitCode::done;
@@ -174,8 +237,8 @@ std::string intended_text(const Campaign& campaign, const ComparisonOptions& com
       compared_loops(campaign, options.experiments), campaign.calibration.loops.size(), options.jobs,
       options.output.empty() ? "none"
       : comparison.shard     ? fmt::format("shards in {}, for the same command without --shard",
-                                           parts_folder_of(options.output).string())
-                             : output_text(options.output, false));
+                                           kept_parts(options.output).string())
+                             : output_text(options.output, kept_shards(options.output)));
 }
 
 void show(const CompareArguments& options, const Campaign& campaign) {
@@ -187,10 +250,15 @@ void show(const CompareArguments& options, const Campaign& campaign) {
 /// that are asked for is right, and writes the archive with them when an output is asked for. Loops that the
 /// archive has not kept are run again from (study, seed, index).
 ExitCode compare(const CompareArguments& options, const std::string& command_line) {
+  const std::string archive = digest_of_archive(options.archive);
   Campaign campaign = read_input(options.archive);
-  if (!options.output.empty())
+  if (!options.output.empty()) {
+    std::vector<std::string> inputs = options.method_files;
+    for (const std::string& file : options.verdicts)
+      inputs.push_back(named_verdicts(file).path.string());
+    require_no_input("--output", options.output, inputs);
     require_output_archive(options.output, "archive");
-  else if (!options.shard.empty())
+  } else if (!options.shard.empty())
     throw InputError("--shard", "no --output", "with --output, beside which the parts wait");
   if (compared_loops(campaign, options.experiments) == 0)
     throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
@@ -212,11 +280,17 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
     return ExitCode::done;
   }
   std::optional<Comparison> comparison;  // its shards are locked until the archive is written
+  std::optional<ShardFolder> alone;      // where there is nothing to assess
+  if (missing.empty() && !options.output.empty() && !comparison_options.shard) {
+    alone.emplace(kept_shards(options.output));
+    require_unchanged(options, archive);
+  }
   if (!missing.empty()) {
-    comparison_options.kept = kept_assessments(options, progress);
+    comparison_options.kept = kept_assessments(options, archive, progress);
     if (comparison_options.shard)
       return compare_part(campaign, comparison_options, options, progress, command_line);
-    comparison.emplace(campaign, comparison_options);
+    open(comparison, campaign, comparison_options);
+    require_unchanged(options, archive);
     assess(*comparison, options, progress, command_line);
     comparison->add_to(campaign, command_line);
   }
@@ -228,7 +302,7 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
     write_archive(options.output, campaign, findings_of(campaign));
   if (comparison && !options.output.empty()) {
     comparison.reset();
-    remove_shards(options.output);
+    remove_shard_folder(kept_shards(options.output));
   }
   show(options, with_methods(std::move(campaign), asked, options.experiments));
   return ExitCode::done;

@@ -80,13 +80,15 @@ std::string solver_text(const Study& study, const RunOptions& options) {
       options.jobs, runs_in_threads(study, options) ? "threads" : "worker processes");
 }
 
-std::string output_text(const std::string& output, bool is_part) {
-  if (is_part)
-    return fmt::format("shards in {}, for `mpmbench merge`", parts_folder_of(output).string());
+std::string output_text(const std::string& output, const std::filesystem::path& shards) {
   std::error_code no_status;
   return fmt::format("{}{}; until then shards in {}", output,
                      std::filesystem::exists(output, no_status) ? ", in place of the file that is there" : "",
-                     shard_folder_of(output).string());
+                     shards.string());
+}
+
+std::string part_text(const std::string& output) {
+  return fmt::format("shards in {}, for `mpmbench merge`", parts_folder_of(output).string());
 }
 
 std::string dry_run_text(const std::vector<IntendedStudy>& studies, const RunOptions& options) {
@@ -132,7 +134,9 @@ std::string dry_run_text(const IntendedRun& intended, const CampaignHooks& hooks
       pilot.milliseconds_of_a_loop, timed, audited_share(study, options) > 0 ? ", without the audit" : "");
   text += fmt::format("memory: about {:.0f} MB, of which {:.1f} MB are loop data that is kept\n",
                       peak_megabytes() + kept, kept);
-  text += fmt::format("files: {}\n", output_text(intended.output, intended.part != nullptr));
+  text += fmt::format("files: {}\n", intended.part != nullptr
+                                         ? part_text(intended.output)
+                                         : output_text(intended.output, shard_folder_of(intended.output)));
   text += leftovers_text(intended.part != nullptr ? intended.part->path : shard_folder_of(intended.output),
                          options.leftovers);
   return text + "nothing was written\n";

@@ -42,7 +42,10 @@ std::string dry_run_text(const std::vector<IntendedStudy>& studies, const RunOpt
 /// "solver: active-set, in 2 threads": who solves the problems, and how many loops run at once.
 std::string solver_text(const Study& study, const RunOptions& options);
 
-/// "out.h5; until then out.h5.shards".
-std::string output_text(const std::string& output, bool is_part);
+/// "out.h5; until then shards in out.h5.shards".
+std::string output_text(const std::string& output, const std::filesystem::path& shards);
+
+/// The same of a part of a run.
+std::string part_text(const std::string& output);
 
 }  // namespace mpm

@@ -27,6 +27,7 @@
 #include "bench/parts/loop_ranges.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard_folder.hpp"
+#include "bench/shards/shard_identity.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/summary/summary.hpp"
@@ -53,9 +54,8 @@ std::string how_to_resume(const RunArguments& options, const std::filesystem::pa
                           std::string command_line) {
   if (shards_in(shards).empty() && shards_in(calibration_shard_folder(shards)).empty())
     return "";
-  constexpr std::string_view kDiscard = " --discard";
   if (options.run.leftovers == Leftovers::discard)
-    command_line.erase(command_line.rfind(kDiscard), kDiscard.size());
+    command_line = without_discard(std::move(command_line));
   if (options.run.leftovers != Leftovers::resume)
     command_line += " --resume";
   return how_to_go_on("in " + shards.string(), command_line);
@@ -143,7 +143,9 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
     return ExitCode::done;
   }
   Narrator narrator(options.verbose, progress);
-  narrator.say_what_is_run(options.study, study, run_options, output_text(options.output, options.is_part()));
+  narrator.say_what_is_run(options.study, study, run_options,
+                           options.is_part() ? part_text(options.output)
+                                             : output_text(options.output, shard_folder_of(options.output)));
   CampaignHooks hooks = hooks_of(progress);
   hooks.on_basis = [&progress](const Study& of_run, const BasisCase& basis) {
     warn_of(of_run, basis, progress);
@@ -156,6 +158,8 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
       run_one_part(options, *part, narrator.with_stages(hooks), progress);
     else
       run_whole(options, study, run_options, hooks, narrator, command_line);
+  } catch (const OtherRun& error) {
+    throw error.with_advice();
   } catch (const InputError&) {
     throw;
   } catch (const Interrupted& error) {

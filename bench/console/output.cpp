@@ -25,6 +25,13 @@ std::string how_to_go_on(std::string_view where, std::string_view command) {
   return fmt::format("\nWhat is done is kept {}. To go on with it:\n  {}", where, command);
 }
 
+std::string without_discard(std::string command_line) {
+  constexpr std::string_view kDiscard = " --discard";
+  if (const std::size_t place = command_line.rfind(kDiscard); place != std::string::npos)
+    command_line.erase(place, kDiscard.size());
+  return command_line;
+}
+
 std::string duration_text(double seconds) {
   return seconds < 120.0    ? fmt::format("{:.1f} s", seconds)
          : seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0)

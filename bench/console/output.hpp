@@ -19,6 +19,9 @@ void print_note(std::string_view text);
 /// `command` goes on with it.
 std::string how_to_go_on(std::string_view where, std::string_view command);
 
+/// A command line without `--discard`, which would delete what it is to go on with.
+std::string without_discard(std::string command_line);
+
 /// "3.2 s", "12 min", "3.1 h"
 std::string duration_text(double seconds);
 

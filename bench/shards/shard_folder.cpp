@@ -107,7 +107,11 @@ fs::path calibration_shard_folder(const fs::path& shards) {
 }
 
 void remove_shards(const fs::path& output) {
-  ShardFolder shards(shard_folder_of(output));
+  remove_shard_folder(shard_folder_of(output));
+}
+
+void remove_shard_folder(const fs::path& folder) {
+  ShardFolder shards(folder);
   if (const fs::path inner = calibration_shard_folder(shards.path()); fs::exists(inner))
     ShardFolder(inner).clear();
   shards.clear();

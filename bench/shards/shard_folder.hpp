@@ -47,7 +47,11 @@ std::filesystem::path shard_folder_of(const std::filesystem::path& output);
 /// Where, in the folder of the shards of an output, those of its calibration loops lie.
 std::filesystem::path calibration_shard_folder(const std::filesystem::path& shards);
 
-/// Removes all shards of an output, whose archive is written, their description and their folders.
+/// Removes the shards in a folder, those of calibration loops too, their description, and the folder. Throws
+/// InputError when a run is at work in it.
+void remove_shard_folder(const std::filesystem::path& folder);
+
+/// The same of an output, whose archive is written.
 void remove_shards(const std::filesystem::path& output);
 
 /// Whether an interrupted run of this output has left shards.

@@ -3,7 +3,10 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "bench/execution/run_options.hpp"
+#include "plants/error.hpp"
 #include "scenarios/study.hpp"
 
 namespace mpm {
@@ -27,7 +30,16 @@ ShardIdentity shard_identity(const Study& study, const RunOptions& options);
 /// The version, the revision, and the digest of the program file: two builds of a revision may differ.
 std::string program_identity();
 
-/// Throws InputError, which names the first entry that differs and both values. `found_in` names what `found`
+/// Shards of another run: nothing is wrong with them, so that one may want to delete them or not.
+class OtherRun : public InputError {
+ public:
+  using InputError::InputError;
+
+  /// The same, where the option `--discard` deletes them.
+  OtherRun with_advice() const { return OtherRun(fmt::format("{}; or --discard, which deletes it", what())); }
+};
+
+/// Throws OtherRun, which names the first entry that differs and both values. `found_in` names what `found`
 /// was read from.
 void require_same(const ShardIdentity& found, const ShardIdentity& expected, const std::string& found_in);
 

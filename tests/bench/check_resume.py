@@ -177,10 +177,10 @@ def check_comparison(program, folder):
                     "--store", "none", "--quiet"], check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
     compare(whole)
     reference = contents(whole)
-    assert not (folder / "whole.h5.shards").exists()
+    assert not list(folder.glob("whole.h5?*"))
 
     killed, moments = folder / "killed-comparison.h5", random.Random(20150401)
-    shards = folder / (killed.name + ".shards")
+    shards = folder / (killed.name + ".compared.shards")
     command = [program, "compare", archive, "--methods", "sse,counterfactual", "--quiet", "-o", killed, "--jobs", "2",
                "--shard-interval", "0"]
     kills = 0
@@ -199,16 +199,39 @@ def check_comparison(program, folder):
     assert contents(killed) == reference and not shards.exists()
 
     # What others have left: refused by what differs, or discarded.
-    subprocess.run([*command[:-5], folder / "other.h5", "--shard-interval", "0", "--shard", "1/2"], check=True,
-                   timeout=PATIENCE, stdout=subprocess.DEVNULL)
-    parts = folder / "other.h5.parts"
-    (parts / "1-of-2").rename(folder / "other.h5.shards")
-    parts.rmdir()
-    result = subprocess.run([program, "compare", archive, "--methods", "counterfactual,order", "--quiet", "-o",
-                             folder / "other.h5"], capture_output=True, text=True, timeout=PATIENCE)
-    assert result.returncode == 2 and "another methods" in result.stderr, result
-    compare(folder / "other.h5", "--discard")
-    assert contents(folder / "other.h5") == reference
+    other = folder / "other.h5"
+    parts, shards = folder / "other.h5.compared.parts", folder / "other.h5.compared.shards"
+    for place in parts / "1-of-2", shards:
+        compare(other, "--shard", "1/2")
+        if place == shards:
+            (parts / "1-of-2").rename(shards)
+            parts.rmdir()
+        result = subprocess.run([program, "compare", archive, "--methods", "counterfactual,order", "--quiet", "-o", other],
+                                capture_output=True, text=True, timeout=PATIENCE)
+        assert result.returncode == 2 and "another methods" in result.stderr and "--discard" in result.stderr, result
+        compare(other, "--discard")
+        assert contents(other) == reference and not list(folder.glob("other.h5?*"))
+
+    # A run of the same output keeps parts too, before and after they are merged: neither is taken for the other.
+    merged = folder / "merged.h5"
+    run = [program, "run", study, "-o", merged, "--experiments", "60", "--methods", "sse", "--audit", "0", "--store",
+           "none", "--quiet", "--shard", "1/1"]
+    subprocess.run(run, check=True, timeout=PATIENCE)
+    compare(merged, "--shard", "1/2", "--discard")
+    subprocess.run([program, "merge", merged, "--quiet"], check=True, timeout=PATIENCE)
+    subprocess.run([program, "compare", merged, "--methods", "counterfactual", "--quiet", "-o", merged,
+                    "--discard"], check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
+    with h5py.File(merged) as file:
+        assert list(file["method"].asstr()) == ["sse", "counterfactual"]
+
+    # A comparison that is stopped after --discard is gone on with without it.
+    process = subprocess.Popen([*command[:-5], folder / "anew.h5", *command[-4:], "--discard"],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    while process.poll() is None and not list(folder.glob("anew.h5.compared.shards/*.shard")):
+        time.sleep(0.002)
+    process.send_signal(signal.SIGTERM)
+    error = process.communicate(timeout=PATIENCE)[1]
+    assert process.returncode == 0 or "To go on with it" in error and "--discard" not in error, error
 
     # Where nothing is missing, shards that a run of this name has left are none of its business.
     left = folder / "copied.h5.shards" / "00000001.shard"
