@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,7 +44,28 @@ std::string MissingPieces::array() const {
   return text;
 }
 
+/// A run that is finished packs its shards: each of the few large ones is there before the small ones go, so
+/// that another look finds all of it, and that soon.
 PartMerge::PartMerge(const std::vector<std::string>& folders, const ShardSet::Warn& warn) {
+  constexpr int kMostLooks = 50;
+  constexpr std::chrono::milliseconds kPause{100};
+  for (int look = 1;; ++look) {
+    std::vector<std::string> warnings;  // of this look
+    try {
+      take_stock(folders, [&warnings](const std::string& text) { warnings.push_back(text); });
+      std::for_each(warnings.begin(), warnings.end(), warn);
+      return;
+    } catch (const ShardGone&) {
+      if (look == kMostLooks)
+        throw;
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+}
+
+void PartMerge::take_stock(const std::vector<std::string>& folders, const ShardSet::Warn& warn) {
+  part_count_ = 0;
+  pieces_.clear();
   std::vector<fs::path> shards, calibration_shards;
   for (const fs::path& folder : find_parts(folders)) {
     take_part(folder);

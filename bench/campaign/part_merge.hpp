@@ -26,9 +26,10 @@ struct MissingPieces {
 class PartMerge {
  public:
   /// Looks at the shards of all parts in these folders. A damaged shard is passed over with a warning, what
-  /// it holds is missing. Throws InputError for a folder without parts, and for parts that were not run by
-  /// this program, or not with the study, seed, methods, solver, audit share and store of the first one;
-  /// the number of experiments may differ, the largest one counts.
+  /// it holds is missing; of runs at work, what they have finished by now. Throws InputError for a folder
+  /// without parts, and for parts that were not run by this program, or not with the study, seed, methods,
+  /// solver, audit share and store of the first one; the number of experiments may differ, the largest one
+  /// counts.
   PartMerge(const std::vector<std::string>& folders, const ShardSet::Warn& warn);
 
   const Study& study() const { return first_.study; }
@@ -52,10 +53,11 @@ class PartMerge {
   /// object.
   ///
   /// Throws InputError when two parts have the same experiment with another result, UnhealthyBasis,
-  /// Interrupted and ArchiveError as run_campaign().
+  /// Interrupted and ArchiveError as run_campaign(), ShardGone.
   Campaign merge(const CampaignHooks& hooks) const;
 
  private:
+  void take_stock(const std::vector<std::string>& folders, const ShardSet::Warn& warn);
   void take_part(const std::filesystem::path& folder);
 
   PartFolder first_;  ///< with the largest number of experiments

@@ -4,6 +4,7 @@
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -64,6 +65,8 @@ template <class Read>
 auto read_whole(const std::filesystem::path& path, const ShardIdentity& identity, const Read& read)
     -> std::optional<decltype(read(std::declval<ByteReader&>(), std::size_t{}, 0.0))> {
   std::ifstream file(path, std::ios::binary);
+  if (std::error_code no_status; !file && !std::filesystem::exists(path, no_status))
+    throw ShardGone(path);
   const std::string bytes = content_of(file);
   std::optional<std::string_view> content = unsealed(bytes);
   if (!content)
@@ -84,6 +87,11 @@ auto read_whole(const std::filesystem::path& path, const ShardIdentity& identity
 }
 
 }  // namespace
+
+ShardGone::ShardGone(const std::filesystem::path& shard)
+    : ArchiveError(fmt::format("{}: gone meanwhile, its run is at work; the same command again finds what is "
+                               "there",
+                               shard.string())) {}
 
 void ShardBytes::add(const std::string& outcome) {
   ByteWriter writer;

@@ -8,6 +8,7 @@
 
 #include "bench/outcome/outcome_bytes.hpp"
 #include "bench/shards/shard_identity.hpp"
+#include "results/files/archive_error.hpp"
 
 namespace mpm {
 
@@ -39,9 +40,16 @@ class ShardBytes {
   std::string outcomes_;
 };
 
+/// A shard that was there a moment ago: its run, which is at work, has packed it into another one or is
+/// finished.
+class ShardGone : public ArchiveError {
+ public:
+  explicit ShardGone(const std::filesystem::path& shard);
+};
+
 /// Reads a shard; none when it is cut off or damaged (its checksum does not fit) or cannot be read. Throws
 /// InputError for a whole file that is no shard of this format version and identity, or whose content cannot
-/// be read although its checksum fits.
+/// be read although its checksum fits, and ShardGone.
 std::optional<Shard> read_shard(const std::filesystem::path& path, const ShardIdentity& identity,
                                 const OutcomeBytes& format);
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,6 +21,8 @@ constexpr std::int32_t kNoShard = -1;
 constexpr std::size_t kMostOpen = 256;  // shards at once
 
 [[noreturn]] void refuse_changed(const std::filesystem::path& shard) {
+  if (std::error_code no_status; !std::filesystem::exists(shard, no_status))
+    throw ShardGone(shard);
   throw ArchiveError(fmt::format("{}: cut off or damaged since it was written", shard.string()));
 }
 

@@ -224,6 +224,18 @@ def check_comparison(program, folder):
     with h5py.File(merged) as file:
         assert list(file["method"].asstr()) == ["sse", "counterfactual"]
 
+    # An archive that another command writes between reading it and the lock is not written over.
+    changing = folder / "changing.h5"
+    changing.write_bytes(merged.read_bytes())
+    methods, script = folder / "changing.toml", folder / "changing.py"
+    script.write_text(f"import shutil\nshutil.copy({str(archive)!r}, {str(changing)!r})\n"
+                      f"exec(open({str(STUDIES.parents[1] / 'examples/mine.py')!r}).read())\n")
+    methods.write_text(f"[method.own]\ncommand = [{sys.executable!r}, {str(script)!r}]\n")
+    result = subprocess.run([program, "compare", changing, "--methods", "own", "--method-file", methods, "--quiet", "-o",
+                             changing], capture_output=True, text=True, timeout=PATIENCE)
+    assert result.returncode == 2 and "another content than a moment ago" in result.stderr, result
+    assert changing.read_bytes() == pathlib.Path(archive).read_bytes()
+
     # A comparison that is stopped after --discard is gone on with without it.
     process = subprocess.Popen([*command[:-5], folder / "anew.h5", *command[-4:], "--discard"],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)

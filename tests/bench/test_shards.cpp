@@ -9,6 +9,8 @@
 #include "bench/campaign/streamed_records.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "bench/outcome/outcome_bytes.hpp"
+#include "bench/shards/shard.hpp"
+#include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_set.hpp"
 #include "bench/shards/shard_store.hpp"
 #include "plants/error.hpp"
@@ -125,7 +127,7 @@ TEST_CASE("shard: cut off anywhere or with any byte changed, it is seen to be da
     make_file(path, changed);
     CHECK_FALSE(read_shard(path, kIdentity, format()));
   }
-  CHECK_FALSE(read_shard(folder / "none.shard", kIdentity, format()));
+  CHECK_THROWS_AS(read_shard(folder / "none.shard", kIdentity, format()), ShardGone);
 }
 
 TEST_CASE("shard: one of another run, format version or file type is refused, and the difference named") {
@@ -268,6 +270,25 @@ TEST_CASE("shard set: an experiment in two shards counts once, and is refused wh
   CHECK_THROWS_WITH(merged({folder / "one", folder / "two", folder / "record"}),
                     Contains((folder / "record" / "00000001.shard").string() + ": experiment 1") &&
                         Contains("another solver_iterations than in " + (folder / "one").string()));
+}
+
+TEST_CASE("shard set: a shard that its run has packed meanwhile is gone, not damaged") {
+  const TemporaryFolder folder;
+  leave_behind(folder / "s", {4, 1, 3});
+  const std::vector<fs::path> small = shards_in(folder / "s");
+  ShardSet seen(RunOptions(), study(), 5);
+  seen.take_stock(small, {});
+  store_of(folder / "s", Leftovers::resume).compact();
+  std::vector<std::string> warnings;
+  ShardSet late(RunOptions(), study(), 5);
+  CHECK_THROWS_AS(late.take_stock(small, [&](const std::string& text) { warnings.push_back(text); }),
+                  ShardGone);
+  CHECK(warnings.empty());
+  CHECK_THROWS_AS(seen.read([](const ExperimentOutcome&) {}), ShardGone);
+  CHECK_THROWS_WITH(records_in(seen, {}), Contains("gone meanwhile") && Contains("the same command again"));
+  ShardSet again(RunOptions(), study(), 5);
+  again.take_stock(shards_in(folder / "s"), {});
+  CHECK(again.missing() == Indices{0, 2});
 }
 
 TEST_CASE("shard store: a folder that cannot be made is an error, and files of others stay") {
