@@ -86,7 +86,7 @@ def main(program):
                 (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--range", "y1=1:0"], "low < high"),
                 (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--setpoint", "y1=0"], "a size > 0"),
                 (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--limits", "u1=3"], "LOW:HIGH"),
-                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--sample-time", 0], "sample time: found 0")):
+                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--sample-time", 0], "--sample-time: found 0")):
             assert message in run("init", other, *words, code=2).stderr, (words, message)
         run("init", folder / "none" / "a.toml", *TANK, code=3)
         assert not other.exists()
