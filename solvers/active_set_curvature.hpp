@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "solvers/active_set_correction.hpp"
 #include "solvers/active_set_problem.hpp"
 #include "solvers/active_set_springs.hpp"
 #include "solvers/lanes/lane_vector.hpp"
@@ -24,6 +25,8 @@ class ActiveSetCurvature {
   void clear();
   /// Brings M up to the springs' present forces; false when that changed nothing.
   bool synchronise(const std::vector<LimitSprings>& families);
+  /// What that would change, when it is at most ActiveSetCorrection::kMost springs; else false.
+  bool find_few(const std::vector<LimitSprings>& families, std::vector<SpringChange>& changes) const;
 
   /// M in its lower triangle, beside it columns of the unit matrix up to the stride. What stands above is
   /// arbitrary.
@@ -35,7 +38,7 @@ class ActiveSetCurvature {
 
   const ActiveSetProblem& problem_;
   LaneMatrix matrix_;
-  std::vector<std::vector<unsigned char>> included_;  ///< of a family and eight rows: one bit a row
+  std::vector<RowBits> included_;          ///< of a family
   std::vector<std::vector<int>> changes_;  ///< of a family: springs that M does not have as they are
   std::vector<double> weights_;
   LaneVector scratch_;

@@ -21,27 +21,44 @@ Eigen::Index capacity(const ActiveSetProblem& problem) {
 }  // namespace
 
 DualActiveSet::DualActiveSet(const ActiveSetProblem& problem)
-    : problem_(problem), geometry_(problem), factor_(capacity(problem)) {
+    : problem_(problem),
+      geometry_(problem),
+      factor_(capacity(problem)),
+      linear_(problem.variable_count()),
+      z_(problem.variable_count()),
+      step_(problem.variable_count()),
+      row_value_(problem.structure->row_count()),
+      row_slack_(problem.structure->row_count()),
+      slack_runs_(slack_runs(*problem.structure)) {
   const Eigen::Index size = capacity(problem);
-  working_.reserve(static_cast<std::size_t>(size));
-  candidates_.reserve(static_cast<std::size_t>(size));
-  for (Eigen::VectorXd* vector : {&multiplier_, &products_, &direction_})
+  working_.reserve(static_cast<std::size_t>(size + 1));
+  for (Eigen::VectorXd* vector : {&multiplier_, &products_, &lower_, &direction_})
     vector->setZero(size + 1);
-  linear_.setZero(problem.variable_count());
-  z_.setZero(problem.variable_count());
-  step_.setZero(problem.variable_count());
-  row_value_ = LaneVector(problem.structure->row_count());
   ray_.setZero(problem.structure->row_count());
   used_.setConstant(std::max(problem.variable_count(), problem.structure->row_count()), 5, false);
 }
 
-bool& DualActiveSet::in_use(const LimitSide& side) {
-  return used_(side.index, static_cast<Eigen::Index>(side.kind));
+void DualActiveSet::reset() {
+  working_.clear();
+  factor_.clear();
+  rigid_ = 0;
+  used_.setConstant(false);
+}
+
+bool& DualActiveSet::in_use(LimitKind kind, Eigen::Index index) {
+  return used_(index, static_cast<Eigen::Index>(kind));
 }
 
 DualOutcome DualActiveSet::solve(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& linear,
                                  double tolerance, int& iterations) {
-  linear_ = linear;
+  linear_.vector() = linear;
+  const DualOutcome outcome = iterate(data, tolerance, iterations);
+  if (outcome != DualOutcome::solved)
+    reset();  // the next problem starts from nothing rather than from a failure
+  return outcome;
+}
+
+DualOutcome DualActiveSet::iterate(const QpData& data, double tolerance, int& iterations) {
   warm_start(data);
   const int limit = iterations + 20 * static_cast<int>(problem_.variable_count() + row_value_.size());
   find_point();
@@ -64,50 +81,52 @@ DualOutcome DualActiveSet::solve(const QpData& data, const Eigen::Ref<const Eige
   }
 }
 
-// The last working set where it still makes sense: limits that exist, do not depend on each other and have
-// multipliers of the right sign.
+// The last working set where it still makes sense: limits that exist and have multipliers of the right sign.
+// The multipliers of a working set are inv(S) times how far its limits are exceeded where there are none.
 void DualActiveSet::warm_start(const QpData& data) {
-  candidates_.assign(working_.begin(), working_.end());
-  working_.clear();
-  factor_.clear();
-  rigid_ = 0;
-  used_.setConstant(false);
-  for (const LimitSide& side : candidates_)
-    if (std::isfinite(geometry_.limit(data, side))) {
-      find_products(side);
-      enter(side, 0.0);
-    }
-  for (;;) {
-    find_point();
-    equilibrate(data);
+  for (std::size_t k = working_.size(); k-- > 0;)
+    if (!std::isfinite(geometry_.limit(data, working_[k])))
+      leave(k);
+  find_free_point();
+  for (std::size_t k = 0; k < working_.size(); ++k)
+    products_(static_cast<Eigen::Index>(k)) = excess(data, working_[k]);
+  while (!working_.empty()) {
     const auto count = static_cast<Eigen::Index>(working_.size());
+    multiplier_.head(count) = products_.head(count);
+    factor_.solve_in_place(multiplier_);
     Eigen::Index worst = 0;
-    if (count == 0 || multiplier_.head(count).minCoeff(&worst) >= 0.0)
+    if (multiplier_.head(count).minCoeff(&worst) >= 0.0)
       return;
     leave(static_cast<std::size_t>(worst));
   }
 }
 
-// With `products_` of the limit.
-bool DualActiveSet::enter(const LimitSide& side, double multiplier) {
-  const auto count = static_cast<Eigen::Index>(working_.size());
-  if (!factor_.append(products_.head(count), geometry_.product(side, side), kDependent))
+// How far the quantity is beyond its limit at z.
+double DualActiveSet::excess(const QpData& data, const LimitSide& side) const {
+  return side.side * (geometry_.value(side, z_) - geometry_.limit(data, side));
+}
+
+// After `meet` has found that `left` of its diagonal in S is independent of the working set.
+bool DualActiveSet::enter(const LimitSide& side, double multiplier, double left) {
+  if (!factor_.append(lower_, left))
     return false;
-  multiplier_(count) = multiplier;
+  multiplier_(static_cast<Eigen::Index>(working_.size())) = multiplier;
   working_.push_back(side);
   rigid_ += geometry_.softness(side) == 0.0;
-  in_use(side) = true;
+  in_use(side.kind, side.index) = true;
   return true;
 }
 
 void DualActiveSet::leave(std::size_t k) {
   const auto index = static_cast<Eigen::Index>(k);
-  in_use(working_[k]) = false;
+  in_use(working_[k].kind, working_[k].index) = false;
   rigid_ -= geometry_.softness(working_[k]) == 0.0;
   factor_.remove(index);
   working_.erase(working_.begin() + static_cast<std::ptrdiff_t>(k));
-  for (Eigen::Index i = index; i < static_cast<Eigen::Index>(working_.size()); ++i)
+  for (Eigen::Index i = index; i < static_cast<Eigen::Index>(working_.size()); ++i) {
     multiplier_(i) = multiplier_(i + 1);
+    products_(i) = products_(i + 1);
+  }
 }
 
 // One step of iterative refinement of the multipliers with which every limit of the working set is met.
@@ -118,19 +137,15 @@ double DualActiveSet::equilibrate(const QpData& data) {
   const auto count = static_cast<Eigen::Index>(working_.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     const LimitSide& side = working_[static_cast<std::size_t>(i)];
-    direction_(i) = side.side * (geometry_.value(side, z_) - geometry_.limit(data, side)) -
-                    geometry_.softness(side) * multiplier_(i);
+    direction_(i) = excess(data, side) - geometry_.softness(side) * multiplier_(i);
     error = std::max(error, std::abs(direction_(i)) * std::max(1.0, std::abs(multiplier_(i))));
   }
   factor_.solve_in_place(direction_);
   multiplier_.head(count) += direction_.head(count);
-  step_.setZero();
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const LimitSide& side = working_[static_cast<std::size_t>(i)];
-    geometry_.add_normal(side, -side.side * direction_(i), step_);
-  }
+  step_.vector().setZero();
+  geometry_.subtract_normals(working_, direction_, step_);
   geometry_.apply_inverse(step_);
-  z_ += step_;
+  z_.vector() += step_.vector();
   return error;
 }
 
@@ -141,50 +156,79 @@ void DualActiveSet::refine(const QpData& data, double tolerance) {
       return;
 }
 
-// z = -inv(Q) (c + B' multipliers): stationary by construction.
-void DualActiveSet::find_point() {
-  z_ = -linear_;
-  for (std::size_t i = 0; i < working_.size(); ++i)
-    geometry_.add_normal(working_[i], -working_[i].side * multiplier_(static_cast<Eigen::Index>(i)), z_);
+// z = -inv(Q) c: without any limit.
+void DualActiveSet::find_free_point() {
+  z_.vector() = -linear_.vector();
   geometry_.apply_inverse(z_);
 }
 
-bool DualActiveSet::find_violated(const QpData& data, double tolerance, LimitSide& worst) const {
-  const Eigen::Index n = problem_.structure->variable_count();
+// z = -inv(Q) (c + B' multipliers): stationary by construction.
+void DualActiveSet::find_point() {
+  z_.vector() = -linear_.vector();
+  geometry_.subtract_normals(working_, multiplier_, z_);
+  geometry_.apply_inverse(z_);
+}
+
+// What widens the soft limits of each row; a row without a slack has none.
+void DualActiveSet::gather_slacks() {
+  for (const auto& [first, count, slack] : slack_runs_) {
+    const int column = problem_.slack_column(first);
+    const double wider = column >= 0 ? z_(column) : slack >= 0 ? 0.0 : kInfinity;
+    row_slack_.vector().segment(first, count).setConstant(wider);
+  }
+}
+
+// The limit that is exceeded most, by more than the tolerance, of those outside of the working set; a hard
+// limit of a row, which hardly ever is, when no other one is.
+bool DualActiveSet::find_violated(const QpData& data, double tolerance, LimitSide& worst) {
   double largest = tolerance;
   const auto look = [&](LimitKind kind, Eigen::Index i, double below, double above) {
     const double excess = std::max(below, above);
-    if (!(excess > largest) || used_(i, static_cast<Eigen::Index>(kind)))
+    if (!(excess > largest) || in_use(kind, i))
       return;
     largest = excess;
     worst = {kind, i, above >= below ? 1.0 : -1.0};
   };
+  // The kernel says which row is beyond its limits most; when it is one of the working set, all are looked at.
+  const auto look_at_rows = [&](const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
+                                const double* slack, const auto& look_at) {
+    double most = largest;
+    const Eigen::Index row = lane_kernels().most_violated({.count = row_value_.size(),
+                                                           .value = row_value_.data(),
+                                                           .lower = lower.data(),
+                                                           .upper = upper.data(),
+                                                           .dual = nullptr,
+                                                           .slack = slack},
+                                                          &most);
+    if (row < 0)
+      return;
+    const double before = largest;
+    look_at(row);
+    for (Eigen::Index i = 0; i < row_value_.size() && largest == before; ++i)
+      look_at(i);
+  };
+
+  const Eigen::Index n = problem_.structure->variable_count();
   for (Eigen::Index j = 0; j < n; ++j)
     look(LimitKind::bound, j, data.lower(j) - z_(j), z_(j) - data.upper(j));
   for (Eigen::Index j = n; j < z_.size(); ++j)
     look(LimitKind::bound, j, -z_(j), -kInfinity);
-  const double hard = lane_kernels().violation({.count = row_value_.size(),
-                                                .value = row_value_.data(),
-                                                .lower = data.hard_lower.data(),
-                                                .upper = data.hard_upper.data(),
-                                                .dual = nullptr,
-                                                .slack = nullptr});
-  for (Eigen::Index i = 0; i < row_value_.size() && hard > largest; ++i)
-    look(LimitKind::hard, i, data.hard_lower(i) - row_value_(i), row_value_(i) - data.hard_upper(i));
-  for (Eigen::Index i = 0; i < row_value_.size(); ++i) {
-    const int column = problem_.slack_column(i);
-    const double slack = column >= 0 ? z_(column) : 0.0;
-    const double above = row_value_(i) - slack - data.soft_upper(i);
-    const double below = data.soft_lower(i) - row_value_(i) - slack;
-    if (!(above > largest || below > largest))
-      continue;
-    if (column >= 0) {
+  gather_slacks();
+  look_at_rows(data.soft_lower, data.soft_upper, row_slack_.data(), [&](Eigen::Index i) {
+    const double below = data.soft_lower(i) - row_slack_(i) - row_value_(i);
+    const double above = row_value_(i) - row_slack_(i) - data.soft_upper(i);
+    if (problem_.slack_column(i) >= 0) {
       look(LimitKind::slack_upper, i, -kInfinity, above);
       look(LimitKind::slack_lower, i, below, -kInfinity);
-    } else if (problem_.softness(i) > 0.0) {
+    } else {
       look(LimitKind::soft, i, below, above);
     }
-  }
+  });
+  if (largest > tolerance)
+    return true;
+  look_at_rows(data.hard_lower, data.hard_upper, nullptr, [&](Eigen::Index i) {
+    look(LimitKind::hard, i, data.hard_lower(i) - row_value_(i), row_value_(i) - data.hard_upper(i));
+  });
   return largest > tolerance;
 }
 
@@ -197,17 +241,19 @@ void DualActiveSet::find_products(const LimitSide& side) {
 // Raises the multiplier of a violated limit until it is met; limits of the working set whose multiplier falls
 // to zero on the way leave.
 DualOutcome DualActiveSet::meet(const QpData& data, const LimitSide& side, int& iterations, int limit) {
-  double violation = side.side * (geometry_.value(side, z_) - geometry_.limit(data, side));
+  double violation = excess(data, side);
   double multiplier = 0.0;
   const double length = geometry_.product(side, side);
   const bool soft = geometry_.softness(side) > 0.0;
+  find_products(side);
   while (iterations < limit) {
     ++iterations;
-    find_products(side);
     const auto count = static_cast<Eigen::Index>(working_.size());
-    direction_.head(count) = products_.head(count);
-    factor_.solve_in_place(direction_);
-    const double curvature = length - products_.head(count).dot(direction_.head(count));
+    lower_.head(count) = products_.head(count);
+    factor_.solve_lower(lower_);
+    const double curvature = length - lower_.head(count).squaredNorm();
+    direction_.head(count) = lower_.head(count);
+    factor_.solve_upper(direction_);
 
     const bool dependent = curvature <= kDependent * length || rigid_ == problem_.variable_count();
     const double whole = dependent && !soft ? kInfinity : violation / curvature;
@@ -225,7 +271,7 @@ DualOutcome DualActiveSet::meet(const QpData& data, const LimitSide& side, int& 
     multiplier_.head(count) -= t * direction_.head(count);
     multiplier += t;
     if (blocking == working_.size())
-      return enter(side, multiplier) ? DualOutcome::solved : DualOutcome::failed;
+      return enter(side, multiplier, curvature) ? DualOutcome::solved : DualOutcome::failed;
     if (std::isfinite(whole))
       violation -= t * curvature;
     leave(blocking);
@@ -238,11 +284,11 @@ DualOutcome DualActiveSet::meet(const QpData& data, const LimitSide& side, int& 
 void DualActiveSet::make_ray(const LimitSide& side) {
   const auto count = static_cast<Eigen::Index>(working_.size());
   for (int k = 0; k < kRefinements; ++k) {
-    step_.setZero();
-    geometry_.add_normal(side, side.side, step_);
-    for (Eigen::Index i = 0; i < count; ++i)
-      geometry_.add_normal(working_[static_cast<std::size_t>(i)],
-                           -working_[static_cast<std::size_t>(i)].side * direction_(i), step_);
+    step_.vector().setZero();
+    working_.push_back(side);
+    direction_(count) = -1.0;
+    geometry_.subtract_normals(working_, direction_, step_);
+    working_.pop_back();
     geometry_.apply_inverse(step_);
     for (Eigen::Index i = 0; i < count; ++i) {
       const LimitSide& member = working_[static_cast<std::size_t>(i)];
@@ -261,7 +307,7 @@ void DualActiveSet::make_ray(const LimitSide& side) {
 
 void DualActiveSet::report(QpResult& result) const {
   const Eigen::Index n = problem_.structure->variable_count();
-  result.x = z_.head(n);
+  result.x = z_.vector().head(n);
   result.slack.setZero();
   result.bound_dual.setZero();
   result.hard_dual.setZero();

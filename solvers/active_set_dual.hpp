@@ -19,13 +19,14 @@ enum class DualOutcome { solved, infeasible, failed };
 ///
 /// It meets one limit after another, and leaves one when its multiplier reaches zero. Nearly parallel limits,
 /// which the method of multipliers separates slowly, cost it nothing; its work grows with the square of the
-/// number of active limits. Where Q is only semidefinite, it has the proximal term 1/2 sigma_j z_j^2 beside
+/// number of active limits. The Schur complement depends on the working set only, so that its factor is kept
+/// from one program to the next. Where Q is only semidefinite, it has the proximal term 1/2 sigma_j z_j^2 beside
 /// it, whose centre the caller moves. `solve` allocates nothing.
 class DualActiveSet {
  public:
   explicit DualActiveSet(const ActiveSetProblem& problem);
 
-  void reset() { working_.clear(); }
+  void reset();
 
   /// `linear` is c of the problem in z, less sigma times the centre. `infeasible` only says that the method
   /// found a ray, see `ray`.
@@ -33,7 +34,7 @@ class DualActiveSet {
                     int& iterations);
 
   /// z of the last answer.
-  const Eigen::VectorXd& point() const { return z_; }
+  const LaneVector& point() const { return z_; }
 
   /// Writes x, the slacks and the multipliers.
   void report(QpResult& result) const;
@@ -43,26 +44,33 @@ class DualActiveSet {
 
  private:
   void warm_start(const QpData& data);
-  bool enter(const LimitSide& side, double multiplier);
+  bool enter(const LimitSide& side, double multiplier, double left);
   void leave(std::size_t k);
   double equilibrate(const QpData& data);
   void refine(const QpData& data, double tolerance);
+  void find_free_point();
   void find_point();
-  bool find_violated(const QpData& data, double tolerance, LimitSide& worst) const;
+  double excess(const QpData& data, const LimitSide& side) const;
+  bool find_violated(const QpData& data, double tolerance, LimitSide& worst);
+  void gather_slacks();
   void find_products(const LimitSide& side);
+  DualOutcome iterate(const QpData& data, double tolerance, int& iterations);
   DualOutcome meet(const QpData& data, const LimitSide& side, int& iterations, int limit);
   void make_ray(const LimitSide& side);
-  bool& in_use(const LimitSide& side);
+  bool& in_use(LimitKind kind, Eigen::Index index);
 
   const ActiveSetProblem& problem_;
   LimitGeometry geometry_;
   SchurFactor factor_;
-  std::vector<LimitSide> working_, candidates_;
+  std::vector<LimitSide> working_;
   Eigen::Index rigid_ = 0;      ///< limits of the working set without softness: no more than variables
   Eigen::VectorXd multiplier_;  ///< >= 0 in the direction of `side`, in the order of `working_`
-  Eigen::VectorXd products_, direction_;
-  Eigen::VectorXd linear_, z_, step_, ray_;
-  LaneVector row_value_;
+  Eigen::VectorXd products_;    ///< of a limit with those of the working set
+  Eigen::VectorXd lower_;       ///< inv(L) of them, S = L L'
+  Eigen::VectorXd direction_, ray_;
+  LaneVector linear_, z_, step_;
+  LaneVector row_value_, row_slack_;
+  std::vector<SlackRun> slack_runs_;
   Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> used_;  ///< limits in the working set: index x kind
 };
 

@@ -15,8 +15,7 @@ ActiveSetFactor::ActiveSetFactor(Eigen::Index size)
     : size_(size),
       gathered_(size, padded(size)),
       lower_(size, padded(size)),
-      inverse_(LaneKernels::kInverse * padded(size)),
-      packed_(size) {
+      inverse_(LaneKernels::kInverse * padded(size)) {
   free_.reserve(static_cast<std::size_t>(size));
 }
 
@@ -47,15 +46,24 @@ void ActiveSetFactor::gather(const LaneMatrix& matrix) {
   }
 }
 
-void ActiveSetFactor::solve_in_place(LaneVector& vector) {
+void ActiveSetFactor::pack(const LaneVector& vector, double* packed) const {
   const auto count = static_cast<Eigen::Index>(free_.size());
-  const int* index = free_.data();
   for (Eigen::Index i = 0; i < count; ++i)
-    packed_(i) = vector(index[i]);
-  std::fill(packed_.data() + count, packed_.data() + padded(count), 0.0);
-  lane_kernels().solve(lower_.data(), lower_.stride(), padded(count), inverse_.data(), packed_.data());
-  for (Eigen::Index i = 0; i < count; ++i)
-    vector(index[i]) = packed_(i);
+    packed[i] = vector(free_[static_cast<std::size_t>(i)]);
+  std::fill(packed + count, packed + packed_size(), 0.0);
+}
+
+void ActiveSetFactor::unpack(const double* packed, LaneVector& vector) const {
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    vector(free_[i]) = packed[i];
+}
+
+void ActiveSetFactor::solve_lower(double* packed) const {
+  lane_kernels().solve_lower(lower_.data(), lower_.stride(), packed_size(), inverse_.data(), packed);
+}
+
+void ActiveSetFactor::solve_upper(double* packed) const {
+  lane_kernels().solve_upper(lower_.data(), lower_.stride(), packed_size(), inverse_.data(), packed);
 }
 
 }  // namespace mpm

@@ -21,15 +21,21 @@ class ActiveSetFactor {
   /// `matrix` has those of the unit matrix up to its stride.
   bool compute(const LaneMatrix& matrix, const std::vector<int>& free);
 
-  /// Solves M_FF x_F = b_F in place: the entries F of `vector` are replaced, the others are kept.
-  void solve_in_place(LaneVector& vector);
+  /// |F| as a multiple of eight: the length of what follows.
+  Eigen::Index packed_size() const { return padded(static_cast<Eigen::Index>(free_.size())); }
+  /// The entries F of `vector`, followed by zeros, and back again.
+  void pack(const LaneVector& vector, double* packed) const;
+  void unpack(const double* packed, LaneVector& vector) const;
+  /// inv(L) b and inv(L') b in place.
+  void solve_lower(double* packed) const;
+  void solve_upper(double* packed) const;
 
  private:
   void gather(const LaneMatrix& matrix);
 
   Eigen::Index size_;
   LaneMatrix gathered_, lower_;
-  LaneVector inverse_, packed_;  ///< of the blocks on the diagonal of L
+  LaneVector inverse_;  ///< of the blocks on the diagonal of L
   std::vector<int> free_;
 };
 

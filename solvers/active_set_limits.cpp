@@ -13,7 +13,10 @@ LimitGeometry::LimitGeometry(const ActiveSetProblem& problem)
     : problem_(problem),
       lower_(problem.structure->variable_count(), padded(problem.structure->variable_count())),
       inverse_(LaneKernels::kInverse * lower_.stride()),
-      packed_(problem.structure->variable_count()) {
+      packed_(problem.structure->variable_count()),
+      scaled_(problem.structure->variable_count(),
+              problem.structure->row_count() + problem.structure->variable_count()),
+      force_(problem.structure->row_count()) {
   const QpStructure& structure = *problem.structure;
   const Eigen::Index n = structure.variable_count();
   const Eigen::Index m = structure.row_count();
@@ -30,7 +33,9 @@ LimitGeometry::LimitGeometry(const ActiveSetProblem& problem)
   Eigen::MatrixXd columns(n, m + n);
   columns << structure.rows.transpose(), Eigen::MatrixXd::Identity(n, n);
   factor.triangularView<Eigen::Lower>().solveInPlace(columns);
-  scaled_ = columns.transpose();
+  for (Eigen::Index i = 0; i < m + n; ++i)
+    std::copy_n(columns.col(i).data(), n, scaled_.column(i));
+  pushing_.reserve(static_cast<std::size_t>(m + problem.variable_count() + 1));
   slack_ = (problem.quadratic.diagonal() + problem.proximal).tail(problem.variable_count() - n);
 }
 
@@ -66,7 +71,7 @@ double LimitGeometry::product(const LimitSide& first, const LimitSide& second) c
   };
   double sum = 0.0;
   if (has_row(first) && has_row(second))
-    sum = scaled_.row(line(first)).dot(scaled_.row(line(second)));
+    sum = lane_kernels().dot(scaled_.column(line(first)), scaled_.column(line(second)), scaled_.stride());
   if (const Eigen::Index q = slack_variable(first); q >= 0 && q == slack_variable(second))
     sum += slack_sign(first) * slack_sign(second) / slack_(q);
   if (first.kind == second.kind && first.index == second.index)
@@ -89,32 +94,47 @@ double LimitGeometry::limit(const QpData& data, const LimitSide& side) const {
   }
 }
 
-double LimitGeometry::value(const LimitSide& side, const Eigen::VectorXd& z) const {
+double LimitGeometry::value(const LimitSide& side, const LaneVector& z) const {
   if (side.kind == LimitKind::bound)
     return z(side.index);
   const Eigen::Index n = problem_.structure->variable_count();
-  const double row = problem_.structure->rows.row(side.index).dot(z.head(n));
+  const double row = problem_.structure->rows.row(side.index).dot(z.vector().head(n));
   const Eigen::Index q = slack_variable(side);
   return q < 0 ? row : row + slack_sign(side) * z(n + q);
 }
 
-void LimitGeometry::add_normal(const LimitSide& side, double factor, Eigen::VectorXd& vector) const {
+// The forces on the rows are gathered first: a row may be at more than one of its limits.
+void LimitGeometry::subtract_normals(const std::vector<LimitSide>& sides, const Eigen::VectorXd& factor,
+                                     LaneVector& vector) {
   const Eigen::Index n = problem_.structure->variable_count();
-  if (side.kind == LimitKind::bound) {
-    vector(side.index) += factor;
-    return;
+  pushing_.clear();
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const LimitSide& side = sides[k];
+    const double force = -side.side * factor(static_cast<Eigen::Index>(k));
+    if (side.kind == LimitKind::bound) {
+      vector(side.index) += force;
+      continue;
+    }
+    force_(side.index) += force;
+    pushing_.push_back(static_cast<int>(side.index));
+    if (const Eigen::Index q = slack_variable(side); q >= 0)
+      vector(n + q) += force * slack_sign(side);
   }
-  vector.head(n) += factor * problem_.structure->rows.row(side.index).transpose();
-  if (const Eigen::Index q = slack_variable(side); q >= 0)
-    vector(n + q) += factor * slack_sign(side);
+  std::sort(pushing_.begin(), pushing_.end());
+  pushing_.erase(std::unique(pushing_.begin(), pushing_.end()), pushing_.end());
+  problem_.lanes->add_rows(pushing_, force_.data(), vector);
+  for (const int i : pushing_)
+    force_(i) = 0.0;
 }
 
-void LimitGeometry::apply_inverse(Eigen::VectorXd& vector) {
+void LimitGeometry::apply_inverse(LaneVector& vector) {
   const Eigen::Index n = packed_.size();
-  packed_.vector() = vector.head(n);
-  lane_kernels().solve(lower_.data(), lower_.stride(), padded(n), inverse_.data(), packed_.data());
-  vector.head(n) = packed_.vector();
-  vector.tail(slack_.size()).array() /= slack_.array();
+  packed_.vector() = vector.vector().head(n);
+  const LaneKernels& kernels = lane_kernels();
+  kernels.solve_lower(lower_.data(), lower_.stride(), padded(n), inverse_.data(), packed_.data());
+  kernels.solve_upper(lower_.data(), lower_.stride(), padded(n), inverse_.data(), packed_.data());
+  vector.vector().head(n) = packed_.vector();
+  vector.vector().tail(slack_.size()).array() /= slack_.array();
 }
 
 }  // namespace mpm

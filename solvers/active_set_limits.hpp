@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "solvers/active_set_problem.hpp"
@@ -38,14 +40,15 @@ class LimitGeometry {
   /// The limit on this side, infinite when there is none.
   double limit(const QpData& data, const LimitSide& side) const;
   /// b' z.
-  double value(const LimitSide& side, const Eigen::VectorXd& z) const;
+  double value(const LimitSide& side, const LaneVector& z) const;
   /// 1/(2w) of an eliminated slack, else 0.
   double softness(const LimitSide& side) const;
-  /// Adds `factor` b to `vector`.
-  void add_normal(const LimitSide& side, double factor, Eigen::VectorXd& vector) const;
+  /// Subtracts the sum over the limits k of side_k factor_k b_k from `vector`.
+  void subtract_normals(const std::vector<LimitSide>& sides, const Eigen::VectorXd& factor,
+                        LaneVector& vector);
 
   /// Replaces `vector` by inv(Q) times it.
-  void apply_inverse(Eigen::VectorXd& vector);
+  void apply_inverse(LaneVector& vector);
 
  private:
   Eigen::Index slack_variable(const LimitSide& side) const;
@@ -55,8 +58,10 @@ class LimitGeometry {
   const ActiveSetProblem& problem_;
   LaneMatrix lower_;             ///< L below its diagonal, H + diag(sigma) = L L'
   LaneVector inverse_, packed_;  ///< of the blocks on the diagonal of L; scratch
-  RowMajorMatrix scaled_;        ///< rows L^-1 a_i, then L^-1 e_j
+  LaneMatrix scaled_;            ///< columns L^-1 a_i, then L^-1 e_j
   Eigen::VectorXd slack_;        ///< 2w + sigma of the kept slacks
+  LaneVector force_;             ///< of each row in `subtract_normals`, else zero
+  std::vector<int> pushing_;     ///< the rows with a force
 };
 
 }  // namespace mpm

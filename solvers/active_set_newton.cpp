@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plants/non_finite.hpp"
+#include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {
 namespace {
@@ -18,7 +19,7 @@ constexpr double kSlopeLeft = 0.1;  // at the end of the line search, relative t
 }  // namespace
 
 ActiveSetNewton::ActiveSetNewton(const ActiveSetProblem& problem, std::size_t family_count)
-    : problem_(problem), curvature_(problem, family_count), factor_(problem.variable_count()) {
+    : problem_(problem), curvature_(problem, family_count), factor_(problem.variable_count()), correction_(problem, factor_) {
   const Eigen::Index size = problem.variable_count();
   const Eigen::Index rows = problem.structure->row_count();
   for (LaneVector* vector :
@@ -27,6 +28,7 @@ ActiveSetNewton::ActiveSetNewton(const ActiveSetProblem& problem, std::size_t fa
   upper.vector().setConstant(kInfinity);
   for (LaneVector* vector : {&row_value, &row_step_})
     *vector = LaneVector(rows);
+  changes_.reserve(ActiveSetCorrection::kMost);
   free_.reserve(static_cast<std::size_t>(size));
   next_free_.reserve(static_cast<std::size_t>(size));
 }
@@ -39,6 +41,7 @@ void ActiveSetNewton::reset() {
 
 void ActiveSetNewton::forget_curvature() {
   curvature_.clear();
+  correction_.clear();
   factored_ = false;
 }
 
@@ -105,6 +108,7 @@ NewtonOutcome ActiveSetNewton::minimise(std::vector<LimitSprings>& families, dou
   for (LimitSprings& springs : families)
     if (springs.enabled)
       springs.pull();
+  bool same = false;
   for (int round = 0;; ++round) {
     find_gradient(families);
     if (find_free() <= tolerance)
@@ -112,13 +116,13 @@ NewtonOutcome ActiveSetNewton::minimise(std::vector<LimitSprings>& families, dou
     if (iterations >= limit)
       return NewtonOutcome::iteration_limit;
     ++iterations;
-    if (!find_direction(families))
+    if (!find_direction(families, same))
       return NewtonOutcome::singular;
     if (!aim_projected() || round >= kProjectedSteps)
-      aim_truncated();
+      aim_truncated(families);
     aim_springs(families);
 
-    bool same = true;
+    same = true;
     for (LimitSprings& springs : families)
       if (springs.enabled && springs.find_changing())
         same = false;
@@ -127,7 +131,7 @@ NewtonOutcome ActiveSetNewton::minimise(std::vector<LimitSprings>& families, dou
       z.vector() = target_.vector();  // exactly on the limits that are met
     else
       z.vector() = (z.vector() + t * step_.vector()).cwiseMax(lower.vector()).cwiseMin(upper.vector());
-    row_value.vector() += t * row_step_.vector();
+    lane_kernels().add_product(row_step_.data(), padded(row_step_.size()), 1, &t, row_value.data());
     for (LimitSprings& springs : families)
       if (springs.enabled)
         springs.advance(t, same);
@@ -169,16 +173,26 @@ double ActiveSetNewton::find_free() {
   return largest;
 }
 
-bool ActiveSetNewton::find_direction(const std::vector<LimitSprings>& families) {
-  const bool curved = curvature_.synchronise(families);
-  if (curved || !factored_ || next_free_ != free_) {
+// `anew`: the last step should have ended at the minimiser and has not; it needs more digits.
+bool ActiveSetNewton::find_direction(const std::vector<LimitSprings>& families, bool anew) {
+  if (anew || !factored_ || next_free_ != free_ || !correct_factor(families)) {
     free_.assign(next_free_.begin(), next_free_.end());
-    factored_ = factor_.compute(curvature_.matrix(), free_);
-    if (!factored_)
+    if (!make_factor(families))
       return false;
   }
   solve_for_direction();
   return true;
+}
+
+bool ActiveSetNewton::correct_factor(const std::vector<LimitSprings>& families) {
+  return curvature_.find_few(families, changes_) && correction_.assign(changes_);
+}
+
+bool ActiveSetNewton::make_factor(const std::vector<LimitSprings>& families) {
+  curvature_.synchronise(families);
+  correction_.clear();
+  factored_ = factor_.compute(curvature_.matrix(), free_);
+  return factored_;
 }
 
 // The Newton step of the free variables; against the gradient where there is no factor.
@@ -187,24 +201,28 @@ void ActiveSetNewton::solve_for_direction() {
   for (const int j : free_)
     direction_(j) = -gradient(j);
   if (factored_)
-    factor_.solve_in_place(direction_);
+    correction_.solve_in_place(direction_);
 }
 
 // The step to the nearest point of the box to the Newton point; false when that is hardly downhill.
 bool ActiveSetNewton::aim_projected() {
   step_ = direction_;
+  newton_step_ = true;
   for (Eigen::Index j = 0; j < z.size(); ++j) {
     const double aim = z(j) + direction_(j);
     target_(j) = std::min(std::max(aim, lower(j)), upper(j));
-    if (target_(j) != aim)
+    if (target_(j) != aim) {
       step_(j) = target_(j) - z(j);  // elsewhere the step keeps the digits that z cannot hold
+      newton_step_ = false;
+    }
   }
   return gradient.vector().dot(step_.vector()) <= kDownhill * gradient.vector().dot(direction_.vector());
 }
 
 // The step towards the Newton point up to the first limit.
-void ActiveSetNewton::aim_truncated() {
-  freeze_blocked();
+void ActiveSetNewton::aim_truncated(const std::vector<LimitSprings>& families) {
+  newton_step_ = false;
+  freeze_blocked(families);
   double longest = 1.0;
   for (const int j : free_)
     if (const double d = direction_(j); d > 0.0)
@@ -224,7 +242,7 @@ void ActiveSetNewton::aim_truncated() {
 
 // A variable on a limit that the Newton step would push across it is taken out of the step. The gradient
 // pulls it inwards, so the others remain downhill.
-void ActiveSetNewton::freeze_blocked() {
+void ActiveSetNewton::freeze_blocked(const std::vector<LimitSprings>& families) {
   for (bool blocked = true; blocked;) {
     const auto crosses = [this](int j) {
       return (z(j) <= lower(j) && direction_(j) < 0.0) || (z(j) >= upper(j) && direction_(j) > 0.0);
@@ -234,7 +252,7 @@ void ActiveSetNewton::freeze_blocked() {
     if (!blocked)
       return;
     free_.erase(kept, free_.end());
-    factored_ = factor_.compute(curvature_.matrix(), free_);
+    make_factor(families);
     solve_for_direction();
   }
 }
@@ -246,8 +264,18 @@ void ActiveSetNewton::aim_springs(std::vector<LimitSprings>& families) {
       springs.aim(problem_, row_step_, step_);
 }
 
-// Second derivative of theta along the step, without the springs that change.
-double ActiveSetNewton::steady_curvature(std::vector<LimitSprings>& families) {
+// Second derivative of theta along the step, without the springs that change. Newton's step p solves M p = -g,
+// so that p'Mp is the slope with the other sign.
+double ActiveSetNewton::steady_curvature(std::vector<LimitSprings>& families, double slope) {
+  double result = newton_step_ ? -slope : whole_curvature(families);
+  for (const LimitSprings& springs : families)
+    if (springs.enabled)
+      result -= springs.changing_curvature();
+  return std::max(0.0, result);
+}
+
+// The same with all springs that are stretched where the step begins.
+double ActiveSetNewton::whole_curvature(std::vector<LimitSprings>& families) {
   const Eigen::Index n = problem_.structure->variable_count();
   const Eigen::Index kept = z.size() - n;
   scratch_.vector() = problem_.proximal.cwiseProduct(step_.vector());
@@ -257,14 +285,14 @@ double ActiveSetNewton::steady_curvature(std::vector<LimitSprings>& families) {
   double result = scratch_.vector().dot(step_.vector());
   for (LimitSprings& springs : families)
     if (springs.enabled)
-      result += springs.steady_curvature();
+      result += springs.curvature();
   return result;
 }
 
 // The root of the derivative of theta along the step, a rising piecewise linear function of t: Newton's
 // method within a bracket. The whole step when theta falls all along it.
 double ActiveSetNewton::line_search(std::vector<LimitSprings>& families, double slope) {
-  const double steady = steady_curvature(families);
+  const double steady = steady_curvature(families, slope);
   double low = 0.0;
   double high = 1.0;
   double t = 1.0;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "solvers/active_set_correction.hpp"
 #include "solvers/active_set_curvature.hpp"
 #include "solvers/active_set_factor.hpp"
 #include "solvers/active_set_problem.hpp"
@@ -55,19 +56,25 @@ class ActiveSetNewton {
   void find_gradient(const std::vector<LimitSprings>& families);
   void add_row_forces(const LimitSprings& springs);
   double find_free();
-  bool find_direction(const std::vector<LimitSprings>& families);
+  bool find_direction(const std::vector<LimitSprings>& families, bool anew);
+  bool correct_factor(const std::vector<LimitSprings>& families);
+  bool make_factor(const std::vector<LimitSprings>& families);
   void solve_for_direction();
   bool aim_projected();
-  void aim_truncated();
-  void freeze_blocked();
-  double steady_curvature(std::vector<LimitSprings>& families);
+  void aim_truncated(const std::vector<LimitSprings>& families);
+  void freeze_blocked(const std::vector<LimitSprings>& families);
+  double steady_curvature(std::vector<LimitSprings>& families, double slope);
+  double whole_curvature(std::vector<LimitSprings>& families);
   void aim_springs(std::vector<LimitSprings>& families);
   double line_search(std::vector<LimitSprings>& families, double slope);
 
   const ActiveSetProblem& problem_;
   ActiveSetCurvature curvature_;
   ActiveSetFactor factor_;
+  ActiveSetCorrection correction_;
+  std::vector<SpringChange> changes_;  ///< what `correction_` was asked for
   bool factored_ = false;
+  bool newton_step_ = false;  ///< `step_` is that of Newton's method, nothing of it was cut off
   std::vector<int> free_, next_free_;
   LaneVector direction_, step_, target_, row_step_, scratch_;
 };

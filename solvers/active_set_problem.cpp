@@ -100,4 +100,12 @@ ActiveSetProblem::ActiveSetProblem(const QpStructure& qp, std::shared_ptr<const 
   }
 }
 
+void ActiveSetProblem::write_normal(int row, double slack_sign, LaneVector& normal) const {
+  const Eigen::Index n = structure->variable_count();
+  normal.vector().head(n) = structure->rows.row(row).transpose();
+  normal.vector().tail(variable_count() - n).setZero();
+  if (const int column = slack_column(row); column >= 0)
+    normal(column) = slack_sign;
+}
+
 }  // namespace mpm

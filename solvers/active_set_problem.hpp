@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "solvers/lanes/lane_program.hpp"
+#include "solvers/lanes/lane_vector.hpp"
 #include "solvers/qp.hpp"
 
 namespace mpm {
@@ -31,6 +32,8 @@ struct ActiveSetProblem {
   ActiveSetProblem(const QpStructure& structure, std::shared_ptr<const LaneProgram> lanes);
 
   Eigen::Index variable_count() const { return quadratic.rows(); }
+  /// The normal b = (a_row, slack_sign at the kept slack of the row) of a limit, N numbers.
+  void write_normal(int row, double slack_sign, LaneVector& normal) const;
   /// True when some z_j needs the proximal term: the minimiser of Q alone is not unique or does not exist.
   bool needs_proximal() const { return proximal.size() > 0 && proximal.maxCoeff() > 0; }
 

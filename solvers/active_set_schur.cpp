@@ -4,63 +4,56 @@
 
 namespace mpm {
 
-bool SchurFactor::append(const Eigen::Ref<const Eigen::VectorXd>& column, double diagonal, double smallest) {
-  if (size_ == lower_.rows())
+SchurFactor::SchurFactor(Eigen::Index capacity)
+    : lower_(capacity, capacity), cosine_(capacity), sine_(capacity) {}
+
+bool SchurFactor::append(const Eigen::Ref<const Eigen::VectorXd>& lower, double left) {
+  if (size_ == lower_.rows() || !(left > 0.0))
     return false;
-  // Row of the factor by forward substitution, kept in the row of the matrix that it becomes.
-  double left = diagonal;
-  for (Eigen::Index j = 0; j < size_; ++j) {
-    double value = column(j);
-    for (Eigen::Index i = 0; i < j; ++i)
-      value -= lower_(size_, i) * lower_(j, i);
-    value /= lower_(j, j);
-    lower_(size_, j) = value;
-    left -= value * value;
-  }
-  if (!(left > smallest * diagonal))
-    return false;
+  lower_.row(size_).head(size_) = lower.head(size_).transpose();
   lower_(size_, size_) = std::sqrt(left);
   ++size_;
   return true;
 }
 
 // Without row k the rows below it have lost the column k: its outer product is given back to the triangle
-// that remains by plane rotations.
+// that remains by plane rotations. A row takes those of the rows above it, one after the other, and then
+// makes its own.
 void SchurFactor::remove(Eigen::Index k) {
-  const Eigen::Index below = size_ - 1 - k;
-  removed_.head(below) = lower_.col(k).segment(k + 1, below);
-  for (Eigen::Index i = k; i + 1 < size_; ++i) {
-    for (Eigen::Index j = 0; j < k; ++j)
-      lower_(i, j) = lower_(i + 1, j);
-    for (Eigen::Index j = k; j <= i; ++j)
-      lower_(i, j) = lower_(i + 1, j + 1);
-  }
   --size_;
-  for (Eigen::Index j = 0; j < below; ++j) {
-    double& pivot = lower_(k + j, k + j);
-    const double length = std::hypot(pivot, removed_(j));
-    const double cosine = pivot / length;
-    const double sine = removed_(j) / length;
-    pivot = length;
-    for (Eigen::Index i = j + 1; i < below; ++i) {
-      double& entry = lower_(k + i, k + j);
-      const double rotated = cosine * entry + sine * removed_(i);
-      removed_(i) = cosine * removed_(i) - sine * entry;
-      entry = rotated;
+  for (Eigen::Index i = k; i < size_; ++i) {
+    const auto below = lower_.row(i + 1);
+    auto row = lower_.row(i);
+    row.head(k) = below.head(k);
+    double removed = below(k);
+    for (Eigen::Index j = k; j < i; ++j) {
+      const double entry = below(j + 1);
+      row(j) = cosine_(j) * entry + sine_(j) * removed;
+      removed = cosine_(j) * removed - sine_(j) * entry;
     }
+    const double pivot = below(i + 1);
+    const double length = std::sqrt(pivot * pivot + removed * removed);
+    row(i) = length;
+    cosine_(i) = pivot / length;
+    sine_(i) = removed / length;
+  }
+}
+
+void SchurFactor::solve_lower(Eigen::Ref<Eigen::VectorXd> b) const {
+  for (Eigen::Index i = 0; i < size_; ++i)
+    b(i) = (b(i) - lower_.row(i).head(i).dot(b.head(i))) / lower_(i, i);
+}
+
+void SchurFactor::solve_upper(Eigen::Ref<Eigen::VectorXd> b) const {
+  for (Eigen::Index i = size_ - 1; i >= 0; --i) {
+    b(i) /= lower_(i, i);
+    b.head(i) -= b(i) * lower_.row(i).head(i).transpose();
   }
 }
 
 void SchurFactor::solve_in_place(Eigen::Ref<Eigen::VectorXd> b) const {
-  for (Eigen::Index j = 0; j < size_; ++j) {
-    b(j) /= lower_(j, j);
-    const Eigen::Index below = size_ - 1 - j;
-    b.segment(j + 1, below) -= b(j) * lower_.col(j).segment(j + 1, below);
-  }
-  for (Eigen::Index j = size_ - 1; j >= 0; --j) {
-    const Eigen::Index below = size_ - 1 - j;
-    b(j) = (b(j) - lower_.col(j).segment(j + 1, below).dot(b.segment(j + 1, below))) / lower_(j, j);
-  }
+  solve_lower(b);
+  solve_upper(b);
 }
 
 }  // namespace mpm

@@ -2,33 +2,37 @@
 
 #include <Eigen/Core>
 
+#include "solvers/qp.hpp"
+
 namespace mpm {
 
-/// Cholesky factor L L' of a symmetric positive definite matrix that grows and shrinks by one row and column:
-/// the Schur complement of the working set of the dual active-set method. All memory is taken at
+/// Cholesky factor S = L L' of a symmetric positive definite matrix that grows and shrinks by one row and
+/// column: the Schur complement of the working set of the dual active-set method. All memory is taken at
 /// construction.
 class SchurFactor {
  public:
   /// For up to `capacity` rows.
-  explicit SchurFactor(Eigen::Index capacity) : lower_(capacity, capacity), removed_(capacity) {}
+  explicit SchurFactor(Eigen::Index capacity);
 
   Eigen::Index size() const { return size_; }
   void clear() { size_ = 0; }
 
-  /// Appends the row (column, diagonal); `column` are its `size()` products with the rows there are. Returns
-  /// false, and appends nothing, when the new row depends on them (what is left of its diagonal is below
-  /// `smallest` times the diagonal) or when there is no room.
-  bool append(const Eigen::Ref<const Eigen::VectorXd>& column, double diagonal, double smallest);
+  /// Appends a row to S, whose products with the rows there are be c and whose diagonal be s: `lower` is
+  /// inv(L) c, as `solve_lower` gives it, and `left` is what that leaves of the diagonal, s - lower' lower.
+  /// Returns false, and appends nothing, when there is no room or nothing left (`left` <= 0, or NaN).
+  bool append(const Eigen::Ref<const Eigen::VectorXd>& lower, double left);
 
   /// Takes out row and column `k`; the later ones move up.
   void remove(Eigen::Index k);
 
-  /// Solves L L' x = b in place for the first `size()` entries.
+  /// inv(L) b, inv(L') b and inv(S) b in place, of the first `size()` numbers.
+  void solve_lower(Eigen::Ref<Eigen::VectorXd> b) const;
+  void solve_upper(Eigen::Ref<Eigen::VectorXd> b) const;
   void solve_in_place(Eigen::Ref<Eigen::VectorXd> b) const;
 
  private:
-  Eigen::MatrixXd lower_;
-  Eigen::VectorXd removed_;
+  RowMajorMatrix lower_;
+  Eigen::VectorXd cosine_, sine_;  ///< of the rotations of `remove`
   Eigen::Index size_ = 0;
 };
 

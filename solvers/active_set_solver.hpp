@@ -63,8 +63,8 @@ class ActiveSetSolver final : public QpSolver {
   bool solve_by_dual(const QpData& data, QpResult& result);
   DualOutcome iterate_dual(const QpData& data, int& iterations);
   void solve_by_newton(const QpData& data, QpResult& result);
-  bool is_certified(const QpData& data, const QpResult& result);
-  void bind(const QpData& data);
+  void bind_costs(const QpData& data);
+  void bind_limits(const QpData& data);
   QpStatus iterate(const QpData& data, int& iterations);
   void set_limits(const QpData& data);
   bool hard_limits_kept(const QpData& data) const;

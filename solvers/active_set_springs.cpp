@@ -1,7 +1,6 @@
 #include "solvers/active_set_springs.hpp"
 
 #include <algorithm>
-#include <bit>
 
 #include "plants/non_finite.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
@@ -18,7 +17,8 @@ LimitSprings::LimitSprings(double sign, const Eigen::VectorXd& k)
       value_{nullptr, LaneVector(sign == 0.0 ? 0 : k.size())},
       step_(value_),
       everywhere_((k.array() > 0.0).all()),
-      stretched_bits_(static_cast<std::size_t>(padded(k.size()) / 8), 0),
+      stretched_bits_(empty_rows(k.size())),
+      none_(stretched_bits_),
       changing_(static_cast<std::size_t>(padded(k.size()))) {
   lower.vector().setConstant(-kInfinity);
   upper.vector().setConstant(kInfinity);
@@ -38,9 +38,7 @@ SpringArrays LimitSprings::arrays() {
 
 void LimitSprings::list_stretched() {
   stretched_rows_.clear();
-  for (std::size_t e = 0; e < stretched_bits_.size(); ++e)
-    for (unsigned left = stretched_bits_[e]; left != 0; left &= left - 1)
-      stretched_rows_.push_back(static_cast<int>(8 * e) + std::countr_zero(left));
+  visit_differences(stretched_bits_, none_, [&](int row) { stretched_rows_.push_back(row); });
 }
 
 void LimitSprings::assign(Numbers& to, const ActiveSetProblem& problem, const LaneVector& rows,
@@ -93,7 +91,7 @@ void LimitSprings::pull_stretched() {
 
 void LimitSprings::release() {
   force.vector().setZero();
-  std::fill(stretched_bits_.begin(), stretched_bits_.end(), static_cast<unsigned char>(0));
+  stretched_bits_ = none_;
   stretched_rows_.clear();
 }
 
@@ -112,12 +110,16 @@ void LimitSprings::advance(double t, bool same) {
   list_stretched();
 }
 
-double LimitSprings::steady_curvature() {
-  double sum = lane_kernels().curvature(arrays());
+double LimitSprings::curvature() {
+  return lane_kernels().curvature(arrays());
+}
+
+double LimitSprings::changing_curvature() const {
+  double sum = 0.0;
   for (std::size_t k = 0; k < changing_count_; ++k)
     if (const int i = changing_[k]; force(i) != 0.0)
-      sum -= stiffness(i) * step_.data[i] * step_.data[i];
-  return std::max(0.0, sum);
+      sum += stiffness(i) * step_.data[i] * step_.data[i];
+  return sum;
 }
 
 void LimitSprings::add_changing(double t, double& first, double& second) const {

@@ -8,6 +8,7 @@
 #include "solvers/active_set_problem.hpp"
 #include "solvers/lanes/lane_kernels.hpp"
 #include "solvers/lanes/lane_vector.hpp"
+#include "solvers/lanes/row_bits.hpp"
 
 namespace mpm {
 
@@ -46,15 +47,15 @@ struct LimitSprings {
   void release();
   /// The stretched springs, in increasing order.
   const std::vector<int>& stretched_rows() const { return stretched_rows_; }
-  /// The same as bits: of eight springs a byte.
-  const std::vector<unsigned char>& stretched_bits() const { return stretched_bits_; }
+  const RowBits& stretched_bits() const { return stretched_bits_; }
 
   /// Finds the springs that a whole step would stretch, release or take to their other end; false when there
   /// is none: then the penalty is one quadratic all along the step.
   bool find_changing();
-  /// Second derivative along the step of the penalty of the springs that do not change, the same all along
-  /// it: a spring that is stretched (or not) at both ends of the step is so in between.
-  double steady_curvature();
+  /// Second derivative of the penalty where the step begins, of all springs and of those that change. The
+  /// others keep theirs all along the step: a spring that is stretched (or not) at both ends is so in between.
+  double curvature();
+  double changing_curvature() const;
   /// Adds, for the changing springs, the derivative of the penalty along the step at t less that at 0, and
   /// the second derivative at t.
   void add_changing(double t, double& first, double& second) const;
@@ -82,7 +83,7 @@ struct LimitSprings {
 
   Numbers value_, step_;
   bool everywhere_;                            ///< every row has a spring
-  std::vector<unsigned char> stretched_bits_;  ///< follow from `force`
+  RowBits stretched_bits_, none_;  ///< what follows from `force`; no row
   std::vector<int> stretched_rows_;
   std::vector<int> changing_;  ///< as long as there are rows, of which the first `changing_count_` count
   std::size_t changing_count_ = 0;

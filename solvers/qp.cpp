@@ -52,13 +52,12 @@ SlackArrays slack_arrays(const QpStructure& structure, const QpResult& result, c
 }
 
 // Without a slack a row has no soft limits.
-void gather_slacks(const QpStructure& structure, const QpResult& result, KktWorkspace& w) {
+void gather_slacks(const QpResult& result, KktWorkspace& w) {
   w.pull.setZero();
-  for (Eigen::Index i = 0; i < structure.row_count(); ++i) {
-    const int q = structure.slack_of_row(i);
-    w.row_slack(i) = q < 0 ? kInfinity : result.slack(q);
+  for (const auto& [first, count, q] : w.runs) {
+    w.row_slack.segment(first, count).setConstant(q < 0 ? kInfinity : result.slack(q));
     if (q >= 0)
-      w.pull(q) += std::abs(result.soft_dual(i));
+      w.pull(q) += result.soft_dual.segment(first, count).lpNorm<1>();
   }
 }
 
@@ -136,6 +135,16 @@ QpResult QpResult::zero(const QpStructure& structure) {
   return result;
 }
 
+std::vector<SlackRun> slack_runs(const QpStructure& structure) {
+  std::vector<SlackRun> runs;
+  for (Eigen::Index i = 0; i < structure.row_count(); ++i)
+    if (runs.empty() || runs.back().slack != structure.slack_of_row(i))
+      runs.push_back({i, 1, structure.slack_of_row(i)});
+    else
+      ++runs.back().count;
+  return runs;
+}
+
 double objective(const QpStructure& structure, const QpData& data, const QpResult& result) {
   double value = 0.0;
   for (Eigen::Index i = 0; i < structure.variable_count(); ++i)
@@ -146,6 +155,7 @@ double objective(const QpStructure& structure, const QpData& data, const QpResul
 KktWorkspace::KktWorkspace(const QpStructure& structure)
     : lanes(std::make_shared<const LaneProgram>(structure.hessian, structure.rows)),
       own_slacks(has_own_slacks(structure)),
+      runs(own_slacks ? std::vector<SlackRun>{} : slack_runs(structure)),
       row_value(structure.row_count()),
       row_dual(structure.row_count()),
       row_slack(own_slacks ? 0 : structure.row_count()),
@@ -167,7 +177,7 @@ double kkt_residual(const QpStructure& structure, const QpData& data, const QpRe
   KktWorkspace& w = workspace;
   w.lanes->multiply_rows(result.x.data(), w.row_value);
   if (!w.own_slacks)
-    gather_slacks(structure, result, w);
+    gather_slacks(result, w);
   w.stationarity.vector() = data.gradient + result.bound_dual;
   w.lanes->add_hessian(result.x.data(), w.stationarity);
   w.row_dual = result.hard_dual + result.soft_dual;

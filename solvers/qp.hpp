@@ -86,6 +86,13 @@ struct QpResult {
   static QpResult zero(const QpStructure& structure);
 };
 
+/// Rows `first` to `first + count - 1`, whose slack is the same (QpStructure::slack_of_row).
+struct SlackRun {
+  Eigen::Index first, count;
+  int slack;
+};
+std::vector<SlackRun> slack_runs(const QpStructure& structure);
+
 /// Objective of (x, s).
 double objective(const QpStructure& structure, const QpData& data, const QpResult& result);
 
@@ -102,6 +109,7 @@ struct KktWorkspace {
 
   std::shared_ptr<const LaneProgram> lanes;
   bool own_slacks;                  ///< every row has a slack of its own, in the order of the rows
+  std::vector<SlackRun> runs;       ///< without own slacks
   LaneVector row_value;             ///< m
   Eigen::VectorXd row_dual;         ///< m
   Eigen::VectorXd row_slack, pull;  ///< without own slacks: the slack of each row, m, and what pushes it, q

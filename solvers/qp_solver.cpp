@@ -49,6 +49,7 @@ QpSolver::QpSolver(std::shared_ptr<const QpStructure> structure) : structure_(st
 
 const QpResult& QpSolver::solve(const QpData& data) {
   data.validate(*structure_);
+  result_.kkt_residual = kInfinity;
   do_solve(data, result_);
   certify(data, result_);
   return result_;
@@ -56,14 +57,18 @@ const QpResult& QpSolver::solve(const QpData& data) {
 
 void QpSolver::certify(const QpData& data, QpResult& result) {
   result.objective = objective(*structure_, data, result);
-  result.kkt_residual = kInfinity;
-  if (result.status != QpStatus::solved)
-    return;
-  const double residual = kkt_residual(*structure_, data, result, *workspace_);
-  if (residual <= kSolvedKktResidual)
-    result.kkt_residual = residual;
-  else
+  if (result.status == QpStatus::solved && !has_residual_below(kSolvedKktResidual, data, result))
     result.status = QpStatus::numerical_error;
+  if (result.status != QpStatus::solved)
+    result.kkt_residual = kInfinity;
+}
+
+bool QpSolver::has_residual_below(double limit, const QpData& data, QpResult& result) {
+  if (result.kkt_residual <= limit)
+    return true;
+  const double residual = kkt_residual(*structure_, data, result, *workspace_);
+  result.kkt_residual = residual <= limit ? residual : kInfinity;
+  return residual <= limit;
 }
 
 const QpResult& QpSolver::solve_from(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& x) {

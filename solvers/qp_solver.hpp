@@ -45,10 +45,13 @@ class QpSolver {
  protected:
   /// The structure for the kernels.
   const std::shared_ptr<const LaneProgram>& lanes() const { return workspace_->lanes; }
-  KktWorkspace& workspace() { return *workspace_; }
+  /// True when the KKT residual of the answer is at most `limit`; it is then kept in `result`, which must no
+  /// longer be changed, and is not computed again.
+  bool has_residual_below(double limit, const QpData& data, QpResult& result);
 
  private:
-  /// Fills status, x, slack, multipliers and iterations of `result`, which holds the previous answer.
+  /// Fills status, x, slack, multipliers and iterations of `result`, which holds the previous answer without
+  /// its residual.
   virtual void do_solve(const QpData& data, QpResult& result) = 0;
   /// Fills objective and KKT residual of `result` from its x, slack and multipliers, and takes `solved` back
   /// where the residual says so. A back end that passes

@@ -83,8 +83,9 @@ struct LaneKernels {
   /// kInverse * size numbers in all. `reciprocal`: of the diagonal of L.
   void (*invert)(const double* lower, long stride, long size, const double* reciprocal, double* inverse);
   static constexpr long kInverse = 16;
-  /// Solves L L' x = b in place, for `size` numbers.
-  void (*solve)(const double* lower, long stride, long size, const double* inverse, double* x);
+  /// inv(L) x and inv(L') x in place, for `size` numbers.
+  void (*solve_lower)(const double* lower, long stride, long size, const double* inverse, double* x);
+  void (*solve_upper)(const double* lower, long stride, long size, const double* inverse, double* x);
 
   double (*dot)(const double* a, const double* b, long size);  ///< `size` a multiple of 8
 
@@ -117,6 +118,9 @@ struct LaneKernels {
 
   /// The largest distance of a value beyond its limits, and 0 at least.
   double (*violation)(const LimitArrays& limits);
+  /// The first row whose value is beyond its limits most, if that is by more than `most`, which it becomes;
+  /// -1 when there is none.
+  long (*most_violated)(const LimitArrays& limits, double* most);
   /// The largest |dual| times distance to its limit, the upper one of a positive and the lower one of a
   /// negative dual. At an absent limit nothing may push: |dual|.
   double (*complementarity)(const LimitArrays& limits);

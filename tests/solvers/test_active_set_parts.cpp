@@ -6,7 +6,9 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
+#include "plants/non_finite.hpp"
 #include "solvers/active_set_certificate.hpp"
+#include "solvers/active_set_correction.hpp"
 #include "solvers/active_set_curvature.hpp"
 #include "solvers/active_set_factor.hpp"
 #include "solvers/active_set_problem.hpp"
@@ -55,7 +57,11 @@ TEST_CASE("the factor of a principal submatrix solves with it", "[active-set]") 
   REQUIRE(factor.compute(lane_matrix(matrix), free));
   const Eigen::VectorXd right = random_matrix(13, 1, 2);
   LaneVector solution(right);
-  factor.solve_in_place(solution);
+  LaneVector packed(13);
+  factor.pack(solution, packed.data());
+  factor.solve_lower(packed.data());
+  factor.solve_upper(packed.data());
+  factor.unpack(packed.data(), solution);
 
   const Eigen::VectorXd x = solution.vector();
   const Eigen::VectorXd expected = matrix(free, free).llt().solve(right(free));
@@ -79,8 +85,9 @@ TEST_CASE("a Schur factor grows and shrinks", "[active-set]") {
   std::vector<int> present;
   SchurFactor factor(9);
   const auto append = [&](int j) {
-    const Eigen::VectorXd column = matrix.col(j)(present);
-    REQUIRE(factor.append(column, matrix(j, j), 1e-12));
+    Eigen::VectorXd column = matrix.col(j)(present);
+    factor.solve_lower(column);
+    REQUIRE(factor.append(column, matrix(j, j) - column.squaredNorm()));
     present.push_back(j);
   };
   const auto remove = [&](std::size_t k) {
@@ -100,12 +107,13 @@ TEST_CASE("a Schur factor grows and shrinks", "[active-set]") {
   CHECK((matrix(present, present) * x - right).norm() <= kRounding);
 }
 
-TEST_CASE("a Schur factor refuses a dependent row and a row too many", "[active-set]") {
+TEST_CASE("a Schur factor refuses a row of which nothing is left, and a row too many", "[active-set]") {
   SchurFactor factor(2);
-  REQUIRE(factor.append(Eigen::VectorXd(0), 4.0, 1e-12));
-  CHECK_FALSE(factor.append(vec(6), 9.0, 1e-12));  // the normal of row 1 times 3/2
-  REQUIRE(factor.append(vec(0), 1.0, 1e-12));
-  CHECK_FALSE(factor.append(vec(0, 0), 1.0, 1e-12));
+  REQUIRE(factor.append(Eigen::VectorXd(0), 4.0));
+  CHECK_FALSE(factor.append(vec(3), 0.0));
+  CHECK_FALSE(factor.append(vec(3), kNaN));
+  REQUIRE(factor.append(vec(0), 1.0));
+  CHECK_FALSE(factor.append(vec(0, 0), 1.0));
   CHECK(factor.size() == 2);
 }
 
@@ -127,6 +135,7 @@ TEST_CASE("the curvature follows the springs", "[active-set]") {
   ActiveSetCurvature curvature(problem, families.size());
 
   std::mt19937 generator(8);
+  int corrections = 0;
   for (int round = 0; round < 20; ++round) {
     Eigen::MatrixXd expected = problem.quadratic;
     for (LimitSprings& springs : families) {
@@ -145,11 +154,85 @@ TEST_CASE("the curvature follows the springs", "[active-set]") {
       springs.place(problem, value, LaneVector(6));
       springs.pull();
     }
+    std::vector<SpringChange> changes;
+    const bool few = curvature.find_few(families, changes);
+    Eigen::MatrixXd corrected = Eigen::MatrixXd::Zero(6, 6);
+    for (Eigen::Index j = 0; j < 6; ++j)
+      corrected.col(j).tail(6 - j) = Eigen::Map<const Eigen::VectorXd>(curvature.matrix().column(j) + j, 6 - j);
+    for (const SpringChange& change : changes) {
+      LaneVector normal(6);
+      problem.write_normal(change.row, change.slack_sign, normal);
+      corrected += change.weight * normal.vector() * normal.vector().transpose();
+    }
+    if (few) {
+      ++corrections;
+      corrected.triangularView<Eigen::StrictlyUpper>() = expected;
+      CHECK((corrected - expected).norm() <= kRounding * expected.norm());
+    }
     curvature.synchronise(families);
     CHECK_FALSE(curvature.synchronise(families));
+    CHECK((curvature.find_few(families, changes) && changes.empty()));
     for (Eigen::Index j = 0; j < 6; ++j)
       for (Eigen::Index i = j; i < 6; ++i)
         CHECK(std::abs(curvature.matrix()(i, j) - expected(i, j)) <= kRounding * expected.norm());
+  }
+  CHECK(corrections > 5);
+}
+
+TEST_CASE("a factor is corrected for a few springs", "[active-set]") {
+  constexpr int kRows = 12;
+  const Eigen::MatrixXd hessian = random_definite(9, 11);
+  const Eigen::MatrixXd rows = random_matrix(kRows, 9, 12);
+  QpBuilder builder("correction", hessian, Eigen::VectorXd::Zero(9));
+  builder.slack(2.5, 0.5);  // shared: kept as variable 9
+  for (int i = 0; i < kRows; ++i)
+    builder.soft(rows.row(i), 0, -1, 1);
+  const samples::NamedQp qp = builder.build();
+  const ActiveSetProblem problem(*qp.structure);
+  const std::vector<int> free{0, 1, 3, 4, 6, 7, 8, 9};
+  const Eigen::VectorXd right = random_matrix(10, 1, 13);
+  const auto normal = [&](int row) {
+    Eigen::VectorXd result(10);
+    result << rows.row(row).transpose(), 1.0;
+    return result;
+  };
+
+  // What the factor has: rows 0 to 5 with the stiffness 3.
+  Eigen::MatrixXd present = problem.quadratic;
+  for (int i = 0; i < 6; ++i)
+    present += 3.0 * normal(i) * normal(i).transpose();
+  ActiveSetFactor factor(10);
+  REQUIRE(factor.compute(lane_matrix(present), free));
+  ActiveSetCorrection correction(problem, factor);
+
+  // One call after the other, so that columns stay, come and go.
+  for (const std::vector<int>& changed :
+       {std::vector<int>{}, {7}, {1, 7, 9}, {1, 4, 9, 11}, {0, 1, 2, 3, 6, 7, 8, 9}, {5}, {}, {2, 10}}) {
+    std::vector<SpringChange> changes;
+    Eigen::MatrixXd wanted = present;
+    for (const int row : changed) {
+      changes.push_back({row, 1.0, row < 6 ? -3.0 : 3.0});
+      wanted += changes.back().weight * normal(row) * normal(row).transpose();
+    }
+    REQUIRE(correction.assign(changes));
+    LaneVector x(right);
+    correction.solve_in_place(x);
+    const Eigen::VectorXd solution = x.vector();
+    const Eigen::VectorXd expected = wanted(free, free).llt().solve(right(free));
+    CHECK((solution(free) - expected).norm() <= kRounding);
+    CHECK(solution(2) == right(2));
+  }
+
+  // More than it takes, and a matrix that would not be definite: then the factor is as it was.
+  std::vector<SpringChange> many;
+  for (int row = 0; row < 9; ++row)
+    many.push_back({row, 1.0, row < 6 ? -3.0 : 3.0});
+  for (const std::vector<SpringChange>& refused : {many, {{7, 1.0, -1e3}}}) {
+    CHECK_FALSE(correction.assign(refused));
+    LaneVector x(right);
+    correction.solve_in_place(x);
+    const Eigen::VectorXd solution = x.vector();
+    CHECK((solution(free) - present(free, free).llt().solve(right(free))).norm() <= kRounding);
   }
 }
 

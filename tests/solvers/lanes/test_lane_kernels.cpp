@@ -310,7 +310,9 @@ TEST_CASE("outer products, factor and solution are those of Eigen, with the same
     LaneVector inverse(LaneKernels::kInverse * stride);
     LaneVector x = right;
     REQUIRE(kernels->factor(matrix.data(), stride, stride, 1e-15, factor.data(), inverse.data()));
-    kernels->solve(factor.data(), stride, stride, inverse.data(), x.data());
+    kernels->solve_lower(factor.data(), stride, stride, inverse.data(), x.data());
+    CHECK((x.vector() - expected.llt().matrixL().solve(right.vector())).norm() <= kSumRounding);
+    kernels->solve_upper(factor.data(), stride, stride, inverse.data(), x.data());
     CHECK((x.vector() - expected.llt().solve(right.vector())).norm() <= kSumRounding);
     solutions.add(x.vector());
 
@@ -447,13 +449,23 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
     for (const LimitArrays& some : {limits, widened}) {
       double violation = 0.0;
       double complementarity = 0.0;
+      long farthest = -1;
       for (Eigen::Index i = 0; i < m; ++i) {
         const double wider = some.slack == nullptr ? 0.0 : slack(i);
-        violation = std::max({violation, lower(i) - wider - value(i), value(i) - (upper(i) + wider)});
+        const double excess = std::max(lower(i) - wider - value(i), value(i) - (upper(i) + wider));
+        if (excess > violation) {
+          violation = excess;
+          farthest = i;
+        }
         const double limit = force(i) > 0.0 ? upper(i) + wider : lower(i) - wider;
         complementarity = std::max(complementarity, std::abs(force(i) * (limit - value(i))));
       }
       CHECK(kernels->violation(some) == violation);
+      double most = 0.0;
+      CHECK(kernels->most_violated(some, &most) == farthest);
+      CHECK(most == violation);
+      CHECK(kernels->most_violated(some, &most) == -1);  // none is farther
+      CHECK(most == violation);
       CHECK(kernels->complementarity(some) == complementarity);
       const double pushed = force(0);
       force(0) = -2.0;  // pushes at a limit that is not there
