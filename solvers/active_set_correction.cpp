@@ -8,9 +8,9 @@
 namespace mpm {
 namespace {
 
-// Of a diagonal of inv(D) + W'W, after elimination: less has lost too many digits for a step of Newton's method
-// that should end at the minimiser.
-constexpr double kSmallestPivot = 1e-6;
+// Of a diagonal of inv(D) + W'W, after elimination: less has lost too many digits for a step of Newton's
+// method that should end at the minimiser.
+constexpr double kSmallestLeft = 1e-6;
 
 }  // namespace
 
@@ -70,8 +70,8 @@ void ActiveSetCorrection::add(const SpringChange& change) {
   changes_.push_back(change);
 }
 
-// inv(D) + W'W is quasidefinite: with a positive definite M_FF + B D B' every pivot has the sign of its weight,
-// in any order.
+// inv(D) + W'W is quasidefinite: with a positive definite M_FF + B D B' every pivot has the sign of its
+// weight, in any order.
 bool ActiveSetCorrection::factor_small() {
   const auto count = static_cast<Eigen::Index>(changes_.size());
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -86,7 +86,7 @@ bool ActiveSetCorrection::factor_small() {
       pivot -= left[j] * lower_(k, j);
     }
     const double size = std::abs(inverse) + gram_(k, k);
-    if (!(pivot * inverse > 0.0 && std::abs(pivot) > kSmallestPivot * size))
+    if (!(pivot * inverse > 0.0 && std::abs(pivot) > kSmallestLeft * size))
       return false;
     lower_(k, k) = 1.0 / pivot;
   }

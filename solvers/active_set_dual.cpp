@@ -189,7 +189,8 @@ bool DualActiveSet::find_violated(const QpData& data, double tolerance, LimitSid
     largest = excess;
     worst = {kind, i, above >= below ? 1.0 : -1.0};
   };
-  // The kernel says which row is beyond its limits most; when it is one of the working set, all are looked at.
+  // The kernel says which row is beyond its limits most; when it is one of the working set, all are looked
+  // at.
   const auto look_at_rows = [&](const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
                                 const double* slack, const auto& look_at) {
     double most = largest;

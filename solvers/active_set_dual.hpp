@@ -20,8 +20,8 @@ enum class DualOutcome { solved, infeasible, failed };
 /// It meets one limit after another, and leaves one when its multiplier reaches zero. Nearly parallel limits,
 /// which the method of multipliers separates slowly, cost it nothing; its work grows with the square of the
 /// number of active limits. The Schur complement depends on the working set only, so that its factor is kept
-/// from one program to the next. Where Q is only semidefinite, it has the proximal term 1/2 sigma_j z_j^2 beside
-/// it, whose centre the caller moves. `solve` allocates nothing.
+/// from one program to the next. Where Q is only semidefinite, it has the proximal term 1/2 sigma_j z_j^2
+/// beside it, whose centre the caller moves. `solve` allocates nothing.
 class DualActiveSet {
  public:
   explicit DualActiveSet(const ActiveSetProblem& problem);

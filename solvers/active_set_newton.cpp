@@ -19,7 +19,10 @@ constexpr double kSlopeLeft = 0.1;  // at the end of the line search, relative t
 }  // namespace
 
 ActiveSetNewton::ActiveSetNewton(const ActiveSetProblem& problem, std::size_t family_count)
-    : problem_(problem), curvature_(problem, family_count), factor_(problem.variable_count()), correction_(problem, factor_) {
+    : problem_(problem),
+      curvature_(problem, family_count),
+      factor_(problem.variable_count()),
+      correction_(problem, factor_) {
   const Eigen::Index size = problem.variable_count();
   const Eigen::Index rows = problem.structure->row_count();
   for (LaneVector* vector :
@@ -111,8 +114,11 @@ NewtonOutcome ActiveSetNewton::minimise(std::vector<LimitSprings>& families, dou
   bool same = false;
   for (int round = 0;; ++round) {
     find_gradient(families);
-    if (find_free() <= tolerance)
+    const double largest = find_free();
+    if (largest <= tolerance)
       return NewtonOutcome::converged;
+    if (std::isinf(largest))
+      return NewtonOutcome::singular;
     if (iterations >= limit)
       return NewtonOutcome::iteration_limit;
     ++iterations;
@@ -160,7 +166,7 @@ void ActiveSetNewton::add_row_forces(const LimitSprings& springs) {
       gradient(column) += springs.slack_sign * springs.force(i);
 }
 
-// The variables that may move; returns the largest gradient among them.
+// The variables that may move; returns the largest gradient among them, infinite when one is not a number.
 double ActiveSetNewton::find_free() {
   next_free_.clear();
   double largest = 0.0;
@@ -168,7 +174,8 @@ double ActiveSetNewton::find_free() {
     if (held(j))
       continue;
     next_free_.push_back(static_cast<int>(j));
-    largest = std::max(largest, std::abs(gradient(j)));
+    const double size = std::abs(gradient(j));
+    largest = std::isnan(size) ? kInfinity : std::max(largest, size);
   }
   return largest;
 }
@@ -264,8 +271,8 @@ void ActiveSetNewton::aim_springs(std::vector<LimitSprings>& families) {
       springs.aim(problem_, row_step_, step_);
 }
 
-// Second derivative of theta along the step, without the springs that change. Newton's step p solves M p = -g,
-// so that p'Mp is the slope with the other sign.
+// Second derivative of theta along the step, without the springs that change. Newton's step p solves M p =
+// -g, so that p'Mp is the slope with the other sign.
 double ActiveSetNewton::steady_curvature(std::vector<LimitSprings>& families, double slope) {
   double result = newton_step_ ? -slope : whole_curvature(families);
   for (const LimitSprings& springs : families)

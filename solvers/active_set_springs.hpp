@@ -41,7 +41,8 @@ struct LimitSprings {
 
   /// Sets `force` from v.
   void pull();
-  /// The force of the springs that are stretched, at the same ends, as if they could push, too.
+  /// The force of the springs that are stretched, at the same ends, as if they could push, too; none where the
+  /// limit is no more.
   void pull_stretched();
   /// Force zero, wherever the springs are.
   void release();
@@ -53,7 +54,8 @@ struct LimitSprings {
   /// is none: then the penalty is one quadratic all along the step.
   bool find_changing();
   /// Second derivative of the penalty where the step begins, of all springs and of those that change. The
-  /// others keep theirs all along the step: a spring that is stretched (or not) at both ends is so in between.
+  /// others keep theirs all along the step: a spring that is stretched (or not) at both ends is so in
+  /// between.
   double curvature();
   double changing_curvature() const;
   /// Adds, for the changing springs, the derivative of the penalty along the step at t less that at 0, and
@@ -82,7 +84,7 @@ struct LimitSprings {
   void list_stretched();
 
   Numbers value_, step_;
-  bool everywhere_;                            ///< every row has a spring
+  bool everywhere_;                ///< every row has a spring
   RowBits stretched_bits_, none_;  ///< what follows from `force`; no row
   std::vector<int> stretched_rows_;
   std::vector<int> changing_;  ///< as long as there are rows, of which the first `changing_count_` count

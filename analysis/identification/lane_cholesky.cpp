@@ -35,7 +35,8 @@ double LaneCholesky::least_pivot() const {
 Eigen::VectorXd LaneCholesky::solve(const Eigen::Ref<const Eigen::VectorXd>& b) {
   Eigen::Map<Eigen::VectorXd> x(x_.data(), x_.size());
   x << b, Eigen::VectorXd::Zero(x.size() - n_);
-  lane_kernels().solve(lower_.data(), lower_.stride(), lower_.stride(), inverse_.data(), x_.data());
+  lane_kernels().solve_lower(lower_.data(), lower_.stride(), lower_.stride(), inverse_.data(), x_.data());
+  lane_kernels().solve_upper(lower_.data(), lower_.stride(), lower_.stride(), inverse_.data(), x_.data());
   return x.head(n_);
 }
 

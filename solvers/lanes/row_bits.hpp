@@ -9,7 +9,8 @@
 
 namespace mpm {
 
-/// A set of rows: one bit a row, eight rows a byte, the first in the lowest bit; zeros up to a multiple of 64.
+/// A set of rows: one bit a row, eight rows a byte, the first in the lowest bit; zeros up to a multiple
+/// of 64.
 using RowBits = std::vector<unsigned char>;
 
 inline RowBits empty_rows(Eigen::Index row_count) {
@@ -43,7 +44,8 @@ void visit_differences(const RowBits& a, const RowBits& b, const Visit& visit) {
 /// How many these are.
 inline std::size_t count_differences(const RowBits& a, const RowBits& b) {
   std::size_t count = 0;
-  visit_bytes(a, b, [&](std::size_t, unsigned bits) { count += static_cast<std::size_t>(std::popcount(bits)); });
+  visit_bytes(a, b,
+              [&](std::size_t, unsigned bits) { count += static_cast<std::size_t>(std::popcount(bits)); });
   return count;
 }
 

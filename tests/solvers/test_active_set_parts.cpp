@@ -158,7 +158,8 @@ TEST_CASE("the curvature follows the springs", "[active-set]") {
     const bool few = curvature.find_few(families, changes);
     Eigen::MatrixXd corrected = Eigen::MatrixXd::Zero(6, 6);
     for (Eigen::Index j = 0; j < 6; ++j)
-      corrected.col(j).tail(6 - j) = Eigen::Map<const Eigen::VectorXd>(curvature.matrix().column(j) + j, 6 - j);
+      corrected.col(j).tail(6 - j) =
+          Eigen::Map<const Eigen::VectorXd>(curvature.matrix().column(j) + j, 6 - j);
     for (const SpringChange& change : changes) {
       LaneVector normal(6);
       problem.write_normal(change.row, change.slack_sign, normal);

@@ -3,16 +3,21 @@
 #include <catch2/catch.hpp>
 
 #include "plants/catalogue.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/ipopt_solver.hpp"
 #include "solvers/mpc_qp.hpp"
 #include "tests/plants/allocation_counter.hpp"
 #include "tests/solvers/p1_controller.hpp"
+#include "tests/solvers/qp_builder.hpp"
 
 // The active-set back end on sequences of the QP of P1, as a controller meets them.
 
 namespace mpm {
 namespace {
+
+using samples::QpBuilder;
+using samples::vec;
 
 constexpr Eigen::Index kMvs = 3;
 
@@ -79,6 +84,24 @@ TEST_CASE("a warm start changes the work, not the answer", "[active-set]") {
     cold_iterations += expected.iterations;
   }
   CHECK(warm_iterations < cold_iterations);
+}
+
+TEST_CASE("a limit that pushes may be gone in the next program", "[active-set]") {
+  QpBuilder builder("vanishing", Eigen::Matrix2d::Identity(), vec(-3, -2));
+  builder.slack(5.0, 0.0).soft(vec(1, 0.5), 0, -1, 1);
+  const samples::NamedQp qp = builder.build();
+  ActiveSetSolver solver(qp.structure, ActiveSetOptions{});
+  REQUIRE(solver.solve(qp.data).status == QpStatus::solved);
+  REQUIRE(solver.result().soft_dual(0) > 0.0);
+
+  QpData without = qp.data;
+  without.soft_upper(0) = kInfinity;
+  for (const QpData& data : {without, qp.data, without}) {
+    const QpResult& result = solver.solve(data);
+    ActiveSetSolver fresh(qp.structure, ActiveSetOptions{});
+    REQUIRE(result.status == QpStatus::solved);
+    CHECK((result.x - fresh.solve(data).x).norm() <= 1e-12);  // two variables: a few roundings
+  }
 }
 
 TEST_CASE("the active-set answers on P1 are those of Ipopt", "[active-set]") {

@@ -439,6 +439,12 @@ TEST_CASE("springs and residuals are the same from all kernels", "[lanes]") {
     within.add(force.vector());
     kernels->pull_stretched(springs);
     stretched_again.add(force.vector());
+    LaneVector nowhere(m);
+    nowhere.vector().setConstant(kInfinity);
+    SpringArrays free = springs;
+    free.lower = free.upper = nowhere.data();
+    kernels->pull_stretched(free);
+    CHECK(force.vector().isZero(0.0));
     advance(0.25);
     kernels->pull(springs);
     pulled_again.add(force.vector());
