@@ -21,10 +21,6 @@ namespace {
 
 constexpr std::uint64_t kMostExperiments = 1'000'000'000;  // what indices of experiments are counted up to
 
-}  // namespace
-
-namespace {
-
 /// A word that is there.
 CLI::Validator word_that_is(const std::string& allowed) {
   return {[allowed](const std::string& word) {
