@@ -59,11 +59,22 @@ ExperimentOutcome read_outcome(const std::string& bytes, const OutcomeBytes& for
   }
 }
 
-/// Calls read(reader, seconds), the reader being at the first outcome, and returns what it does; none for a
-/// shard that is damaged. Errors: as read_shard().
+/// What `read` reads of a whole shard. Throws InputError when it cannot.
 template <class Read>
-auto read_whole(const std::filesystem::path& path, const ShardIdentity& identity, const Read& read)
-    -> std::optional<decltype(read(std::declval<ByteReader&>(), std::size_t{}, 0.0))> {
+auto readable(const std::filesystem::path& path, const Read& read) {
+  try {
+    return read();
+  } catch (const std::runtime_error& error) {
+    throw InputError(path.string(), fmt::format("a whole shard with unreadable content ({})", error.what()),
+                     "what mpmbench writes; or --discard to start anew");
+  }
+}
+
+/// Gives next(reader, file size) for each outcome, the reader being at it, and returns the seconds; none for
+/// a shard that is damaged. Errors: as read_shard().
+template <class Next, class Give>
+std::optional<double> read_whole(const std::filesystem::path& path, const ShardIdentity& identity,
+                                 const Next& next, const Give& give) {
   std::ifstream file(path, std::ios::binary);
   if (std::error_code no_status; !file && !std::filesystem::exists(path, no_status))
     throw ShardGone(path);
@@ -74,16 +85,16 @@ auto read_whole(const std::filesystem::path& path, const ShardIdentity& identity
   if (!content->starts_with(kFileType))
     throw InputError(path.string(), "a whole file of another type", "a shard of mpmbench");
   ByteReader reader(content->substr(kFileType.size()));
-  try {
+  const double seconds = readable(path, [&] {
     require_version(reader, path.string());
     require_same(read_identity(reader), identity, path.string());
-    double seconds = 0.0;
-    transfer(reader, seconds);
-    return read(reader, content->size(), seconds);
-  } catch (const std::runtime_error& error) {
-    throw InputError(path.string(), fmt::format("a whole shard with unreadable content ({})", error.what()),
-                     "what mpmbench writes; or --discard to start anew");
-  }
+    double taken = 0.0;
+    transfer(reader, taken);
+    return taken;
+  });
+  while (reader.left() > 0)
+    give(readable(path, [&] { return next(reader, content->size()); }));
+  return seconds;
 }
 
 }  // namespace
@@ -106,31 +117,29 @@ void ShardBytes::write(const std::filesystem::path& path, const ShardIdentity& i
   outcomes_.clear();
 }
 
-std::optional<Shard> read_shard(const std::filesystem::path& path, const ShardIdentity& identity,
-                                const OutcomeBytes& format) {
-  return read_whole(path, identity, [&](ByteReader& reader, std::size_t, double seconds) {
-    Shard shard{seconds, {}};
-    std::string bytes;
-    while (reader.left() > 0) {
-      transfer(reader, bytes);
-      shard.outcomes.push_back(read_outcome(bytes, format, shard.outcomes.size()));
-    }
-    return shard;
-  });
+std::optional<double> read_shard(const std::filesystem::path& path, const ShardIdentity& identity,
+                                 const OutcomeBytes& format,
+                                 const std::function<void(ExperimentOutcome)>& take) {
+  std::string bytes;
+  std::size_t number = 0;
+  const auto next = [&](ByteReader& reader, std::size_t) {
+    transfer(reader, bytes);
+    return read_outcome(bytes, format, number++);
+  };
+  return read_whole(path, identity, next, take);
 }
 
 std::optional<std::vector<OutcomePlace>> outcome_places(const std::filesystem::path& path,
                                                         const ShardIdentity& identity) {
-  return read_whole(path, identity, [](ByteReader& reader, std::size_t file_size, double) {
-    std::vector<OutcomePlace> places;
-    std::string bytes;
-    while (reader.left() > 0) {
-      transfer(reader, bytes);
-      places.push_back({OutcomeBytes::index_of(bytes), file_size - reader.left() - bytes.size(),
-                        static_cast<std::uint32_t>(bytes.size())});
-    }
-    return places;
-  });
+  std::vector<OutcomePlace> places;
+  std::string bytes;
+  const auto next = [&](ByteReader& reader, std::size_t file_size) {
+    transfer(reader, bytes);
+    return OutcomePlace{OutcomeBytes::index_of(bytes), file_size - reader.left() - bytes.size(),
+                        static_cast<std::uint32_t>(bytes.size())};
+  };
+  const auto give = [&places](const OutcomePlace& place) { places.push_back(place); };
+  return read_whole(path, identity, next, give) ? std::optional(std::move(places)) : std::nullopt;
 }
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,16 +16,11 @@ namespace mpm {
 /// Version of the format of a shard; a reader knows its own only.
 inline constexpr std::int32_t kShardVersion = 2;
 
-/// Finished experiments of a run that is not (docs/resume.md).
-struct Shard {
-  double seconds = 0.0;  ///< wall-clock time that they took
-  std::vector<ExperimentOutcome> outcomes;
-};
-
-/// Collects the bytes of a shard. The format: "mpmbench shard" and a line end, version, identity, seconds,
-/// the outcomes to the end, all as results/files/byte_stream writes them, and the seal of results/file_seal.
-/// Bytes and not HDF5, because the reader is the program that wrote them: every number keeps its bits, and
-/// there is no second description of a record that could differ from the first.
+/// Collects the bytes of a shard, finished experiments of a run that is not (docs/resume.md). The format:
+/// "mpmbench shard" and a line end, version, identity, seconds, the outcomes to the end, all as
+/// results/files/byte_stream writes them, and the seal of results/file_seal. Bytes and not HDF5, because the
+/// reader is the program that wrote them: every number keeps its bits, and there is no second description of
+/// a record that could differ from the first.
 class ShardBytes {
  public:
   /// One more outcome, as OutcomeBytes has it.
@@ -47,11 +43,13 @@ class ShardGone : public ArchiveError {
   explicit ShardGone(const std::filesystem::path& shard);
 };
 
-/// Reads a shard; none when it is cut off or damaged (its checksum does not fit) or cannot be read. Throws
-/// InputError for a whole file that is no shard of this format version and identity, or whose content cannot
-/// be read although its checksum fits, and ShardGone.
-std::optional<Shard> read_shard(const std::filesystem::path& path, const ShardIdentity& identity,
-                                const OutcomeBytes& format);
+/// Gives the outcomes in a shard one after the other, and returns the wall-clock time that they took, in s;
+/// none, and nothing is given, when it is cut off or damaged (its checksum does not fit) or cannot be read.
+/// Throws InputError for a whole file that is no shard of this format version and identity, or whose content
+/// cannot be read although its checksum fits, and ShardGone.
+std::optional<double> read_shard(const std::filesystem::path& path, const ShardIdentity& identity,
+                                 const OutcomeBytes& format,
+                                 const std::function<void(ExperimentOutcome)>& take);
 
 /// Where in a shard the bytes of an outcome are.
 struct OutcomePlace {

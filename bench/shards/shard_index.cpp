@@ -17,7 +17,6 @@
 namespace mpm {
 namespace {
 
-constexpr std::int32_t kNoShard = -1;
 constexpr std::size_t kMostOpen = 256;  // shards at once
 
 [[noreturn]] void refuse_changed(const std::filesystem::path& shard) {
@@ -34,82 +33,116 @@ class ShardIndex::Reader {
   explicit Reader(const ShardSet& set) : set_(set) {}
 
   ExperimentOutcome read(const Place& place) {
-    bytes_.resize(place.size);
+    bytes_.resize(place.outcome.size);
     std::ifstream& file = opened(place.shard);
-    file.seekg(static_cast<std::streamoff>(place.begin));
+    file.seekg(static_cast<std::streamoff>(place.outcome.begin));
     file.read(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
     if (!file)
       refuse_changed(path(place));
     return set_.format().from_bytes(bytes_);
   }
 
-  const std::filesystem::path& path(const Place& place) const {
-    return set_.shards()[static_cast<std::size_t>(place.shard)];
-  }
+  const std::filesystem::path& path(const Place& place) const { return set_.shards()[place.shard]; }
 
  private:
-  std::ifstream& opened(std::int32_t shard) {
+  std::ifstream& opened(std::size_t shard) {
     if (const auto found = files_.find(shard); found != files_.end())
       return found->second;
     if (files_.size() == kMostOpen)
       files_.clear();
-    std::ifstream file(set_.shards()[static_cast<std::size_t>(shard)], std::ios::binary);
+    std::ifstream file(set_.shards()[shard], std::ios::binary);
     return files_.emplace(shard, std::move(file)).first->second;
   }
 
   const ShardSet& set_;
-  std::map<std::int32_t, std::ifstream> files_;
+  std::map<std::size_t, std::ifstream> files_;
   std::string bytes_;
 };
 
-ShardIndex::ShardIndex(const ShardSet& set) : set_(set), places_(set.count(), {kNoShard, 0, 0}) {
-  find_places();
+ShardIndex::ShardIndex(const ShardSet& set) : set_(set) {
+  for (std::size_t shard = 0; shard < set_.shards().size(); ++shard)
+    if (const std::vector<OutcomePlace> places = places_in(shard); !places.empty())
+      starts_.push_back({places.front().index, shard});
+  std::sort(starts_.begin(), starts_.end());
   compare_repeated();
 }
 
-void ShardIndex::find_places() {
-  for (std::size_t shard = 0; shard < set_.shards().size(); ++shard) {
-    const std::optional<std::vector<OutcomePlace>> outcomes =
-        outcome_places(set_.shards()[shard], set_.identity());
-    if (!outcomes)
-      refuse_changed(set_.shards()[shard]);
-    for (const OutcomePlace& outcome : *outcomes) {
-      const Place place{static_cast<std::int32_t>(shard), outcome.size, outcome.begin};
-      Place& first = places_.at(static_cast<std::size_t>(outcome.index));
-      if (first.shard == kNoShard)
+/// In the order of their index.
+std::vector<OutcomePlace> ShardIndex::places_in(std::size_t shard) const {
+  std::optional<std::vector<OutcomePlace>> places = outcome_places(set_.shards()[shard], set_.identity());
+  if (!places)
+    refuse_changed(set_.shards()[shard]);
+  std::stable_sort(places->begin(), places->end(), [](const OutcomePlace& one, const OutcomePlace& other) {
+    return one.index < other.index;
+  });
+  return *std::move(places);
+}
+
+/// Calls take(place, first) in the order of the index, and where several shards have an experiment in their
+/// order; `first` is then the place in the first of these, null there.
+template <class Take>
+void ShardIndex::sweep(const Take& take) const {
+  struct Open {
+    std::size_t shard;
+    std::vector<OutcomePlace> places;
+    std::size_t next = 0;
+
+    Key key() const { return {places[next].index, shard}; }
+  };
+  const auto later = [](const Open& one, const Open& other) { return one.key() > other.key(); };
+  std::vector<Open> open;  // a heap, the earliest one in front
+  std::optional<Place> first;
+  auto start = starts_.begin();
+  while (start != starts_.end() || !open.empty()) {
+    if (start != starts_.end() && (open.empty() || *start < open.front().key())) {
+      const std::size_t shard = start++->second;
+      if (open.emplace_back(Open{shard, places_in(shard)}).places.empty())
+        refuse_changed(set_.shards()[shard]);
+    } else {
+      std::pop_heap(open.begin(), open.end(), later);
+      Open& earliest = open.back();
+      const Place place{earliest.shard, earliest.places[earliest.next]};
+      const bool again = first && first->outcome.index == place.outcome.index;
+      if (!again)
         first = place;
-      else
-        repeated_.push_back(place);
+      take(place, again ? &*first : nullptr);
+      if (++earliest.next == earliest.places.size()) {
+        open.pop_back();
+        continue;
+      }
     }
+    std::push_heap(open.begin(), open.end(), later);
   }
 }
 
 void ShardIndex::compare_repeated() const {
   Reader reader(set_);
-  for (const Place& place : repeated_) {
-    const ExperimentOutcome again = reader.read(place);
-    const std::int64_t index = again.record.draw.index;
-    const Place& first = places_[static_cast<std::size_t>(index)];
-    const std::vector<std::string> names = set_.format().differences(reader.read(first), again);
+  sweep([&](const Place& place, const Place* first) {
+    if (first == nullptr)
+      return;
+    const std::vector<std::string> names = set_.format().differences(reader.read(*first), reader.read(place));
     if (!names.empty())
       throw InputError(
-          fmt::format("{}: experiment {}", reader.path(place).string(), index),
-          fmt::format("another {} than in {}", fmt::join(names, ", "), reader.path(first).string()),
+          fmt::format("{}: experiment {}", reader.path(place).string(), place.outcome.index),
+          fmt::format("another {} than in {}", fmt::join(names, ", "), reader.path(*first).string()),
           "the same, bit for bit: they were run by one build on processors of one kind");
-  }
+  });
 }
 
 void ShardIndex::each(const Visit& visit) const {
   Reader reader(set_);
-  for (const Place& place : places_)
-    if (place.shard != kNoShard)
+  sweep([&](const Place& place, const Place* first) {
+    if (first == nullptr)
       visit(reader.read(place));
+  });
 }
 
 void ShardIndex::each_repeated(const Visit& visit) const {
   Reader reader(set_);
-  for (const Place& place : repeated_)
-    visit(reader.read(place));
+  sweep([&](const Place& place, const Place* first) {
+    if (first != nullptr)
+      visit(reader.read(place));
+  });
 }
 
 }  // namespace mpm

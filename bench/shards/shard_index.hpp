@@ -3,14 +3,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
+#include "bench/shards/shard.hpp"
 #include "bench/shards/shard_set.hpp"
 
 namespace mpm {
 
 /// The outcomes in the shards of a campaign, in the order of their index. They are read one at a time
-/// whenever they are asked for, so that only their places are in memory, 16 bytes an experiment.
+/// whenever they are asked for, and shards one after the other, so that of each one only its first index is
+/// in memory, and the places of the outcomes of those that hold neighbours of the one at hand.
 class ShardIndex {
  public:
   using Visit = std::function<void(const ExperimentOutcome&)>;
@@ -19,26 +22,28 @@ class ShardIndex {
   /// InputError, which names both files, when one experiment is not the same in two shards.
   explicit ShardIndex(const ShardSet& set);
 
-  std::size_t size() const { return places_.size(); }
-  /// Each experiment that is there once. Throws ArchiveError when a shard can no longer be read.
+  std::size_t size() const { return set_.count(); }
+  /// Each experiment that is there once: where several shards have it, as the first of them does. Throws
+  /// ArchiveError when a shard can no longer be read.
   void each(const Visit& visit) const;
   /// What several shards have, but for the outcomes that each() gives.
   void each_repeated(const Visit& visit) const;
 
  private:
+  using Key = std::pair<std::int64_t, std::size_t>;  ///< index, and shard of the set
   struct Place {
-    std::int32_t shard;  ///< of the set; -1: none
-    std::uint32_t size;  ///< bytes
-    std::uint64_t begin;
+    std::size_t shard;
+    OutcomePlace outcome;
   };
   class Reader;
 
-  void find_places();
+  std::vector<OutcomePlace> places_in(std::size_t shard) const;
+  template <class Take>
+  void sweep(const Take& take) const;
   void compare_repeated() const;
 
   const ShardSet& set_;
-  std::vector<Place> places_;  ///< by index
-  std::vector<Place> repeated_;
+  std::vector<Key> starts_;  ///< the first outcomes of the shards, in this order
 };
 
 }  // namespace mpm

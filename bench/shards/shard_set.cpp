@@ -14,23 +14,24 @@ ShardSet::ShardSet(const RunOptions& options, const Study& study, std::int64_t c
 
 void ShardSet::take_stock(const std::vector<std::filesystem::path>& shards, const Warn& warn) {
   for (const std::filesystem::path& path : shards) {
-    const std::optional<Shard> shard = read_shard(path, identity_, format_);
-    if (!shard) {
+    const std::optional<double> seconds =
+        read_shard(path, identity_, format_, [&](const ExperimentOutcome& outcome) {
+          const auto index = static_cast<std::size_t>(outcome.record.draw.index);
+          if (index >= done_.size())
+            throw InputError(
+                "--experiments", fmt::format("{}", done_.size()),
+                fmt::format("{} or more, since {} holds experiment {}; or --discard to start anew", index + 1,
+                            path.string(), index));
+          done_[index] = true;
+        });
+    if (!seconds) {
       if (warn)
         warn(fmt::format("{}: cut off or damaged, its checksum does not fit; its experiments are run again",
                          path.string()));
       continue;
     }
-    for (const ExperimentOutcome& outcome : shard->outcomes) {
-      const auto index = static_cast<std::size_t>(outcome.record.draw.index);
-      if (index >= done_.size())
-        throw InputError("--experiments", fmt::format("{}", done_.size()),
-                         fmt::format("{} or more, since {} holds experiment {}; or --discard to start anew",
-                                     index + 1, path.string(), index));
-      done_[index] = true;
-    }
     shards_.push_back(path);
-    seconds_ += shard->seconds;
+    seconds_ += *seconds;
   }
 }
 
@@ -45,16 +46,15 @@ std::vector<std::int64_t> ShardSet::missing() const {
 void ShardSet::read(const Take& take) const {
   std::vector<bool> taken(done_.size());
   for (const std::filesystem::path& path : shards_) {
-    std::optional<Shard> shard = read_shard(path, identity_, format_);
-    if (!shard)
-      throw ArchiveError(fmt::format("{}: cut off or damaged since it was written", path.string()));
-    for (ExperimentOutcome& outcome : shard->outcomes) {
+    const std::optional<double> whole = read_shard(path, identity_, format_, [&](ExperimentOutcome outcome) {
       const auto index = static_cast<std::size_t>(outcome.record.draw.index);
       if (taken[index])
-        continue;
+        return;
       taken[index] = true;
       take(std::move(outcome));
-    }
+    });
+    if (!whole)
+      throw ArchiveError(fmt::format("{}: cut off or damaged since it was written", path.string()));
   }
 }
 

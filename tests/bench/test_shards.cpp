@@ -1,16 +1,23 @@
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include "bench/campaign/streamed_records.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "bench/outcome/outcome_bytes.hpp"
 #include "bench/shards/shard.hpp"
 #include "bench/shards/shard_folder.hpp"
+#include "bench/shards/shard_index.hpp"
 #include "bench/shards/shard_set.hpp"
 #include "bench/shards/shard_store.hpp"
 #include "plants/error.hpp"
@@ -47,6 +54,11 @@ ExperimentOutcome outcome_of(std::int64_t index) {
   outcome.audited.back().experiment = index;
   outcome.audit_seconds = 0.5;
   return outcome;
+}
+
+/// Reads a shard whose outcomes do not matter.
+std::optional<double> seconds_of(const fs::path& path, const ShardIdentity& identity = kIdentity) {
+  return read_shard(path, identity, format(), [](const ExperimentOutcome&) {});
 }
 
 fs::path written(const TemporaryFolder& folder, std::vector<std::int64_t> indices) {
@@ -102,15 +114,15 @@ TEST_CASE("shard: outcomes come back with every bit, loops and audits among them
   }
   bytes.write(folder / "a.shard", kIdentity, 1.5);
   CHECK(bytes.empty());
-  const std::optional<Shard> shard = read_shard(folder / "a.shard", kIdentity, format());
-  REQUIRE(shard);
-  CHECK(shard->seconds == 1.5);
-  REQUIRE(shard->outcomes.size() == expected.size());
+  std::vector<ExperimentOutcome> outcomes;
+  CHECK(read_shard(folder / "a.shard", kIdentity, format(),
+                   [&](ExperimentOutcome outcome) { outcomes.push_back(std::move(outcome)); }) == 1.5);
+  REQUIRE(outcomes.size() == expected.size());
   const RecordBytes records(campaign.study, forms_of(campaign));
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    CHECK(format().to_bytes(shard->outcomes[i]) == expected[i]);
-    CHECK(records.differences(shard->outcomes[i].record, campaign.records[i]) == std::vector<std::string>{});
-    CHECK(shard->outcomes[i].audited.size() == 2);
+    CHECK(format().to_bytes(outcomes[i]) == expected[i]);
+    CHECK(records.differences(outcomes[i].record, campaign.records[i]) == std::vector<std::string>{});
+    CHECK(outcomes[i].audited.size() == 2);
   }
 }
 
@@ -118,16 +130,16 @@ TEST_CASE("shard: cut off anywhere or with any byte changed, it is seen to be da
   const TemporaryFolder folder;
   const fs::path path = written(folder, {3});
   const std::string whole = file_content(path);
-  REQUIRE(read_shard(path, kIdentity, format()));
+  REQUIRE(seconds_of(path));
   for (std::size_t i = 0; i < whole.size(); i += 7) {
     make_file(path, whole.substr(0, i));
-    CHECK_FALSE(read_shard(path, kIdentity, format()));
+    CHECK_FALSE(seconds_of(path));
     std::string changed = whole;
     changed[i] = static_cast<char>(changed[i] ^ 0x10);
     make_file(path, changed);
-    CHECK_FALSE(read_shard(path, kIdentity, format()));
+    CHECK_FALSE(seconds_of(path));
   }
-  CHECK_THROWS_AS(read_shard(folder / "none.shard", kIdentity, format()), ShardGone);
+  CHECK_THROWS_AS(seconds_of(folder / "none.shard"), ShardGone);
 }
 
 TEST_CASE("shard: one of another run, format version or file type is refused, and the difference named") {
@@ -135,24 +147,23 @@ TEST_CASE("shard: one of another run, format version or file type is refused, an
   const fs::path path = written(folder, {3});
   ShardIdentity other = kIdentity;
   other[2] = {"seed", "8"};
-  CHECK_THROWS_WITH(read_shard(path, other, format()),
+  CHECK_THROWS_WITH(seconds_of(path, other),
                     Contains("a.shard") && Contains("another seed") && Contains("found 7; allowed: 8"));
   other = kIdentity;
   other.pop_back();
-  CHECK_THROWS_AS(read_shard(path, other, format()), InputError);
+  CHECK_THROWS_AS(seconds_of(path, other), InputError);
   other = kIdentity;
   other.push_back({"solver", "auto"});
-  CHECK_THROWS_WITH(read_shard(path, other, format()), Contains("another solver"));
+  CHECK_THROWS_WITH(seconds_of(path, other), Contains("another solver"));
 
   const std::string whole = file_content(path);
   std::string content = whole.substr(0, whole.size() - kSealBytes);
   const std::size_t version = std::string("mpmbench shard\n").size();
   content[version] = 9;
   make_sealed(path, content);
-  CHECK_THROWS_WITH(read_shard(path, kIdentity, format()),
-                    Contains("format version") && Contains("found 9; allowed: 2"));
+  CHECK_THROWS_WITH(seconds_of(path), Contains("format version") && Contains("found 9; allowed: 2"));
   make_sealed(path, "some other file");
-  CHECK_THROWS_WITH(read_shard(path, kIdentity, format()), Contains("a shard of mpmbench"));
+  CHECK_THROWS_WITH(seconds_of(path), Contains("a shard of mpmbench"));
 }
 
 TEST_CASE("shard store: what an earlier run has left is not missing, and is given once") {
@@ -289,6 +300,59 @@ TEST_CASE("shard set: a shard that its run has packed meanwhile is gone, not dam
   ShardSet again(RunOptions(), study(), 5);
   again.take_stock(shards_in(folder / "s"), {});
   CHECK(again.missing() == Indices{0, 2});
+}
+
+/// Shards of such indices, which the set takes in this order.
+void add_shards(ShardSet& set, const fs::path& folder, const std::vector<Indices>& shards) {
+  for (const Indices& indices : shards) {
+    ShardBytes bytes;
+    for (const std::int64_t index : indices) {
+      ExperimentOutcome outcome = outcome_of(index);
+      outcome.audit_seconds = static_cast<double>(set.shards().size());  // tells the shards apart
+      bytes.add(format().to_bytes(outcome));
+    }
+    set.add_written(folder / fmt::format("{}.shard", set.shards().size()), 1.0);
+    bytes.write(set.shards().back(), set.identity(), 1.0);
+  }
+}
+
+TEST_CASE("shard index: outcomes come in the order of their index, those of several shards from the first") {
+  const TemporaryFolder folder;
+  ShardSet set(RunOptions(), study(), 12);
+  add_shards(set, folder.path(), {{9, 3, 4}, {0, 11}, {}, {5, 3, 1}, {3, 3, 9, 10}});
+  const ShardIndex index(set);
+  std::vector<std::pair<std::int64_t, double>> found, again;
+  const auto to = [](auto& list) {
+    return [&list](const ExperimentOutcome& outcome) {
+      list.emplace_back(outcome.record.draw.index, outcome.audit_seconds);
+    };
+  };
+  index.each(to(found));
+  index.each_repeated(to(again));
+  using List = std::vector<std::pair<std::int64_t, double>>;
+  CHECK(found == List{{0, 1}, {1, 3}, {3, 0}, {4, 0}, {5, 3}, {9, 0}, {10, 4}, {11, 1}});
+  CHECK(again == List{{3, 3}, {3, 4}, {3, 4}, {9, 4}});
+}
+
+TEST_CASE("shard index: of shards in the order of their index the places in one of them are in memory") {
+  constexpr std::int64_t kShards = 10, kEach = 2000;
+  const TemporaryFolder folder;
+  ShardSet set(RunOptions(), study(), kShards * kEach);
+  for (std::int64_t shard = 0; shard < kShards; ++shard) {
+    Indices indices(kEach);
+    std::iota(indices.begin(), indices.end(), shard * kEach);
+    add_shards(set, folder.path(), {indices});
+  }
+  const std::size_t before = ::mallinfo2().uordblks;
+  const ShardIndex index(set);
+  std::int64_t count = 0;
+  std::size_t most = before;
+  index.each([&](const ExperimentOutcome& outcome) {
+    CHECK(outcome.record.draw.index == count++);
+    most = std::max(most, ::mallinfo2().uordblks);
+  });
+  CHECK(count == kShards * kEach);
+  CHECK(most - before < kShards * kEach * 12);  // bytes; the place of an outcome takes 24
 }
 
 TEST_CASE("shard store: a folder that cannot be made is an error, and files of others stay") {

@@ -42,6 +42,12 @@ Campaign one_loop(Campaign campaign) {
   return campaign;
 }
 
+/// What is in a shard.
+struct Shard {
+  double seconds = 0.0;
+  std::vector<ExperimentOutcome> outcomes = {};
+};
+
 /// Writes files with any content as the only shard of an interrupted run, and reads them. All other
 /// exceptions than InputError go on and fail the test.
 class Reader {
@@ -58,7 +64,12 @@ class Reader {
     make_file(file_, content);
     refused_ = false;
     try {
-      return read_shard(file_, identity_, format_);
+      Shard shard;
+      const std::optional<double> seconds =
+          read_shard(file_, identity_, format_,
+                     [&](ExperimentOutcome outcome) { shard.outcomes.push_back(std::move(outcome)); });
+      shard.seconds = seconds.value_or(0.0);
+      return seconds ? std::optional(std::move(shard)) : std::nullopt;
     } catch (const InputError& error) {
       refused_ = true;
       if (!std::string_view(error.what()).starts_with(file_.string() + ": "))

@@ -208,7 +208,7 @@ std::vector<Kind> campaign_kinds(const fs::path& folder, const Campaign& campaig
   bytes.write(shard, identity, 1.5);
   const std::string sealed_shard = file_content(shard);
   const auto read = [identity, format](const fs::path& file) {
-    if (!read_shard(file, identity, *format))
+    if (!read_shard(file, identity, *format, [](const ExperimentOutcome&) {}))
       throw InputError("shard", "damaged", "a whole one");
   };
   const std::string verdicts = hash_line(loops_hash(campaign, false)) +
