@@ -16,28 +16,19 @@
 namespace mpm {
 namespace {
 
-/// The indices of the experiments that stand in each table; those of all experiments once.
-class TableIndices {
- public:
-  TableIndices(const std::vector<RecordTable>& tables, const RecordRange& records) : of_(tables.size()) {
-    all_.reserve(records.size());
-    records.each([&](const ExperimentRecord& record) {
-      all_.push_back(record.draw.index);
-      for (std::size_t t = 0; t < tables.size(); ++t)
-        if (tables[t].has && tables[t].has(record))
-          of_[t].push_back(record.draw.index);
-    });
-    for (const RecordTable& table : tables)
-      whole_.push_back(!table.has);
-  }
+bool stands_in(const RecordTable& table, const ExperimentRecord& record) {
+  return !table.has || table.has(record);
+}
 
-  const std::vector<std::int64_t>& of(std::size_t table) const { return whole_[table] ? all_ : of_[table]; }
-
- private:
-  std::vector<std::int64_t> all_;
-  std::vector<std::vector<std::int64_t>> of_;
-  std::vector<bool> whole_;
-};
+/// How many experiments stand in each table.
+std::vector<std::size_t> lengths_of(const std::vector<RecordTable>& tables, const RecordRange& records) {
+  std::vector<std::size_t> lengths(tables.size(), 0);
+  records.each([&](const ExperimentRecord& record) {
+    for (std::size_t t = 0; t < tables.size(); ++t)
+      lengths[t] += stands_in(tables[t], record) ? 1 : 0;
+  });
+  return lengths;
+}
 
 /// The group with this path, made unless it is there; `made` keeps those that are.
 Hdf5Group& group_of(std::map<std::string, Hdf5Group>& made, const std::string& path) {
@@ -92,16 +83,30 @@ struct VariableWriter {
   std::function<void()> finish;
 };
 
+/// Rows to which write(record, place) puts what each record has.
+template <class T, class Write>
+VariableWriter writer_of(Hdf5Rows<T> rows, const Write& write) {
+  const auto shared = std::make_shared<Hdf5Rows<T>>(std::move(rows));
+  return {[shared, write](const ExperimentRecord& record) { write(record, shared->add()); },
+          [shared] { shared->finish(); }};
+}
+
+/// The indices of the experiments that stand in a table.
+VariableWriter index_writer(Hdf5Group& group, const RecordTable& table, std::size_t length) {
+  const VariableText text{table.dimension, "index of the experiment in the study"};
+  return writer_of(
+      group.create_dimension<std::int64_t>(table.dimension, length, attributes<std::int64_t>(text)),
+      [](const ExperimentRecord& record, std::int64_t* place) { *place = record.draw.index; });
+}
+
 /// `variable` must outlive it.
 VariableWriter variable_writer(Hdf5Group& group, const RecordTable& table, const RecordVariable& variable) {
   std::vector<std::string> dimensions{table.dimension};
   dimensions.insert(dimensions.end(), variable.dimensions.begin(), variable.dimensions.end());
   return std::visit(
-      [&]<class T>(const RecordAccess<T>& access) -> VariableWriter {
-        const auto rows = std::make_shared<Hdf5Rows<T>>(
-            group.create_rows<T>(variable.text.name, dimensions, attributes<T>(variable.text)));
-        return {[rows, &access](const ExperimentRecord& record) { access.get(record, rows->add()); },
-                [rows] { rows->finish(); }};
+      [&]<class T>(const RecordAccess<T>& access) {
+        return writer_of(group.create_rows<T>(variable.text.name, dimensions, attributes<T>(variable.text)),
+                         [&access](const ExperimentRecord& record, T* place) { access.get(record, place); });
       },
       variable.access);
 }
@@ -112,7 +117,7 @@ struct TableWriter {
   std::vector<VariableWriter> variables = {};
 
   void add(const ExperimentRecord& record) const {
-    if (!table->has || table->has(record))
+    if (stands_in(*table, record))
       for (const VariableWriter& variable : variables)
         variable.add(record);
   }
@@ -131,25 +136,23 @@ void write_records(Hdf5Group& root, const Campaign& campaign) {
   std::map<std::string, std::set<std::string>> dimensions;  // of each group
   const std::vector<RecordTable> tables = record_tables(campaign.study, forms_of(campaign));
   const RecordRange records = records_of(campaign);
-  const TableIndices indices(tables, records);
+  const std::vector<std::size_t> lengths = lengths_of(tables, records);
   std::vector<TableWriter> writers;
   for (std::size_t t = 0; t < tables.size(); ++t) {
     const RecordTable& table = tables[t];
-    if (table.dimension == "stored" && indices.of(t).empty())
+    if (table.dimension == "stored" && lengths[t] == 0)
       continue;  // no loop was kept
     Hdf5Group& group = group_of(groups, table.group);
     if (!table.title.empty())
       group.write_attribute("title", table.title);
     std::set<std::string>& known = dimensions[table.group];
+    TableWriter& writer = writers.emplace_back(TableWriter{&table});
     if (known.insert(table.dimension).second)
-      group.write_dimension(
-          table.dimension, indices.of(t),
-          attributes<std::int64_t>({table.dimension, "index of the experiment in the study"}));
+      writer.variables.push_back(index_writer(group, table, lengths[t]));
     if (table.group.empty())
       for (const char* name : {"cv", "mv", "md", "method"})
         if (known.insert(name).second)
           write_dimension(group, name, campaign);
-    TableWriter& writer = writers.emplace_back(TableWriter{&table});
     for (const RecordVariable& variable : table.variables) {
       if (variable.use == RecordUse::bytes_only)
         continue;

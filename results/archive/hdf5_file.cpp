@@ -505,6 +505,15 @@ Hdf5Rows<T> Hdf5Group::create_rows(const std::string& name, const std::vector<st
   return Hdf5Rows<T>(std::make_shared<typename Hdf5Rows<T>::State>(place, std::move(dataset), scales.shape));
 }
 
+template <class T>
+Hdf5Rows<T> Hdf5Group::create_dimension(const std::string& name, std::size_t length,
+                                        const Attributes& attributes) {
+  const Place place = state_->place("dimension", name);
+  Handle dataset = create_dataset<T>(place, state_->group.get(), {length}, attributes, true);
+  place.check(H5DSset_scale(dataset.get(), name.c_str()), "make it a dimension");
+  return Hdf5Rows<T>(std::make_shared<typename Hdf5Rows<T>::State>(place, std::move(dataset), Shape{length}));
+}
+
 // --- Variables that are written row by row ----------------------------------------------------------------
 
 template <class T>
@@ -867,6 +876,7 @@ std::vector<std::byte> Hdf5File::image() const {
 
 #define MPM_INSTANTIATE_VARIABLE(T)                                                                          \
   template void Hdf5Group::write_dimension<T>(const std::string&, const std::vector<T>&, const Attributes&); \
+  template Hdf5Rows<T> Hdf5Group::create_dimension<T>(const std::string&, std::size_t, const Attributes&);   \
   template void Hdf5Group::write<T>(const std::string&, const std::vector<std::string>&,                     \
                                     const std::vector<T>&, const Attributes&);                               \
   template Hdf5Rows<T> Hdf5Group::create_rows<T>(const std::string&, const std::vector<std::string>&,        \

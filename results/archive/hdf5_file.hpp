@@ -67,6 +67,10 @@ class Hdf5Group {
   void write_dimension(const std::string& name, const std::vector<T>& coordinates,
                        const Attributes& attributes);
 
+  /// The same with as many coordinates as `length`, which come later, one a row.
+  template <class T>
+  Hdf5Rows<T> create_dimension(const std::string& name, std::size_t length, const Attributes& attributes);
+
   /// A new variable over dimensions of this group; none of them: one value. The number of values must be the
   /// product of the lengths of the dimensions.
   template <class T>
