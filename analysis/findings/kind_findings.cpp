@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,36 +15,45 @@ namespace {
 constexpr std::array<double, 5> kDominanceEdges{0.0, 0.3, 0.5, 0.7, 1.0};
 
 /// Pairs (estimate, Ivar_basis) of all CVs of the experiments, experiment by experiment.
-struct IvarPairs {
-  std::vector<double> x, y;
-  std::vector<std::int64_t> experiment;
-
+class IvarPairs {
+ public:
   void add(const ExperimentRecord& record, const Eigen::MatrixXd& estimate) {
     for (Eigen::Index cv = 0; cv < estimate.rows(); ++cv) {
-      x.push_back(estimate(cv));
-      y.push_back(record.ivar_basis(cv));
-      experiment.push_back(record.draw.index);
+      x_.push_back(estimate(cv));
+      y_.push_back(record.ivar_basis(cv));
     }
-  }
-
-  /// Those of one of `ny` CVs.
-  IvarPairs of_cv(std::size_t cv, std::size_t ny) const {
-    IvarPairs pairs;
-    for (std::size_t i = cv; i < x.size(); i += ny) {
-      pairs.x.push_back(x[i]);
-      pairs.y.push_back(y[i]);
-      pairs.experiment.push_back(experiment[i]);
-    }
-    return pairs;
+    experiments_.push_back(record.draw.index);
   }
 
   LinearFitIntervals fit(const Study& study, std::uint64_t which) const {
+    std::vector<std::int64_t> cluster;
+    cluster.reserve(x_.size());
+    for (const std::int64_t experiment : experiments_)
+      cluster.insert(cluster.end(), x_.size() / experiments_.size(), experiment);
+    return fit(study, which, cluster, 0, 1);
+  }
+  /// Of those of one of `ny` CVs.
+  LinearFitIntervals fit_of(std::size_t cv, std::size_t ny, const Study& study, std::uint64_t which) const {
+    return fit(study, which, experiments_, cv, ny);
+  }
+
+ private:
+  /// Of every `stride`-th pair from `first` on.
+  LinearFitIntervals fit(const Study& study, std::uint64_t which, std::span<const std::int64_t> cluster,
+                         std::size_t first, std::size_t stride) const {
+    using Pairs = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>;
     RandomStream stream(study.seed, which, StreamId::bootstrap);
-    const auto size = static_cast<Eigen::Index>(x.size());
-    return cluster_bootstrap(Eigen::Map<const Eigen::VectorXd>(x.data(), size),
-                             Eigen::Map<const Eigen::VectorXd>(y.data(), size), experiment, stream,
+    const auto size = static_cast<Eigen::Index>(cluster.size());
+    const Eigen::InnerStride<> step(static_cast<Eigen::Index>(stride));
+    const auto every = [&](const std::vector<double>& values) {
+      return Pairs(size > 0 ? &values[first] : nullptr, size, step);
+    };
+    return cluster_bootstrap(every(x_), every(y_), cluster, stream,
                              {study.aggregate.bootstrap_replications, study.aggregate.confidence});
   }
+
+  std::vector<double> x_, y_;
+  std::vector<std::int64_t> experiments_;
 };
 
 /// The name of the number that estimates Ivar_basis; empty without one.
@@ -109,7 +119,7 @@ class KindCounts {
     const std::uint64_t first = static_cast<std::uint64_t>(result.kind) * (ny + 1);
     result.regression = pairs_.fit(study_, first);
     for (std::size_t cv = 0; cv < ny; ++cv)
-      result.regression_of_cv.push_back(pairs_.of_cv(cv, ny).fit(study_, first + 1 + cv));
+      result.regression_of_cv.push_back(pairs_.fit_of(cv, ny, study_, first + 1 + cv));
   }
 
   const Study& study_;

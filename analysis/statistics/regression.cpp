@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,12 +23,6 @@ constexpr double kFewestPairs = 3.0;
 constexpr std::size_t kFewestClusters = 5;           // of a sample, and of a resample
 constexpr double kExact = 1e-12;                     // 1 - R^2 within the rounding of the sums
 constexpr double kLargestCorrelation = 1.0 - 1e-15;  // where Fisher's z is still finite
-
-struct Pair {
-  double x;
-  double y;
-  std::int64_t cluster;
-};
 
 /// What a line needs to know about a set of pairs. Adding two gives the sums of the union.
 struct Sums {
@@ -57,26 +51,26 @@ struct Centre {
   double y = 0.0;
 };
 
-std::vector<Pair> finite_pairs(const Signal& x, const Signal& y, std::span<const std::int64_t> cluster) {
-  std::vector<Pair> pairs;
-  pairs.reserve(static_cast<std::size_t>(x.size()));
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    if (std::isfinite(x[i]) && std::isfinite(y[i])) {
-      pairs.push_back({x[i], y[i], cluster[static_cast<std::size_t>(i)]});
-    }
-  }
+/// Places of the pairs without a NaN or an infinity, in the order of their clusters.
+std::vector<Eigen::Index> finite_pairs(const Signal& x, const Signal& y,
+                                       std::span<const std::int64_t> cluster) {
+  std::vector<Eigen::Index> pairs;
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    if (std::isfinite(x[i]) && std::isfinite(y[i]))
+      pairs.push_back(i);
+  std::stable_sort(pairs.begin(), pairs.end(), [cluster](Eigen::Index one, Eigen::Index other) {
+    return cluster[static_cast<std::size_t>(one)] < cluster[static_cast<std::size_t>(other)];
+  });
   return pairs;
 }
 
-Centre medians(const std::vector<Pair>& pairs) {
-  std::vector<double> x, y;
-  for (const Pair& pair : pairs) {
-    x.push_back(pair.x);
-    y.push_back(pair.y);
-  }
-  std::sort(x.begin(), x.end());
-  std::sort(y.begin(), y.end());
-  return {sorted_quantile(x, 0.5), sorted_quantile(y, 0.5)};
+double median(const Signal& values, const std::vector<Eigen::Index>& pairs) {
+  std::vector<double> sorted;
+  sorted.reserve(pairs.size());
+  for (const Eigen::Index i : pairs)
+    sorted.push_back(values[i]);
+  std::sort(sorted.begin(), sorted.end());
+  return sorted_quantile(sorted, 0.5);
 }
 
 /// `square` - n mean^2, or 0 when that is within the rounding of the sums or of the values themselves.
@@ -106,19 +100,26 @@ LinearFit line(const Sums& sums, const Centre& centre) {
   return fit;
 }
 
-/// The sums of each cluster, in the order of the cluster numbers.
-std::vector<Sums> sums_by_cluster(const std::vector<Pair>& pairs, const Centre& centre) {
-  std::map<std::int64_t, Sums> by_number;
-  for (const Pair& pair : pairs) {
-    by_number[pair.cluster].add(pair.x - centre.x, pair.y - centre.y);
+/// The pairs as a fit sees them: the sums of each cluster, in the order of the cluster numbers.
+struct ClusterSums {
+  Centre centre;
+  std::vector<Sums> clusters;
+
+  ClusterSums(const Signal& x, const Signal& y, std::span<const std::int64_t> cluster) {
+    const std::vector<Eigen::Index> pairs = finite_pairs(x, y, cluster);
+    if (pairs.empty())
+      return;
+    centre = {median(x, pairs), median(y, pairs)};
+    std::optional<std::int64_t> last;
+    for (const Eigen::Index i : pairs) {
+      if (const std::int64_t number = cluster[static_cast<std::size_t>(i)]; last != number) {
+        clusters.emplace_back();
+        last = number;
+      }
+      clusters.back().add(x[i] - centre.x, y[i] - centre.y);
+    }
   }
-  std::vector<Sums> sums;
-  sums.reserve(by_number.size());
-  for (const auto& [number, cluster_sums] : by_number) {
-    sums.push_back(cluster_sums);
-  }
-  return sums;
-}
+};
 
 /// The results of a fit in which they scatter evenly: R^2 as Fisher's z = artanh r.
 struct Results {
@@ -165,16 +166,16 @@ Results standard_errors(const std::vector<Sums>& clusters, const std::vector<int
 /// Standard errors from the fits without each cluster in turn (the jackknife), which sees more than
 /// influences do where a few clusters carry the line.
 Results jackknife_errors(const std::vector<Sums>& clusters, const Sums& all, const Centre& centre) {
-  std::vector<Results> without;
-  for (const Sums& cluster : clusters)
-    without.push_back(results_of(line(all - cluster, centre)));
-  const auto count = static_cast<double>(without.size());
+  const auto without = [&](const Sums& cluster) { return results_of(line(all - cluster, centre)); };
+  const auto count = static_cast<double>(clusters.size());
   const auto error_of = [&](double Results::*member) {
     double sum = 0.0, squares = 0.0;
-    for (const Results& results : without)
-      sum += results.*member;
-    for (const Results& results : without)
-      squares += (results.*member - sum / count) * (results.*member - sum / count);
+    for (const Sums& cluster : clusters)
+      sum += without(cluster).*member;
+    for (const Sums& cluster : clusters) {
+      const double distance = without(cluster).*member - sum / count;
+      squares += distance * distance;
+    }
     return std::sqrt(squares * (count - 1.0) / count);
   };
   return {error_of(&Results::slope), error_of(&Results::intercept), error_of(&Results::z)};
@@ -261,9 +262,8 @@ LinearFitIntervals cluster_bootstrap(const Signal& x, const Signal& y, std::span
 
   LinearFitIntervals result;
   result.slope = result.intercept = result.r_squared = {kNaN, kNaN};
-  const std::vector<Pair> pairs = finite_pairs(x, y, cluster);
-  const Centre centre = pairs.empty() ? Centre{} : medians(pairs);
-  const std::vector<Sums> clusters = sums_by_cluster(pairs, centre);
+  const ClusterSums sums(x, y, cluster);
+  const auto& [centre, clusters] = sums;
   result.fit = fit_all(clusters, centre, x.size());
   result.clusters = static_cast<Eigen::Index>(clusters.size());
   const Results results = results_of(result.fit);
