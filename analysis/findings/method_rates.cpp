@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -42,8 +41,9 @@ struct Counts {
   Count monitored_impact;
   std::int64_t false_alarms = 0, verdicts_before = 0;
   std::vector<double> delays;
-  std::vector<double> fault_scores, healthy_scores, impact_scores, no_impact_scores, milliseconds,
-      channels_named, size_errors;
+  /// Of the loops with a fault that has an impact, or none, and of the healthy ones.
+  std::vector<double> impact_scores, no_impact_scores, healthy_scores;
+  std::vector<double> milliseconds, channels_named, size_errors;
   CalibratedThresholds thresholds;
 
   void add(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
@@ -90,14 +90,12 @@ struct Counts {
 
   void add_healthy(const AssessmentRecord& said) {
     healthy_scores.push_back(said.score);
-    no_impact_scores.push_back(said.score);
     false_alarm_healthy.add(said.flagged);
     add_above(thresholds.chosen, said.score, false_alarm_calibrated);
   }
 
   void add_fault(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
     const bool impact = has_impact(study.diagnosis, record);
-    fault_scores.push_back(said.score);
     (impact ? impact_scores : no_impact_scores).push_back(said.score);
     detected.add(said.flagged);
     (impact ? detected_impact : flagged_without_impact).add(said.flagged);
@@ -255,14 +253,10 @@ bool has(const Study& study, StudyFeature feature) {
   return false;
 }
 
-/// A curve, and the interval of the area under it.
-std::pair<RocCurve, Interval> curve_with_area(const std::vector<double>& positives,
-                                              const std::vector<double>& negatives, double confidence) {
-  RocCurve curve = roc_curve(positives, negatives);
-  Interval area{kNone, kNone};
-  if (curve.defined())
-    area = area_interval(curve.area, curve.positives, curve.negatives, confidence);
-  return {std::move(curve), area};
+/// The interval of the area under a curve.
+Interval area_of(const RocCurve& curve, double confidence) {
+  return curve.defined() ? area_interval(curve.area, curve.positives, curve.negatives, confidence)
+                         : Interval{kNone, kNone};
 }
 
 /// A window watches the time from the one before it.
@@ -331,10 +325,12 @@ class RateCounts {
                       .channels_named = mean_estimate(counts_.channels_named),
                       .size_error = median_estimate(counts_.size_errors, confidence),
                       .milliseconds = median_estimate(counts_.milliseconds, confidence).value};
-    std::tie(rates.roc, rates.roc_area) =
-        curve_with_area(counts_.fault_scores, counts_.healthy_scores, confidence);
-    std::tie(rates.roc_impact, rates.roc_impact_area) =
-        curve_with_area(counts_.impact_scores, counts_.no_impact_scores, confidence);
+    const SortedScores impact(counts_.impact_scores), no_impact(counts_.no_impact_scores),
+        healthy(counts_.healthy_scores);
+    rates.roc = roc_curve({impact, no_impact}, {healthy});
+    rates.roc_impact = roc_curve({impact}, {no_impact, healthy});
+    rates.roc_area = area_of(rates.roc, confidence);
+    rates.roc_impact_area = area_of(rates.roc_impact, confidence);
     return rates;
   }
 

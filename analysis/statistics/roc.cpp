@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,17 +16,6 @@ namespace mpm {
 namespace {
 
 using Scores = std::span<const double>;
-
-struct Case {
-  double score;
-  bool positive;
-};
-
-void append(std::vector<Case>& cases, Scores scores, bool positive) {
-  for (const double score : scores)
-    if (!std::isnan(score))
-      cases.push_back({score, positive});
-}
 
 /// Halfway between two scores: also when their sum would overflow, and never equal to the upper one.
 double between(double upper, double lower) {
@@ -48,37 +39,34 @@ RocPoint point(double threshold, const Above& above, std::int64_t positives, std
           share(above.positives, above.positives + above.negatives)};
 }
 
-/// The curve of cases in descending order of their scores.
-RocCurve curve_of_sorted(const std::vector<Case>& cases) {
-  RocCurve curve;
-  curve.positives = std::count_if(cases.begin(), cases.end(), [](const Case& c) { return c.positive; });
-  curve.negatives = static_cast<std::int64_t>(cases.size()) - curve.positives;
-  if (!curve.defined())
-    return curve;
-  Above above;
-  curve.points.push_back(point(kInfinity, above, curve.positives, curve.negatives));
-  curve.area = curve.average_precision = 0.0;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    ++(cases[i].positive ? above.positives : above.negatives);
-    const bool last = i + 1 == cases.size();
-    if (!last && cases[i + 1].score == cases[i].score)
-      continue;  // equal scores fall together
-    const double threshold = last ? -kInfinity : between(cases[i].score, cases[i + 1].score);
-    const RocPoint before = curve.points.back();
-    curve.points.push_back(point(threshold, above, curve.positives, curve.negatives));
-    const RocPoint& now = curve.points.back();
-    curve.area += (now.false_positive_rate - before.false_positive_rate) * 0.5 *
-                  (now.true_positive_rate + before.true_positive_rate);
-    curve.average_precision += (now.true_positive_rate - before.true_positive_rate) * now.precision;
-    if (now.youden() > curve.points[curve.best].youden())
-      curve.best = curve.points.size() - 1;
+/// Lists in descending order, gone through as one of all their scores.
+class Merged {
+ public:
+  explicit Merged(const std::vector<SortedScores>& lists) {
+    for (const SortedScores& list : lists)
+      left_.emplace_back(*list.descending);
   }
-  return curve;
-}
 
-void sort_descending(std::vector<Case>& cases) {
-  std::sort(cases.begin(), cases.end(), [](const Case& a, const Case& b) { return a.score > b.score; });
-}
+  /// The largest score that is left; -infinity at the end.
+  double next() const {
+    double largest = -kInfinity;
+    for (const Scores& list : left_)
+      if (!list.empty())
+        largest = std::max(largest, list.front());
+    return largest;
+  }
+  /// Takes those that are not below `score`, and returns how many there were.
+  std::int64_t take(double score) {
+    std::int64_t taken = 0;
+    for (Scores& list : left_)
+      for (; !list.empty() && list.front() >= score; ++taken)
+        list = list.subspan(1);
+    return taken;
+  }
+
+ private:
+  std::vector<Scores> left_;
+};
 
 std::vector<double> without_nan(Scores scores) {
   std::vector<double> kept;
@@ -87,35 +75,79 @@ std::vector<double> without_nan(Scores scores) {
   return kept;
 }
 
-void append_resample(std::vector<Case>& cases, const std::vector<double>& scores, bool positive,
-                     RandomStream& stream) {
-  for (std::size_t i = 0; i < scores.size(); ++i)
-    cases.push_back({scores[stream.below(scores.size())], positive});
+SortedScores resample(const std::vector<double>& scores, RandomStream& stream) {
+  std::vector<double> drawn(scores.size());
+  for (double& score : drawn)
+    score = scores[stream.below(scores.size())];
+  return SortedScores(std::move(drawn));
 }
 
 }  // namespace
 
-RocCurve roc_curve(Scores positive_scores, Scores negative_scores) {
-  std::vector<Case> cases;
-  append(cases, positive_scores, true);
-  append(cases, negative_scores, false);
-  sort_descending(cases);
-  RocCurve curve = curve_of_sorted(cases);
-  curve.left_out = static_cast<std::int64_t>(positive_scores.size() + negative_scores.size() - cases.size());
+SortedScores::SortedScores(std::vector<double> scores)
+    : left_out(
+          static_cast<std::int64_t>(std::erase_if(scores, [](double score) { return std::isnan(score); }))) {
+  std::sort(scores.begin(), scores.end(), std::greater<>());
+  descending = std::make_shared<const std::vector<double>>(std::move(scores));
+}
+
+void RocCurve::each(const std::function<void(const RocPoint&)>& visit) const {
+  if (!defined())
+    return;
+  Merged positive(positive_scores), negative(negative_scores);
+  Above above;
+  visit(point(kInfinity, above, positives, negatives));
+  while (above.positives + above.negatives < positives + negatives) {
+    const double score = std::max(positive.next(), negative.next());
+    above.positives += positive.take(score);  // equal scores fall together
+    above.negatives += negative.take(score);
+    const bool last = above.positives + above.negatives == positives + negatives;
+    const double threshold = last ? -kInfinity : between(score, std::max(positive.next(), negative.next()));
+    visit(point(threshold, above, positives, negatives));
+  }
+}
+
+RocCurve roc_curve(std::vector<SortedScores> positive_scores, std::vector<SortedScores> negative_scores) {
+  RocCurve curve;
+  curve.positive_scores = std::move(positive_scores);
+  curve.negative_scores = std::move(negative_scores);
+  for (const SortedScores& scores : curve.positive_scores) {
+    curve.positives += std::ssize(*scores.descending);
+    curve.left_out += scores.left_out;
+  }
+  for (const SortedScores& scores : curve.negative_scores) {
+    curve.negatives += std::ssize(*scores.descending);
+    curve.left_out += scores.left_out;
+  }
+  if (curve.defined())
+    curve.area = curve.average_precision = 0.0;
+  RocPoint before{};
+  curve.each([&](const RocPoint& now) {
+    if (curve.size++ == 0)
+      curve.best = before = now;
+    curve.area += (now.false_positive_rate - before.false_positive_rate) * 0.5 *
+                  (now.true_positive_rate + before.true_positive_rate);
+    const double recall = now.true_positive_rate - before.true_positive_rate;
+    curve.average_precision += recall > 0.0 ? recall * now.precision : 0.0;  // there is none at the start
+    if (now.youden() > curve.best.youden())
+      curve.best = now;
+    before = now;
+  });
   return curve;
 }
 
+RocCurve roc_curve(Scores positive_scores, Scores negative_scores) {
+  return roc_curve({SortedScores({positive_scores.begin(), positive_scores.end()})},
+                   {SortedScores({negative_scores.begin(), negative_scores.end()})});
+}
+
 RocPoint roc_point(Scores positive_scores, Scores negative_scores, double threshold) {
-  std::vector<Case> cases;
-  append(cases, positive_scores, true);
-  append(cases, negative_scores, false);
-  Above all, above;
-  for (const Case& c : cases) {
-    ++(c.positive ? all.positives : all.negatives);
-    if (c.score > threshold)
-      ++(c.positive ? above.positives : above.negatives);
-  }
-  return point(threshold, above, all.positives, all.negatives);
+  const std::vector<double> positives = without_nan(positive_scores);
+  const std::vector<double> negatives = without_nan(negative_scores);
+  const auto above = [threshold](const std::vector<double>& scores) {
+    return std::count_if(scores.begin(), scores.end(), [=](double score) { return score > threshold; });
+  };
+  return point(threshold, {above(positives), above(negatives)}, std::ssize(positives), std::ssize(negatives));
 }
 
 Interval area_interval(double area, std::int64_t positives, std::int64_t negatives, double confidence) {
@@ -160,14 +192,9 @@ Interval best_threshold_interval(Scores positive_scores, Scores negative_scores,
   if (positives.empty() || negatives.empty())
     return {kNaN, kNaN};
   std::vector<double> thresholds;
-  std::vector<Case> cases;
   for (int i = 0; i < options.replications; ++i) {
-    cases.clear();
-    append_resample(cases, positives, true, stream);
-    append_resample(cases, negatives, false, stream);
-    sort_descending(cases);
-    const RocCurve curve = curve_of_sorted(cases);
-    if (const double threshold = curve.points[curve.best].threshold; std::isfinite(threshold))
+    const SortedScores positive = resample(positives, stream), negative = resample(negatives, stream);
+    if (const double threshold = roc_curve({positive}, {negative}).best.threshold; std::isfinite(threshold))
       thresholds.push_back(threshold);
   }
   if (2 * thresholds.size() < static_cast<std::size_t>(options.replications))

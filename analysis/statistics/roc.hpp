@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,29 +31,41 @@ struct RocPoint {
   double youden() const { return true_positive_rate - false_positive_rate; }
 };
 
-/// Receiver operating characteristic of a score, and precision against recall.
+/// Scores in descending order, without NaNs, which several curves may have.
+struct SortedScores {
+  std::shared_ptr<const std::vector<double>> descending;
+  std::int64_t left_out = 0;  ///< NaNs
+
+  explicit SortedScores(std::vector<double> scores);
+};
+
+/// Receiver operating characteristic of a score, and precision against recall. Of millions of scores the
+/// points would take more memory than the scores: they are made anew whenever they are asked for.
 struct RocCurve {
-  /// One point for each way in which a threshold can part the scores, from +infinity (nothing is positive) to
-  /// -infinity (everything is). The thresholds between lie halfway between neighbouring scores.
-  std::vector<RocPoint> points;
+  std::vector<SortedScores> positive_scores, negative_scores;
   std::int64_t positives = 0;
   std::int64_t negatives = 0;
   std::int64_t left_out = 0;  ///< scores that are NaN
+  std::size_t size = 0;       ///< number of points
   /// Area under the curve: the probability that a positive scores above a negative, ties counting half
   /// (Mann-Whitney); NaN when there is no score on one side.
   double area = kNaN;
   /// Sum of precision times the step of recall, without interpolation; NaN as above.
   double average_precision = kNaN;
-  std::size_t best =
-      0;  ///< the point with the largest J, with the fewest false positives when there are more
+  RocPoint best{};  ///< the point with the largest J, with the fewest false positives when there are more
 
   /// Whether there are scores on both sides.
   bool defined() const { return positives > 0 && negatives > 0; }
+
+  /// Gives one point for each way in which a threshold can part the scores, from +infinity (nothing is
+  /// positive) to -infinity (everything is). The thresholds between lie halfway between neighbouring scores.
+  void each(const std::function<void(const RocPoint&)>& visit) const;
 };
 
 /// The curve of these scores; NaNs are left out and counted. Without a score on one side only `positives`,
 /// `negatives` and `left_out` say something.
 RocCurve roc_curve(std::span<const double> positive_scores, std::span<const double> negative_scores);
+RocCurve roc_curve(std::vector<SortedScores> positive_scores, std::vector<SortedScores> negative_scores);
 
 /// The rule "positive when the score exceeds `threshold`" on these scores, NaNs left out. Rates are NaN
 /// without scores.

@@ -69,13 +69,14 @@ Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
 /// The curve with at most kMostPoints points, of which the first and the last are always there.
 void draw_curve(PanelScript& panel, const RocCurve& roc, const Pen& pen) {
   std::vector<double> x, y;
-  const std::size_t stride = roc.points.size() / kMostPoints + 1;
-  for (std::size_t i = 0; i < roc.points.size(); ++i) {
-    if (i % stride != 0 && i + 1 != roc.points.size())
-      continue;
-    x.push_back(100.0 * roc.points[i].false_positive_rate);
-    y.push_back(100.0 * roc.points[i].true_positive_rate);
-  }
+  const std::size_t stride = roc.size / kMostPoints + 1;
+  std::size_t i = 0;
+  roc.each([&](const RocPoint& point) {
+    if (i++ % stride != 0 && i != roc.size)
+      return;
+    x.push_back(100.0 * point.false_positive_rate);
+    y.push_back(100.0 * point.true_positive_rate);
+  });
   panel.line(x, y, pen);
 }
 

@@ -252,8 +252,7 @@ std::string roc_answer(const RocCurve& curve, const Interval& area, const RocPoi
       "Of a mismatch and a disturbance, drawn at random, the mismatch has the larger I<sub>MPM</sub> in "
       "{:.1f}&nbsp;% ({:.1f} to {:.1f}) of pairs; the best threshold has a J of {:.2f}, that of the "
       "study {:.2f}.",
-      100.0 * curve.area, 100.0 * area.lower, 100.0 * area.upper, curve.points[curve.best].youden(),
-      at_study.youden());
+      100.0 * curve.area, 100.0 * area.lower, 100.0 * area.upper, curve.best.youden(), at_study.youden());
 }
 
 std::string fault_size_answer(const std::vector<SizedFault>& faults, double confidence) {

@@ -41,10 +41,10 @@ struct Scores {
 struct Roc {
   RocCurve curve;
   Interval area, threshold;
-  RocPoint best, at_study;
+  RocPoint at_study;
 
   Roc(const Study& study, const Scores& scores)
-      : curve(roc_curve(scores.mpm, scores.ud)), area{}, threshold{}, best{}, at_study{} {
+      : curve(roc_curve(scores.mpm, scores.ud)), area{}, threshold{}, at_study{} {
     if (!curve.defined())
       return;
     area = area_interval(curve.area, curve.positives, curve.negatives, study.aggregate.confidence);
@@ -52,7 +52,6 @@ struct Roc {
     RandomStream stream(study.seed, std::numeric_limits<std::uint64_t>::max(), StreamId::bootstrap);
     threshold = best_threshold_interval(scores.mpm, scores.ud, stream,
                                         {study.aggregate.bootstrap_replications, study.aggregate.confidence});
-    best = curve.points[curve.best];
     at_study = roc_point(scores.mpm, scores.ud, study.diagnosis.mpm_threshold);
   }
 };
@@ -66,10 +65,10 @@ std::string point_name(const RocPoint& point) {
 
 Panel roc_panel(const Roc& roc) {
   std::vector<double> x, y;
-  for (const RocPoint& point : roc.curve.points) {
+  roc.curve.each([&](const RocPoint& point) {
     x.push_back(100.0 * point.false_positive_rate);
     y.push_back(100.0 * point.true_positive_rate);
-  }
+  });
   PanelScript panel(
       "roc",
       fmt::format("ROC: area {:.3f} ({:.3f} to {:.3f})", roc.curve.area, roc.area.lower, roc.area.upper),
@@ -77,8 +76,8 @@ Panel roc_panel(const Roc& roc) {
       {.label = "MPM found (%)", .lower = 0, .upper = 101, .ticks = {0, 20, 40, 60, 80, 100}});
   panel.line({0, 100}, {0, 100}, kChance);
   panel.line(x, y, kCurve);
-  panel.points({{100.0 * roc.best.false_positive_rate, 100.0 * roc.best.true_positive_rate,
-                 "largest J, " + point_name(roc.best)}},
+  panel.points({{100.0 * roc.curve.best.false_positive_rate, 100.0 * roc.curve.best.true_positive_rate,
+                 "largest J, " + point_name(roc.curve.best)}},
                kBest);
   panel.points({{100.0 * roc.at_study.false_positive_rate, 100.0 * roc.at_study.true_positive_rate,
                  "threshold of the study, " + point_name(roc.at_study)}},
@@ -88,10 +87,10 @@ Panel roc_panel(const Roc& roc) {
 
 Panel precision_panel(const Roc& roc) {
   std::vector<double> x, y;
-  for (const RocPoint& point : roc.curve.points) {
+  roc.curve.each([&](const RocPoint& point) {
     x.push_back(100.0 * point.true_positive_rate);
     y.push_back(100.0 * point.precision);
-  }
+  });
   const double prevalence = 100.0 * static_cast<double>(roc.curve.positives) /
                             static_cast<double>(roc.curve.positives + roc.curve.negatives);
   PanelScript panel(
@@ -103,8 +102,8 @@ Panel precision_panel(const Roc& roc) {
        .ticks = {0, 20, 40, 60, 80, 100}});
   panel.line({0, 100}, {prevalence, prevalence}, kChance);
   panel.line(x, y, kCurve);
-  panel.points({{100.0 * roc.best.true_positive_rate, 100.0 * roc.best.precision,
-                 "largest J, " + point_name(roc.best)}},
+  panel.points({{100.0 * roc.curve.best.true_positive_rate, 100.0 * roc.curve.best.precision,
+                 "largest J, " + point_name(roc.curve.best)}},
                kBest);
   panel.points({{100.0 * roc.at_study.true_positive_rate, 100.0 * roc.at_study.precision,
                  "threshold of the study, " + point_name(roc.at_study)}},
@@ -128,7 +127,7 @@ std::string roc_table(const Study& study, const Roc& roc) {
                html_number(point.precision, true), html_number(point.youden())});
   };
   row("threshold of the study", roc.at_study, {NAN, NAN});
-  row("largest J", roc.best, roc.threshold);
+  row("largest J", roc.curve.best, roc.threshold);
   return table.html();
 }
 
@@ -153,7 +152,7 @@ ReportSection roc_section(const ReportInput& input) {
       "threshold with the largest J was chosen on these very data, so its rates flatter it.";
   figure.legend = {{"any threshold", kCurve},
                    {fmt::format("threshold of the study, {:g}", study.diagnosis.mpm_threshold), kStudy},
-                   {fmt::format("largest J, {:.3f}", roc.best.threshold), kBest},
+                   {fmt::format("largest J, {:.3f}", roc.curve.best.threshold), kBest},
                    {"chance", kChance}};
   figure.panels = {roc_panel(roc), precision_panel(roc)};
   section.add(std::move(figure));

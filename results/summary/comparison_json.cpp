@@ -20,11 +20,11 @@ Json rates_json(const Study& study, const MethodRates& method) {
 /// The points as columns. The first and the last threshold are infinite, which JSON cannot say: null.
 Json roc_json(const RocCurve& roc, const Interval& area) {
   Json threshold = Json::array(), true_positive = Json::array(), false_positive = Json::array();
-  for (const RocPoint& point : roc.points) {
+  roc.each([&](const RocPoint& point) {
     threshold.push_back(point.threshold);
     true_positive.push_back(point.true_positive_rate);
     false_positive.push_back(point.false_positive_rate);
-  }
+  });
   return {{"area", roc.area},
           {"lower", area.lower},
           {"upper", area.upper},

@@ -21,6 +21,13 @@ std::vector<double> scores_on_a_grid(RandomStream& stream, int count, double shi
   return scores;
 }
 
+std::vector<RocPoint> points_of(const RocCurve& curve) {
+  std::vector<RocPoint> points;
+  curve.each([&](const RocPoint& point) { points.push_back(point); });
+  CHECK(points.size() == curve.size);
+  return points;
+}
+
 /// The area as the share of pairs in which the positive wins, counted pair by pair.
 double mann_whitney(const std::vector<double>& positives, const std::vector<double>& negatives) {
   double wins = 0.0;
@@ -47,24 +54,43 @@ TEST_CASE("roc: the curve rises from nothing to everything, and each point is wh
   const auto positives = scores_on_a_grid(stream, 40, 1.0);
   const auto negatives = scores_on_a_grid(stream, 50, 0.0);
   const RocCurve curve = roc_curve(positives, negatives);
-  CHECK(curve.points.front().true_positive_rate == 0.0);
-  CHECK(curve.points.front().false_positive_rate == 0.0);
-  CHECK(std::isnan(curve.points.front().precision));
-  CHECK(curve.points.back().true_positive_rate == 1.0);
-  CHECK(curve.points.back().false_positive_rate == 1.0);
-  for (std::size_t i = 0; i < curve.points.size(); ++i) {
-    const RocPoint& point = curve.points[i];
+  const std::vector<RocPoint> points = points_of(curve);
+  CHECK(points.front().true_positive_rate == 0.0);
+  CHECK(points.front().false_positive_rate == 0.0);
+  CHECK(std::isnan(points.front().precision));
+  CHECK(points.back().true_positive_rate == 1.0);
+  CHECK(points.back().false_positive_rate == 1.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const RocPoint& point = points[i];
     const RocPoint again = roc_point(positives, negatives, point.threshold);
     CHECK(again.true_positive_rate == point.true_positive_rate);
     CHECK(again.false_positive_rate == point.false_positive_rate);
     CHECK((again.precision == point.precision || (std::isnan(again.precision) && i == 0)));
-    CHECK(point.youden() <= curve.points[curve.best].youden());
+    CHECK(point.youden() <= curve.best.youden());
     if (i > 0) {
-      CHECK(point.threshold < curve.points[i - 1].threshold);
-      CHECK(point.true_positive_rate >= curve.points[i - 1].true_positive_rate);
-      CHECK(point.false_positive_rate >= curve.points[i - 1].false_positive_rate);
+      CHECK(point.threshold < points[i - 1].threshold);
+      CHECK(point.true_positive_rate >= points[i - 1].true_positive_rate);
+      CHECK(point.false_positive_rate >= points[i - 1].false_positive_rate);
     }
   }
+}
+
+TEST_CASE("roc: of scores in several lists it is the curve of all of them") {
+  RandomStream stream(14, 0, StreamId::bootstrap);
+  const auto one = scores_on_a_grid(stream, 20, 1.0), other = scores_on_a_grid(stream, 30, 0.5);
+  const auto negatives = scores_on_a_grid(stream, 40, 0.0);
+  std::vector<double> both = one;
+  both.insert(both.end(), other.begin(), other.end());
+  const std::vector<RocPoint> expected = points_of(roc_curve(both, negatives));
+  const RocCurve curve = roc_curve({SortedScores(one), SortedScores(other)}, {SortedScores(negatives)});
+  const std::vector<RocPoint> points = points_of(curve);
+  REQUIRE(points.size() == expected.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    CHECK(points[i].threshold == expected[i].threshold);
+    CHECK(points[i].true_positive_rate == expected[i].true_positive_rate);
+    CHECK(points[i].false_positive_rate == expected[i].false_positive_rate);
+  }
+  CHECK(curve.area == roc_curve(both, negatives).area);
 }
 
 TEST_CASE("roc: an increasing transformation of the scores changes thresholds only") {
@@ -78,20 +104,21 @@ TEST_CASE("roc: an increasing transformation of the scores changes thresholds on
   const RocCurve after = roc_curve(positives, negatives);
   CHECK(after.area == before.area);
   CHECK(after.average_precision == before.average_precision);
-  CHECK(after.best == before.best);
+  CHECK(after.best.true_positive_rate == before.best.true_positive_rate);
+  CHECK(after.best.false_positive_rate == before.best.false_positive_rate);
 }
 
 TEST_CASE("roc: separated scores, equal scores and a curve known by hand") {
   const RocCurve separated = roc_curve(std::vector{3.0, 4.0}, std::vector{1.0, 2.0});
   CHECK(separated.area == 1.0);
   CHECK(separated.average_precision == 1.0);
-  CHECK(separated.points[separated.best].threshold == 2.5);
-  CHECK(separated.points[separated.best].youden() == 1.0);
+  CHECK(separated.best.threshold == 2.5);
+  CHECK(separated.best.youden() == 1.0);
 
   const RocCurve equal = roc_curve(std::vector{1.0, 1.0}, std::vector{1.0});
   CHECK(equal.area == 0.5);
-  CHECK(equal.points.size() == 2);
-  CHECK(std::isinf(equal.points[equal.best].threshold));  // no threshold is better than none
+  CHECK(equal.size == 2);
+  CHECK(std::isinf(equal.best.threshold));  // no threshold is better than none
 
   // 3 (+), 2 (-), 1 (+): recall 1/2 at precision 1, recall 1 at precision 2/3.
   const RocCurve mixed = roc_curve(std::vector{3.0, 1.0}, std::vector{2.0});
@@ -108,7 +135,7 @@ TEST_CASE("roc: NaNs are left out; without a side there is no curve") {
   const RocCurve none = roc_curve(std::vector{1.0}, std::vector{mpm::kNaN});
   CHECK_FALSE(none.defined());
   CHECK(std::isnan(none.area));
-  CHECK(none.points.empty());
+  CHECK(points_of(none).empty());
 }
 
 TEST_CASE("roc: each end of the interval of an area solves its equation") {

@@ -103,7 +103,7 @@ TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the 
       CHECK(share["upper"] == rate.interval.upper);
       CHECK(json["rates"][info.name] == info.meaning);
     }
-    CHECK(of_json["roc"]["threshold"].size() == rates.roc.points.size());
+    CHECK(of_json["roc"]["threshold"].size() == rates.roc.size);
   }
   const MethodRates& first = findings.methods[0].rates;
   REQUIRE(first.roc.defined());
