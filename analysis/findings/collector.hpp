@@ -12,7 +12,7 @@ namespace mpm {
 template <class Result>
 struct Collector {
   std::function<void(const ExperimentRecord&)> add;
-  std::function<Result()> result;  ///< of the records so far
+  std::function<Result()> result;  ///< of all records, once: it takes what was collected
 
   Result of(const RecordRange& records) const {
     records.each(add);

@@ -73,16 +73,17 @@ double disturbance_deviation(const Disturbance& disturbance, double v_deviation,
          std::sqrt(std::tanh(0.5 * sample_time / disturbance.time_constant));
 }
 
-std::vector<SizedFault> faults_by_size(const Study& study, std::size_t method,
-                                       std::span<const ExperimentRecord> records, FaultSize size) {
+std::vector<SizedFault> faults_by_size(const Study& study, std::size_t method, const RecordRange& records,
+                                       FaultSize size) {
   std::vector<SizedFault> faults;
-  for (const ExperimentRecord& record : records) {
+  records.each([&](const ExperimentRecord& record) {
     const std::optional<double> found = size_of(study, record.draw, size);
     const AssessmentRecord& said = record.assessments[method];
     if (!said.answered() || !found || !std::isfinite(*found))
-      continue;
-    faults.push_back({&record, *found, said.flagged, said.flagged && !judge(study, record, said).wrong()});
-  }
+      return;
+    faults.push_back(
+        {record.draw.index, *found, said.flagged, said.flagged && !judge(study, record, said).wrong()});
+  });
   std::stable_sort(faults.begin(), faults.end(),
                    [](const SizedFault& a, const SizedFault& b) { return a.size < b.size; });
   return faults;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/experiment/record_range.hpp"
 #include "analysis/statistics/interval.hpp"
 
 namespace mpm {
@@ -28,16 +29,16 @@ double disturbance_deviation(const Disturbance& disturbance, double v_deviation,
 
 /// One experiment with a single fault and a verdict: how large the fault is and what came of it.
 struct SizedFault {
-  const ExperimentRecord* record;
+  std::int64_t experiment;  ///< its index
   double size;
   bool flagged;    ///< the fault is seen
   bool diagnosed;  ///< seen, and both the CV and the source are right
 };
 
 /// The experiments whose only fault is measured by `size` and on which the method at place `method` of the
-/// assessments gave a verdict, smallest first. Points into `records`.
-std::vector<SizedFault> faults_by_size(const Study& study, std::size_t method,
-                                       std::span<const ExperimentRecord> records, FaultSize size);
+/// assessments gave a verdict, smallest first.
+std::vector<SizedFault> faults_by_size(const Study& study, std::size_t method, const RecordRange& records,
+                                       FaultSize size);
 
 /// Faults of similar size, with the share of them that is seen and the share that is diagnosed rightly, both
 /// of all of them.

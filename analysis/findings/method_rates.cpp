@@ -289,7 +289,7 @@ class RateCounts {
       reason_ = said.reason;
   }
 
-  MethodRates result() const {
+  MethodRates result() {
     const double confidence = study_.aggregate.confidence;
     MethodRates rates{.reason = reason_,
                       .answered = counts_.answered.rate(confidence),
@@ -315,7 +315,7 @@ class RateCounts {
                       .power_05_impact = counts_.power_05_impact.rate(confidence),
                       .power_05_mpm = counts_.power_05_mpm.rate(confidence),
                       .monitored_impact = counts_.monitored_impact.rate(confidence),
-                      .detection_delay = median_estimate(counts_.delays, confidence),
+                      .detection_delay = median_estimate(std::move(counts_.delays), confidence),
                       .false_alarms_a_day = alarms_a_day(study_, counts_),
                       .thresholds = counts_.thresholds,
                       .roc = {},
@@ -323,10 +323,10 @@ class RateCounts {
                       .roc_impact = {},
                       .roc_impact_area = {},
                       .channels_named = mean_estimate(counts_.channels_named),
-                      .size_error = median_estimate(counts_.size_errors, confidence),
-                      .milliseconds = median_estimate(counts_.milliseconds, confidence).value};
-    const SortedScores impact(counts_.impact_scores), no_impact(counts_.no_impact_scores),
-        healthy(counts_.healthy_scores);
+                      .size_error = median_estimate(std::move(counts_.size_errors), confidence),
+                      .milliseconds = median_estimate(std::move(counts_.milliseconds), confidence).value};
+    const SortedScores impact(std::move(counts_.impact_scores)),
+        no_impact(std::move(counts_.no_impact_scores)), healthy(std::move(counts_.healthy_scores));
     rates.roc = roc_curve({impact, no_impact}, {healthy});
     rates.roc_impact = roc_curve({impact}, {no_impact, healthy});
     rates.roc_area = area_of(rates.roc, confidence);

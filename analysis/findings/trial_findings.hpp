@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/record_range.hpp"
 #include "analysis/findings/method_rates.hpp"
 
 namespace mpm {
@@ -18,7 +17,7 @@ struct TrialFindings {
 
 /// `said` is the answer on the record by the method in place `method` of the assessments of each of
 /// `records`. Nothing is counted in `same_source` when the answer names no source.
-TrialFindings trial_findings(const Study& trial, std::size_t method,
-                             std::span<const ExperimentRecord> records, const AssessmentRecord& said);
+TrialFindings trial_findings(const Study& trial, std::size_t method, const RecordRange& records,
+                             const AssessmentRecord& said);
 
 }  // namespace mpm

@@ -24,14 +24,30 @@ bool is_compared(const ExperimentRecord& record, const std::optional<std::int64_
   return record.status == ExperimentStatus::ok && (!experiments || record.draw.index < *experiments);
 }
 
+/// Changes every record, at once, or those that are streamed whenever they are read.
+void change_records(Campaign& campaign, std::function<void(ExperimentRecord&)> change) {
+  if (campaign.streamed)
+    campaign.streamed = RecordRange(campaign.streamed->size(),
+                                    [records = *campaign.streamed, change](const RecordRange::Visit& visit) {
+                                      records.each([&](const ExperimentRecord& record) {
+                                        ExperimentRecord changed = record;
+                                        change(changed);
+                                        visit(changed);
+                                      });
+                                    });
+  for (ExperimentRecord& record : campaign.records)
+    change(record);
+}
+
 void remove(Campaign& campaign, const std::string& method) {
   const std::vector<std::string> names = method_names(campaign);
   const auto place = std::find(names.begin(), names.end(), method) - names.begin();
   if (place == std::ssize(names))
     return;
   campaign.methods.erase(campaign.methods.begin() + place);
-  for (ExperimentRecord& record : campaign.records)
+  change_records(campaign, [place](ExperimentRecord& record) {
     record.assessments.erase(record.assessments.begin() + place);
+  });
   for (CalibrationLoop& loop : campaign.calibration.loops)
     loop.scores.erase(loop.scores.begin() + place);
 }
@@ -64,19 +80,28 @@ void append(Campaign& campaign, const AssessmentForms& forms, const Records& rec
 }  // namespace
 
 std::int64_t compared_loops(const Campaign& campaign, const std::optional<std::int64_t>& experiments) {
-  return std::count_if(campaign.records.begin(), campaign.records.end(),
-                       [&](const ExperimentRecord& record) { return is_compared(record, experiments); });
+  std::int64_t count = 0;
+  records_of(campaign).each(
+      [&](const ExperimentRecord& record) { count += is_compared(record, experiments) ? 1 : 0; });
+  return count;
 }
 
-bool has_answers(const Campaign& campaign, const std::string& method,
-                 const std::optional<std::int64_t>& experiments) {
+std::vector<std::string> missing_methods(const Campaign& campaign, const std::vector<std::string>& asked,
+                                         const std::optional<std::int64_t>& experiments) {
   const std::vector<std::string> names = method_names(campaign);
-  const auto place = static_cast<std::size_t>(std::find(names.begin(), names.end(), method) - names.begin());
-  return place < names.size() &&
-         std::none_of(campaign.records.begin(), campaign.records.end(), [&](const ExperimentRecord& record) {
-           return is_compared(record, experiments) &&
-                  record.assessments[place].status == AssessmentStatus::not_assessed;
-         });
+  std::vector<bool> whole(names.size(), true);
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    for (std::size_t place = 0; place < names.size() && is_compared(record, experiments); ++place)
+      if (record.assessments[place].status == AssessmentStatus::not_assessed)
+        whole[place] = false;
+  });
+  std::vector<std::string> missing;
+  for (const std::string& method : asked)
+    if (const auto place =
+            static_cast<std::size_t>(std::find(names.begin(), names.end(), method) - names.begin());
+        place == names.size() || !whole[place])
+      missing.push_back(method);
+  return missing;
 }
 
 std::vector<CampaignMethod> methods_of(const Study& study, const std::string& command) {
@@ -342,19 +367,17 @@ Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods
   std::vector<std::size_t> places;
   for (const std::string& method : methods)
     places.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), method) - names.begin()));
-  const auto chosen = [&](const auto& all) {
+  const auto chosen = [places](const auto& all) {
     std::remove_cvref_t<decltype(all)> list;
     for (const std::size_t place : places)
       list.push_back(all[place]);
     return list;
   };
   campaign.methods = chosen(campaign.methods);
-  for (ExperimentRecord& record : campaign.records) {
-    if (experiments && record.draw.index >= *experiments)
-      record.assessments = unassessed(forms_of(campaign));
-    else
-      record.assessments = chosen(record.assessments);
-  }
+  change_records(campaign, [chosen, experiments, forms = forms_of(campaign)](ExperimentRecord& record) {
+    record.assessments =
+        experiments && record.draw.index >= *experiments ? unassessed(forms) : chosen(record.assessments);
+  });
   for (CalibrationLoop& loop : campaign.calibration.loops)
     loop.scores = chosen(loop.scores);
   return campaign;

@@ -42,9 +42,9 @@ struct ComparisonOptions {
 /// How many loops a comparison of this campaign has: its experiments with status ok.
 std::int64_t compared_loops(const Campaign& campaign, const std::optional<std::int64_t>& experiments);
 
-/// True when the campaign has this method on all the loops of such a comparison.
-bool has_answers(const Campaign& campaign, const std::string& method,
-                 const std::optional<std::int64_t>& experiments);
+/// Those of the methods `asked` that the campaign does not have on all the loops of such a comparison.
+std::vector<std::string> missing_methods(const Campaign& campaign, const std::vector<std::string>& asked,
+                                         const std::optional<std::int64_t>& experiments);
 
 /// Methods that assess the experiments with status ok, and the calibration loops, in threads; the same answer
 /// for any number of them, and however often it was stopped, but for the processor times. A loop that was not
@@ -52,7 +52,7 @@ bool has_answers(const Campaign& campaign, const std::string& method,
 /// does not bear two threads.
 class Comparison {
  public:
-  /// `campaign` must outlive run(). Errors: as ShardStore.
+  /// `campaign`, which has its records in memory, must outlive run(). Errors: as ShardStore.
   Comparison(const Campaign& campaign, const ComparisonOptions& options);
   Comparison(const Comparison&) = delete;
   Comparison& operator=(const Comparison&) = delete;
@@ -87,7 +87,7 @@ std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<B
 /// of the same name.
 void add_verdicts(Campaign& campaign, const OutsideVerdicts& verdicts, const std::string& command);
 
-/// The campaign with these of its methods alone, in this order, on its first `experiments`.
+/// The campaign, streamed or not, with these of its methods alone, in this order, on its first `experiments`.
 Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods,
                       const std::optional<std::int64_t>& experiments);
 

@@ -35,22 +35,22 @@ bool is_of(const Campaign& campaign, const Study& of, const RunOptions& options)
          has_same_methods(campaign, study) && campaign.info.solver == options.solver &&
          campaign.info.outside_files == outside_files(study) &&
          campaign.info.mpmbench_version == mpmbench_version() && campaign.info.git_sha == source_revision() &&
-         static_cast<std::int64_t>(campaign.records.size()) == count;
+         static_cast<std::int64_t>(records_of(campaign).size()) == count;
 }
 
-Campaign resumed(const fs::path& archive, const Study& study, RunOptions options,
+void run_resumed(const fs::path& archive, const Study& study, RunOptions options,
                  const CampaignHooks& hooks) {
   options.leftovers = Leftovers::resume;
-  const auto once = [&] { return run_campaign(study, options, hooks, shard_folder_of(archive)); };
+  const auto once = [&] { stream_campaign(study, options, hooks, shard_folder_of(archive)); };
   if (!has_shards(archive))
     return once();
   try {
-    return once();
+    once();
   } catch (const UnhealthyBasis&) {
     throw;
   } catch (const InputError&) {
     options.leftovers = Leftovers::discard;
-    return once();
+    once();
   }
 }
 
@@ -62,7 +62,7 @@ std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& stud
   if (!fs::is_regular_file(archive, no_status))
     return std::nullopt;
   try {
-    Campaign campaign = read_archive(archive);
+    Campaign campaign = stream_archive(archive);
     if (!is_of(campaign, study, options))
       return std::nullopt;
     if (fs::exists(shard_folder_of(archive), no_status))
@@ -81,9 +81,9 @@ Campaign run_and_keep(const fs::path& archive, const Study& study, RunOptions op
     note_command(campaign, command);
     write_archive(archive, campaign, findings_of(campaign));
   };
-  Campaign campaign = resumed(archive, study, std::move(options), hooks);
+  run_resumed(archive, study, std::move(options), hooks);
   remove_shards(archive);
-  return campaign;
+  return stream_archive(archive);
 }
 
 }  // namespace mpm

@@ -7,7 +7,7 @@
 
 #include "bench/campaign/campaign_runner.hpp"
 
-// Campaigns whose archive is kept for the next time.
+// Campaigns whose archive is kept for the next time, and read as stream_archive() reads it.
 
 namespace mpm {
 
@@ -20,7 +20,8 @@ std::optional<Campaign> kept_campaign(const std::filesystem::path& archive, cons
                                       const std::function<void(const std::string&)>& warn);
 
 /// Runs the study, going on with the shards that an interrupted run has left unless they are of another study
-/// or program, and writes the archive. Errors: as run_campaign() and write_archive().
+/// or program, and writes the archive. Errors: as run_campaign(), write_archive() and
+/// stream_archive().
 Campaign run_and_keep(const std::filesystem::path& archive, const Study& study, RunOptions options,
                       CampaignHooks hooks, const std::string& command);
 

@@ -120,7 +120,7 @@ std::filesystem::path calibration_archive(const AssessArguments& options) {
 /// Refuses to replace what is no calibration run.
 void require_own_archive(const std::filesystem::path& archive) {
   std::error_code no_status;
-  if (std::filesystem::exists(archive, no_status) && !is_trial_study(read_input(archive.string()).study))
+  if (std::filesystem::exists(archive, no_status) && !is_trial_study(stream_input(archive.string()).study))
     throw InputError(archive.string(), "an archive that is no calibration run",
                      "another name for the calibration run (--calibration)");
 }
@@ -148,10 +148,11 @@ void add_trial(RecordAssessment& assessment, const AssessArguments& options, Pro
       require_output_archive(archive, "calibration run");
       campaign = run_and_keep(archive, study, run, hooks, command);
     }
-    RecordTrial trial{archive.filename().string(), std::ssize(campaign->records), {}};
+    RecordTrial trial{
+        archive.filename().string(), static_cast<std::int64_t>(records_of(*campaign).size()), {}};
     for (std::size_t method = 0; method < assessment.said.size(); ++method)
       trial.methods.push_back(
-          trial_findings(campaign->study, method, campaign->records, assessment.said[method]));
+          trial_findings(campaign->study, method, records_of(*campaign), assessment.said[method]));
     assessment.trial = std::move(trial);
   } catch (const InputError& error) {
     assessment.no_trial = fmt::format("no loop like this one can be simulated: {}", error.what());

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -79,15 +78,6 @@ std::vector<std::string> asked_methods(const Campaign& campaign, const std::vect
     if (std::find(methods.begin(), methods.end(), method) == methods.end())
       methods.push_back(method);
   return methods;
-}
-
-/// The methods that are asked for and that the archive does not have on all loops that are asked for.
-std::vector<std::string> missing_methods(const Campaign& campaign, const std::vector<std::string>& asked,
-                                         const std::optional<std::int64_t>& experiments) {
-  std::vector<std::string> missing;
-  std::copy_if(asked.begin(), asked.end(), std::back_inserter(missing),
-               [&](const std::string& method) { return !has_answers(campaign, method, experiments); });
-  return missing;
 }
 
 struct NamedVerdicts {
@@ -251,7 +241,8 @@ void show(const CompareArguments& options, const Campaign& campaign) {
 /// archive has not kept are run again from (study, seed, index).
 ExitCode compare(const CompareArguments& options, const std::string& command_line) {
   const std::string archive = digest_of_archive(options.archive);
-  Campaign campaign = read_input(options.archive);
+  // Verdicts of files, and answers to come, are put into records that are in memory.
+  Campaign campaign = options.verdicts.empty() ? stream_input(options.archive) : read_input(options.archive);
   if (!options.output.empty()) {
     std::vector<std::string> inputs = options.method_files;
     for (const std::string& file : options.verdicts)
@@ -272,6 +263,8 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
     if (std::find(asked.begin(), asked.end(), name) == asked.end())
       asked.push_back(name);
   const std::vector<std::string> missing = missing_methods(campaign, asked, options.experiments);
+  if (!missing.empty() && campaign.streamed)
+    campaign = read_input(options.archive);
   Progress progress(options.quiet);
   ComparisonOptions comparison_options{
       missing, options.experiments, options.jobs, {}, shard_of(options.shard)};

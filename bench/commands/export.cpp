@@ -79,14 +79,16 @@ ExitCode export_table(const ExportArguments& options) {
   }
   if (options.index && options.table == "findings")
     throw InputError("--index", "the table findings", "a table with a row or more for each experiment");
-  Campaign campaign = read_input(options.archive);
-  if (options.index)
+  Campaign campaign = stream_input(options.archive);
+  if (options.index) {
     campaign.records = {experiment_of(campaign, *options.index)};
-  const std::string table = csv_table(campaign, options.table);
+    campaign.streamed.reset();
+  }
+  const auto write_table = [&](const auto& write) { write_csv_table(campaign, options.table, write); };
   if (options.output.empty())
-    print_result(table);
+    write_table(print_result);
   else
-    write_text(options.output, table);
+    write_text(options.output, write_table);
   return ExitCode::done;
 }
 

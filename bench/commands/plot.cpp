@@ -28,8 +28,8 @@ ExitCode plot(const PlotArguments& options) {
   const FigureFormat format = figure_format_of(options.output);
   require_no_input("--output", options.output, {options.archive});
   require_output_folder(options.output, "figure");
-  const Campaign campaign = read_input(options.archive);
-  const ExperimentRecord& record = experiment_of(campaign, options.index);
+  const Campaign campaign = stream_input(options.archive);
+  const ExperimentRecord record = experiment_of(campaign, options.index);
   const LoopRecord loop = loop_of(campaign, record);
   if (loop.trajectory.samples_done == 0)
     throw InputError(

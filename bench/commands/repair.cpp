@@ -211,7 +211,7 @@ ChannelChoice chosen(const Campaign& campaign, const RepairArguments& options) {
 }
 
 void repair_one(const Campaign& campaign, std::int64_t index, const ChannelChoice& choice, bool json) {
-  const ExperimentRecord& record = experiment_of(campaign, index);
+  const ExperimentRecord record = experiment_of(campaign, index);
   if (record.status != ExperimentStatus::ok)
     throw InputError("--index", fmt::format("{}, which did not run to its end", index),
                      "an experiment that did");

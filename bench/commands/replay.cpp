@@ -38,8 +38,8 @@ Campaign with_known_methods(Campaign campaign) {
 }
 
 ExitCode replay(const ReplayArguments& options) {
-  const Campaign campaign = with_known_methods(read_input(options.archive));
-  const ExperimentRecord& archived = experiment_of(campaign, options.index);
+  const Campaign campaign = with_known_methods(stream_input(options.archive));
+  const ExperimentRecord archived = experiment_of(campaign, options.index);
 
   // From (study, seed, index) alone: the basis case is made again too.
   const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);

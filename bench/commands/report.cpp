@@ -32,13 +32,13 @@ struct ReportArguments {
 /// somebody's program.
 std::vector<LoopView> shown_loops(const Campaign& campaign) {
   std::vector<LoopView> views;
-  for (const std::int64_t index : loops_to_show(campaign)) {
-    const ExperimentRecord& record = experiment_of(campaign, index);
+  for (ShownExperiment& shown : loops_to_show(campaign)) {
+    const ExperimentRecord& record = shown.record;
     if (!record.loop && !campaign.info.outside_files.empty())
       continue;
     LoopRecord loop = loop_of(campaign, record);
     NominalOutputs nominal = nominal_of(campaign, record, loop);
-    views.push_back({index, std::move(loop.trajectory), std::move(nominal)});
+    views.push_back({std::move(shown), std::move(loop.trajectory), std::move(nominal)});
   }
   return views;
 }
@@ -68,7 +68,7 @@ ExitCode report(const ReportArguments& options) {
     require_no_input("--output", options.output, options.archives);
     require_output_folder(options.output, "page");
   }
-  const Campaign campaign = read_input(archive);
+  const Campaign campaign = stream_input(archive);
   const StudyFindings findings = findings_of(campaign);
   if (!options.output.empty()) {
     write_text(options.output, report_html(campaign, findings, archive, shown_loops(campaign)));

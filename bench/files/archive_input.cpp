@@ -36,12 +36,19 @@ Campaign stream_input(const std::string& archive) {
   return campaign;
 }
 
-const ExperimentRecord& experiment_of(const Campaign& campaign, std::int64_t index) {
-  const auto count = static_cast<std::int64_t>(campaign.records.size());
+ExperimentRecord experiment_of(const Campaign& campaign, std::int64_t index) {
+  const RecordRange records = records_of(campaign);
+  const auto count = static_cast<std::int64_t>(records.size());
   if (index < 0 || index >= count)
     throw InputError("INDEX", fmt::format("{}", index),
                      count > 0 ? fmt::format("0 to {}", count - 1) : "none, the archive has no experiments");
-  return campaign.records[static_cast<std::size_t>(index)];
+  ExperimentRecord wanted;
+  std::int64_t place = 0;
+  records.each([&](const ExperimentRecord& record) {
+    if (place++ == index)
+      wanted = record;
+  });
+  return wanted;
 }
 
 }  // namespace mpm

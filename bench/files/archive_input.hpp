@@ -21,6 +21,6 @@ Campaign read_input(const std::string& archive);
 Campaign stream_input(const std::string& archive);
 
 /// The experiment of this index. Throws InputError, which names the indices that there are.
-const ExperimentRecord& experiment_of(const Campaign& campaign, std::int64_t index);
+ExperimentRecord experiment_of(const Campaign& campaign, std::int64_t index);
 
 }  // namespace mpm

@@ -1,6 +1,10 @@
 #include "bench/files/output_file.hpp"
 
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <span>
+#include <string>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -63,6 +67,21 @@ void write_text(const std::filesystem::path& output, std::string_view text) {
     write_through(output, bytes);
   else
     write_file_atomically(output, bytes);
+}
+
+void write_text(const std::filesystem::path& output,
+                const std::function<void(const std::function<void(std::string_view)>&)>& write) {
+  if (is_stream(output)) {
+    std::string text;
+    write([&text](std::string_view piece) { text += piece; });
+    return write_text(output, text);
+  }
+  write_file_atomically(output, [&](const std::filesystem::path& temporary) {
+    std::ofstream file(temporary, std::ios::binary);
+    write([&file](std::string_view piece) { file << piece; });
+    if (!file.flush())
+      throw ArchiveError(fmt::format("{}: cannot write it: {}", output.string(), std::strerror(errno)));
+  });
 }
 
 }  // namespace mpm

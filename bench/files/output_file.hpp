@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,5 +26,8 @@ void make_output_folder(const std::filesystem::path& folder, std::string_view wh
 /// Writes a page, a table or another text, all or nothing; through a device or a pipe where
 /// `output` is one. Throws ArchiveError when it cannot be written.
 void write_text(const std::filesystem::path& output, std::string_view text);
+/// The same of a text that `write` gives in pieces, which no file but a device or a pipe needs in memory.
+void write_text(const std::filesystem::path& output,
+                const std::function<void(const std::function<void(std::string_view)>&)>& write);
 
 }  // namespace mpm

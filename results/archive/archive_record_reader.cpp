@@ -167,16 +167,14 @@ ArchiveRecordReader::ArchiveRecordReader(const Hdf5Group& root, const Study& stu
   block_ = std::clamp<std::size_t>(kBlockBytes / bytes_of(tables_), 1, kBlockRecords);
   for (const RecordTable& table : tables_) {
     groups_.push_back(group_at(root, table.group));
-    std::vector<std::size_t>& places =
-        places_.emplace_back(places_along(groups_.back(), table, indices_, file_));
+    std::vector<std::size_t> places = places_along(groups_.back(), table, indices_, file_);
     if (table.has)
-      continue;
-    if (places.size() != indices_.size())
+      places_.push_back(std::move(places));
+    else if (places_.emplace_back(); places.size() != indices_.size())
       throw ArchiveError(
           fmt::format("{}: dimension '/{}/{}': found {} experiments; allowed: the {} of the root "
                       "group",
                       file_, table.group, table.dimension, places.size(), indices_.size()));
-    places = {};
   }
 }
 

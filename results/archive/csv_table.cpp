@@ -105,8 +105,10 @@ void append(std::vector<std::string>&& more, std::vector<std::string>& list) {
   std::move(more.begin(), more.end(), std::back_inserter(list));
 }
 
+using Write = std::function<void(std::string_view)>;
+
 /// One row an experiment with the variables of the tables of this group.
-std::string record_csv(const Campaign& campaign, const std::string& group) {
+void write_records(const Campaign& campaign, const std::string& group, const Write& write) {
   std::vector<RecordVariable> variables;
   for (RecordTable& table : record_tables(campaign.study, forms_of(campaign)))
     if (table.group == group)
@@ -117,24 +119,22 @@ std::string record_csv(const Campaign& campaign, const std::string& group) {
   for (const RecordVariable& variable : variables)
     for (const std::string& heading : headings(campaign, variable, variable.dimensions.size()))
       head.push_back(field(heading));
-  std::string text = line(head);
-  for (const ExperimentRecord& record : campaign.records) {
+  write(line(head));
+  records_of(campaign).each([&](const ExperimentRecord& record) {
     std::vector<std::string> row{fmt::format("{}", record.draw.index)};
     for (const RecordVariable& variable : variables)
       append(cells(variable, record), row);
-    text += line(row);
-  }
-  return text;
+    write(line(row));
+  });
 }
 
-std::string findings_csv(const Campaign& campaign) {
-  std::string text = "name,meaning,form,value,lower,upper,count,hits,reported\n";
+void write_findings(const Campaign& campaign, const Write& write) {
+  write("name,meaning,form,value,lower,upper,count,hits,reported\n");
   for (const Finding& finding : findings_of(campaign).rows)
-    text +=
+    write(
         line({field(finding.name), field(finding.meaning), std::string(to_string(finding.form)),
               number(finding.value), number(finding.interval.lower), number(finding.interval.upper),
-              fmt::format("{}", finding.count), fmt::format("{}", finding.hits), number(finding.reported)});
-  return text;
+              fmt::format("{}", finding.count), fmt::format("{}", finding.hits), number(finding.reported)}));
 }
 
 /// The CVs of the loop as the methods saw them, row by row.
@@ -147,16 +147,19 @@ std::vector<std::string> recorded_cells(const Study& study, const ExperimentReco
 }
 
 bool all_have_truth(const Campaign& campaign) {
-  return std::all_of(campaign.records.begin(), campaign.records.end(),
-                     [](const ExperimentRecord& record) { return !record.loop || record.truth; });
+  bool all = true;
+  records_of(campaign).each(
+      [&all](const ExperimentRecord& record) { all = all && (!record.loop || record.truth); });
+  return all;
 }
 
 /// One row a sample of the loops that were kept, as they were measured, and as their record shows them where
 /// that is something else.
-std::string loops_csv(const Campaign& campaign) {
+void write_loops(const Campaign& campaign, const Write& write) {
+  const bool truth = all_have_truth(campaign);
   std::vector<RecordVariable> signals;
   for (RecordTable& table : record_tables(campaign.study, forms_of(campaign)))
-    if (table.group == "trajectories" || (table.group == "truth" && all_have_truth(campaign)))
+    if (table.group == "trajectories" || (table.group == "truth" && truth))
       for (RecordVariable& variable : table.variables)
         if (!variable.dimensions.empty() && variable.dimensions.back() == "sample")
           signals.push_back(std::move(variable));
@@ -167,11 +170,11 @@ std::string loops_csv(const Campaign& campaign) {
   if (campaign.study.record.alters())
     for (const std::string& name : coordinates(campaign, "cv", 0))
       head.push_back(field(fmt::format("y_recorded.{}", name)));
-  std::string text = line(head);
+  write(line(head));
   const auto samples = static_cast<std::size_t>(campaign.study.simulation.samples);
-  for (const ExperimentRecord& record : campaign.records) {
+  records_of(campaign).each([&](const ExperimentRecord& record) {
     if (!record.loop)
-      continue;
+      return;
     std::vector<std::vector<std::string>> columns;  // of each signal, row by row
     for (const RecordVariable& signal : signals)
       columns.push_back(cells(signal, record));
@@ -184,10 +187,9 @@ std::string loops_csv(const Campaign& campaign) {
       for (const std::vector<std::string>& column : columns)
         for (std::size_t at = sample; at < column.size(); at += samples)
           row.push_back(column[at]);
-      text += line(row);
+      write(line(row));
     }
-  }
-  return text;
+  });
 }
 
 }  // namespace
@@ -198,18 +200,24 @@ std::vector<std::string> csv_table_names(const Campaign& campaign) {
   return names;
 }
 
-std::string csv_table(const Campaign& campaign, const std::string& name) {
+void write_csv_table(const Campaign& campaign, const std::string& name, const Write& write) {
   if (name == kExperiments)
-    return record_csv(campaign, "");
+    return write_records(campaign, "", write);
   if (name == kFindings)
-    return findings_csv(campaign);
+    return write_findings(campaign, write);
   if (name == kLoops)
-    return loops_csv(campaign);
+    return write_loops(campaign, write);
   const std::vector<std::string> methods = method_names(campaign);
   if (std::find(methods.begin(), methods.end(), name) == methods.end())
     throw InputError("--table", fmt::format("'{}'", name),
                      fmt::format("{}", fmt::join(csv_table_names(campaign), ", ")));
-  return record_csv(campaign, "methods/" + name);
+  write_records(campaign, "methods/" + name, write);
+}
+
+std::string csv_table(const Campaign& campaign, const std::string& name) {
+  std::string text;
+  write_csv_table(campaign, name, [&text](std::string_view piece) { text += piece; });
+  return text;
 }
 
 }  // namespace mpm

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "results/archive/campaign.hpp"
@@ -16,5 +18,9 @@ std::vector<std::string> csv_table_names(const Campaign& campaign);
 /// MVs by name, NaN for what does not exist. A variable with a dimension has a column for each of its
 /// coordinates, "ivar.y1", "flagged.sse". Throws InputError for another name.
 std::string csv_table(const Campaign& campaign, const std::string& name);
+/// The same in pieces, so that neither the table nor the records of a campaign that is streamed have to be in
+/// memory.
+void write_csv_table(const Campaign& campaign, const std::string& name,
+                     const std::function<void(std::string_view)>& write);
 
 }  // namespace mpm

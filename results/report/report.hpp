@@ -12,17 +12,30 @@
 
 namespace mpm {
 
+/// Why the page draws a loop.
+enum class LoopReason {
+  faulty,   ///< with a fault and a right verdict, in the middle of its like by what the fault costs
+  healthy,  ///< the same without a fault
+  wrong,    ///< with a wrong verdict, among the costliest
+};
+
+/// An experiment whose loop the page draws.
+struct ShownExperiment {
+  LoopReason reason;
+  ExperimentRecord record;
+};
+
 /// A closed loop of an experiment, for the page to draw.
 struct LoopView {
-  std::int64_t index;
+  ShownExperiment of;
   Trajectory trajectory;
   NominalOutputs nominal;  ///< y0 and its parts, shapes as the trajectory
 };
 
-/// The experiments whose loops the page draws: one with a fault and a right verdict and a healthy one, each
-/// in the middle of its like by what the fault costs, and the costliest with a wrong verdict. None of named
-/// scenarios, which have figures of their own, and none where the chain of the thesis was not asked.
-std::vector<std::int64_t> loops_to_show(const Campaign& campaign);
+/// The experiments whose loops the page draws, in this order: one that is faulty, one that is healthy, and
+/// the costliest with a wrong verdict, the costliest one first. None of named scenarios, which have figures
+/// of their own, and none where the chain of the thesis was not asked.
+std::vector<ShownExperiment> loops_to_show(const Campaign& campaign);
 
 /// What a campaign found as one HTML page that needs nothing else: no network, figures as SVG
 /// (docs/report.md). `file` is the archive, for the commands that replay experiments; only its name is shown.

@@ -39,12 +39,13 @@ Rate of_all_kinds(const ReportInput& input, Rate KindFindings::*member) {
 /// Named scenarios with a verdict of the chain, and those whose every CV is judged rightly.
 Rate right_scenarios(const ReportInput& input) {
   std::int64_t right = 0, judged = 0;
-  for (const ExperimentRecord& record : input.campaign.records)
+  records_of(input.campaign).each([&](const ExperimentRecord& record) {
     if (const AssessmentRecord* const chain = record.by(kChainMethod);
         chain != nullptr && chain->answered()) {
       ++judged;
       right += judge(input.campaign.study, record, *chain).wrong() ? 0 : 1;
     }
+  });
   return rate(right, judged, confidence_of(input));
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -35,11 +36,20 @@ double index_of(const Study& study, const ExperimentRecord& record, const Eigen:
 
 }  // namespace
 
-std::string experiment_anchor(const Campaign& campaign, const ExperimentRecord& record) {
-  const std::vector<ExperimentRecord>& records = campaign.records;
-  const bool listed =
-      records.size() <= kMostExperiments || record.draw.index < records[kMostExperiments].draw.index;
-  return listed && chain_place(campaign) < campaign.methods.size() && !campaign.study.names_scenarios()
+std::int64_t listed_below(const Campaign& campaign) {
+  std::size_t place = 0;
+  std::int64_t below = std::numeric_limits<std::int64_t>::max();
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    if (place++ == kMostExperiments)
+      below = record.draw.index;
+  });
+  return below;
+}
+
+std::string experiment_anchor(const ReportInput& input, const ExperimentRecord& record) {
+  const Campaign& campaign = input.campaign;
+  return record.draw.index < input.listed_below && chain_place(campaign) < campaign.methods.size() &&
+                 !campaign.study.names_scenarios()
              ? fmt::format("experiment-{}", record.draw.index)
              : "";
 }
@@ -48,7 +58,8 @@ ReportSection experiments_section(const ReportInput& input) {
   const Campaign& campaign = input.campaign;
   const Study& study = campaign.study;
   ReportSection section{"experiments", "Experiments, one by one", {}};
-  if (campaign.records.empty()) {
+  const std::size_t experiments = records_of(campaign).size();
+  if (experiments == 0) {
     section.leave_out("the archive has no experiments.");
     return section;
   }
@@ -67,8 +78,9 @@ ReportSection experiments_section(const ReportInput& input) {
        {"Ivar"},
        {"Ivar<sub>diag</sub>"},
        {"Ivar<sub>basis</sub>"}});
-  for (std::size_t i = 0; i < std::min(campaign.records.size(), kMostExperiments); ++i) {
-    const ExperimentRecord& record = campaign.records[i];
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    if (record.draw.index >= input.listed_below)
+      return;
     const Diagnosis chain = record.chain();
     const std::string number = fmt::format("{}", record.draw.index);
     table.row(
@@ -81,12 +93,12 @@ ReportSection experiments_section(const ReportInput& input) {
          html_number(index_of(study, record, chain.ivar)),
          html_number(index_of(study, record, chain.ivar_diag)),
          html_number(index_of(study, record, record.ivar_basis))},
-        experiment_anchor(campaign, record));
-  }
-  if (campaign.records.size() > kMostExperiments)
+        experiment_anchor(input, record));
+  });
+  if (experiments > kMostExperiments)
     section.add(fmt::format(
         "<p>The first {} of {}; <code>mpmbench export {} --table experiments</code> writes all.</p>\n",
-        kMostExperiments, campaign.records.size(), html_text(input.file)));
+        kMostExperiments, experiments, html_text(input.file)));
   section.add(table.html());
   return section;
 }

@@ -29,14 +29,14 @@ std::vector<double> round_numbers(double least, double largest) {
 }
 
 /// The indices of an experiment that are farthest from 1, against the factor of the weight or the number.
-Panel group_panel(const Campaign& campaign, const FalseAlarms& group) {
-  const Study& study = campaign.study;
+Panel group_panel(const ReportInput& input, const FalseAlarms& group) {
+  const Study& study = input.campaign.study;
   double least = study.diagnosis.impact_lower, largest = study.diagnosis.impact_upper;
   std::vector<NamedPoint> quiet, alarms, costs;
-  for (const ExperimentRecord& record : campaign.records) {
+  records_of(input.campaign).each([&](const ExperimentRecord& record) {
     const Diagnosis chain = record.chain();
     if (chain.ivar.size() == 0 || !group.has(record.draw))
-      continue;
+      return;
     const double x = group.parameter ? record.draw.tuning->factor : static_cast<double>(record.draw.index);
     const auto farthest = [&](const char* index, const Eigen::VectorXd& values) -> NamedPoint {
       const Eigen::Index cv = farthest_from_one(values, study.diagnosis.location_distance);
@@ -48,11 +48,11 @@ Panel group_panel(const Campaign& campaign, const FalseAlarms& group) {
       return {x, value,
               fmt::format("{}; {} of {} {:.3g}", experiment_line(study, record), index, cv_name(study, cv),
                           value),
-              experiment_anchor(campaign, record)};
+              experiment_anchor(input, record)};
     };
     costs.push_back(farthest("Ivar_basis", record.ivar_basis));
     (chain.impactful ? alarms : quiet).push_back(farthest("Ivar", chain.ivar));
-  }
+  });
   const Rate& rate = group.false_alarm;
   PanelScript panel("alarm_" + group.name(),
                     fmt::format("{}: {} of {} false alarms", group.label(), rate.hits, rate.total),
@@ -118,7 +118,7 @@ ReportSection false_alarm_section(const ReportInput& input) {
                    {"band of impact", kThreshold}};
   for (const FalseAlarms& group : groups)
     if ((group.parameter || group.kind == ExperimentKind::healthy) && group.false_alarm.total > 0)
-      figure.panels.push_back(group_panel(input.campaign, group));
+      figure.panels.push_back(group_panel(input, group));
   if (!figure.panels.empty())
     section.add(std::move(figure));
   section.add(sensitivity_sentence(input.campaign.study));

@@ -1,3 +1,7 @@
+#include <cstdint>
+#include <map>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "analysis/findings/fault_size.hpp"
@@ -64,16 +68,31 @@ void add_curve(PanelScript& panel, const std::vector<Whisker>& list, const Pen& 
   panel.upright_whiskers(list, pen);
 }
 
-Panel size_panel(const Campaign& campaign, FaultSize size, const std::vector<SizedFault>& faults) {
-  const Study& study = campaign.study;
-  constexpr double kMissedRow = -7, kWrongRow = -15;  // below the shares, one mark an experiment
+/// A mark for each fault that was not diagnosed rightly: a row below the shares.
+std::map<std::int64_t, NamedPoint> fault_marks(const ReportInput& input,
+                                               const std::vector<SizedFault>& faults) {
+  constexpr double kMissedRow = -7, kWrongRow = -15;
+  std::map<std::int64_t, NamedPoint> marks;
+  for (const SizedFault& fault : faults)
+    if (!fault.diagnosed)
+      marks[fault.experiment] = {fault.size, fault.flagged ? kWrongRow : kMissedRow, ""};
+  records_of(input.campaign).each([&](const ExperimentRecord& record) {
+    if (const auto mark = marks.find(record.draw.index); mark != marks.end()) {
+      mark->second.name = experiment_line(input.campaign.study, record);
+      mark->second.anchor = experiment_anchor(input, record);
+    }
+  });
+  return marks;
+}
+
+Panel size_panel(const ReportInput& input, FaultSize size, const std::vector<SizedFault>& faults) {
+  const Study& study = input.campaign.study;
   const std::vector<SizeBin> bins = size_bins(faults, kBins, study.aggregate.confidence);
+  std::map<std::int64_t, NamedPoint> marks = fault_marks(input, faults);
   std::vector<NamedPoint> missed, wrong;
   for (const SizedFault& fault : faults)
     if (!fault.diagnosed)
-      (fault.flagged ? wrong : missed)
-          .push_back({fault.size, fault.flagged ? kWrongRow : kMissedRow,
-                      experiment_line(study, *fault.record), experiment_anchor(campaign, *fault.record)});
+      (fault.flagged ? wrong : missed).push_back(std::move(marks[fault.experiment]));
   const Labels text = labels(size, study);
   PanelScript panel(std::string(to_string(size)),
                     fmt::format("{}: {} experiments", text.title, faults.size()), {.label = text.axis},
@@ -113,9 +132,9 @@ ReportSection fault_size_section(const ReportInput& input) {
   for (const FaultSize size : {FaultSize::gain_factor, FaultSize::time_constant_factor,
                                FaultSize::dead_time_shift, FaultSize::disturbance_deviation}) {
     const std::vector<SizedFault> faults =
-        faults_by_size(study, chain_place(input.campaign), input.campaign.records, size);
+        faults_by_size(study, chain_place(input.campaign), records_of(input.campaign), size);
     if (!faults.empty())
-      figure.panels.push_back(size_panel(input.campaign, size, faults));
+      figure.panels.push_back(size_panel(input, size, faults));
     all.insert(all.end(), faults.begin(), faults.end());
   }
   section.answer = fault_size_answer(all, study.aggregate.confidence);

@@ -32,9 +32,10 @@ std::string population(const Study& study) {
 
 double highest_indicator(const Campaign& campaign) {
   double highest = campaign.study.diagnosis.mpm_threshold;
-  for (const ExperimentRecord& record : campaign.records)
+  records_of(campaign).each([&](const ExperimentRecord& record) {
     if (const double i_mpm = judged_indicator(campaign.study, record); std::isfinite(i_mpm))
       highest = std::fmax(highest, i_mpm);
+  });
   return 1.05 * highest;
 }
 
@@ -42,18 +43,19 @@ Axis indicator_axis(const Campaign& campaign) {
   return {.label = "I_{MPM} (-)", .lower = 0.0, .upper = highest_indicator(campaign)};
 }
 
-Panel kind_panel(const Campaign& campaign, const KindFindings& kind) {
+Panel kind_panel(const ReportInput& input, const KindFindings& kind) {
+  const Campaign& campaign = input.campaign;
   const Study& study = campaign.study;
   std::vector<NamedPoint> right, wrong;
-  for (const ExperimentRecord& record : campaign.records) {
+  records_of(campaign).each([&](const ExperimentRecord& record) {
     const double i_mpm = judged_indicator(study, record);
     if (record.draw.kind != kind.kind || !std::isfinite(i_mpm))
-      continue;
+      return;
     const Judgement judgement = judge(study, record, *record.by(kChainMethod));
     (judgement.source() == Correctness::right ? right : wrong)
         .push_back({static_cast<double>(record.draw.index), i_mpm, experiment_line(study, record),
-                    experiment_anchor(campaign, record)});
-  }
+                    experiment_anchor(input, record)});
+  });
   const Rate& rate = kind.source_recognised;
   PanelScript panel(fmt::format("impm_{}", to_string(kind.kind)),
                     fmt::format("{}: {} of {} recognised", kind_name(kind.kind), rate.hits, rate.total),
@@ -65,17 +67,19 @@ Panel kind_panel(const Campaign& campaign, const KindFindings& kind) {
       fmt::format("I_MPM of the {} experiments by number, with the threshold.", kind_name(kind.kind)));
 }
 
-Panel dominance_panel(const Campaign& campaign, const std::vector<DominanceBin>& bins) {
+Panel dominance_panel(const ReportInput& input, const std::vector<DominanceBin>& bins) {
+  const Campaign& campaign = input.campaign;
   const Study& study = campaign.study;
   std::vector<NamedPoint> points;
-  for (const ExperimentRecord& record : campaign.records)
+  records_of(campaign).each([&](const ExperimentRecord& record) {
     if (const double i_mpm = judged_indicator(study, record);
         record.draw.kind == ExperimentKind::mpm_ud && std::isfinite(i_mpm)) {
       const double dominance = record.by(kChainMethod)->number("dominance_mpm");
       points.push_back({dominance, i_mpm,
                         experiment_line(study, record) + fmt::format(", dominance {:.2f}", dominance),
-                        experiment_anchor(campaign, record)});
+                        experiment_anchor(input, record)});
     }
+  });
   std::vector<Whisker> means;
   for (const DominanceBin& bin : bins)
     means.push_back({0.5 * (bin.lower + bin.upper), bin.i_mpm.mean, bin.i_mpm.mean_interval.lower,
@@ -121,7 +125,7 @@ ReportSection indicator_section(const ReportInput& input) {
   figure.legend = {{"source right", kRight}, {"source wrong", kWrong}, {"threshold", kThreshold}};
   for (const KindFindings& kind : input.kinds())
     if (kind.kind != ExperimentKind::mpm_ud && kind.source_recognised.total > 0)
-      figure.panels.push_back(kind_panel(input.campaign, kind));
+      figure.panels.push_back(kind_panel(input, kind));
   if (figure.panels.empty())
     section.leave_out("no experiment with a single fault has an I_MPM to judge.");
   else
@@ -150,7 +154,7 @@ ReportSection dominance_section(const ReportInput& input) {
       population(study));
   figure.legend = {
       {"experiment", kBoth}, {"mean of a bin with its interval", kMean}, {"threshold", kThreshold}};
-  figure.panels = {dominance_panel(input.campaign, bins)};
+  figure.panels = {dominance_panel(input, bins)};
   section.add(std::move(figure));
   section.add(dominance_table(study, bins));
   return section;

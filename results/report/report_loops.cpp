@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -17,58 +18,51 @@ namespace {
 
 constexpr std::size_t kWrongLoops = 6;  // a page of a few hundred kilobytes more
 
-const ExperimentRecord* record_of(const Campaign& campaign, std::int64_t index) {
-  const auto found =
-      std::find_if(campaign.records.begin(), campaign.records.end(),
-                   [index](const ExperimentRecord& record) { return record.draw.index == index; });
-  return found == campaign.records.end() ? nullptr : &*found;
-}
-
-bool is_wrong(const Campaign& campaign, const ExperimentRecord& record) {
-  const AssessmentRecord* const chain = record.by(kChainMethod);
-  return chain != nullptr && chain->answered() && judge(campaign.study, record, *chain).wrong();
-}
-
 /// What the fault does to the CV that it is on, as a distance from 1: of twice the variance as of half of it.
 double cost(const ExperimentRecord& record) {
   const Eigen::Index cv = record.draw.true_cv();
   return cv >= 0 && cv < record.ivar_basis.size() ? std::abs(std::log(record.ivar_basis(cv))) : 0.0;
 }
 
-/// Of these, sorted by what they cost, the one in the middle: neither the clearest nor the faintest.
-std::vector<std::int64_t> middle_one(std::vector<const ExperimentRecord*> records) {
-  if (records.empty())
-    return {};
-  std::stable_sort(records.begin(), records.end(),
-                   [](const ExperimentRecord* a, const ExperimentRecord* b) { return cost(*a) < cost(*b); });
-  return {records[records.size() / 2]->draw.index};
-}
+/// An experiment that may be shown.
+struct Candidate {
+  double cost;
+  std::int64_t index;
+};
 
-std::vector<std::int64_t> typical(const Campaign& campaign, bool with_fault) {
-  std::vector<const ExperimentRecord*> records;
-  for (const ExperimentRecord& record : campaign.records) {
-    const AssessmentRecord* const chain = record.by(kChainMethod);
-    const bool one_fault = record.draw.kind == ExperimentKind::mpm || record.draw.kind == ExperimentKind::ud;
-    if (chain != nullptr && chain->answered() && !is_wrong(campaign, record) &&
-        chain->flagged == with_fault &&
-        (with_fault ? one_fault : record.draw.kind == ExperimentKind::healthy))
-      records.push_back(&record);
+/// Those that may be shown for each reason, in the order of the archive.
+struct Candidates {
+  std::vector<Candidate> faulty, healthy, wrong;
+
+  explicit Candidates(const Campaign& campaign) {
+    records_of(campaign).each([&](const ExperimentRecord& record) {
+      const AssessmentRecord* const chain = record.by(kChainMethod);
+      if (chain == nullptr || !chain->answered())
+        return;
+      const Candidate candidate{cost(record), record.draw.index};
+      const ExperimentKind kind = record.draw.kind;
+      if (judge(campaign.study, record, *chain).wrong())
+        wrong.push_back(candidate);
+      else if (chain->flagged && (kind == ExperimentKind::mpm || kind == ExperimentKind::ud))
+        faulty.push_back(candidate);
+      else if (!chain->flagged && kind == ExperimentKind::healthy)
+        healthy.push_back(candidate);
+    });
   }
-  return middle_one(std::move(records));
+};
+
+/// By what they cost the one in the middle: neither the clearest nor the faintest.
+std::vector<Candidate> middle_one(std::vector<Candidate> of) {
+  std::stable_sort(of.begin(), of.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  return of.empty() ? of : std::vector{of[of.size() / 2]};
 }
 
-std::vector<std::int64_t> costliest_wrong(const Campaign& campaign) {
-  std::vector<const ExperimentRecord*> wrong;
-  for (const ExperimentRecord& record : campaign.records)
-    if (is_wrong(campaign, record))
-      wrong.push_back(&record);
-  std::stable_sort(wrong.begin(), wrong.end(),
-                   [](const ExperimentRecord* a, const ExperimentRecord* b) { return cost(*a) > cost(*b); });
-  wrong.resize(std::min(wrong.size(), kWrongLoops));
-  std::vector<std::int64_t> indices;
-  for (const ExperimentRecord* record : wrong)
-    indices.push_back(record->draw.index);
-  return indices;
+std::vector<Candidate> costliest(std::vector<Candidate> of) {
+  std::stable_sort(of.begin(), of.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.cost > b.cost; });
+  of.resize(std::min(of.size(), kWrongLoops));
+  return of;
 }
 
 /// The CVs that a verdict is about, and the MV of a mismatched channel; the others would only fill the page.
@@ -115,22 +109,16 @@ std::string said_table(const Study& study, const ExperimentRecord& record) {
 
 void add_loop(ReportSection& section, const ReportInput& input, const LoopView& view, bool whole) {
   const Study& study = input.campaign.study;
-  const ExperimentRecord& record = *record_of(input.campaign, view.index);
-  section.add(fmt::format("<div class=\"loop\" id=\"loop-{}\">\n<h3>{}</h3>\n", view.index,
+  const ExperimentRecord& record = view.of.record;
+  section.add(fmt::format("<div class=\"loop\" id=\"loop-{}\">\n<h3>{}</h3>\n", record.draw.index,
                           html_text(experiment_title(study, record.draw))));
   section.add(said_table(study, record));
-  Figure figure = trajectory_figure(study, view.trajectory, view.nominal, fmt::format("loop-{}", view.index));
+  Figure figure =
+      trajectory_figure(study, view.trajectory, view.nominal, fmt::format("loop-{}", record.draw.index));
   if (!whole)
     keep_panels(figure, study, record);
   section.add(std::move(figure));
   section.add("</div>\n");
-}
-
-const LoopView* view_of(const ReportInput& input, const std::vector<std::int64_t>& indices) {
-  for (const LoopView& view : input.loops)
-    if (!indices.empty() && view.index == indices.front())
-      return &view;
-  return nullptr;
 }
 
 std::string loops_answer(const ReportInput& input, const ExperimentRecord& faulty) {
@@ -147,35 +135,56 @@ std::string loops_answer(const ReportInput& input, const ExperimentRecord& fault
 
 }  // namespace
 
-std::vector<std::int64_t> loops_to_show(const Campaign& campaign) {
-  std::vector<std::int64_t> indices;
+std::vector<ShownExperiment> loops_to_show(const Campaign& campaign) {
   if (campaign.study.names_scenarios() || chain_place(campaign) == campaign.methods.size())
-    return indices;
-  for (const auto& chosen : {typical(campaign, true), typical(campaign, false), costliest_wrong(campaign)})
-    indices.insert(indices.end(), chosen.begin(), chosen.end());
-  return indices;
+    return {};
+  std::vector<ShownExperiment> shown;
+  std::map<std::int64_t, std::size_t> places;
+  const auto show = [&](LoopReason reason, const std::vector<Candidate>& chosen) {
+    for (const Candidate& candidate : chosen) {
+      places[candidate.index] = shown.size();
+      shown.push_back({reason, {}});
+    }
+  };
+  const Candidates candidates(campaign);
+  show(LoopReason::faulty, middle_one(candidates.faulty));
+  show(LoopReason::healthy, middle_one(candidates.healthy));
+  show(LoopReason::wrong, costliest(candidates.wrong));
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    if (const auto place = places.find(record.draw.index); place != places.end())
+      shown[place->second].record = record;
+  });
+  return shown;
+}
+
+std::vector<const LoopView*> ReportInput::loops_of(LoopReason reason) const {
+  std::vector<const LoopView*> views;
+  for (const LoopView& view : loops)
+    if (view.of.reason == reason)
+      views.push_back(&view);
+  return views;
 }
 
 bool ReportInput::shows_loop(std::int64_t index) const {
   return std::any_of(loops.begin(), loops.end(),
-                     [index](const LoopView& view) { return view.index == index; });
+                     [index](const LoopView& view) { return view.of.record.draw.index == index; });
 }
 
 ReportSection loops_section(const ReportInput& input) {
   ReportSection section{"loops", "What does a faulty loop look like, and a healthy one?", {}};
-  const LoopView* const faulty = view_of(input, typical(input.campaign, true));
-  const LoopView* const healthy = view_of(input, typical(input.campaign, false));
-  if (faulty == nullptr && healthy == nullptr) {
+  const std::vector<const LoopView*> faulty = input.loops_of(LoopReason::faulty);
+  const std::vector<const LoopView*> healthy = input.loops_of(LoopReason::healthy);
+  if (faulty.empty() && healthy.empty()) {
     section.leave_out("no loop with a right verdict is at hand.");
     return section;
   }
-  if (faulty != nullptr) {
-    section.answer = loops_answer(input, *record_of(input.campaign, faulty->index));
-    add_loop(section, input, *faulty, true);
+  for (const LoopView* view : faulty) {
+    section.answer = loops_answer(input, view->of.record);
+    add_loop(section, input, *view, true);
   }
-  if (healthy != nullptr)
-    add_loop(section, input, *healthy, true);
-  else
+  for (const LoopView* view : healthy)
+    add_loop(section, input, *view, true);
+  if (healthy.empty())
     section.add(
         "<p>No experiment of this study is healthy; the <a href=\"#basis\">basis case</a> is the same loop "
         "without any fault.</p>\n");
@@ -183,9 +192,8 @@ ReportSection loops_section(const ReportInput& input) {
 }
 
 void add_wrong_loops(ReportSection& section, const ReportInput& input) {
-  for (const std::int64_t index : costliest_wrong(input.campaign))
-    if (const LoopView* const view = view_of(input, {index}))
-      add_loop(section, input, *view, false);
+  for (const LoopView* view : input.loops_of(LoopReason::wrong))
+    add_loop(section, input, *view, false);
 }
 
 }  // namespace mpm

@@ -31,8 +31,8 @@ std::vector<Figure> all_figures(const ReportSection& section) {
 
 std::string report_html(const Campaign& campaign, const StudyFindings& findings,
                         const std::filesystem::path& file, const std::vector<LoopView>& loops) {
-  const SummaryContent parts = summary_content(campaign, findings);
-  const ReportInput input{campaign, parts, file.filename().string(), loops};
+  const SummaryContent parts = summary_content(campaign, findings, kMostVerdictRows);
+  const ReportInput input{campaign, parts, file.filename().string(), loops, listed_below(campaign)};
   const std::vector<ReportSection> sections = report_sections(input);
   const std::string file_name = html_text(file.filename().string());
   const std::string study = html_text(campaign.study.name);
@@ -57,9 +57,9 @@ std::vector<std::filesystem::path> write_figures(const Campaign& campaign, const
   if (!std::filesystem::is_directory(folder))
     throw ArchiveError(fmt::format("{}: cannot make the folder for the figures{}{}", folder.string(),
                                    error ? ": " : "", error ? error.message() : ""));
-  const SummaryContent parts = summary_content(campaign, findings);
+  const SummaryContent parts = summary_content(campaign, findings, kMostVerdictRows);
   std::vector<std::filesystem::path> files;
-  for (const ReportSection& section : report_sections({campaign, parts, "", {}}))
+  for (const ReportSection& section : report_sections({campaign, parts, "", {}, listed_below(campaign)}))
     for (const Figure& figure : all_figures(section)) {
       files.push_back(folder / fmt::format("{}.{}", figure.name, to_string(format)));
       const std::string drawing = draw_figure(figure, format);

@@ -25,15 +25,15 @@ struct Scores {
   std::vector<double> mpm, ud;
 
   explicit Scores(const Campaign& campaign) {
-    for (const ExperimentRecord& record : campaign.records) {
+    records_of(campaign).each([this](const ExperimentRecord& record) {
       const AssessmentRecord* const chain = record.by(kChainMethod);
       if (chain == nullptr || !chain->flagged)
-        continue;
+        return;
       if (record.draw.kind == ExperimentKind::mpm)
         mpm.push_back(chain->number("i_mpm"));
       if (record.draw.kind == ExperimentKind::ud)
         ud.push_back(chain->number("i_mpm"));
-    }
+    });
   }
 };
 

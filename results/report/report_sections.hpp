@@ -17,19 +17,24 @@ struct ReportInput {
   const SummaryContent& parts;
   std::string file;             ///< name of the archive
   std::vector<LoopView> loops;  ///< those that can be drawn
+  std::int64_t listed_below;    ///< index of the first one without a row in experiments_section()
 
   const StudyFindings& findings() const { return parts.findings; }
   /// What the chain of the thesis shows of each kind, and where model and plant agree; nothing in a study
   /// that does not run it.
   const std::vector<KindFindings>& kinds() const;
   const std::vector<FalseAlarms>& false_alarms() const;
+  /// The loops that are drawn for this reason.
+  std::vector<const LoopView*> loops_of(LoopReason reason) const;
   /// Is the loop of this experiment drawn?
   bool shows_loop(std::int64_t index) const;
 };
 
 /// Where points lead that stand for this experiment: its row in experiments_section(); empty when it has
 /// none.
-std::string experiment_anchor(const Campaign& campaign, const ExperimentRecord& record);
+std::string experiment_anchor(const ReportInput& input, const ExperimentRecord& record);
+/// ReportInput::listed_below.
+std::int64_t listed_below(const Campaign& campaign);
 
 /// A piece of HTML.
 struct Html {
@@ -71,6 +76,9 @@ ReportSection basis_section(const ReportInput& input);            ///< the basis
 ReportSection solver_section(const ReportInput& input);           ///< effort and accuracy of the QP solver
 ReportSection comparison_section(const ReportInput& input);       ///< methods of assessment, side by side
 ReportSection wrong_verdict_section(const ReportInput& input);    ///< wrong verdicts and failures, one by one
+
+/// How many wrong verdicts, and failures, wrong_verdict_section() lists.
+inline constexpr std::size_t kMostVerdictRows = 500;
 
 /// The loops behind wrong verdicts, those of them that can be drawn.
 void add_wrong_loops(ReportSection& section, const ReportInput& input);

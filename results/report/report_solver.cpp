@@ -85,17 +85,17 @@ ReportSection solver_section(const ReportInput& input) {
                    {"Largest KKT residual"},
                    {"In experiment"}});
   Effort all;
-  for (const ExperimentRecord& record : campaign.records)
-    all.add(record);
+  records_of(campaign).each([&all](const ExperimentRecord& record) { all.add(record); });
   if (all.experiments == 0) {
     section.leave_out("no experiment has solver statistics.");
     return section;
   }
   for (const KindFindings& kind : input.kinds()) {
     Effort effort;
-    for (const ExperimentRecord& record : campaign.records)
+    records_of(campaign).each([&](const ExperimentRecord& record) {
       if (record.draw.kind == kind.kind)
         effort.add(record);
+    });
     add_row(table, kind_name(kind.kind), std::move(effort));
   }
   add_row(table, "all", std::move(all));

@@ -23,8 +23,8 @@ struct Pairs {
   double least = INFINITY, largest = -INFINITY;  ///< Ivar
   double least_basis = INFINITY;                 ///< Ivar_basis
 
-  void add(const Campaign& campaign, const ExperimentRecord& record) {
-    const Study& study = campaign.study;
+  void add(const ReportInput& input, const ExperimentRecord& record) {
+    const Study& study = input.campaign.study;
     const Diagnosis chain = record.chain();
     for (Eigen::Index cv = 0; cv < chain.ivar.size(); ++cv) {
       const double x = chain.ivar(cv);
@@ -38,17 +38,18 @@ struct Pairs {
           .push_back({x, y,
                       fmt::format("experiment {} ({}), {}: Ivar {:.3g}, Ivar_basis {:.3g}", record.draw.index,
                                   kind_name(record.draw.kind), cv_name(study, cv), x, y),
-                      experiment_anchor(campaign, record)});
+                      experiment_anchor(input, record)});
     }
   }
   bool empty() const { return affected.empty() && others.empty(); }
 };
 
-Pairs pairs_of(const Campaign& campaign, ExperimentKind kind) {
+Pairs pairs_of(const ReportInput& input, ExperimentKind kind) {
   Pairs pairs;
-  for (const ExperimentRecord& record : campaign.records)
+  records_of(input.campaign).each([&](const ExperimentRecord& record) {
     if (record.draw.kind == kind && record.status == ExperimentStatus::ok)
-      pairs.add(campaign, record);
+      pairs.add(input, record);
+  });
   return pairs;
 }
 
@@ -127,7 +128,7 @@ ReportSection variance_section(const ReportInput& input) {
                    {"regression, all CVs", kLine},
                    {"Ivar_{basis} = Ivar", kIdentity}};
   for (const KindFindings& kind : input.kinds())
-    if (const Pairs pairs = pairs_of(input.campaign, kind.kind); !pairs.empty())
+    if (const Pairs pairs = pairs_of(input, kind.kind); !pairs.empty())
       figure.panels.push_back(kind_panel(input, kind, pairs));
   if (figure.panels.empty()) {
     section.leave_out("no experiment has variance indices.");

@@ -12,8 +12,6 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kMostRows = 500;
-
 /// What was found; the wrong one is marked.
 std::string marked(const std::string& found, Correctness correctness) {
   return correctness == Correctness::right || correctness == Correctness::not_judged
@@ -49,7 +47,7 @@ std::string wrong_table(const ReportInput& input) {
        {"of located"},
        {"Dominance"}});
   const std::vector<const ExperimentRecord*>& wrong = input.parts.wrong;
-  for (std::size_t i = 0; i < std::min(wrong.size(), kMostRows); ++i) {
+  for (std::size_t i = 0; i < std::min(wrong.size(), kMostVerdictRows); ++i) {
     const ExperimentRecord& record = *wrong[i];
     const Diagnosis verdict = record.chain();
     const Judgement judgement = judge(study, record, *record.by(kChainMethod));
@@ -68,9 +66,9 @@ std::string wrong_table(const ReportInput& input) {
          html_number(verdict.alone.dominance_mpm)});
   }
   std::string html = table.html();
-  if (wrong.size() > kMostRows)
+  if (input.parts.wrong_count > kMostVerdictRows)
     html += fmt::format("<p>And {} more; <code>mpmbench summary {} --json</code> lists all.</p>\n",
-                        wrong.size() - kMostRows, html_text(input.file));
+                        input.parts.wrong_count - kMostVerdictRows, html_text(input.file));
   return html;
 }
 
@@ -80,7 +78,7 @@ std::string failed_table(const ReportInput& input) {
                                                {"Fault, and how to replay it", HtmlTable::Align::text},
                                                {"Why", HtmlTable::Align::text}});
   const std::vector<const ExperimentRecord*>& failed = input.parts.failed;
-  for (std::size_t i = 0; i < std::min(failed.size(), kMostRows); ++i)
+  for (std::size_t i = 0; i < std::min(failed.size(), kMostVerdictRows); ++i)
     table.row({fmt::format("{}", failed[i]->draw.index), kind_name(failed[i]->draw.kind),
                fault_cell(input, *failed[i]), html_text(failed[i]->message)});
   return table.html();
@@ -104,7 +102,7 @@ ReportSection wrong_verdict_section(const ReportInput& input) {
   section.add(
       fmt::format("<p>{} of {} experiments with impact got a wrong verdict. <code>mpmbench plot {} INDEX -o "
                   "FILE.svg</code> draws the closed loop of one.</p>\n",
-                  input.parts.wrong.size(), impactful, html_text(input.file)));
+                  input.parts.wrong_count, impactful, html_text(input.file)));
   section.add(wrong_table(input));
   add_wrong_loops(section, input);
   return section;

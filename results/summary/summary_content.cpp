@@ -31,7 +31,7 @@ std::string kinds_text(const Study& study, const std::vector<KindCount>& kinds) 
   return text;
 }
 
-SummaryContent summary_content(const Campaign& campaign, const StudyFindings& findings) {
+SummaryContent summary_content(const Campaign& campaign, const StudyFindings& findings, std::size_t most) {
   const Study& study = campaign.study;
   SummaryContent parts(findings);
   std::optional<Collector<std::vector<S0Curve>>> s0_curves;
@@ -45,7 +45,7 @@ SummaryContent summary_content(const Campaign& campaign, const StudyFindings& fi
   const auto list = [&](const ExperimentRecord& record, std::vector<const ExperimentRecord*>& listed) {
     if (!campaign.streamed)
       listed.push_back(&record);
-    else if (listed.size() < kMostListed)
+    else if (listed.size() < most)
       listed.push_back(&parts.first.emplace_back(record));
   };
   records_of(campaign).each([&](const ExperimentRecord& record) {

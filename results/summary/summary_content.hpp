@@ -32,7 +32,7 @@ struct SummaryContent {
   std::vector<StructureFit> structure_fits;  ///< none unless the study fixes MVs
   std::vector<KindCount> kinds;              ///< of a study of random experiments, those that it has
   std::size_t failed_count = 0, wrong_count = 0;
-  /// All of them; of a campaign that is streamed the first ones, kMostListed at most.
+  /// All of them; of a campaign that is streamed the first ones.
   std::vector<const ExperimentRecord*> failed;
   std::vector<const ExperimentRecord*> wrong;  ///< verdicts of the chain, Judgement::wrong()
   std::deque<ExperimentRecord> first;          ///< these, of a campaign that is streamed
@@ -42,6 +42,8 @@ struct SummaryContent {
 std::string kinds_text(const Study& study, const std::vector<KindCount>& kinds);
 
 /// `campaign` and `findings` must outlive the parts.
-SummaryContent summary_content(const Campaign& campaign, const StudyFindings& findings);
+/// Of one that is streamed, `most` of the failures and of the wrong verdicts are listed.
+SummaryContent summary_content(const Campaign& campaign, const StudyFindings& findings,
+                               std::size_t most = kMostListed);
 
 }  // namespace mpm

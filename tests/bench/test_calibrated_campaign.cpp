@@ -1,6 +1,9 @@
 #include <atomic>
 #include <bit>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -10,6 +13,8 @@
 #include "bench/campaign/serial_campaign.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
+#include "results/archive/archive.hpp"
+#include "results/summary/comparison.hpp"
 #include "scenarios/study_file.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -96,6 +101,29 @@ TEST_CASE("comparison: an archive may lack experiments between those that it has
     CHECK(part.records[i].by("sse")->status == whole.records[i].by("sse")->status);
     CHECK(std::bit_cast<std::uint64_t>(part.records[i].by("sse")->score) ==
           std::bit_cast<std::uint64_t>(whole.records[i].by("sse")->score));
+  }
+}
+
+TEST_CASE("comparison: of records that stay in the archive the same methods are missing and give the same") {
+  const TemporaryFolder folder;
+  const Campaign made_up = mpm::testing::made_up_campaign();
+  write_archive(folder / "a.h5", made_up, findings_of(made_up));
+  const Campaign read = read_archive(folder / "a.h5"), streamed = stream_archive(folder / "a.h5");
+  REQUIRE(streamed.records.empty());
+  const std::vector<std::string> names = method_names(read), chosen{names.back(), names.front()};
+  std::vector<std::string> asked = names;
+  asked.push_back("no-such-method");
+  for (const std::optional<std::int64_t> experiments : {std::optional<std::int64_t>(), {5}}) {
+    CHECK(compared_loops(streamed, experiments) == compared_loops(read, experiments));
+    const std::vector<std::string> missing = missing_methods(read, asked, experiments);
+    CHECK(missing.back() == "no-such-method");
+    CHECK(missing.size() < asked.size());
+    CHECK(missing_methods(streamed, asked, experiments) == missing);
+    const auto json = [&](const Campaign& campaign) {
+      const Campaign part = with_methods(campaign, chosen, experiments);
+      return comparison_json(part, findings_of(part));
+    };
+    CHECK((json(streamed) == json(read)));
   }
 }
 

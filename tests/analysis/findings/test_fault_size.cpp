@@ -61,10 +61,10 @@ TEST_CASE("fault size: only experiments with a verdict and that single fault cou
   CHECK(faults_by_size(study, 0, records, FaultSize::disturbance_deviation).empty());
   const auto faults = faults_by_size(study, 0, records, FaultSize::gain_factor);
   REQUIRE(faults.size() == 3);
-  CHECK(faults[0].record->draw.index == 1);
+  CHECK(faults[0].experiment == 1);
   CHECK(faults[0].flagged);
   CHECK_FALSE(faults[0].diagnosed);
-  CHECK(faults[1].record->draw.index == 2);
+  CHECK(faults[1].experiment == 2);
   CHECK_FALSE(faults[1].flagged);
   CHECK_FALSE(faults[1].diagnosed);  // what is not seen is not diagnosed, whatever the verdict
   CHECK(faults[2].diagnosed);

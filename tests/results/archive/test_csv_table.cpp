@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "results/archive/archive.hpp"
 #include "results/archive/csv_table.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -155,6 +156,16 @@ TEST_CASE("csv table: another name is refused with the tables that there are") {
   CHECK(csv_table_names(campaign) == names);
   CHECK_THROWS_WITH(csv_table(campaign, "trajectories"),
                     "--table: found 'trajectories'; allowed: " + fmt::format("{}", fmt::join(names, ", ")));
+}
+
+TEST_CASE("csv: of records that stay in the archive every table is the same") {
+  const TemporaryFolder folder;
+  const Campaign campaign = made_up_campaign();
+  write_archive(folder / "a.h5", campaign, findings_of(campaign));
+  const Campaign read = read_archive(folder / "a.h5"), streamed = stream_archive(folder / "a.h5");
+  REQUIRE(streamed.records.empty());
+  for (const std::string& table : csv_table_names(read))
+    CHECK((csv_table(streamed, table) == csv_table(read, table)));
 }
 
 }  // namespace

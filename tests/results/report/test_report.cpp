@@ -9,6 +9,8 @@
 
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/chain_numbers.hpp"
+#include "results/archive/archive.hpp"
+#include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/report/report.hpp"
 #include "results/report/report_answers.hpp"
@@ -33,7 +35,7 @@ class Input {
   explicit Input(const Campaign& campaign, std::string file = "f")
       : findings_(findings_of(campaign)),
         parts_(summary_content(campaign, findings_)),
-        input_{campaign, parts_, std::move(file), {}} {}
+        input_{campaign, parts_, std::move(file), {}, listed_below(campaign)} {}
 
   operator const ReportInput&() const { return input_; }
 
@@ -83,6 +85,24 @@ TEST_CASE("report: the page depends on the campaign and the name of the archive 
   const std::string page = page_of(sample(), "some/folder/out.h5");
   CHECK(page == page_of(sample(), "another/out.h5"));
   CHECK_THAT(page, Contains("mpmbench replay out.h5 ") && !Contains("some/folder"));
+}
+
+TEST_CASE("report: of records that stay in the archive it is the same page with the same loops") {
+  const TemporaryFolder folder;
+  const Campaign campaign = GENERATE(0, 1) == 0 ? faultless_campaign() : drawn_campaign();
+  write_archive(folder / "a.h5", campaign, findings_of(campaign));
+  const Campaign read = read_archive(folder / "a.h5"), streamed = stream_archive(folder / "a.h5");
+  REQUIRE(streamed.streamed);
+  REQUIRE(streamed.records.empty());
+  CHECK((page_of(streamed, "a.h5") == page_of(read, "a.h5")));
+  const std::vector<ShownExperiment> shown = loops_to_show(streamed), expected = loops_to_show(read);
+  REQUIRE(!expected.empty());
+  REQUIRE(shown.size() == expected.size());
+  const RecordBytes bytes(campaign.study, forms_of(campaign));
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    CHECK(shown[i].reason == expected[i].reason);
+    CHECK(bytes.differences(shown[i].record, expected[i].record) == std::vector<std::string>{});
+  }
 }
 
 TEST_CASE("report: headline numbers are those of the summary, beside the reported ones") {
