@@ -39,19 +39,19 @@ void SchurFactor::remove(Eigen::Index k) {
   }
 }
 
-void SchurFactor::solve_lower(Eigen::Ref<Eigen::VectorXd> b) const {
+void SchurFactor::solve_lower(Eigen::VectorXd& b) const {
   for (Eigen::Index i = 0; i < size_; ++i)
     b(i) = (b(i) - lower_.row(i).head(i).dot(b.head(i))) / lower_(i, i);
 }
 
-void SchurFactor::solve_upper(Eigen::Ref<Eigen::VectorXd> b) const {
+void SchurFactor::solve_upper(Eigen::VectorXd& b) const {
   for (Eigen::Index i = size_ - 1; i >= 0; --i) {
     b(i) /= lower_(i, i);
     b.head(i) -= b(i) * lower_.row(i).head(i).transpose();
   }
 }
 
-void SchurFactor::solve_in_place(Eigen::Ref<Eigen::VectorXd> b) const {
+void SchurFactor::solve_in_place(Eigen::VectorXd& b) const {
   solve_lower(b);
   solve_upper(b);
 }

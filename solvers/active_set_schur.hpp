@@ -26,9 +26,9 @@ class SchurFactor {
   void remove(Eigen::Index k);
 
   /// inv(L) b, inv(L') b and inv(S) b in place, of the first `size()` numbers.
-  void solve_lower(Eigen::Ref<Eigen::VectorXd> b) const;
-  void solve_upper(Eigen::Ref<Eigen::VectorXd> b) const;
-  void solve_in_place(Eigen::Ref<Eigen::VectorXd> b) const;
+  void solve_lower(Eigen::VectorXd& b) const;
+  void solve_upper(Eigen::VectorXd& b) const;
+  void solve_in_place(Eigen::VectorXd& b) const;
 
  private:
   RowMajorMatrix lower_;

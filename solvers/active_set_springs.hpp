@@ -41,8 +41,8 @@ struct LimitSprings {
 
   /// Sets `force` from v.
   void pull();
-  /// The force of the springs that are stretched, at the same ends, as if they could push, too; none where the
-  /// limit is no more.
+  /// The force of the springs that are stretched, at the same ends, as if they could push, too; none where
+  /// the limit is no more.
   void pull_stretched();
   /// Force zero, wherever the springs are.
   void release();

@@ -1,14 +1,55 @@
 #include "bench/files/archive_input.hpp"
 
+#include <exception>
+#include <memory>
+
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/files/archive_error.hpp"
 
 namespace mpm {
-
 namespace {
+
+/// The file of an archive whose records are read again and again. Commands that put another one in its place
+/// leave it as it is; what else writes into it would be read as records.
+class WatchedFile {
+ public:
+  explicit WatchedFile(const std::string& path)
+      : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), then_(now()) {}
+  ~WatchedFile() {
+    if (descriptor_ >= 0)
+      ::close(descriptor_);
+  }
+  WatchedFile(const WatchedFile&) = delete;
+  WatchedFile& operator=(const WatchedFile&) = delete;
+
+  /// Throws ArchiveError.
+  void require_unchanged() const {
+    const struct ::stat status = now();
+    if (status.st_size != then_.st_size || status.st_mtim.tv_sec != then_.st_mtim.tv_sec ||
+        status.st_mtim.tv_nsec != then_.st_mtim.tv_nsec)
+      throw ArchiveError(path_ +
+                         ": another content than a moment ago; allowed: an archive into which nobody "
+                         "writes; the same command again takes it as it is now");
+  }
+
+ private:
+  struct ::stat now() const {
+    struct ::stat status {};
+    if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0)
+      return {};
+    return status;
+  }
+
+  std::string path_;
+  int descriptor_;  // none of a file that its reader will refuse
+  struct ::stat then_;
+};
 
 /// What `read` returns, with its errors as those of an archive that a command was given.
 template <class Read>
@@ -27,12 +68,21 @@ Campaign read_input(const std::string& archive) {
 }
 
 Campaign stream_input(const std::string& archive) {
+  const auto file = std::make_shared<const WatchedFile>(archive);
   Campaign campaign = as_input([&] { return stream_archive(archive); });
-  if (campaign.streamed)
-    campaign.streamed = RecordRange(campaign.streamed->size(),
-                                    [records = *campaign.streamed](const RecordRange::Visit& visit) {
-                                      as_input([&] { records.each(visit); });
-                                    });
+  if (!campaign.streamed)
+    return campaign;
+  const auto each = [file, records = *campaign.streamed](const RecordRange::Visit& visit) {
+    try {
+      records.each(visit);
+    } catch (const std::exception&) {
+      file->require_unchanged();  // or else it is as bad as that says
+      throw;
+    }
+    file->require_unchanged();
+  };
+  campaign.streamed = RecordRange(
+      campaign.streamed->size(), [each](const RecordRange::Visit& visit) { as_input([&] { each(visit); }); });
   return campaign;
 }
 

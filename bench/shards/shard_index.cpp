@@ -62,7 +62,7 @@ class ShardIndex::Reader {
 ShardIndex::ShardIndex(const ShardSet& set) : set_(set) {
   for (std::size_t shard = 0; shard < set_.shards().size(); ++shard)
     if (const std::vector<OutcomePlace> places = places_in(shard); !places.empty())
-      starts_.push_back({places.front().index, shard});
+      starts_.emplace_back(places.front().index, shard);
   std::sort(starts_.begin(), starts_.end());
   compare_repeated();
 }
