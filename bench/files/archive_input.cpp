@@ -16,11 +16,12 @@ namespace mpm {
 namespace {
 
 /// The file of an archive whose records are read again and again. Commands that put another one in its place
-/// leave it as it is; what else writes into it would be read as records.
+/// leave it as it is; what else writes into it would be read as records. A pipe, which its reader will
+/// refuse, is not waited for.
 class WatchedFile {
  public:
   explicit WatchedFile(const std::string& path)
-      : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), then_(now()) {}
+      : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)), then_(now()) {}
   ~WatchedFile() {
     if (descriptor_ >= 0)
       ::close(descriptor_);
