@@ -89,8 +89,9 @@ struct QpResult {
 /// Rows `first` to `first + count - 1`, whose slack is the same (QpStructure::slack_of_row).
 struct SlackRun {
   Eigen::Index first, count;
-  int slack;
+  int slack;  ///< -1: none
 };
+/// All rows, in their order, in runs as long as they can be.
 std::vector<SlackRun> slack_runs(const QpStructure& structure);
 
 /// Objective of (x, s).

@@ -13,6 +13,7 @@ namespace mpm {
 /// of 64.
 using RowBits = std::vector<unsigned char>;
 
+/// No row of `row_count`.
 inline RowBits empty_rows(Eigen::Index row_count) {
   return RowBits(static_cast<std::size_t>((row_count + 63) / 64 * 8), 0);
 }
@@ -41,7 +42,7 @@ void visit_differences(const RowBits& a, const RowBits& b, const Visit& visit) {
   });
 }
 
-/// How many these are.
+/// How many rows are in one of the sets only.
 inline std::size_t count_differences(const RowBits& a, const RowBits& b) {
   std::size_t count = 0;
   visit_bytes(a, b,
