@@ -4,7 +4,8 @@
 
 namespace mpm {
 
-/// The order of a file, and what runs along the samples of one row at a time.
+/// A dense matrix whose rows are contiguous: the order of a file, of what runs along the samples of one row,
+/// and of the rows of a program.
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 }  // namespace mpm

@@ -6,13 +6,11 @@
 
 #include <Eigen/Core>
 
+#include "plants/row_major.hpp"
 #include "solvers/lanes/lane_program.hpp"
 #include "solvers/lanes/lane_vector.hpp"
 
 namespace mpm {
-
-/// A dense matrix whose rows are contiguous: constraint rows are read one at a time.
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The part of a soft-constrained quadratic program that stays the same over the life of a controller.
 ///

@@ -31,7 +31,7 @@ void visit_bands(const std::vector<RowBand>& bands, const std::vector<int>& list
 
 }  // namespace
 
-LaneProgram::LaneProgram(const Eigen::MatrixXd& hessian, const RowBlocks::Rows& rows)
+LaneProgram::LaneProgram(const Eigen::MatrixXd& hessian, const RowMajorMatrix& rows)
     : hessian_(rows.cols(), rows.cols()), bands_(row_bands(rows)), rows_(widest(bands_), rows.rows()) {
   for (Eigen::Index j = 0; j < rows.cols(); ++j)
     std::copy_n(hessian.col(j).data(), rows.cols(), hessian_.column(j));

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "plants/row_major.hpp"
 #include "solvers/lanes/lane_vector.hpp"
 #include "solvers/lanes/row_band.hpp"
 #include "solvers/lanes/row_blocks.hpp"
@@ -20,7 +21,7 @@ namespace mpm {
 /// products with zero: the results are the same to the bit (but for the sign of a zero).
 class LaneProgram {
  public:
-  LaneProgram(const Eigen::MatrixXd& hessian, const RowBlocks::Rows& rows);
+  LaneProgram(const Eigen::MatrixXd& hessian, const RowMajorMatrix& rows);
 
   Eigen::Index variable_count() const { return hessian_.columns(); }
   Eigen::Index row_count() const { return rows_.columns(); }

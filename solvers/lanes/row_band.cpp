@@ -28,8 +28,7 @@ void add_row(std::vector<RowBand>& bands, Eigen::Index row, std::vector<int> col
 
 }  // namespace
 
-std::vector<RowBand> row_bands(
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& rows) {
+std::vector<RowBand> row_bands(const RowMajorMatrix& rows) {
   std::vector<RowBand> bands;
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     std::vector<int> columns;

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "plants/row_major.hpp"
+
 namespace mpm {
 
 /// Rows first .. first + count - 1 of a matrix, and the columns that are not zero in all of them, in
@@ -22,7 +24,6 @@ inline constexpr std::size_t kWidestBand = 512;
 
 /// The rows of a matrix as bands, in their order; as a single one with all columns where that is hardly more
 /// work.
-std::vector<RowBand> row_bands(
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& rows);
+std::vector<RowBand> row_bands(const RowMajorMatrix& rows);
 
 }  // namespace mpm

@@ -15,7 +15,7 @@ constexpr Eigen::Index kBlock = 8;
 constexpr Eigen::Index kMostCoordinates = 512;  // rows of all bases, whose products stand on the stack
 
 /// True when row i + 1 is row i moved by a period, but for the first and the last columns.
-bool follows(const RowBlocks::Rows& rows, Eigen::Index i, Eigen::Index period) {
+bool follows(const RowMajorMatrix& rows, Eigen::Index i, Eigen::Index period) {
   const Eigen::Index count = rows.cols() - 2 * period;
   return std::equal(rows.row(i).data(), rows.row(i).data() + count, rows.row(i + 1).data() + period);
 }
@@ -34,7 +34,7 @@ Eigen::Index blocks_of(Eigen::Index rows) {
 }  // namespace
 
 // Rows that there are not are zero.
-RowBlocks::Blocks RowBlocks::make_blocks(const Rows& rows, Eigen::Index first, Eigen::Index last,
+RowBlocks::Blocks RowBlocks::make_blocks(const RowMajorMatrix& rows, Eigen::Index first, Eigen::Index last,
                                          std::vector<int> columns) {
   Blocks blocks{first, std::move(columns), blocks_of(last - first)};
   for (Eigen::Index block = first; block < last; block += kBlock)
@@ -50,7 +50,7 @@ void RowBlocks::Blocks::multiply(const double* x, double* out) const {
 }
 
 // Those that are as long as the windows, which end with the moves.
-std::vector<RowBlocks::Run> RowBlocks::find_runs(const Rows& rows, Eigen::Index period) {
+std::vector<RowBlocks::Run> RowBlocks::find_runs(const RowMajorMatrix& rows, Eigen::Index period) {
   std::vector<Run> runs;
   for (Eigen::Index i = 0; i < rows.rows(); ++i)
     if (i > 0 && follows(rows, i - 1, period))
@@ -63,7 +63,7 @@ std::vector<RowBlocks::Run> RowBlocks::find_runs(const Rows& rows, Eigen::Index 
 
 // The period with the most rows in runs; 0 when there is none. With fewer than four groups of columns nothing
 // is gained.
-Eigen::Index RowBlocks::find_period(const Rows& rows) {
+Eigen::Index RowBlocks::find_period(const RowMajorMatrix& rows) {
   Eigen::Index best = 0;
   Eigen::Index most = 0;
   for (Eigen::Index period = 1; 4 * period <= rows.cols(); ++period) {
@@ -80,7 +80,7 @@ Eigen::Index RowBlocks::find_period(const Rows& rows) {
   return best;
 }
 
-RowBlocks::RowBlocks(const Rows& rows) {
+RowBlocks::RowBlocks(const RowMajorMatrix& rows) {
   std::vector<Run> runs;
   if (const Eigen::Index period = find_period(rows); period > 0) {
     runs = find_runs(rows, period);
@@ -116,7 +116,7 @@ void RowBlocks::add_taps(Eigen::Index period, Eigen::Index moves, Eigen::Index l
 
 // A series of a run is as long as its blocks and the number of its columns ask for; number t of it, which
 // stands at t + moves - 1, is what the column of the first move has in row t of the run.
-void RowBlocks::add_windows(const Rows& rows, Eigen::Index period, const std::vector<Run>& runs) {
+void RowBlocks::add_windows(const RowMajorMatrix& rows, Eigen::Index period, const std::vector<Run>& runs) {
   const Eigen::Index moves = rows.cols() / period - 1;
   const Eigen::Index count = kBlock * window_blocks_;
   const Eigen::Index length = moves - 1 + count;
@@ -142,7 +142,7 @@ void RowBlocks::add_windows(const Rows& rows, Eigen::Index period, const std::ve
 
 // Rows that are in no run, in blocks that begin at multiples of eight; rows of runs that are among them are
 // written again by those.
-void RowBlocks::add_whole(const Rows& rows, const std::vector<Run>& runs) {
+void RowBlocks::add_whole(const RowMajorMatrix& rows, const std::vector<Run>& runs) {
   Eigen::Index first = 0;
   for (const Run& run : runs) {
     if (first < run.first)
@@ -155,8 +155,8 @@ void RowBlocks::add_whole(const Rows& rows, const std::vector<Run>& runs) {
 
 // The rows of the runs behind their windows, in blocks that reach back from the end of the run: as P and Q
 // where that is less work, else as they are.
-void RowBlocks::add_late(const Rows& rows, const std::vector<Run>& runs) {
-  Rows all(0, rows.cols());
+void RowBlocks::add_late(const RowMajorMatrix& rows, const std::vector<Run>& runs) {
+  RowMajorMatrix all(0, rows.cols());
   for (const Run& run : runs) {
     const Eigen::Index count = run.last - run.first - kBlock * window_blocks_;
     const Eigen::Index blocks = blocks_of(count);
@@ -168,7 +168,7 @@ void RowBlocks::add_late(const Rows& rows, const std::vector<Run>& runs) {
       whole_.push_back(make_blocks(rows, first, run.last, order_));
       continue;
     }
-    const Rows parts = rows.middleRows(first, kBlock * blocks) * basis->transpose();
+    const RowMajorMatrix parts = rows.middleRows(first, kBlock * blocks) * basis->transpose();
     late_.push_back(make_blocks(parts, 0, parts.rows(), numbered(basis->rows())));
     late_.back().first = first;
     late_.back().columns = numbered(basis->rows(), all.rows());

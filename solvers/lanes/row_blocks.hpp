@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "plants/row_major.hpp"
 #include "solvers/lanes/lane_kernels.hpp"
 #include "solvers/lanes/lane_vector.hpp"
 
@@ -26,8 +27,7 @@ namespace mpm {
 /// less work, they are kept as P and Q, and their product is P (Q x), whose rounding is that of A x.
 class RowBlocks {
  public:
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  explicit RowBlocks(const Rows& rows);
+  explicit RowBlocks(const RowMajorMatrix& rows);
 
   /// out = A x; `out` is followed by room for a multiple of eight.
   void multiply(const double* x, LaneVector& out) const;
@@ -56,14 +56,14 @@ class RowBlocks {
     void multiply(const double* x, double* out) const;
   };
 
-  static std::vector<Run> find_runs(const Rows& rows, Eigen::Index period);
-  static Eigen::Index find_period(const Rows& rows);
-  static Blocks make_blocks(const Rows& rows, Eigen::Index first, Eigen::Index last,
+  static std::vector<Run> find_runs(const RowMajorMatrix& rows, Eigen::Index period);
+  static Eigen::Index find_period(const RowMajorMatrix& rows);
+  static Blocks make_blocks(const RowMajorMatrix& rows, Eigen::Index first, Eigen::Index last,
                             std::vector<int> columns);
   void add_taps(Eigen::Index period, Eigen::Index moves, Eigen::Index length);
-  void add_windows(const Rows& rows, Eigen::Index period, const std::vector<Run>& runs);
-  void add_whole(const Rows& rows, const std::vector<Run>& runs);
-  void add_late(const Rows& rows, const std::vector<Run>& runs);
+  void add_windows(const RowMajorMatrix& rows, Eigen::Index period, const std::vector<Run>& runs);
+  void add_whole(const RowMajorMatrix& rows, const std::vector<Run>& runs);
+  void add_late(const RowMajorMatrix& rows, const std::vector<Run>& runs);
 
   std::vector<int> order_;
   LaneMemory numbers_;  ///< series

@@ -18,8 +18,8 @@ constexpr Eigen::Index kRunCvs = 3, kRunSamples = 43, kRunMvs = 2;
 
 // What moves do to CVs with these step responses of sample l, dead times among them.
 template <typename StepResponse>
-RowBlocks::Rows predicted_rows(Eigen::Index moves, const StepResponse& response) {
-  RowBlocks::Rows rows = RowBlocks::Rows::Zero(kRunCvs * kRunSamples, kRunMvs * moves);
+RowMajorMatrix predicted_rows(Eigen::Index moves, const StepResponse& response) {
+  RowMajorMatrix rows = RowMajorMatrix::Zero(kRunCvs * kRunSamples, kRunMvs * moves);
   for (Eigen::Index cv = 0; cv < kRunCvs; ++cv)
     for (Eigen::Index j = 0; j < kRunMvs; ++j) {
       Eigen::VectorXd step = Eigen::VectorXd::Zero(kRunSamples + 1);
@@ -34,7 +34,7 @@ RowBlocks::Rows predicted_rows(Eigen::Index moves, const StepResponse& response)
 }
 
 // Column after column, as the kernels do.
-void require_exact_product(const RowBlocks::Rows& rows) {
+void require_exact_product(const RowMajorMatrix& rows) {
   const RowBlocks blocks(rows);
   const std::vector<int> order = blocks.column_order();
   CHECK(std::set<int>(order.begin(), order.end()).size() == static_cast<std::size_t>(rows.cols()));
@@ -57,7 +57,7 @@ TEST_CASE("rows of a prediction share their numbers, and their product is that o
   // 19 moves: of moves eight samples apart one takes the numbers of the other, but not all have such a one.
   const Eigen::Index moves = GENERATE(6, 12, 19);
   std::mt19937 generator(5);
-  RowBlocks::Rows rows = predicted_rows(
+  RowMajorMatrix rows = predicted_rows(
       moves, [&](double, double) { return static_cast<double>(generator()) / 2147483648.0 - 1.0; });
   require_exact_product(rows);
   CHECK(RowBlocks(rows).late_row_count() == 0);
@@ -72,7 +72,7 @@ TEST_CASE("rows of a prediction share their numbers, and their product is that o
 
 TEST_CASE("after the last move the rows of a model of low order are combinations of few", "[lanes]") {
   const Eigen::Index moves = 12;
-  const RowBlocks::Rows rows = predicted_rows(
+  const RowMajorMatrix rows = predicted_rows(
       moves, [](double l, double channel) { return channel * (1.0 - std::exp(-l / (3.0 + channel))); });
   const RowBlocks blocks(rows);
   CHECK(blocks.late_row_count() == kRunCvs * 32);  // 27 of 43 rows each, behind two blocks of windows
@@ -89,12 +89,12 @@ TEST_CASE("after the last move the rows of a model of low order are combinations
 TEST_CASE("rows without an order are kept as they are", "[lanes]") {
   for (const auto& [m, n] : {std::pair{1, 1}, std::pair{7, 3}, std::pair{65, 13}, std::pair{16, 12}}) {
     std::srand(7);
-    const RowBlocks::Rows rows = RowBlocks::Rows::Random(m, n);
+    const RowMajorMatrix rows = RowMajorMatrix::Random(m, n);
     require_exact_product(rows);
     CHECK(RowBlocks(rows).number_count() == static_cast<std::size_t>(padded(m) * n));
   }
-  require_exact_product(RowBlocks::Rows::Zero(24, 8));
-  require_exact_product(RowBlocks::Rows(0, 4));
+  require_exact_product(RowMajorMatrix::Zero(24, 8));
+  require_exact_product(RowMajorMatrix(0, 4));
 }
 
 }  // namespace mpm
