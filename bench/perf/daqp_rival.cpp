@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/perf/short_clock.hpp"
 #include "plants/error.hpp"
-#include "plants/thread_clock.hpp"
 
 extern "C" {
 #include <api.h>
@@ -128,10 +128,10 @@ double DaqpRival::solve(const QpData& data) {
   Workspace& w = *work_;
   w.load(data);
   w.set_softness();
-  const double begin = thread_seconds();
+  const double begin = short_seconds();
   daqp_update_ldp(DAQP_UPDATE_v | DAQP_UPDATE_d, &w.workspace, &w.problem);
   daqp_solve(&w.result, &w.workspace);
-  const double elapsed = thread_seconds() - begin;
+  const double elapsed = short_seconds() - begin;
   if (!solved())
     reset();
   return elapsed;

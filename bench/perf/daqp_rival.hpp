@@ -24,7 +24,7 @@ class DaqpRival {
 
   /// Forgets the active set.
   void reset();
-  /// Seconds of processor time that DAQP took; its copies of the limits are made before.
+  /// Seconds that DAQP took; its copies of the limits are made before.
   double solve(const QpData& data);
 
   /// Of the last program: true when there is an answer, and x (n).

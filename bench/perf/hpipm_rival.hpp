@@ -18,7 +18,7 @@ class HpipmRival {
   HpipmRival(const HpipmRival&) = delete;
   HpipmRival& operator=(const HpipmRival&) = delete;
 
-  /// Seconds of processor time that HPIPM took; its copies of the limits are made before.
+  /// Seconds that HPIPM took; its copies of the limits are made before.
   double solve(const QpData& data);
 
   /// Of the last program: true when there is an answer, and x (n).

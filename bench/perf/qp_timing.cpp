@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "analysis/statistics/quantile.hpp"
-#include "plants/thread_clock.hpp"
+#include "bench/perf/short_clock.hpp"
 
 namespace mpm {
 namespace {
@@ -37,9 +37,9 @@ double QpTiming::pass() {
     if (start_ == StartOfSolve::cold)
       solver_->reset();
     data_ = sequence_.data[k];  // in the cache, as a controller has it that has just written it
-    const double begin = thread_seconds();
+    const double begin = short_seconds();
     const QpResult& result = solver_->solve(data_);
-    const double elapsed = thread_seconds() - begin;
+    const double elapsed = short_seconds() - begin;
     seconds += elapsed;
     microseconds_[k].push_back(1e6 * elapsed);
     quality_.iterations += result.iterations;

@@ -14,8 +14,8 @@ enum class StartOfSolve {
 
 /// What the solves of one sequence took and how good their answers were.
 ///
-/// The time of a program is the processor time of its thread, median over the passes, so that what else the
-/// machine does counts as little as it can; the quantiles are those over the programs of the sequence.
+/// The time of a program is the median over the passes, so that what else the machine does counts as little
+/// as it can; the quantiles are those over the programs of the sequence.
 struct QpTimes {
   double median = 0.0;          ///< microseconds
   double p99 = 0.0;             ///< microseconds, quantile 0.99
@@ -35,7 +35,7 @@ class QpTiming {
   /// `sequence` has a program at least and must outlive this.
   QpTiming(const QpSequence& sequence, const QpSolverFactory& factory, StartOfSolve start);
 
-  /// All programs once; returns the seconds of processor time in `QpSolver::solve`, checks and certificate
+  /// All programs once; returns the seconds in `QpSolver::solve`, checks and certificate
   /// included.
   double pass();
 
