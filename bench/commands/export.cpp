@@ -83,12 +83,26 @@ ExitCode export_table(const ExportArguments& options) {
   if (options.index) {
     campaign.records = {experiment_of(campaign, *options.index)};
     campaign.streamed.reset();
+    if (options.table == "loops" && !campaign.records.front().loop)
+      throw InputError("--index", fmt::format("{}, whose loop was not kept", *options.index),
+                       "an experiment whose loop is in the archive (run --store)");
   }
-  const auto write_table = [&](const auto& write) { write_csv_table(campaign, options.table, write); };
+  bool heading_only = true;
+  const auto write_table = [&](const auto& write) {
+    std::size_t lines = 0;
+    write_csv_table(campaign, options.table, [&](std::string_view line) {
+      write(line);
+      ++lines;
+    });
+    heading_only = lines <= 1;
+  };
   if (options.output.empty())
     write_table(print_result);
   else
     write_text(options.output, write_table);
+  if (heading_only)
+    print_note(fmt::format("warning: the table {} has a heading only: {} has no such data\n", options.table,
+                           options.archive));
   return ExitCode::done;
 }
 

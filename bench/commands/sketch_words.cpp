@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <tuple>
@@ -11,6 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bench/parts/whole_number.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
@@ -60,11 +63,11 @@ std::vector<PlantModel::Variable> variables(const std::string& text, char letter
   std::vector<std::string> names = pieces(text, " ,");
   constexpr int kMost = 200;
   if (names.size() == 1 && names[0].find_first_not_of("0123456789") == std::string::npos) {
-    const double count = number_of(names[0], option);
-    if (count > kMost)
-      throw InputError(option, names[0], fmt::format("at most {}", kMost));
+    const std::optional<std::int64_t> count = whole_number_in(names[0]);
+    if (!count || *count > kMost)
+      throw InputError(option, names[0], fmt::format("names, or a whole number from 0 to {}", kMost));
     names.clear();
-    for (int i = 1; i <= static_cast<int>(count); ++i)
+    for (std::int64_t i = 1; i <= *count; ++i)
       names.push_back(fmt::format("{}{}", letter, i));
   }
   std::vector<PlantModel::Variable> list;

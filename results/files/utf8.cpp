@@ -32,7 +32,8 @@ std::string proper_utf8(std::string_view text) {
 std::string plain_text(std::string_view text) {
   return replaced(text, [](std::uint32_t code) {
     const bool control = (code < 0x20 && code != '\t' && code != '\n') || (code >= 0x7F && code < 0xA0);
-    return !control && code != 0xFFFE && code != 0xFFFF;
+    const bool turns = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+    return !control && !turns && code != 0xFFFE && code != 0xFFFF;
   });
 }
 

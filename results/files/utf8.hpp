@@ -12,7 +12,8 @@ std::string proper_utf8(std::string_view text);
 
 /// `text` as XML 1.0 and a terminal take it: UTF-8 in which each control character (C0 and C1) but tab and
 /// line feed, and each of the non-characters U+FFFE and U+FFFF, is replaced by U+FFFD. No escape of XML can
-/// stand for these.
+/// stand for these. So is what turns the direction of the text behind it (U+202A to U+202E, U+2066 to
+/// U+2069): a name could make the rest of a line read as something else.
 std::string plain_text(std::string_view text);
 
 /// The first `most` bytes of `text`, less what would be half a character of UTF-8.

@@ -45,10 +45,11 @@ class Export:
         self.program, self.folder = program, folder
         self.archive = folder / "a.h5"
 
-    def run(self, *words, code=0):
+    def run(self, *words, code=0, notes=False):
+        """What the program prints, or with `notes` or another exit code than 0 what it says on stderr."""
         result = subprocess.run([self.program, *map(str, words)], capture_output=True, text=True, timeout=600)
         assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
-        return result.stderr if code else result.stdout
+        return result.stderr if code or notes else result.stdout
 
     def table(self, name):
         """{heading: cells} of a table in a file; on the screen it is the same."""
@@ -159,6 +160,15 @@ def main(program, octave=""):
             check_findings(tables["findings"], file["findings"])
             check_loops(tables["loops"], file["trajectories"])
         assert any("," in reason for reason in tables["badwe2010"]["reason"])  # in quotes: csv has read it as one cell
+
+        # Of a loop that was not kept there is no table, and of none a heading, with a warning.
+        bare = export.folder / "bare.h5"
+        export.run("run", "wood-berry", "-o", bare, "--experiments", "2", "--store", "none", "--audit", "0", "--quiet")
+        message = export.run("export", bare, "--table", "loops", "--index", "1", code=2)
+        assert "--index: found 1, whose loop was not kept" in message, message
+        table = export.folder / "bare.csv"
+        assert "has a heading only" in export.run("export", bare, "--table", "loops", "-o", table, notes=True)
+        assert len(table.read_text(encoding="utf-8").splitlines()) == 1
 
         # Without --table it is the experiments. What there is not is refused, and nothing is written.
         assert export.run("export", export.archive) == (export.folder / "experiments.csv").read_text(encoding="utf-8")

@@ -76,6 +76,8 @@ def main(program):
         other = folder / "other.toml"
         for words, message in (
                 ([], "--cvs: found nothing"),
+                (["--cvs", "010", "--mvs", 1, "--gains", "1", "--time-constants", "1"],
+                 "--cvs: found 010; allowed: names, or a whole number from 0 to 200"),
                 (["--cvs", 1, "--mvs", 1], "--gains: found no model"),
                 (["--cvs", 1, "--mvs", 1, "--gains", "1 2", "--time-constants", "1"],
                  "--gains: found '1 2'; allowed: 1 rows of 1 numbers"),

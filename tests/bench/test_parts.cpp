@@ -77,8 +77,8 @@ TEST_CASE("loop ranges: pieces are all of them, in order, and differ by one loop
 TEST_CASE("shard: a number of a number") {
   CHECK(shard("1/1") == Piece{1, 1});
   CHECK(shard("3/8", {{"PMI_RANK", "0"}, {"PMI_SIZE", "2"}}) == Piece{3, 8});  // the user knows better
-  for (const char* text : {"", "/", "1", "0/2", "3/2", "-1/2", "1/0", "1/2/3", "1/-2", "a/2", "1/99999999999",
-                           "auto/", "auto/0", "auto/x", "Auto", "autos"})
+  for (const char* text : {"", "/", "1", "0/2", "3/2", "-1/2", "1/0", "1/2/3", "1/-2", "a/2", "01/2", "1/02",
+                           "1/99999999999", "auto/", "auto/0", "auto/x", "Auto", "autos"})
     CHECK_THROWS_WITH(shard(text), Contains("--shard"));
 }
 

@@ -50,6 +50,10 @@ TEST_CASE("plain_text replaces what XML cannot hold and what moves the cursor of
   CHECK(plain_text(std::string_view("\0\x1B[2J\r\x7F", 7)) ==
         replacement + replacement + "[2J" + replacement + replacement);
   CHECK(plain_text("\xEF\xBF\xBE\xEF\xBF\xBF\xFF") == replacement + replacement + replacement);
+  // U+202E and U+2066, and their neighbours U+2029, U+202F and U+2065, U+206A
+  CHECK(plain_text("a\xE2\x80\xAE\x62\xE2\x81\xA6") == "a" + replacement + "b" + replacement);
+  const std::string neighbours = "\xE2\x80\xA9\xE2\x80\xAF\xE2\x81\xA5\xE2\x81\xAA";
+  CHECK(plain_text(neighbours) == neighbours);
 }
 
 }  // namespace
