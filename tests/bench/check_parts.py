@@ -18,7 +18,7 @@ from archives import check_same
 
 EXPERIMENTS, CALIBRATION = 24, 10
 LOOPS = EXPERIMENTS + CALIBRATION
-STOPPED = 150  # experiments of a campaign that is to be stopped before its end
+STOPPED = 80  # experiments of a campaign that is to be stopped before its end
 OPTIONS = {"--experiments": EXPERIMENTS, "--jobs": 1, "--audit": 0.002, "--methods": "botelho,sse"}
 PATIENCE = 300  # s, for a machine that is busy with other things
 LAUNCHERS = ("OMPI_", "PMI_", "PMIX_", "SLURM_", "JOB_COMPLETION_INDEX")
@@ -127,7 +127,7 @@ def check_refusals(trial, reference):
     assert "0 of them run now" in trial.run("--shard", "1/2", "--resume")
     other = trial.folder / "other.toml"
     other.write_text(trial.study.read_text().replace("samples = 400", "samples = 401"))
-    for words, name in ((["--seed", 7], "seed"), (["--methods", "sse"], "methods"), (["--audit", 0.5], "audit"),
+    for words, name in ((["--seed", 7], "seed"), (["--methods", "sse"], "methods"), (["--audit", 0.003], "audit"),
                         (["--solver", "active-set"], "solver"), (["--store", "all"], "store"),
                         (None, "study"), ("another build", "program")):
         if words is None:
