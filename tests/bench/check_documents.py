@@ -19,7 +19,7 @@ PAGES = ["README.md", "docs/tutorial.md", "docs/ci.md"]
 
 SHIM = """#!/bin/sh
 case "$1" in
-  run) case "$*" in *heater.toml*) ;; *) set -- "$@" --experiments 8 ;; esac ;;
+  run) case "$*" in *heater.toml*) set -- "$@" --experiments 21 ;; *) set -- "$@" --experiments 8 ;; esac ;;
   suite) set -- "$@" --experiments 2 --plants "$PLANT" --families classic ;;
 esac
 exec "$MPMBENCH" "$@"
