@@ -196,7 +196,13 @@ def check_unfit_options(compare):
     """Options that do not fit the study are refused, not an end of the program, also where loops run by Ipopt."""
     source = pathlib.Path(__file__).parents[2] / "scenarios" / "studies" / "wood-berry-mixed.toml"
     study, archive = compare.folder / "odd.toml", compare.folder / "odd.h5"
-    study.write_text(source.read_text(encoding="utf-8") + "\n[assessment.yu-qin]\nfirst_sample = 900000\n", encoding="utf-8")
+    text = source.read_text(encoding="utf-8")
+    short = text[:text.index("[simulation]")] + """[simulation]
+samples = 140
+noise_standard_deviation = {xD = 0.01, xB = 0.01}
+step = [{cv = "xD", sample = 20, level = 0.5}, {md = "F", sample = 60, level = 0.4}]
+""" + text[text.index("[experiments]"):]  # as Ipopt takes its time
+    study.write_text(short + "\n[assessment.yu-qin]\nfirst_sample = 900000\n", encoding="utf-8")
     compare.run("run", study, "-o", archive, "--experiments", 2, "--solver", "ipopt", "--quiet")
     for jobs in (1, 2):
         message = compare.run("compare", archive, "--methods", "yu-qin", "--jobs", jobs, "--quiet", code=2)
