@@ -11,6 +11,7 @@ import sys
 import tempfile
 
 import h5py
+import netCDF4
 import numpy
 import xarray
 
@@ -108,17 +109,25 @@ def check_h5py(path, variables, attributes):
         assert file["message"].asstr()[0] == ""
 
 
+def datasets(path, groups):
+    """(group, dataset) of each group, all of them of one file that is open: netCDF reads of all groups what is in them
+    each time that it opens a file."""
+    with netCDF4.Dataset(path) as file:
+        for group in groups:
+            store = xarray.backends.NetCDF4DataStore(file, group=None if group == "/" else group)
+            yield group, xarray.open_dataset(store).load()  # to close it would close the file
+
+
 def check_xarray(path, variables):
     """The engine that xarray chooses by itself is netCDF4; no variable may be lost on the way."""
-    for group, names in variables.items():
-        with xarray.open_dataset(path, group=None if group == "/" else group) as dataset:
-            dataset.load()
-            assert set(dataset.variables) == set(names), (group, set(dataset.variables) ^ set(names))
-            for name, (kind, dimensions) in names.items():
-                assert ", ".join(dataset[name].dims) == dimensions.replace("-", ""), (group, name)
-                plain = dataset[name].dtype  # xarray shortens some texts to numpy's own strings
-                assert ("string" if plain.kind == "U" else TYPES[plain.name]) == kind, (group, name, plain)
-            print(dataset)
+    for group, dataset in datasets(path, variables):
+        names = variables[group]
+        assert set(dataset.variables) == set(names), (group, set(dataset.variables) ^ set(names))
+        for name, (kind, dimensions) in names.items():
+            assert ", ".join(dataset[name].dims) == dimensions.replace("-", ""), (group, name)
+            plain = dataset[name].dtype  # xarray shortens some texts to numpy's own strings
+            assert ("string" if plain.kind == "U" else TYPES[plain.name]) == kind, (group, name, plain)
+        print(dataset)
     with xarray.open_dataset(path) as root:
         assert dict(root.sizes) == {"experiment": 8, "cv": 7, "mv": 3, "md": 2, "method": len(root.method)}, root.sizes
         assert list(root.cv.values) == [f"y{i}" for i in range(1, 8)]
@@ -129,13 +138,12 @@ def check_xarray(path, variables):
         unasked = root.assessment_status == 3
         assert unasked[3].all() and (root.flagged.where(unasked, 0) == 0).all() and root.score.where(unasked).isnull().all()
         answered, flagged = root.assessment_status == 0, root.flagged == 1
-    for method in methods:
-        with xarray.open_dataset(path, group=f"methods/{method}") as said:
-            assert said.attrs["title"] and said.attrs["mpmbench_version"]
-            numbers = [number["name"] for number in json.loads(said.attrs["description"])["numbers"]]
-            assert set(numbers) == variables[f"/methods/{method}"].keys() - COMMON_OF_METHODS, (method, numbers)
-            silent = ~answered.sel({"method": method})
-            assert (said.cv_flagged.where(silent, -1) == -1).all() and said.cv_score.where(silent).isnull().all(), method
+    for method, (_, said) in zip(methods, datasets(path, [f"methods/{method}" for method in methods])):
+        assert said.attrs["title"] and said.attrs["mpmbench_version"]
+        numbers = [number["name"] for number in json.loads(said.attrs["description"])["numbers"]]
+        assert set(numbers) == variables[f"/methods/{method}"].keys() - COMMON_OF_METHODS, (method, numbers)
+        silent = ~answered.sel({"method": method})
+        assert (said.cv_flagged.where(silent, -1) == -1).all() and said.cv_score.where(silent).isnull().all(), method
     with xarray.open_dataset(path, group="methods/botelho") as chain:
         assert numpy.isnan(chain.ivar.sel(experiment=2, cv="y1")) and numpy.isinf(chain.ivar_diag[2, 0])
         assert numpy.isnan(chain.ivar[3]).all()
@@ -251,9 +259,8 @@ def check_empty(path, variables):
     with h5py.File(path) as file:
         groups = groups_of(file).keys()
     assert groups <= variables.keys() - missing and "/methods/botelho" in groups, groups
-    for group in groups:
-        with xarray.open_dataset(path, group=None if group == "/" else group) as dataset:
-            dataset.load()
+    for _ in datasets(path, groups):
+        pass
     with xarray.open_dataset(path) as root:
         assert root.sizes["experiment"] == 0 and root.sizes["md"] == 0, root.sizes
     subprocess.run(["ncdump", path], check=True, capture_output=True)
