@@ -109,7 +109,7 @@ TEST_CASE("the active-set answers on P1 are those of Ipopt", "[active-set]") {
   P1Sequence sequence(form);
   ActiveSetSolver solver(sequence.structure(), ActiveSetOptions{});
   IpoptSolver reference(sequence.structure(), IpoptOptions{});
-  for (int k = 0; k < 60; k += 7) {
+  for (int k = 0; k < 60; k += 10) {
     const QpData& data = sequence.at(k);
     const QpResult& expected = reference.solve(data);
     const QpResult& result = solver.solve(data);
