@@ -252,7 +252,8 @@ bool ActiveSetSolver::hard_limits_kept(const QpData& data) const {
 // largest violation of a limit, or force times distance to its limit relative to `scale`.
 double ActiveSetSolver::update_multipliers(double scale) {
   double residual = 0.0;
-  change_ = families_[kHard].force.vector() - families_[kHard].multiplier.vector();
+  if (families_[kHard].enabled)
+    change_ = families_[kHard].force.vector() - families_[kHard].multiplier.vector();
   for (std::size_t f = kHard; f < families_.size(); ++f) {
     LimitSprings& springs = families_[f];
     if (!springs.enabled)

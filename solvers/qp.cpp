@@ -146,9 +146,18 @@ std::vector<SlackRun> slack_runs(const QpStructure& structure) {
 }
 
 double objective(const QpStructure& structure, const QpData& data, const QpResult& result) {
+  KktWorkspace workspace(structure);
+  return objective(structure, data, result, workspace);
+}
+
+double objective(const QpStructure& structure, const QpData& data, const QpResult& result,
+                 KktWorkspace& workspace) {
+  LaneVector& curved = workspace.stationarity;
+  curved.vector().setZero();
+  workspace.lanes->add_hessian(result.x.data(), curved);
   double value = 0.0;
   for (Eigen::Index i = 0; i < structure.variable_count(); ++i)
-    value += result.x(i) * (0.5 * structure.hessian.col(i).dot(result.x) + data.gradient(i));
+    value += result.x(i) * (0.5 * curved(i) + data.gradient(i));
   return value + lane_kernels().slack_cost(slack_arrays(structure, result, nullptr));
 }
 

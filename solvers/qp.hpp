@@ -102,7 +102,7 @@ double objective(const QpStructure& structure, const QpData& data, const QpResul
 /// finite.
 double kkt_residual(const QpStructure& structure, const QpData& data, const QpResult& result);
 
-/// Memory of a residual that is computed again and again.
+/// Memory of an objective and a residual that are computed again and again.
 struct KktWorkspace {
   explicit KktWorkspace(const QpStructure& structure);
 
@@ -113,10 +113,12 @@ struct KktWorkspace {
   Eigen::VectorXd row_dual;         ///< m
   Eigen::VectorXd row_slack, pull;  ///< without own slacks: the slack of each row, m, and what pushes it, q
   std::vector<int> pushing;         ///< rows with a multiplier
-  LaneVector stationarity;          ///< n
+  LaneVector stationarity;          ///< n; Hx of an objective
 };
 
-/// The same, with memory that the caller keeps: allocates nothing.
+/// The same two, with memory that the caller keeps: they allocate nothing.
+double objective(const QpStructure& structure, const QpData& data, const QpResult& result,
+                 KktWorkspace& workspace);
 double kkt_residual(const QpStructure& structure, const QpData& data, const QpResult& result,
                     KktWorkspace& workspace);
 

@@ -56,7 +56,7 @@ const QpResult& QpSolver::solve(const QpData& data) {
 }
 
 void QpSolver::certify(const QpData& data, QpResult& result) {
-  result.objective = objective(*structure_, data, result);
+  result.objective = objective(*structure_, data, result, *workspace_);
   if (result.status == QpStatus::solved && !has_residual_below(kSolvedKktResidual, data, result))
     result.status = QpStatus::numerical_error;
   if (result.status != QpStatus::solved)
