@@ -196,10 +196,16 @@ void assess(Comparison& comparison, const CompareArguments& options, Progress& p
 
 /// A piece of the loops, whose answers wait for the comparison of all of them.
 ExitCode compare_part(const Campaign& campaign, ComparisonOptions comparison_options,
-                      const CompareArguments& options, Progress& progress, const std::string& command_line) {
+                      const CompareArguments& options, const std::string& archive, Progress& progress,
+                      const std::string& command_line) {
+  if (comparison_options.methods.empty()) {
+    print_result("every loop is assessed already\n");
+    return ExitCode::done;
+  }
   const ShardNumber& shard = *comparison_options.shard;
   const std::filesystem::path folder = kept_parts(options.output) / part_name("", shard);
   make_output_folder(folder.parent_path(), "parts");
+  comparison_options.kept = kept_assessments(options, archive, progress);
   comparison_options.kept->shards = folder;
   std::optional<Comparison> comparison;
   open(comparison, campaign, comparison_options);
@@ -209,6 +215,32 @@ ExitCode compare_part(const Campaign& campaign, ComparisonOptions comparison_opt
   print_result(
       fmt::format("{}: {} loops assessed, part {} of {}\n", folder.string(), count, shard.number, shard.of));
   return ExitCode::done;
+}
+
+/// Adds the answers that are missing to the campaign, and writes the archive with them when an output is
+/// asked for; no other comparison writes it meanwhile.
+void complete(Campaign& campaign, ComparisonOptions comparison_options, const CompareArguments& options,
+              const std::string& archive, Progress& progress, const std::string& command_line) {
+  std::optional<Comparison> comparison;  // its shards are locked until the archive is written
+  std::optional<ShardFolder> alone;      // where there is nothing to assess
+  if (!comparison_options.methods.empty()) {
+    comparison_options.kept = kept_assessments(options, archive, progress);
+    open(comparison, campaign, comparison_options);
+  } else if (!options.output.empty()) {
+    alone.emplace(kept_shards(options.output));
+  }
+  require_unchanged(options, archive);
+  if (comparison) {
+    assess(*comparison, options, progress, command_line);
+    comparison->add_to(campaign, command_line);
+  }
+  if (options.output.empty())
+    return;
+  write_archive(options.output, campaign, findings_of(campaign));
+  if (comparison) {
+    comparison.reset();
+    remove_shard_folder(kept_shards(options.output));
+  }
 }
 
 /// What the comparison would do.
@@ -236,23 +268,24 @@ void show(const CompareArguments& options, const Campaign& campaign) {
   print_result(options.json ? comparison_json(campaign, findings) : comparison_text(campaign, findings));
 }
 
-/// Assesses the loops of an archive by the methods that it does not have yet, prints how often each of those
-/// that are asked for is right, and writes the archive with them when an output is asked for. Loops that the
-/// archive has not kept are run again from (study, seed, index).
-ExitCode compare(const CompareArguments& options, const std::string& command_line) {
-  const std::string archive = digest_of_archive(options.archive);
-  // Verdicts of files, and answers to come, are put into records that are in memory.
-  Campaign campaign = options.verdicts.empty() ? stream_input(options.archive) : read_input(options.archive);
-  if (!options.output.empty()) {
-    std::vector<std::string> inputs = options.method_files;
-    for (const std::string& file : options.verdicts)
-      inputs.push_back(named_verdicts(file).path.string());
-    require_no_input("--output", options.output, inputs);
-    require_output_archive(options.output, "archive");
-  } else if (!options.shard.empty())
-    throw InputError("--shard", "no --output", "with --output, beside which the parts wait");
-  if (compared_loops(campaign, options.experiments) == 0)
-    throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
+/// Refuses an output that is an input or cannot be written, and parts that would have no place.
+void require_output(const CompareArguments& options) {
+  if (options.output.empty()) {
+    if (!options.shard.empty())
+      throw InputError("--shard", "no --output", "with --output, beside which the parts wait");
+    return;
+  }
+  std::vector<std::string> inputs = options.method_files;
+  for (const std::string& file : options.verdicts)
+    inputs.push_back(named_verdicts(file).path.string());
+  require_no_input("--output", options.output, inputs);
+  require_output_archive(options.output, "archive");
+}
+
+/// The methods that are asked for: those named, those of files, and with neither all. Puts the verdicts of
+/// files beside those of the campaign.
+std::vector<std::string> take_asked(Campaign& campaign, const CompareArguments& options,
+                                    const std::string& command_line) {
   std::vector<std::string> given = take_method_files(options.method_files);
   for (std::string& name : take_verdicts(campaign, options.verdicts, command_line))
     given.push_back(std::move(name));
@@ -262,41 +295,32 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
   for (const std::string& name : given)
     if (std::find(asked.begin(), asked.end(), name) == asked.end())
       asked.push_back(name);
+  return asked;
+}
+
+/// Assesses the loops of an archive by the methods that it does not have yet, prints how often each of those
+/// that are asked for is right, and writes the archive with them when an output is asked for. Loops that the
+/// archive has not kept are run again from (study, seed, index).
+ExitCode compare(const CompareArguments& options, const std::string& command_line) {
+  const std::string archive = digest_of_archive(options.archive);
+  // Verdicts of files, and answers to come, are put into records that are in memory.
+  Campaign campaign = options.verdicts.empty() ? stream_input(options.archive) : read_input(options.archive);
+  require_output(options);
+  if (compared_loops(campaign, options.experiments) == 0)
+    throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
+  const std::vector<std::string> asked = take_asked(campaign, options, command_line);
   const std::vector<std::string> missing = missing_methods(campaign, asked, options.experiments);
   if (!missing.empty() && campaign.streamed)
     campaign = read_input(options.archive);
   Progress progress(options.quiet);
-  ComparisonOptions comparison_options{
-      missing, options.experiments, options.jobs, {}, shard_of(options.shard)};
+  const ComparisonOptions comparison{missing, options.experiments, options.jobs, {}, shard_of(options.shard)};
   if (options.dry_run) {
-    print_result(intended_text(campaign, comparison_options, options));
+    print_result(intended_text(campaign, comparison, options));
     return ExitCode::done;
   }
-  std::optional<Comparison> comparison;  // its shards are locked until the archive is written
-  std::optional<ShardFolder> alone;      // where there is nothing to assess
-  if (missing.empty() && !options.output.empty() && !comparison_options.shard) {
-    alone.emplace(kept_shards(options.output));
-    require_unchanged(options, archive);
-  }
-  if (!missing.empty()) {
-    comparison_options.kept = kept_assessments(options, archive, progress);
-    if (comparison_options.shard)
-      return compare_part(campaign, comparison_options, options, progress, command_line);
-    open(comparison, campaign, comparison_options);
-    require_unchanged(options, archive);
-    assess(*comparison, options, progress, command_line);
-    comparison->add_to(campaign, command_line);
-  }
-  if (comparison_options.shard) {
-    print_result("every loop is assessed already\n");
-    return ExitCode::done;
-  }
-  if (!options.output.empty())
-    write_archive(options.output, campaign, findings_of(campaign));
-  if (comparison && !options.output.empty()) {
-    comparison.reset();
-    remove_shard_folder(kept_shards(options.output));
-  }
+  if (comparison.shard)
+    return compare_part(campaign, comparison, options, archive, progress, command_line);
+  complete(campaign, comparison, options, archive, progress, command_line);
   show(options, with_methods(std::move(campaign), asked, options.experiments));
   return ExitCode::done;
 }
