@@ -73,17 +73,26 @@ Campaign stream_input(const std::string& archive) {
   Campaign campaign = as_input([&] { return stream_archive(archive); });
   if (!campaign.streamed)
     return campaign;
-  const auto each = [file, records = *campaign.streamed](const RecordRange::Visit& visit) {
-    try {
-      records.each(visit);
-    } catch (const std::exception&) {
-      file->require_unchanged();  // or else it is as bad as that says
-      throw;
-    }
-    file->require_unchanged();
+  const auto watched = [file](const auto& read) {
+    return as_input([&] {
+      try {
+        read();
+      } catch (const std::exception&) {
+        file->require_unchanged();  // or else it is as bad as that says
+        throw;
+      }
+      file->require_unchanged();
+    });
   };
+  const RecordRange records = *campaign.streamed;
   campaign.streamed = RecordRange(
-      campaign.streamed->size(), [each](const RecordRange::Visit& visit) { as_input([&] { each(visit); }); });
+      records.size(),
+      [watched, records](const RecordRange::Visit& visit) { watched([&] { records.each(visit); }); },
+      [watched, records](std::size_t place) {
+        ExperimentRecord record;
+        watched([&] { record = records.at(place); });
+        return record;
+      });
   return campaign;
 }
 
@@ -93,13 +102,7 @@ ExperimentRecord experiment_of(const Campaign& campaign, std::int64_t index) {
   if (index < 0 || index >= count)
     throw InputError("INDEX", fmt::format("{}", index),
                      count > 0 ? fmt::format("0 to {}", count - 1) : "none, the archive has no experiments");
-  ExperimentRecord wanted;
-  std::int64_t place = 0;
-  records.each([&](const ExperimentRecord& record) {
-    if (place++ == index)
-      wanted = record;
-  });
-  return wanted;
+  return records.at(static_cast<std::size_t>(index));
 }
 
 }  // namespace mpm

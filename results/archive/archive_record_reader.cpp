@@ -220,12 +220,14 @@ void ArchiveRecordReader::read_table(std::size_t t, std::size_t first,
 
 RecordRange streamed(std::shared_ptr<const ArchiveRecordReader> reader) {
   const std::size_t size = reader->size();
-  return {size, [reader = std::move(reader), size](const RecordRange::Visit& visit) {
+  return {size,
+          [reader, size](const RecordRange::Visit& visit) {
             const std::size_t block = reader->block();
             for (std::size_t first = 0; first < size; first += block)
               for (const ExperimentRecord& record : reader->read(first, std::min(block, size - first)))
                 visit(record);
-          }};
+          },
+          [reader](std::size_t place) { return reader->read(place, 1).front(); }};
 }
 
 }  // namespace mpm

@@ -304,7 +304,15 @@ TEST_CASE("archive: a campaign whose records stay in the file has the same summa
        {made_up_campaign(), rich_campaign(), empty_campaign(), scenario_campaign()}) {
     const Campaign read = streamed(campaign);
     CHECK(read.streamed.has_value() != campaign.study.names_scenarios());
-    CHECK(records_of(read).size() == campaign.records.size());
+    const RecordRange records = records_of(read);
+    REQUIRE(records.size() == campaign.records.size());
+    // One alone, and one of a range that can only be gone through.
+    const RecordRange passing(records.size(),
+                              [&records](const RecordRange::Visit& visit) { records.each(visit); });
+    const RecordBytes bytes(campaign.study, forms_of(campaign));
+    for (std::size_t i = 0; i < records.size(); ++i)
+      for (const ExperimentRecord& record : {records.at(i), passing.at(i)})
+        CHECK(bytes.differences(record, campaign.records[i]) == std::vector<std::string>{});
     CHECK(summary_text(read, findings_of(read), "a.h5") ==
           summary_text(campaign, findings_of(campaign), "a.h5"));
   }
