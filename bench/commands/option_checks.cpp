@@ -1,6 +1,5 @@
 #include "bench/commands/option_checks.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -8,14 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "bench/parts/whole_number.hpp"
+
 namespace mpm {
 namespace {
-
-bool is_decimal(const std::string& word) {
-  const bool digits =
-      !word.empty() && std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
-  return digits && (word.size() == 1 || word.front() != '0');
-}
 
 /// The whole word as a decimal number.
 std::optional<double> number_in(const std::string& word) {
@@ -29,10 +24,8 @@ std::optional<double> number_in(const std::string& word) {
 
 CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest) {
   const auto check = [lowest, highest](const std::string& word) {
-    std::uint64_t number = 0;
-    const char* const end = word.data() + word.size();
-    const auto read = std::from_chars(word.data(), end, number);
-    const bool fits = is_decimal(word) && read.ec == std::errc() && number >= lowest && number <= highest;
+    const auto number = whole_number_in<std::uint64_t>(word);
+    const bool fits = number && *number >= lowest && *number <= highest;
     return fits ? std::string()
                 : fmt::format("found {}; allowed: a whole number from {} to {}", word, lowest, highest);
   };

@@ -10,10 +10,11 @@ namespace mpm {
 
 /// The whole number that the text is from its first character to its last, none when it is something else:
 /// 010, which some take for eight, is none.
-inline std::optional<std::int64_t> whole_number_in(std::string_view text) {
+template <class Number = std::int64_t>
+std::optional<Number> whole_number_in(std::string_view text) {
   if (text.size() > 1 && text.front() == '0')
     return std::nullopt;
-  std::int64_t number = 0;
+  Number number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
 }
