@@ -7,8 +7,7 @@
 namespace mpm {
 
 bool is_certified(const QpResult& result) {
-  return result.status == QpStatus::infeasible ||
-         (result.status == QpStatus::solved && result.kkt_residual <= kCertifiedKktResidual);
+  return result.status == QpStatus::infeasible || result.certified;
 }
 
 CertifiedSolver::CertifiedSolver(std::shared_ptr<const QpStructure> structure)

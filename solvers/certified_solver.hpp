@@ -9,12 +9,8 @@ namespace mpm {
 
 class IpoptSolver;
 
-/// Largest KKT residual with which an answer of the active-set method is taken. It reaches 1e-10 where the
-/// problem allows it; a residual above this means that something went wrong.
-inline constexpr double kCertifiedKktResidual = 1e-9;
-
-/// Whether an answer of the active-set method stands: solved to kCertifiedKktResidual, or infeasible, which
-/// that method says only with a certificate.
+/// Whether an answer of the active-set method stands: certified, or infeasible, which that method says only
+/// with a proof.
 bool is_certified(const QpResult& result);
 
 /// The active-set method, and Ipopt for the problems to which it gives no certified answer; these are marked

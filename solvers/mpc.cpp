@@ -136,6 +136,7 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   move_.kkt_residual = 0.0;
   move_.iterations = 0;
   move_.fallbacks = 0;
+  move_.uncertified = 0;
   if (!targets_ || solve_targets())
     solve_moves();
   input_.head(nu_) = move_.u;
@@ -148,13 +149,18 @@ void Mpc::set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) {
   input_.head(nu_) = u;
 }
 
+void Mpc::count(const QpResult& answer) {
+  move_.status = control_status(answer.status);
+  move_.iterations += answer.iterations;
+  move_.fallbacks += answer.from_ipopt ? 1 : 0;
+  move_.uncertified += answer.status == QpStatus::solved && !answer.certified ? 1 : 0;
+}
+
 bool Mpc::solve_targets() {
   y_at_zero_.noalias() = md_gain_ * input_.tail(md_gain_.cols());
   y_at_zero_ += bias_;
   const QpResult& target = targets_->solve(y_at_zero_);
-  move_.status = control_status(target.status);
-  move_.iterations += target.iterations;
-  move_.fallbacks += target.from_ipopt ? 1 : 0;
+  count(target);
   if (move_.status != ControlStatus::ok)
     return false;
   move_.kkt_residual = target.kkt_residual;
@@ -166,9 +172,7 @@ void Mpc::solve_moves() {
   free_response(model_, input_, scratch_, free_);
   free_.colwise() += bias_;
   const QpResult& plan = solver_->solve(qp_.update({free_, input_.head(nu_), move_.u_target, setpoint_}));
-  move_.status = control_status(plan.status);
-  move_.iterations += plan.iterations;
-  move_.fallbacks += plan.from_ipopt ? 1 : 0;
+  count(plan);
   if (move_.status != ControlStatus::ok)
     return;
   move_.kkt_residual = std::max(move_.kkt_residual, plan.kkt_residual);

@@ -78,6 +78,7 @@ struct QpResult {
   double objective = 0.0;      ///< 1/2 x'Hx + g'x + slack terms
   double kkt_residual = 0.0;   ///< see kkt_residual(); infinite unless status is `solved`
   int iterations = 0;          ///< of the back end, all rounds together
+  bool certified = false;      ///< `solved` with a residual that lets it stand, see QpSolver
   bool from_ipopt = false;     ///< the fast method gave no certified answer; this one is Ipopt's
 
   /// All zero, of the shape of `structure`.

@@ -1,5 +1,6 @@
 #include "solvers/qp_solver.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -61,6 +62,16 @@ void QpSolver::certify(const QpData& data, QpResult& result) {
     result.status = QpStatus::numerical_error;
   if (result.status != QpStatus::solved)
     result.kkt_residual = kInfinity;
+  result.certified =
+      result.status == QpStatus::solved && result.kkt_residual <= largest_certified_residual(result);
+}
+
+double QpSolver::largest_certified_residual(const QpResult& result) const {
+  if (result.kkt_residual <= kCertifiedKktResidual)
+    return kCertifiedKktResidual;
+  const double largest =
+      std::max(result.x.lpNorm<Eigen::Infinity>(), workspace_->row_value.vector().lpNorm<Eigen::Infinity>());
+  return std::max(kCertifiedKktResidual, kAnswerRounding * largest);
 }
 
 bool QpSolver::has_residual_below(double limit, const QpData& data, QpResult& result) {

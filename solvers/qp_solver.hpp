@@ -13,11 +13,21 @@ namespace mpm {
 /// Largest KKT residual of an answer that is called `solved`, by any back end.
 inline constexpr double kSolvedKktResidual = 1e-7;
 
+/// Largest KKT residual of an answer that is called certified, unless the answer is so large that its
+/// rounding is more than that. The active-set method reaches 1e-10 where the problem allows it.
+inline constexpr double kCertifiedKktResidual = 1e-9;
+
+/// By so much, relative to the largest number of x and A x, an answer that keeps its limits as well as
+/// doubles can may miss one: the rounding of a row's sum.
+inline constexpr double kAnswerRounding = 0x1p-47;
+
 /// Solves a sequence of quadratic programs that share one structure, each warm-started from the one before.
 ///
 /// The public `solve` checks its input and certifies the answer: one with a KKT residual above
-/// kSolvedKktResidual is a `numerical_error`, whatever the back end says. Back ends implement `do_solve`
-/// only. A solver belongs to one controller and is not shared between threads.
+/// kSolvedKktResidual is a `numerical_error`, whatever the back end says. `certified` is one with a residual
+/// of at most kCertifiedKktResidual or of kAnswerRounding times the largest number of x and A x: doubles
+/// bring an answer of 1e7, as a loop has that runs away, no nearer to its limits. Back ends implement
+/// `do_solve` only. A solver belongs to one controller and is not shared between threads.
 class QpSolver {
  public:
   /// Throws InputError when the structure is not valid.
@@ -54,10 +64,12 @@ class QpSolver {
   /// its residual.
   virtual void do_solve(const QpData& data, QpResult& result) = 0;
   /// Fills objective and KKT residual of `result` from its x, slack and multipliers, and takes `solved` back
-  /// where the residual says so. A back end that passes
-  /// on the answers of other solvers, which have filled these, leaves them as they are.
+  /// where the residual says so, and says whether the answer is certified. A back end that passes on the
+  /// answers of other solvers, which have filled these, leaves them as they are.
   virtual void certify(const QpData& data, QpResult& result);
   virtual void do_reset() = 0;
+  /// Up to which residual this answer, which has one, is certified.
+  double largest_certified_residual(const QpResult& result) const;
 
   std::shared_ptr<const QpStructure> structure_;
   QpResult result_;

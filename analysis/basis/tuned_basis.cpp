@@ -32,8 +32,10 @@ class StepCounter {
     last_ = result.status;
     statistics_.iterations += result.iterations;
     statistics_.fallbacks += result.from_ipopt ? 1 : 0;
-    if (result.status == QpStatus::solved)
-      statistics_.largest_kkt_residual = std::max(statistics_.largest_kkt_residual, result.kkt_residual);
+    if (result.status != QpStatus::solved)
+      return;
+    statistics_.uncertified += result.certified ? 0 : 1;
+    statistics_.largest_kkt_residual = std::max(statistics_.largest_kkt_residual, result.kkt_residual);
   }
 
   SolverStatistics& statistics_;

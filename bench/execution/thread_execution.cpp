@@ -11,7 +11,6 @@
 #include "bench/execution/experiment_work.hpp"
 #include "bench/execution/ipopt_processes.hpp"
 #include "bench/execution/thread_loop.hpp"
-#include "solvers/certified_solver.hpp"
 
 namespace mpm {
 namespace {
@@ -78,8 +77,7 @@ void run_threads(const ThreadWork& work, IndexQueue& queue, const OutcomeSink& d
 }  // namespace
 
 bool needs_ipopt(const ExperimentRecord& record) {
-  return record.status == ExperimentStatus::failed ||
-         record.solver.largest_kkt_residual > kCertifiedKktResidual;
+  return record.status == ExperimentStatus::failed || record.solver.uncertified > 0;
 }
 
 void execute_in_threads(const ExecutionPlan& plan, const StopRequest& stop, const OutcomeSink& deliver) {

@@ -577,7 +577,8 @@ RecordTable perturbed(const Study& study) {
   return table;
 }
 
-// A member more in one of these and this does not compile: it is then to be added to a table above.
+// A member more in one of these and this does not compile: it is then to be added to a table above. Not in
+// one is `uncertified`: what the execution goes by that has just made the record.
 [[maybe_unused]] void every_member_is_in_a_table(const Record& record, const AssessmentRecord& assessment,
                                                  const LoopRecord& loop, const LoopTruth& truth,
                                                  const SolverStatistics& statistics) {
@@ -589,7 +590,7 @@ RecordTable perturbed(const Study& study) {
   [[maybe_unused]] const auto& [v, y_d, mpm_alone, ud_alone] = truth;
   [[maybe_unused]] const auto& [loop_status, samples_done, y, u, u_target, d, y_set, of_loop, failure, what] =
       trajectory;
-  [[maybe_unused]] const auto& [steps, iterations, fallbacks, residual] = statistics;
+  [[maybe_unused]] const auto& [steps, iterations, fallbacks, uncertified, residual] = statistics;
 }
 
 }  // namespace

@@ -61,7 +61,8 @@ class Numbers {
 };
 
 SolverStatistics solver(Numbers& numbers) {
-  return {numbers.whole(), numbers.whole(), numbers.whole(), numbers.next()};
+  constexpr std::int64_t kUncertified = 0;  // not kept
+  return {numbers.whole(), numbers.whole(), numbers.whole(), kUncertified, numbers.next()};
 }
 
 MpmIndicator indicator(Numbers& numbers) {

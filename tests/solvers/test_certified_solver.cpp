@@ -10,23 +10,56 @@ namespace mpm {
 namespace {
 
 using samples::NamedQp;
+using samples::QpBuilder;
+
+/// Says that the upper limit of its only variable is the answer, but misses it by what it was told.
+class MissingSolver final : public QpSolver {
+ public:
+  MissingSolver(const NamedQp& qp, double by) : QpSolver(qp.structure), by_(by) {}
+
+ private:
+  void do_solve(const QpData& data, QpResult& result) override {
+    result.status = QpStatus::solved;
+    result.x = data.upper.array() + by_;
+    result.bound_dual = -(structure().hessian * result.x + data.gradient);
+  }
+  void do_reset() override {}
+
+  double by_;
+};
+
+QpResult missing(double limit, double by) {
+  const NamedQp qp = QpBuilder("missed", Eigen::MatrixXd::Identity(1, 1), samples::vec(-2.0 * limit))
+                         .box(samples::vec(0.0), samples::vec(limit));
+  return MissingSolver(qp, by).solve(qp.data);
+}
 
 }  // namespace
 
-TEST_CASE("an answer is certified by its residual, a verdict of no answer by its certificate",
+TEST_CASE("an answer is certified by its residual, beside the rounding of its numbers",
+          "[certified_solver]") {
+  const auto [limit, certified, solved] = GENERATE(table<double, double, double>({
+      {1.0, 0.9 * kCertifiedKktResidual, 1.1 * kCertifiedKktResidual},
+      {1e7, 0.9e7 * kAnswerRounding, 1.1e7 * kAnswerRounding},
+  }));
+  CAPTURE(limit);
+  for (const double by : {certified, solved}) {
+    const QpResult result = missing(limit, by);
+    CHECK(result.status == QpStatus::solved);
+    CHECK(result.certified == (by == certified));
+    CHECK(is_certified(result) == result.certified);
+  }
+  const QpResult wrong = missing(limit, 2.0 * kSolvedKktResidual);
+  CHECK(wrong.status == QpStatus::numerical_error);
+  CHECK_FALSE(wrong.certified);
+}
+
+TEST_CASE("a verdict of no answer is certified by its proof, and one of the solver's never",
           "[certified_solver]") {
   QpResult result;
-  result.status = QpStatus::solved;
-  result.kkt_residual = kCertifiedKktResidual;
-  CHECK(is_certified(result));
-  result.kkt_residual = 2 * kCertifiedKktResidual;
-  CHECK_FALSE(is_certified(result));
-  result.status = QpStatus::infeasible;
-  CHECK(is_certified(result));
-  for (const QpStatus status : {QpStatus::iteration_limit, QpStatus::numerical_error}) {
+  for (const QpStatus status : {QpStatus::infeasible, QpStatus::iteration_limit, QpStatus::numerical_error}) {
     result.status = status;
-    result.kkt_residual = 0.0;
-    CHECK_FALSE(is_certified(result));
+    CHECK(is_certified(result) == (status == QpStatus::infeasible));
   }
 }
 
