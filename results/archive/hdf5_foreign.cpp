@@ -1,0 +1,168 @@
+#include <algorithm>
+
+#include <hdf5_hl.h>
+
+#include "results/archive/hdf5_dataset.hpp"
+#include "results/archive/hdf5_file.hpp"
+#include "results/archive/hdf5_group_state.hpp"
+
+// What Hdf5Group reads in files that others have written.
+
+namespace mpm {
+namespace {
+
+bool is_text_type(hid_t type) {
+  return H5Tget_class(type) == H5T_STRING;
+}
+
+bool is_number_type(hid_t type) {
+  return H5Tget_class(type) == H5T_INTEGER || H5Tget_class(type) == H5T_FLOAT;
+}
+
+/// Texts of any length out of `read`, which fills a buffer of a given type in memory.
+template <class Read>
+std::vector<std::string> any_texts(hid_t type, hid_t space, std::size_t count, Read read) {
+  if (H5Tis_variable_str(type) > 0)
+    return hdf5::from_buffer<std::string>(count, type, space, [&](void* buffer) { read(type, buffer); });
+  const std::size_t length = H5Tget_size(type);
+  std::vector<char> characters(length * count);
+  read(type, characters.data());
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < count; ++i) {
+    const char* const first = characters.data() + i * length;
+    texts.emplace_back(first, std::find(first, first + length, '\0'));
+    texts.back().erase(texts.back().find_last_not_of(' ') + 1);
+  }
+  return texts;
+}
+
+/// An attribute of a variable, and its type; none when there is none with one value.
+struct ForeignAttribute {
+  hdf5::Handle attribute, type, space;
+
+  static std::optional<ForeignAttribute> find(const hdf5::Place& place, hid_t dataset) {
+    if (H5Aexists(dataset, place.name.c_str()) <= 0)
+      return std::nullopt;
+    hdf5::Handle attribute =
+        place.own(H5Aopen(dataset, place.name.c_str(), H5P_DEFAULT), H5Aclose, "open it");
+    hdf5::Handle type = place.own(H5Aget_type(attribute.get()), H5Tclose, "read its type");
+    hdf5::Handle space = place.own(H5Aget_space(attribute.get()), H5Sclose, "read its shape");
+    if (H5Sget_simple_extent_npoints(space.get()) != 1)
+      return std::nullopt;
+    return ForeignAttribute{std::move(attribute), std::move(type), std::move(space)};
+  }
+};
+
+herr_t keep_name(hid_t, const char* name, const H5L_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+herr_t keep_scale_name(hid_t, unsigned, hid_t scale, void* name) {
+  const ssize_t length = H5Iget_name(scale, nullptr, 0);
+  std::string path(length > 0 ? static_cast<std::size_t>(length) + 1 : 1, '\0');
+  H5Iget_name(scale, path.data(), path.size());
+  path.resize(path.size() - 1);
+  *static_cast<std::string*>(name) = path.substr(path.rfind('/') + 1);
+  return 1;
+}
+
+}  // namespace
+
+std::vector<std::string> Hdf5Group::variables() const {
+  std::vector<std::string> links, names;
+  state_->place("group", "")
+      .check(H5Literate(state_->group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &links),
+             "list it");
+  for (std::string& name : links) {
+    H5O_info_t info;
+    if (H5Oget_info_by_name2(state_->group.get(), name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0 &&
+        info.type == H5O_TYPE_DATASET)
+      names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::vector<std::size_t> Hdf5Group::shape(const std::string& variable) const {
+  const hdf5::Place place = state_->place("variable", variable);
+  const hdf5::Shape found = shape_of_dataset(place, open_dataset(place, state_->group.get()));
+  return {found.begin(), found.end()};
+}
+
+std::vector<std::string> Hdf5Group::dimensions(const std::string& variable) const {
+  const hdf5::Place place = state_->place("variable", variable);
+  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  std::vector<std::string> names(shape_of_dataset(place, dataset).size());
+  const bool coordinates = names.size() == 1 && H5DSis_scale(dataset.get()) > 0;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (coordinates)
+      names[i] = variable;
+    else if (H5DSget_num_scales(dataset.get(), static_cast<unsigned>(i)) > 0)
+      H5DSiterate_scales(dataset.get(), static_cast<unsigned>(i), nullptr, keep_scale_name, &names[i]);
+  return names;
+}
+
+bool Hdf5Group::is_number(const std::string& variable) const {
+  const hdf5::Place place = state_->place("variable", variable);
+  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  return is_number_type(place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type").get());
+}
+
+bool Hdf5Group::is_text(const std::string& variable) const {
+  const hdf5::Place place = state_->place("variable", variable);
+  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  return is_text_type(place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type").get());
+}
+
+std::vector<double> Hdf5Group::numbers(const std::string& variable) const {
+  const hdf5::Place place = state_->place("variable", variable);
+  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  if (!is_number(variable))
+    place.fail("no numbers");
+  std::vector<double> values(hdf5::product(shape_of_dataset(place, dataset)));
+  if (!values.empty())
+    place.check(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+                "read it");
+  return values;
+}
+
+std::vector<std::string> Hdf5Group::texts(const std::string& variable) const {
+  const hdf5::Place place = state_->place("variable", variable);
+  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  const hdf5::Handle type = place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type");
+  const hdf5::Handle space = place.own(H5Dget_space(dataset.get()), H5Sclose, "read its shape");
+  if (!is_text_type(type.get()))
+    place.fail("no texts");
+  return any_texts(
+      type.get(), space.get(), hdf5::product(shape_of_dataset(place, dataset)), [&](hid_t as, void* buffer) {
+        place.check(H5Dread(dataset.get(), as, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer), "read it");
+      });
+}
+
+std::optional<double> Hdf5Group::number_attribute(const std::string& variable,
+                                                  const std::string& name) const {
+  const hdf5::Place place = state_->place("attribute", name);
+  const hdf5::Handle dataset = open_dataset(state_->place("variable", variable), state_->group.get());
+  const auto found = ForeignAttribute::find(place, dataset.get());
+  if (!found || !is_number_type(found->type.get()))
+    return std::nullopt;
+  double value = 0.0;
+  place.check(H5Aread(found->attribute.get(), H5T_NATIVE_DOUBLE, &value), "read it");
+  return value;
+}
+
+std::optional<std::string> Hdf5Group::text_attribute(const std::string& variable,
+                                                     const std::string& name) const {
+  const hdf5::Place place = state_->place("attribute", name);
+  const hdf5::Handle dataset = open_dataset(state_->place("variable", variable), state_->group.get());
+  const auto found = ForeignAttribute::find(place, dataset.get());
+  if (!found || !is_text_type(found->type.get()))
+    return std::nullopt;
+  return any_texts(found->type.get(), found->space.get(), 1,
+                   [&](hid_t as, void* buffer) {
+                     place.check(H5Aread(found->attribute.get(), as, buffer), "read it");
+                   })
+      .front();
+}
+
+}  // namespace mpm
