@@ -15,43 +15,42 @@ namespace mpm {
 class RecordRange {
  public:
   using Visit = std::function<void(const ExperimentRecord&)>;
+  /// The next record at each call, which is there until the next call; null behind the last one.
+  using Next = std::function<const ExperimentRecord*()>;
   using At = std::function<ExperimentRecord(std::size_t)>;
 
   /// No records.
   RecordRange() : RecordRange(std::span<const ExperimentRecord>()) {}
   /// These, which must outlive it.
-  RecordRange(std::span<const ExperimentRecord> records)
-      : size_(records.size()),
-        each_([records](const Visit& visit) {
-          for (const ExperimentRecord& record : records)
-            visit(record);
-        }),
-        at_([records](std::size_t place) { return records[place]; }) {}
+  RecordRange(std::span<const ExperimentRecord> records);
   RecordRange(const std::vector<ExperimentRecord>& records)
       : RecordRange(std::span<const ExperimentRecord>(records)) {}
-  /// `size` of them, which `each` reads and passes on, as often as it is called, and `at`, where it can be
-  /// done without the others, reads alone.
-  RecordRange(std::size_t size, std::function<void(const Visit&)> each, At at = nullptr)
-      : size_(size), each_(std::move(each)), at_(std::move(at)) {}
+  /// `size` of them, through which `begin` goes anew as often as it is called, and which `at`, where it can
+  /// be done without the others, reads alone.
+  RecordRange(std::size_t size, std::function<Next()> begin, At at = nullptr)
+      : size_(size), begin_(std::move(begin)), at_(std::move(at)) {}
 
   std::size_t size() const { return size_; }
-  void each(const Visit& visit) const { each_(visit); }
+  /// Goes through them at the pace of whoever calls it, to the end or not.
+  Next one_by_one() const { return begin_(); }
+  void each(const Visit& visit) const;
   /// The one at a place below size().
-  ExperimentRecord at(std::size_t place) const {
-    if (at_)
-      return at_(place);
-    ExperimentRecord wanted;
-    each_([&wanted, place, next = std::size_t{0}](const ExperimentRecord& record) mutable {
-      if (next++ == place)
-        wanted = record;
-    });
-    return wanted;
-  }
+  ExperimentRecord at(std::size_t place) const;
 
  private:
   std::size_t size_;
-  std::function<void(const Visit&)> each_;
+  std::function<Next()> begin_;
   At at_;
 };
+
+/// Changes a record; called for one after the other, in the order of their index.
+using RecordChange = std::function<void(ExperimentRecord&)>;
+
+/// These records, each changed when it is looked at: `begin` makes the change for one way through them.
+RecordRange changed(const RecordRange& records, const std::function<RecordChange()>& begin);
+
+/// Calls visit(one, other) for the experiments that are in both, in the order of their index.
+void each_in_both(const RecordRange& one, const RecordRange& other,
+                  const std::function<void(const ExperimentRecord&, const ExperimentRecord&)>& visit);
 
 }  // namespace mpm

@@ -1,9 +1,12 @@
 #include "bench/campaign/comparison_runner.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <type_traits>
+#include <utility>
 
 #include "analysis/methods/method_table.hpp"
 #include "bench/campaign/calibration_runs.hpp"
@@ -18,38 +21,39 @@
 namespace mpm {
 namespace {
 
-using Records = std::vector<ExperimentRecord*>;
-
 bool is_compared(const ExperimentRecord& record, const std::optional<std::int64_t>& experiments) {
   return record.status == ExperimentStatus::ok && (!experiments || record.draw.index < *experiments);
 }
 
 /// Changes every record, at once, or those that are streamed whenever they are read.
-void change_records(Campaign& campaign, std::function<void(ExperimentRecord&)> change) {
-  if (campaign.streamed)
-    campaign.streamed = RecordRange(campaign.streamed->size(),
-                                    [records = *campaign.streamed, change](const RecordRange::Visit& visit) {
-                                      records.each([&](const ExperimentRecord& record) {
-                                        ExperimentRecord changed = record;
-                                        change(changed);
-                                        visit(changed);
-                                      });
-                                    });
+void change_records(Campaign& campaign, const std::function<RecordChange()>& begin) {
+  if (campaign.streamed) {
+    campaign.streamed = changed(*campaign.streamed, begin);
+    return;
+  }
+  const RecordChange change = begin();
   for (ExperimentRecord& record : campaign.records)
     change(record);
 }
 
-void remove(Campaign& campaign, const std::string& method) {
-  const std::vector<std::string> names = method_names(campaign);
-  const auto place = std::find(names.begin(), names.end(), method) - names.begin();
-  if (place == std::ssize(names))
-    return;
-  campaign.methods.erase(campaign.methods.begin() + place);
-  change_records(campaign, [place](ExperimentRecord& record) {
-    record.assessments.erase(record.assessments.begin() + place);
-  });
-  for (CalibrationLoop& loop : campaign.calibration.loops)
-    loop.scores.erase(loop.scores.begin() + place);
+/// Of a list, what stands at these places.
+template <class List>
+List chosen(const List& all, const std::vector<std::size_t>& places) {
+  List list;
+  for (const std::size_t place : places)
+    list.push_back(all[place]);
+  return list;
+}
+
+/// The places of the methods of a campaign that are none of these.
+std::vector<std::size_t> places_of_others(const Campaign& campaign, const AssessmentForms& forms) {
+  std::vector<std::size_t> places;
+  for (std::size_t place = 0; place < campaign.methods.size(); ++place)
+    if (std::none_of(forms.begin(), forms.end(), [&](const auto& form) {
+          return form->method().name == campaign.methods[place].form->method().name;
+        }))
+      places.push_back(place);
+  return places;
 }
 
 /// Where somebody else simulates the plant, its processes have to be prepared before threads are at work. Its
@@ -63,18 +67,41 @@ void prepare_plant(const Study& study) {
   }
 }
 
-/// Puts the answers of further methods behind those of the campaign.
-void append(Campaign& campaign, const AssessmentForms& forms, const Records& records,
-            std::vector<std::vector<AssessmentRecord>> assessments, const std::string& command) {
-  for (const auto& form : forms) {
-    remove(campaign, form->method().name);
+/// What further methods say of a record, one after the other in the order of the index; nothing of a loop
+/// that they were not asked about.
+using Answers = std::function<std::vector<AssessmentRecord>(const ExperimentRecord&)>;
+
+/// The answers in records of the same experiments, or of some of them.
+Answers answers_in(const RecordRange& assessed) {
+  RecordRange::Next next = assessed.one_by_one();
+  const ExperimentRecord* const first = next();
+  return [next = std::move(next), at = first](const ExperimentRecord& record) mutable {
+    while (at != nullptr && (at->draw.index < record.draw.index || at->assessments.empty()))
+      at = next();
+    return at != nullptr && at->draw.index == record.draw.index ? at->assessments
+                                                                : std::vector<AssessmentRecord>();
+  };
+}
+
+/// Puts the answers of further methods behind those of the campaign, in the place of those that it has of
+/// them; `begin` gives them for one way through its records.
+void append(Campaign& campaign, const AssessmentForms& forms, const std::function<Answers()>& begin,
+            const std::string& command) {
+  const std::vector<std::size_t> others = places_of_others(campaign, forms);
+  campaign.methods = chosen(campaign.methods, others);
+  for (const auto& form : forms)
     campaign.methods.push_back({form, mpmbench_version(), source_revision(), command});
-    for (ExperimentRecord& record : campaign.records)
-      record.assessments.push_back(unassessed({form}).front());
-  }
-  for (std::size_t i = 0; i < records.size(); ++i)
-    std::move(assessments[i].begin(), assessments[i].end(),
-              records[i]->assessments.end() - static_cast<std::ptrdiff_t>(forms.size()));
+  change_records(campaign, [forms, others, begin]() -> RecordChange {
+    return [forms, others, answers = begin()](ExperimentRecord& record) {
+      std::vector<AssessmentRecord> further = answers(record);
+      if (further.empty())
+        further = unassessed(forms);
+      record.assessments = chosen(record.assessments, others);
+      std::move(further.begin(), further.end(), std::back_inserter(record.assessments));
+    };
+  });
+  for (CalibrationLoop& loop : campaign.calibration.loops)
+    loop.scores = chosen(loop.scores, others);
 }
 
 }  // namespace
@@ -222,13 +249,31 @@ RunOptions run_options(const Campaign& campaign, const ComparisonOptions& option
   return run;
 }
 
-/// The record of the experiment `index`, which there is.
-template <class List>
-auto record_with(List& records, std::int64_t index) {
-  return std::lower_bound(
-      records.begin(), records.end(), index,
-      [](const ExperimentRecord& record, std::int64_t wanted) { return record.draw.index < wanted; });
-}
+/// Records for threads, each of which asks for the next one or one soon after it: they are read one after the
+/// other, and in memory are those that others will ask for in a moment.
+class RecordsInTurn {
+ public:
+  /// Those with these indices, in ascending order, which there are and which must outlive it.
+  RecordsInTurn(const RecordRange& records, const std::vector<std::int64_t>& indices)
+      : next_(records.one_by_one()), wanted_(indices.begin()) {}
+
+  /// Each once.
+  ExperimentRecord take(std::int64_t index) {
+    const std::lock_guard one_at_a_time(mutex_);
+    while (read_.count(index) == 0) {
+      const ExperimentRecord& record = *next_();
+      if (record.draw.index == *wanted_)
+        read_.emplace(*wanted_++, record);
+    }
+    return std::move(read_.extract(index).mapped());
+  }
+
+ private:
+  RecordRange::Next next_;
+  std::vector<std::int64_t>::const_iterator wanted_;
+  std::map<std::int64_t, ExperimentRecord> read_;
+  std::mutex mutex_;
+};
 
 /// Opens the experiments of a comparison, or its calibration loops.
 void open(std::optional<ExperimentSeries>& series, const Study& study, const RunOptions& run,
@@ -255,10 +300,12 @@ Comparison::Comparison(const Campaign& campaign, const ComparisonOptions& option
       run_(run_options(campaign, options)) {
   std::size_t place = 0;  // of a loop among those of the comparison
   std::vector<std::int64_t> wanted, calibrating;
-  for (const ExperimentRecord& record : campaign.records)
+  std::int64_t experiments = 0;
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    experiments = record.draw.index + 1;
     if (is_compared(record, options.experiments) && is_in_shard(place++, options.shard))
       wanted.push_back(record.draw.index);
-  const std::int64_t experiments = campaign.records.empty() ? 0 : campaign.records.back().draw.index + 1;
+  });
   open(loops_, study_, run_, {experiments, std::move(wanted)}, options.kept, false);
   const std::int64_t loops = std::ssize(campaign.calibration.loops);
   if (loops == 0)
@@ -284,14 +331,18 @@ void Comparison::run(const CampaignHooks& hooks) {
     hooks.on_start(tally.done, tally.count);
   prepare_plant(campaign_.study);
   ThreadedRunners runners(campaign_, study_, study_.methods, run_.jobs);
-  loops_->run(campaign_.basis, execution_by([&](std::int64_t index, std::size_t thread) {
-                ExperimentRecord record = *record_with(campaign_.records, index);
-                record.assessments = runners.assess(record, thread);
-                record.loop.reset();  // the archive has them
-                record.truth.reset();
-                return record;
-              }),
-              hooks, tally);
+  const Execution assess = [&](const ExecutionPlan& plan, const StopRequest& stop,
+                               const OutcomeSink& deliver) {
+    RecordsInTurn records(records_of(campaign_), plan.indices);
+    execution_by([&](std::int64_t index, std::size_t thread) {
+      ExperimentRecord record = records.take(index);
+      record.assessments = runners.assess(record, thread);
+      record.loop.reset();  // the archive has them
+      record.truth.reset();
+      return record;
+    })(plan, stop, deliver);
+  };
+  loops_->run(campaign_.basis, assess, hooks, tally);
   if (!calibration_)
     return;
   ThreadedRunners calibrating(campaign_, calibration_study_, study_.methods, run_.jobs);
@@ -307,23 +358,13 @@ void Comparison::compact() {
     calibration_->compact();
 }
 
-void Comparison::add_to(Campaign& campaign, const std::string& command) {
-  Campaign assessed;
-  loops_->collect().move_into(assessed);
-  Records records;
-  std::vector<std::vector<AssessmentRecord>> assessments;
-  for (ExperimentRecord& record : assessed.records) {
-    if (record.assessments.empty())
-      continue;  // not one of those that are compared
-    records.push_back(&*record_with(campaign.records, record.draw.index));
-    assessments.push_back(std::move(record.assessments));
-  }
-  append(campaign, assessment_forms(study_, study_.methods), records, std::move(assessments), command);
+void Comparison::add_to(Campaign& campaign, const std::string& command, const StopRequest& stop) {
+  append(
+      campaign, assessment_forms(study_, study_.methods),
+      [assessed = loops_->records(stop)] { return answers_in(assessed); }, command);
   if (!calibration_)
     return;
-  Campaign calibrating;
-  calibration_->collect().move_into(calibrating);
-  const Calibration scored = calibration_of(calibration_study_, calibrating.records);
+  const Calibration scored = calibration_of(calibration_study_, calibration_->records(stop));
   for (std::size_t i = 0; i < scored.loops.size(); ++i) {
     std::vector<double>& scores = campaign.calibration.loops[i].scores;
     scores.insert(scores.end(), scored.loops[i].scores.begin(), scored.loops[i].scores.end());
@@ -353,10 +394,16 @@ std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<B
   return loops;
 }
 
-void add_verdicts(Campaign& campaign, const OutsideVerdicts& verdicts, const std::string& command) {
-  append(campaign, {verdicts.form}, {}, {}, command);
-  for (std::size_t i = 0; i < campaign.records.size(); ++i)
-    campaign.records[i].assessments.back() = verdicts.answers[i];
+void add_verdicts(Campaign& campaign, OutsideVerdicts verdicts, const std::string& command) {
+  const auto answers = std::make_shared<const std::vector<AssessmentRecord>>(std::move(verdicts.answers));
+  append(
+      campaign, {verdicts.form},
+      [answers]() -> Answers {
+        return [answers, place = std::size_t{0}](const ExperimentRecord&) mutable {
+          return std::vector<AssessmentRecord>{(*answers)[place++]};
+        };
+      },
+      command);
   for (std::size_t i = 0; i < campaign.calibration.loops.size(); ++i)
     campaign.calibration.loops[i].scores.push_back(verdicts.calibration_scores[i]);
 }
@@ -367,19 +414,15 @@ Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods
   std::vector<std::size_t> places;
   for (const std::string& method : methods)
     places.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), method) - names.begin()));
-  const auto chosen = [places](const auto& all) {
-    std::remove_cvref_t<decltype(all)> list;
-    for (const std::size_t place : places)
-      list.push_back(all[place]);
-    return list;
+  campaign.methods = chosen(campaign.methods, places);
+  const RecordChange choose = [places, experiments, forms = forms_of(campaign)](ExperimentRecord& record) {
+    record.assessments = experiments && record.draw.index >= *experiments
+                             ? unassessed(forms)
+                             : chosen(record.assessments, places);
   };
-  campaign.methods = chosen(campaign.methods);
-  change_records(campaign, [chosen, experiments, forms = forms_of(campaign)](ExperimentRecord& record) {
-    record.assessments =
-        experiments && record.draw.index >= *experiments ? unassessed(forms) : chosen(record.assessments);
-  });
+  change_records(campaign, [choose] { return choose; });
   for (CalibrationLoop& loop : campaign.calibration.loops)
-    loop.scores = chosen(loop.scores);
+    loop.scores = chosen(loop.scores, places);
   return campaign;
 }
 

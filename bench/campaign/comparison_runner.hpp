@@ -52,7 +52,7 @@ std::vector<std::string> missing_methods(const Campaign& campaign, const std::ve
 /// does not bear two threads.
 class Comparison {
  public:
-  /// `campaign`, which has its records in memory, must outlive run(). Errors: as ShardStore.
+  /// `campaign` must outlive run(). Errors: as ShardStore, and as its records.
   Comparison(const Campaign& campaign, const ComparisonOptions& options);
   Comparison(const Comparison&) = delete;
   Comparison& operator=(const Comparison&) = delete;
@@ -68,8 +68,10 @@ class Comparison {
   void compact();
 
   /// Puts the answers, which must all be there, behind those of the other methods of the campaign; answers
-  /// that it has of one of them, such as on its first experiments only, are replaced.
-  void add_to(Campaign& campaign, const std::string& command);
+  /// that it has of one of them, such as on its first experiments only, are replaced. To records that are
+  /// streamed they come when these are read, from the shards: the campaign must not be read when the
+  /// comparison is gone. It then throws Interrupted when a stop was requested. Errors: as ShardIndex.
+  void add_to(Campaign& campaign, const std::string& command, const StopRequest& stop = {});
 
  private:
   const Campaign& campaign_;
@@ -85,7 +87,7 @@ std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<B
 
 /// Puts verdicts from outside behind the answers of the methods that the campaign has, in the place of those
 /// of the same name.
-void add_verdicts(Campaign& campaign, const OutsideVerdicts& verdicts, const std::string& command);
+void add_verdicts(Campaign& campaign, OutsideVerdicts verdicts, const std::string& command);
 
 /// The campaign, streamed or not, with these of its methods alone, in this order, on its first `experiments`.
 Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods,

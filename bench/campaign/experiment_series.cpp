@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <utility>
+
+#include "bench/campaign/streamed_records.hpp"
 
 namespace mpm {
 namespace {
@@ -61,6 +64,16 @@ OutcomeCollection ExperimentSeries::collect() {
   OutcomeCollection outcomes(all_);
   shards_->read([&](ExperimentOutcome outcome) { outcomes.add(std::move(outcome)); });
   return outcomes;
+}
+
+RecordRange ExperimentSeries::records(const StopRequest& stop) {
+  if (shards_)
+    return records_in(shards(), stop);
+  const auto outcomes = std::make_shared<Campaign>();
+  collect().move_into(*outcomes);
+  return {outcomes->records.size(), [outcomes]() -> RecordRange::Next {
+            return [outcomes, next = RecordRange(outcomes->records).one_by_one()] { return next(); };
+          }};
 }
 
 void ExperimentSeries::compact() {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/experiment/record_range.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/campaign/outcome_collection.hpp"
 #include "bench/execution/experiment_execution.hpp"
@@ -54,6 +55,10 @@ class ExperimentSeries {
 
   /// Brings the outcomes into order, all of which must be there.
   OutcomeCollection collect();
+
+  /// The same, but the records stay where they wait: in shards those that are there, which must outlive the
+  /// range; in memory those that were not run have no assessments. Errors: as records_in().
+  RecordRange records(const StopRequest& stop);
 
   /// The shards, in which all outcomes must be. Only of a series with shards.
   const ShardSet& shards() const { return shards_->set(); }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "bench/campaign/outcome_collection.hpp"
 #include "bench/shards/shard_index.hpp"
@@ -10,13 +11,15 @@ namespace mpm {
 namespace {
 
 RecordRange records_in(const std::shared_ptr<const ShardIndex>& index, const StopRequest& stop) {
-  return {index->size(), [index, stop](const RecordRange::Visit& visit) {
-            const auto count = static_cast<std::int64_t>(index->size());
-            index->each([&](const ExperimentOutcome& outcome) {
+  return {index->size(), [index, stop]() -> RecordRange::Next {
+            const auto outcome = std::make_shared<std::optional<ExperimentOutcome>>();
+            return [index, stop, next = index->one_by_one(), outcome]() -> const ExperimentRecord* {
+              const auto count = static_cast<std::int64_t>(index->size());
               if (requested(stop))
                 throw Interrupted(count, count);
-              visit(outcome.record);
-            });
+              *outcome = next();
+              return *outcome ? &(*outcome)->record : nullptr;
+            };
           }};
 }
 

@@ -30,6 +30,7 @@
 #include "bench/shards/shard_identity.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
+#include "plants/temporary_folder.hpp"
 #include "results/archive/archive.hpp"
 #include "results/blind/verdict_file.hpp"
 #include "results/summary/comparison.hpp"
@@ -100,13 +101,13 @@ std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std
     const auto [name, path] = named_verdicts(file);
     if (std::find(names.begin(), names.end(), name) != names.end())
       throw InputError("--verdicts", fmt::format("'{}' twice", name), "each name once");
-    const OutsideVerdicts verdicts = read_verdicts(path, name, campaign);
+    OutsideVerdicts verdicts = read_verdicts(path, name, campaign);
     if (!verdicts.says_which_loops)
       print_note(fmt::format(
           "mpmbench: {} does not say which loops it is of; that they are those of the archive is taken on "
           "trust\n",
           path.string()));
-    add_verdicts(campaign, verdicts, command_line);
+    add_verdicts(campaign, std::move(verdicts), command_line);
     names.push_back(name);
   }
   return names;
@@ -156,18 +157,16 @@ std::vector<std::filesystem::path> parts_to_take(const std::string& output, bool
   return {};
 }
 
-/// Where the answers of a comparison wait; in memory when it has no output.
-std::optional<KeptAssessments> kept_assessments(const CompareArguments& options, std::string archive,
-                                                Progress& progress) {
-  if (options.output.empty())
-    return std::nullopt;
-  KeptAssessments kept{.shards = kept_shards(options.output),
+/// Where the answers of a comparison wait.
+KeptAssessments kept_assessments(const CompareArguments& options, std::filesystem::path shards,
+                                 std::string archive, Progress& progress) {
+  KeptAssessments kept{.shards = std::move(shards),
                        .parts = {},
                        .archive = std::move(archive),
                        .leftovers = options.discard ? Leftovers::discard : Leftovers::resume,
                        .interval = options.shard_interval,
                        .warn = [&progress](const std::string& text) { progress.warn(text); }};
-  if (options.shard.empty())
+  if (options.shard.empty() && !options.output.empty())
     kept.parts = parts_to_take(options.output, options.discard);
   return kept;
 }
@@ -181,11 +180,12 @@ void open(std::optional<Comparison>& comparison, const Campaign& campaign, const
   }
 }
 
-/// Has the loops assessed by the methods that are missing; stopped, it says how to go on.
-void assess(Comparison& comparison, const CompareArguments& options, Progress& progress,
-            const std::string& command_line) {
+/// What `work` returns; stopped, it says how to go on.
+template <class Work>
+auto advised(const CompareArguments& options, const Progress& progress, const std::string& command_line,
+             const Work& work) {
   try {
-    comparison.run(hooks_of(progress));
+    return work();
   } catch (const Interrupted& error) {
     throw std::runtime_error(progress.explain(error) +
                              (options.output.empty()
@@ -205,42 +205,60 @@ ExitCode compare_part(const Campaign& campaign, ComparisonOptions comparison_opt
   const ShardNumber& shard = *comparison_options.shard;
   const std::filesystem::path folder = kept_parts(options.output) / part_name("", shard);
   make_output_folder(folder.parent_path(), "parts");
-  comparison_options.kept = kept_assessments(options, archive, progress);
-  comparison_options.kept->shards = folder;
+  comparison_options.kept = kept_assessments(options, folder, archive, progress);
   std::optional<Comparison> comparison;
   open(comparison, campaign, comparison_options);
   const std::int64_t count = comparison->tally().count;
-  assess(*comparison, options, progress, command_line);
+  advised(options, progress, command_line, [&] { comparison->run(hooks_of(progress)); });
   comparison->compact();
   print_result(
       fmt::format("{}: {} loops assessed, part {} of {}\n", folder.string(), count, shard.number, shard.of));
   return ExitCode::done;
 }
 
+/// How often each of the methods that are asked for is right.
+std::string findings_text(const CompareArguments& options, const Campaign& campaign,
+                          const std::vector<std::string>& asked) {
+  const Campaign shown = with_methods(campaign, asked, options.experiments);
+  const StudyFindings findings = findings_of(shown);
+  return options.json ? comparison_json(shown, findings) : comparison_text(shown, findings);
+}
+
 /// Adds the answers that are missing to the campaign, and writes the archive with them when an output is
-/// asked for; no other comparison writes it meanwhile.
-void complete(Campaign& campaign, ComparisonOptions comparison_options, const CompareArguments& options,
-              const std::string& archive, Progress& progress, const std::string& command_line) {
+/// asked for; no other comparison writes it meanwhile. Returns what was found. Without an output the answers
+/// wait among the temporary files.
+std::string complete(Campaign campaign, ComparisonOptions comparison_options, const CompareArguments& options,
+                     const std::vector<std::string>& asked, const std::string& archive, Progress& progress,
+                     const std::string& command_line) {
+  std::optional<TemporaryFolder> temporary;
   std::optional<Comparison> comparison;  // its shards are locked until the archive is written
   std::optional<ShardFolder> alone;      // where there is nothing to assess
   if (!comparison_options.methods.empty()) {
-    comparison_options.kept = kept_assessments(options, archive, progress);
+    if (options.output.empty())
+      temporary.emplace();
+    comparison_options.kept = kept_assessments(
+        options, temporary ? temporary->path() / "compared" : kept_shards(options.output), archive, progress);
     open(comparison, campaign, comparison_options);
   } else if (!options.output.empty()) {
     alone.emplace(kept_shards(options.output));
   }
   require_unchanged(options, archive);
-  if (comparison) {
-    assess(*comparison, options, progress, command_line);
-    comparison->add_to(campaign, command_line);
-  }
-  if (options.output.empty())
-    return;
-  write_archive(options.output, campaign, findings_of(campaign));
-  if (comparison) {
+  std::string found = advised(options, progress, command_line, [&] {
+    if (comparison) {
+      const CampaignHooks hooks = hooks_of(progress);
+      comparison->run(hooks);
+      comparison->add_to(campaign, command_line, hooks.stop);
+    }
+    std::string text = findings_text(options, campaign, asked);
+    if (!options.output.empty())
+      write_archive(options.output, campaign, findings_of(campaign));
+    return text;
+  });
+  if (comparison && !options.output.empty()) {
     comparison.reset();
     remove_shard_folder(kept_shards(options.output));
   }
+  return found;
 }
 
 /// What the comparison would do.
@@ -261,11 +279,6 @@ std::string intended_text(const Campaign& campaign, const ComparisonOptions& com
       : comparison.shard     ? fmt::format("shards in {}, for the same command without --shard",
                                            kept_parts(options.output).string())
                              : output_text(options.output, kept_shards(options.output)));
-}
-
-void show(const CompareArguments& options, const Campaign& campaign) {
-  const StudyFindings findings = findings_of(campaign);
-  print_result(options.json ? comparison_json(campaign, findings) : comparison_text(campaign, findings));
 }
 
 /// Refuses an output that is an input or cannot be written, and parts that would have no place.
@@ -303,15 +316,12 @@ std::vector<std::string> take_asked(Campaign& campaign, const CompareArguments& 
 /// archive has not kept are run again from (study, seed, index).
 ExitCode compare(const CompareArguments& options, const std::string& command_line) {
   const std::string archive = digest_of_archive(options.archive);
-  // Verdicts of files, and answers to come, are put into records that are in memory.
-  Campaign campaign = options.verdicts.empty() ? stream_input(options.archive) : read_input(options.archive);
+  Campaign campaign = stream_input(options.archive);
   require_output(options);
   if (compared_loops(campaign, options.experiments) == 0)
     throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
   const std::vector<std::string> asked = take_asked(campaign, options, command_line);
   const std::vector<std::string> missing = missing_methods(campaign, asked, options.experiments);
-  if (!missing.empty() && campaign.streamed)
-    campaign = read_input(options.archive);
   Progress progress(options.quiet);
   const ComparisonOptions comparison{missing, options.experiments, options.jobs, {}, shard_of(options.shard)};
   if (options.dry_run) {
@@ -320,8 +330,7 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
   }
   if (comparison.shard)
     return compare_part(campaign, comparison, options, archive, progress, command_line);
-  complete(campaign, comparison, options, archive, progress, command_line);
-  show(options, with_methods(std::move(campaign), asked, options.experiments));
+  print_result(complete(std::move(campaign), comparison, options, asked, archive, progress, command_line));
   return ExitCode::done;
 }
 

@@ -76,21 +76,28 @@ Campaign stream_input(const std::string& archive) {
   const auto watched = [file](const auto& read) {
     return as_input([&] {
       try {
-        read();
+        return read();
       } catch (const std::exception&) {
         file->require_unchanged();  // or else it is as bad as that says
         throw;
       }
-      file->require_unchanged();
     });
   };
+  const auto require_unchanged = [file] { as_input([&] { file->require_unchanged(); }); };
   const RecordRange records = *campaign.streamed;
   campaign.streamed = RecordRange(
       records.size(),
-      [watched, records](const RecordRange::Visit& visit) { watched([&] { records.each(visit); }); },
-      [watched, records](std::size_t place) {
-        ExperimentRecord record;
-        watched([&] { record = records.at(place); });
+      [=]() -> RecordRange::Next {
+        return [=, next = records.one_by_one()] {
+          const ExperimentRecord* const record = watched(next);
+          if (record == nullptr)
+            require_unchanged();
+          return record;
+        };
+      },
+      [=](std::size_t place) {
+        ExperimentRecord record = watched([&] { return records.at(place); });
+        require_unchanged();
         return record;
       });
   return campaign;

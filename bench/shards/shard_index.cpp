@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -59,6 +60,60 @@ class ShardIndex::Reader {
   std::string bytes_;
 };
 
+/// Goes through the places of the outcomes in the order of the index, and where several shards have an
+/// experiment in the order of these.
+class ShardIndex::Sweep {
+ public:
+  struct Step {
+    Place place;
+    std::optional<Place> first;  ///< in the first of the shards that have it, where `place` is in another one
+  };
+
+  explicit Sweep(const ShardIndex& index) : index_(index), start_(index.starts_.begin()) {}
+
+  /// None behind the last one.
+  std::optional<Step> next() {
+    while (start_ != index_.starts_.end() && (open_.empty() || *start_ < open_.front().key()))
+      open((start_++)->second);
+    if (open_.empty())
+      return std::nullopt;
+    std::pop_heap(open_.begin(), open_.end(), later);
+    Open& earliest = open_.back();
+    Step step{{earliest.shard, earliest.places[earliest.next]}, std::nullopt};
+    if (first_ && first_->outcome.index == step.place.outcome.index)
+      step.first = first_;
+    else
+      first_ = step.place;
+    if (++earliest.next == earliest.places.size())
+      open_.pop_back();
+    else
+      std::push_heap(open_.begin(), open_.end(), later);
+    return step;
+  }
+
+ private:
+  struct Open {
+    std::size_t shard;
+    std::vector<OutcomePlace> places;
+    std::size_t next = 0;
+
+    Key key() const { return {places[next].index, shard}; }
+  };
+
+  static bool later(const Open& one, const Open& other) { return one.key() > other.key(); }
+
+  void open(std::size_t shard) {
+    if (open_.emplace_back(Open{shard, index_.places_in(shard)}).places.empty())
+      refuse_changed(index_.set_.shards()[shard]);
+    std::push_heap(open_.begin(), open_.end(), later);
+  }
+
+  const ShardIndex& index_;
+  std::vector<Key>::const_iterator start_;
+  std::vector<Open> open_;  // a heap, the earliest one in front
+  std::optional<Place> first_;
+};
+
 ShardIndex::ShardIndex(const ShardSet& set) : set_(set) {
   for (std::size_t shard = 0; shard < set_.shards().size(); ++shard)
     if (const std::vector<OutcomePlace> places = places_in(shard); !places.empty())
@@ -78,71 +133,45 @@ std::vector<OutcomePlace> ShardIndex::places_in(std::size_t shard) const {
   return *std::move(places);
 }
 
-/// Calls take(place, first) in the order of the index, and where several shards have an experiment in their
-/// order; `first` is then the place in the first of these, null there.
-template <class Take>
-void ShardIndex::sweep(const Take& take) const {
-  struct Open {
-    std::size_t shard;
-    std::vector<OutcomePlace> places;
-    std::size_t next = 0;
-
-    Key key() const { return {places[next].index, shard}; }
-  };
-  const auto later = [](const Open& one, const Open& other) { return one.key() > other.key(); };
-  std::vector<Open> open;  // a heap, the earliest one in front
-  std::optional<Place> first;
-  auto start = starts_.begin();
-  while (start != starts_.end() || !open.empty()) {
-    if (start != starts_.end() && (open.empty() || *start < open.front().key())) {
-      const std::size_t shard = start++->second;
-      if (open.emplace_back(Open{shard, places_in(shard)}).places.empty())
-        refuse_changed(set_.shards()[shard]);
-    } else {
-      std::pop_heap(open.begin(), open.end(), later);
-      Open& earliest = open.back();
-      const Place place{earliest.shard, earliest.places[earliest.next]};
-      const bool again = first && first->outcome.index == place.outcome.index;
-      if (!again)
-        first = place;
-      take(place, again ? &*first : nullptr);
-      if (++earliest.next == earliest.places.size()) {
-        open.pop_back();
-        continue;
-      }
-    }
-    std::push_heap(open.begin(), open.end(), later);
+void ShardIndex::compare_repeated() const {
+  Reader reader(set_);
+  Sweep sweep(*this);
+  while (const std::optional<Sweep::Step> step = sweep.next()) {
+    if (!step->first)
+      continue;
+    const std::vector<std::string> names =
+        set_.format().differences(reader.read(*step->first), reader.read(step->place));
+    if (!names.empty())
+      throw InputError(
+          fmt::format("{}: experiment {}", reader.path(step->place).string(), step->place.outcome.index),
+          fmt::format("another {} than in {}", fmt::join(names, ", "), reader.path(*step->first).string()),
+          "the same, bit for bit: they were run by one build on processors of one kind");
   }
 }
 
-void ShardIndex::compare_repeated() const {
-  Reader reader(set_);
-  sweep([&](const Place& place, const Place* first) {
-    if (first == nullptr)
-      return;
-    const std::vector<std::string> names = set_.format().differences(reader.read(*first), reader.read(place));
-    if (!names.empty())
-      throw InputError(
-          fmt::format("{}: experiment {}", reader.path(place).string(), place.outcome.index),
-          fmt::format("another {} than in {}", fmt::join(names, ", "), reader.path(*first).string()),
-          "the same, bit for bit: they were run by one build on processors of one kind");
-  });
+ShardIndex::Next ShardIndex::one_by_one() const {
+  const auto reader = std::make_shared<Reader>(set_);
+  const auto sweep = std::make_shared<Sweep>(*this);
+  return [reader, sweep]() -> std::optional<ExperimentOutcome> {
+    while (const std::optional<Sweep::Step> step = sweep->next())
+      if (!step->first)
+        return reader->read(step->place);
+    return std::nullopt;
+  };
 }
 
 void ShardIndex::each(const Visit& visit) const {
-  Reader reader(set_);
-  sweep([&](const Place& place, const Place* first) {
-    if (first == nullptr)
-      visit(reader.read(place));
-  });
+  const Next next = one_by_one();
+  while (const std::optional<ExperimentOutcome> outcome = next())
+    visit(*outcome);
 }
 
 void ShardIndex::each_repeated(const Visit& visit) const {
   Reader reader(set_);
-  sweep([&](const Place& place, const Place* first) {
-    if (first != nullptr)
-      visit(reader.read(place));
-  });
+  Sweep sweep(*this);
+  while (const std::optional<Sweep::Step> step = sweep.next())
+    if (step->first)
+      visit(reader.read(step->place));
 }
 
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,14 +18,17 @@ namespace mpm {
 class ShardIndex {
  public:
   using Visit = std::function<void(const ExperimentOutcome&)>;
+  /// The next outcome at each call, none behind the last one.
+  using Next = std::function<std::optional<ExperimentOutcome>()>;
 
   /// `set` and its shards must outlive it. Throws ArchiveError when a shard can no longer be read,
   /// InputError, which names both files, when one experiment is not the same in two shards.
   explicit ShardIndex(const ShardSet& set);
 
   std::size_t size() const { return set_.count(); }
-  /// Each experiment that is there once: where several shards have it, as the first of them does. Throws
-  /// ArchiveError when a shard can no longer be read.
+  /// Each experiment that is there once: where several shards have it, as the first of them does. The index
+  /// must outlive it. It throws ArchiveError when a shard can no longer be read.
+  Next one_by_one() const;
   void each(const Visit& visit) const;
   /// What several shards have, but for the outcomes that each() gives.
   void each_repeated(const Visit& visit) const;
@@ -36,10 +40,9 @@ class ShardIndex {
     OutcomePlace outcome;
   };
   class Reader;
+  class Sweep;
 
   std::vector<OutcomePlace> places_in(std::size_t shard) const;
-  template <class Take>
-  void sweep(const Take& take) const;
   void compare_repeated() const;
 
   const ShardSet& set_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -219,13 +220,22 @@ void ArchiveRecordReader::read_table(std::size_t t, std::size_t first,
 }
 
 RecordRange streamed(std::shared_ptr<const ArchiveRecordReader> reader) {
-  const std::size_t size = reader->size();
-  return {size,
-          [reader, size](const RecordRange::Visit& visit) {
-            const std::size_t block = reader->block();
-            for (std::size_t first = 0; first < size; first += block)
-              for (const ExperimentRecord& record : reader->read(first, std::min(block, size - first)))
-                visit(record);
+  struct Block {
+    std::size_t first = 0, place = 0;  // in the file, in the block
+    std::vector<ExperimentRecord> records = {};
+  };
+  return {reader->size(),
+          [reader]() -> RecordRange::Next {
+            return [reader, block = std::make_shared<Block>()]() -> const ExperimentRecord* {
+              if (block->place == block->records.size()) {
+                *block = {.first = block->first + block->place};  // gone before the next one is read
+                const std::size_t left = reader->size() - block->first;
+                if (left == 0)
+                  return nullptr;
+                block->records = reader->read(block->first, std::min(reader->block(), left));
+              }
+              return &block->records[block->place++];
+            };
           },
           [reader](std::size_t place) { return reader->read(place, 1).front(); }};
 }

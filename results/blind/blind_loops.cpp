@@ -172,9 +172,12 @@ void write_blind_text(const std::filesystem::path& path, const std::string& text
 
 std::vector<BlindLoop> blind_order(const Campaign& campaign, bool with_calibration) {
   std::vector<BlindLoop> order;
-  for (std::size_t i = 0; i < campaign.records.size(); ++i)
-    if (campaign.records[i].status == ExperimentStatus::ok)
-      order.push_back({.of_calibration = false, .place = i});
+  std::size_t place = 0;
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    if (record.status == ExperimentStatus::ok)
+      order.push_back({.of_calibration = false, .place = place});
+    ++place;
+  });
   for (std::size_t i = 0; with_calibration && i < campaign.calibration.loops.size(); ++i)
     order.push_back({.of_calibration = true, .place = i});
   RandomStream stream(campaign.study.seed, 0, StreamId::blind_order);
@@ -184,19 +187,20 @@ std::vector<BlindLoop> blind_order(const Campaign& campaign, bool with_calibrati
 }
 
 std::string loops_hash(const Campaign& campaign, bool with_calibration) {
-  std::string content =
-      fmt::format("{}\n{}\n{}\n", campaign.study.source, campaign.study.seed, campaign.info.solver);
-  for (const ExperimentRecord& record : campaign.records)
-    if (record.status == ExperimentStatus::ok) {
-      fmt::format_to(std::back_inserter(content), "{}", record.draw.index);
-      for (const double value : record.ivar_basis)
-        append_number(content, value);
-      content += '\n';
-    }
+  Sha256 hash;
+  const auto add = [&hash](const std::string& text) { hash.add(std::as_bytes(std::span(text))); };
+  add(fmt::format("{}\n{}\n{}\n", campaign.study.source, campaign.study.seed, campaign.info.solver));
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    if (record.status != ExperimentStatus::ok)
+      return;
+    std::string line = fmt::format("{}", record.draw.index);
+    for (const double value : record.ivar_basis)
+      append_number(line, value);
+    add(line + '\n');
+  });
   if (with_calibration)
-    fmt::format_to(std::back_inserter(content), "calibration {} {}\n", campaign.calibration.seed,
-                   campaign.calibration.loops.size());
-  return sha256(std::as_bytes(std::span(content)));
+    add(fmt::format("calibration {} {}\n", campaign.calibration.seed, campaign.calibration.loops.size()));
+  return hash.digits();
 }
 
 std::string hash_line(const std::string& hash) {
@@ -205,10 +209,12 @@ std::string hash_line(const std::string& hash) {
 
 std::string blind_key(const Campaign& campaign, bool with_calibration) {
   std::string text = fmt::format("{}loop,experiment\n", hash_line(loops_hash(campaign, with_calibration)));
+  std::vector<std::int64_t> indices;
+  records_of(campaign).each([&](const ExperimentRecord& record) { indices.push_back(record.draw.index); });
   std::size_t number = 0;
   for (const BlindLoop& loop : blind_order(campaign, with_calibration))
     text += loop.of_calibration ? fmt::format("{},\n", number++)
-                                : fmt::format("{},{}\n", number++, campaign.records[loop.place].draw.index);
+                                : fmt::format("{},{}\n", number++, indices[loop.place]);
   return text;
 }
 

@@ -22,7 +22,7 @@ struct BlindParts {
 /// A loop of a blind export.
 struct BlindLoop {
   bool of_calibration = false;
-  std::size_t place = 0;  ///< in Campaign::records, or in Campaign::calibration.loops
+  std::size_t place = 0;  ///< among the records, or in Campaign::calibration.loops
 };
 
 /// Which loops of the campaign are the loops 0, 1, 2, ... of its blind export: records with status ok and, if

@@ -362,7 +362,7 @@ OutsideVerdicts read_verdicts(const std::filesystem::path& path, const std::stri
                            .answers = {},
                            .calibration_scores = std::vector<double>(campaign.calibration.loops.size(), kNaN),
                            .says_which_loops = text.hash.has_value()};
-  verdicts.answers.assign(campaign.records.size(), unassessed({verdicts.form}).front());
+  verdicts.answers.assign(records_of(campaign).size(), unassessed({verdicts.form}).front());
   const LoopVerdicts reader(verdicts.form, study.plant, study.record.candidates);
   for (std::size_t loop = 0; loop < order.size(); ++loop) {
     AssessmentRecord answer = reader.on(lines[loop]);

@@ -14,6 +14,7 @@
 #include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
+#include "results/archive/record_bytes.hpp"
 #include "results/summary/comparison.hpp"
 #include "scenarios/study_file.hpp"
 #include "scenarios/study_library.hpp"
@@ -125,6 +126,77 @@ TEST_CASE("comparison: of records that stay in the archive the same methods are 
     };
     CHECK((json(streamed) == json(read)));
   }
+}
+
+/// A calibrated campaign in which one loop did not run to its end.
+Campaign campaign_with_a_gap() {
+  RunOptions options = few();
+  options.methods = {"botelho"};
+  Campaign campaign = run_campaign(calibrated_wood_berry(), options);
+  campaign.records[1].status = ExperimentStatus::infeasible;
+  campaign.records[1].assessments = unassessed(forms_of(campaign));
+  return campaign;
+}
+
+/// Every record and the calibration, bit for bit.
+void check_same(const Campaign& one, const Campaign& other) {
+  CHECK(method_names(one) == method_names(other));
+  check_same(one.calibration, other.calibration);
+  const RecordBytes bytes(one.study, forms_of(one));
+  REQUIRE(records_of(one).size() == records_of(other).size());
+  std::size_t count = 0;
+  each_in_both(records_of(one), records_of(other), [&](const ExperimentRecord& a, const ExperimentRecord& b) {
+    ++count;
+    CHECK(bytes.differences(a, b) == std::vector<std::string>{});
+  });
+  CHECK(count == records_of(one).size());
+}
+
+TEST_CASE("comparison: answers come to records that stay in the archive as they do to records in memory") {
+  const TemporaryFolder folder;
+  const Campaign campaign = campaign_with_a_gap();
+  write_archive(folder / "a.h5", campaign, findings_of(campaign));
+  Campaign expected = read_archive(folder / "a.h5");
+  // One that is missing and one that is there, on the first experiments: the last one has no answer.
+  ComparisonOptions options{.methods = {"sse", "botelho"}, .experiments = 3};
+  add_methods(expected, options, {});
+  CHECK(expected.records[2].by("sse")->answered());
+  CHECK(expected.records[3].by("botelho")->status == AssessmentStatus::not_assessed);
+
+  Campaign in_memory = stream_archive(folder / "a.h5");
+  options.jobs = 3;
+  add_methods(in_memory, options, {});
+  check_same(in_memory, expected);
+
+  // Half of the answers are in the folder of a part.
+  options.shard = ShardNumber{1, 2, ""};
+  options.kept = KeptAssessments{.shards = folder / "part", .parts = {}, .archive = "a", .warn = {}};
+  Campaign in_shards = stream_archive(folder / "a.h5");
+  Comparison(in_shards, options).run({});
+  options.shard.reset();
+  options.kept->parts = {options.kept->shards};
+  options.kept->shards = folder / "shards";
+  Comparison whole(in_shards, options);
+  CHECK(whole.tally().done > 0);
+  whole.run({});
+  whole.add_to(in_shards, "compare");
+  check_same(in_shards, expected);
+  write_archive(folder / "a.h5", in_shards, findings_of(in_shards));  // in the place of what it is read from
+  check_same(read_archive(folder / "a.h5"), expected);
+}
+
+TEST_CASE("comparison: verdicts come to records that stay in the archive as they do to records in memory") {
+  const TemporaryFolder folder;
+  const Campaign campaign = campaign_with_a_gap();
+  write_archive(folder / "a.h5", campaign, findings_of(campaign));
+  Campaign read = read_archive(folder / "a.h5"), streamed = stream_archive(folder / "a.h5");
+  for (const char* const answers : {"loop,flagged,score\n0,1,3\n1,0,1\n2,1,2\n", "loop,flagged\n2,0\n"}) {
+    mpm::testing::make_file(folder / "mine.csv", answers);
+    for (Campaign* const each : {&read, &streamed})  // those of the second file replace the others
+      add_verdicts(*each, read_verdicts(folder / "mine.csv", "mine", *each), "compare");
+    check_same(streamed, read);
+  }
+  CHECK(method_names(read) == std::vector<std::string>{"botelho", "mine"});
 }
 
 TEST_CASE("calibration: stopped in its loops and resumed, it is what one go gives; its shards go as well") {

@@ -470,6 +470,13 @@ Campaign rich_campaign() {
   return campaign;
 }
 
+Campaign streamed_from(const Campaign& campaign) {
+  Campaign streamed = campaign;
+  streamed.records.clear();
+  streamed.streamed = RecordRange(campaign.records);
+  return streamed;
+}
+
 Campaign empty_campaign() {
   Numbers numbers;
   std::string text = small_study();

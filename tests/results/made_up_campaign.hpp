@@ -18,6 +18,9 @@ namespace mpm::testing {
 /// with any status.
 Campaign made_up_campaign();
 
+/// The same campaign as one whose records are streamed: from `campaign`, which must outlive it.
+Campaign streamed_from(const Campaign& campaign);
+
 /// The same with the faults that the study draws in place of made-up ones: bytes of a record do not hold
 /// them.
 Campaign drawn_campaign();

@@ -307,8 +307,7 @@ TEST_CASE("archive: a campaign whose records stay in the file has the same summa
     const RecordRange records = records_of(read);
     REQUIRE(records.size() == campaign.records.size());
     // One alone, and one of a range that can only be gone through.
-    const RecordRange passing(records.size(),
-                              [&records](const RecordRange::Visit& visit) { records.each(visit); });
+    const RecordRange passing(records.size(), [&records] { return records.one_by_one(); });
     const RecordBytes bytes(campaign.study, forms_of(campaign));
     for (std::size_t i = 0; i < records.size(); ++i)
       for (const ExperimentRecord& record : {records.at(i), passing.at(i)})
