@@ -79,7 +79,7 @@ ExitCode summary(const SummaryArguments& options) {
     print_result(partial_summary(options, folders));
     return ExitCode::done;
   }
-  const Campaign campaign = options.json ? read_input(options.archive) : stream_input(options.archive);
+  const Campaign campaign = stream_input(options.archive);
   if (has_shards(options.archive))
     print_note(
         fmt::format("{0}: a later run is not finished; `mpmbench summary {0}` says what it has found\n",

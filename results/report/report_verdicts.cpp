@@ -66,9 +66,9 @@ std::string wrong_table(const ReportInput& input) {
          html_number(verdict.alone.dominance_mpm)});
   }
   std::string html = table.html();
-  if (input.parts.wrong_count > kMostVerdictRows)
+  if (input.parts.wrong_verdicts.size() > kMostVerdictRows)
     html += fmt::format("<p>And {} more; <code>mpmbench summary {} --json</code> lists all.</p>\n",
-                        input.parts.wrong_count - kMostVerdictRows, html_text(input.file));
+                        input.parts.wrong_verdicts.size() - kMostVerdictRows, html_text(input.file));
   return html;
 }
 
@@ -102,7 +102,7 @@ ReportSection wrong_verdict_section(const ReportInput& input) {
   section.add(
       fmt::format("<p>{} of {} experiments with impact got a wrong verdict. <code>mpmbench plot {} INDEX -o "
                   "FILE.svg</code> draws the closed loop of one.</p>\n",
-                  input.parts.wrong_count, impactful, html_text(input.file)));
+                  input.parts.wrong_verdicts.size(), impactful, html_text(input.file)));
   section.add(wrong_table(input));
   add_wrong_loops(section, input);
   return section;

@@ -55,12 +55,12 @@ SummaryContent summary_content(const Campaign& campaign, const StudyFindings& fi
     if (s0_curves)
       s0_curves->add(record);
     if (record.status == ExperimentStatus::failed) {
-      ++parts.failed_count;
+      parts.failures.push_back({record.draw.index, record.message});
       list(record, parts.failed);
     }
     const AssessmentRecord* const chain = record.by(kChainMethod);
     if (chain != nullptr && judge(study, record, *chain).wrong()) {
-      ++parts.wrong_count;
+      parts.wrong_verdicts.push_back(record.draw.index);
       list(record, parts.wrong);
     }
   });

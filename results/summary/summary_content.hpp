@@ -17,6 +17,12 @@ struct KindCount {
   std::int64_t experiments;
 };
 
+/// An experiment without a result, and why.
+struct FailedExperiment {
+  std::int64_t index;
+  std::string message;
+};
+
 /// How many experiments the summary for people lists one by one.
 inline constexpr std::size_t kMostListed = 10;
 
@@ -31,18 +37,19 @@ struct SummaryContent {
   std::vector<DiagonalFit> s0_fits;  ///< of the CVs at a soft limit
   std::vector<StructureFit> structure_fits;  ///< none unless the study fixes MVs
   std::vector<KindCount> kinds;              ///< of a study of random experiments, those that it has
-  std::size_t failed_count = 0, wrong_count = 0;
-  /// All of them; of a campaign that is streamed the first ones.
+  std::vector<FailedExperiment> failures;    ///< all of them, as those of the next one
+  std::vector<std::int64_t> wrong_verdicts;  ///< of the chain, Judgement::wrong(): index of the experiment
+  /// The records of these; of a campaign that is streamed those of the first ones.
   std::vector<const ExperimentRecord*> failed;
-  std::vector<const ExperimentRecord*> wrong;  ///< verdicts of the chain, Judgement::wrong()
-  std::deque<ExperimentRecord> first;          ///< these, of a campaign that is streamed
+  std::vector<const ExperimentRecord*> wrong;
+  std::deque<ExperimentRecord> first;  ///< these, of a campaign that is streamed
 };
 
 /// "150 MPM, 150 UD, 100 MPM+UD"; "named scenarios".
 std::string kinds_text(const Study& study, const std::vector<KindCount>& kinds);
 
 /// `campaign` and `findings` must outlive the parts.
-/// Of one that is streamed, `most` of the failures and of the wrong verdicts are listed.
+/// Of one that is streamed, it has `most` records of failures and of wrong verdicts.
 SummaryContent summary_content(const Campaign& campaign, const StudyFindings& findings,
                                std::size_t most = kMostListed);
 

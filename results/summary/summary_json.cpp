@@ -210,17 +210,10 @@ Json scenarios_json(const Campaign& campaign) {
   return list;
 }
 
-Json failures_json(const std::vector<const ExperimentRecord*>& failed) {
+Json failures_json(const std::vector<FailedExperiment>& failed) {
   Json list = Json::array();
-  for (const ExperimentRecord* record : failed)
-    list.push_back({{"index", record->draw.index}, {"message", proper_utf8(record->message)}});
-  return list;
-}
-
-Json wrong_json(const std::vector<const ExperimentRecord*>& wrong) {
-  Json list = Json::array();
-  for (const ExperimentRecord* record : wrong)
-    list.push_back(record->draw.index);
+  for (const FailedExperiment& experiment : failed)
+    list.push_back({{"index", experiment.index}, {"message", proper_utf8(experiment.message)}});
   return list;
 }
 
@@ -253,8 +246,8 @@ std::string summary_json(const Campaign& campaign, const StudyFindings& total,
       {"dominance", dominance_json(total.dominance)},
       {"s0_perturbation", s0_perturbation_json(campaign.study, parts)},
       {"audit", audit_json(parts, campaign.info)},
-      {"failures", failures_json(parts.failed)},
-      {"wrong_verdicts", wrong_json(parts.wrong)}};
+      {"failures", failures_json(parts.failures)},
+      {"wrong_verdicts", parts.wrong_verdicts}};
   return summary.dump(2) + "\n";
 }
 

@@ -154,19 +154,19 @@ void add_more(SummaryLines& text, std::size_t count) {
 }
 
 void add_failed(SummaryLines& text, const SummaryContent& parts) {
-  if (parts.failed_count == 0)
+  if (parts.failures.empty())
     return;
   text.line("");
-  text.line("{} failed:", plural(parts.failed_count, "experiment"));
-  for (std::size_t i = 0; i < std::min(parts.failed.size(), kMostListed); ++i)
-    text.line("  {:>5}  {}", parts.failed[i]->draw.index, parts.failed[i]->message);
-  add_more(text, parts.failed_count);
+  text.line("{} failed:", plural(parts.failures.size(), "experiment"));
+  for (std::size_t i = 0; i < std::min(parts.failures.size(), kMostListed); ++i)
+    text.line("  {:>5}  {}", parts.failures[i].index, parts.failures[i].message);
+  add_more(text, parts.failures.size());
 }
 
 void add_wrong(SummaryLines& text, const Study& study, const SummaryContent& parts, const std::string& file) {
   const std::vector<const ExperimentRecord*>& wrong = parts.wrong;
   text.line("");
-  text.line("{} with impact got a wrong verdict{}", plural(parts.wrong_count, "experiment"),
+  text.line("{} with impact got a wrong verdict{}", plural(parts.wrong_verdicts.size(), "experiment"),
             wrong.empty() ? "" : ":");
   for (std::size_t i = 0; i < std::min(wrong.size(), kMostListed); ++i) {
     const ExperimentDraw& draw = wrong[i]->draw;
@@ -178,7 +178,7 @@ void add_wrong(SummaryLines& text, const Study& study, const SummaryContent& par
               file.size() + 22, truth, to_string(said.predicted_source),
               said.predicted_cv < 0 ? "no CV" : cv_name(study, said.predicted_cv));
   }
-  add_more(text, parts.wrong_count);
+  add_more(text, parts.wrong_verdicts.size());
 }
 
 }  // namespace

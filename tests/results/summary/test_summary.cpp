@@ -113,6 +113,9 @@ TEST_CASE(
   CHECK_THAT(text, Contains("13 experiments with impact got a wrong verdict:\n") &&
                        Contains("mpmbench replay out.h5 0 ") && Contains("mpmbench replay out.h5 9 ") &&
                        !Contains("mpmbench replay out.h5 10 ") && Contains("and 3 more"));
+  CHECK(text_of(streamed_from(campaign)) == text);
+  CHECK(json_of(campaign)["wrong_verdicts"].size() == 13);
+  CHECK(json_of(streamed_from(campaign)) == json_of(campaign));
   CHECK_THAT(text, Contains("experiments failed:\n") && Contains("died: \xC3\xBC"));
 }
 
