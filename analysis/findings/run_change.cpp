@@ -37,34 +37,17 @@ bool same_number(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-bool same_loop(const LoopPair& loop) {
-  const ExperimentRecord &a = *loop.before, &b = *loop.now;
+bool same_loop(const ExperimentRecord& a, const ExperimentRecord& b) {
   return a.status == b.status && std::equal(a.ivar_basis.begin(), a.ivar_basis.end(), b.ivar_basis.begin(),
                                             b.ivar_basis.end(), same_number);
 }
 
-std::vector<LoopPair> loops_in_common(const StudyRun& before, const StudyRun& now) {
-  std::vector<LoopPair> loops;
-  auto next = before.records.begin();
-  for (const ExperimentRecord& record : now.records) {
-    while (next != before.records.end() && next->draw.index < record.draw.index)
-      ++next;
-    if (next != before.records.end() && next->draw.index == record.draw.index)
-      loops.push_back({&*next, &record});
-  }
-  return loops;
-}
-
-std::string obstacle_of(const StudyRun& before, const StudyRun& now, const std::vector<LoopPair>& loops) {
-  if (!same_variables(before.study.plant, now.study.plant))
+/// What keeps runs from being paired, whatever their experiments are.
+std::string obstacle_of(const Study& before, const Study& now) {
+  if (!same_variables(before.plant, now.plant))
     return "the plants have different variables";
-  if (before.study.seed != now.study.seed)
-    return fmt::format("the seeds differ, {} and {}", before.study.seed, now.study.seed);
-  if (loops.empty())
-    return "they have no experiment in common";
-  for (const LoopPair& loop : loops)
-    if (!same_fault(loop.before->draw, loop.now->draw))
-      return fmt::format("experiment {} does not have the same fault in both", loop.now->draw.index);
+  if (before.seed != now.seed)
+    return fmt::format("the seeds differ, {} and {}", before.seed, now.seed);
   return {};
 }
 
@@ -108,50 +91,57 @@ constexpr std::array<VerdictQuestion, 6> kQuestions{{
 
 // --- Rates ---
 
-/// What is counted of one run of a method.
+/// One run of a method.
 struct MethodRun {
   const StudyRun& run;
   std::size_t place;
 
-  MethodRates rates(std::span<const ExperimentRecord> records) const {
-    return rate_collector(run.study, place, run.calibration).of(records);
-  }
+  const AssessmentRecord& said(const ExperimentRecord& record) const { return record.assessments[place]; }
+  Collector<MethodRates> rates() const { return rate_collector(run.study, place, run.calibration); }
 };
 
-/// The rate of a single loop is 0 of 0, 0 of 1 or 1 of 1: what it adds to that of all.
-std::vector<RateChange> paired_rates(const MethodRun& before, const MethodRun& now,
-                                     const std::vector<LoopPair>& loops, double confidence) {
+/// Counts the loops of paired runs. The rate of a single loop is 0 of 0, 0 of 1 or 1 of 1: what it adds to
+/// that of all.
+class PairedRates {
+ public:
+  PairedRates() : sums_(method_rate_infos().size()) {}
+
+  void add(const MethodRates& before, const MethodRates& now) {
+    const std::span<const MethodRateInfo> infos = method_rate_infos();
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      const Rate &was = before.*infos[i].rate, &is = now.*infos[i].rate;
+      sums_[i].hits_before += was.hits;
+      sums_[i].before += was.total;
+      sums_[i].hits_now += is.hits;
+      sums_[i].now += is.total;
+      if (was.total == 1 && is.total == 1)
+        sums_[i].both.add(was.hits == 1, is.hits == 1);
+    }
+  }
+
+  std::vector<RateChange> changes(double confidence) const {
+    const std::span<const MethodRateInfo> infos = method_rate_infos();
+    std::vector<RateChange> changes;
+    for (std::size_t i = 0; i < infos.size(); ++i)
+      changes.push_back({&infos[i], rate(sums_[i].hits_before, sums_[i].before, confidence),
+                         rate(sums_[i].hits_now, sums_[i].now, confidence), sums_[i].both,
+                         paired_difference(sums_[i].both, confidence)});
+    return changes;
+  }
+
+ private:
   struct Sums {
     std::int64_t hits_before = 0, before = 0, hits_now = 0, now = 0;
     PairedCounts both;
   };
-  const std::span<const MethodRateInfo> infos = method_rate_infos();
-  std::vector<Sums> sums(infos.size());
-  for (const LoopPair& loop : loops) {
-    const MethodRates a = before.rates({loop.before, 1}), b = now.rates({loop.now, 1});
-    for (std::size_t i = 0; i < infos.size(); ++i) {
-      const Rate &was = a.*infos[i].rate, &is = b.*infos[i].rate;
-      sums[i].hits_before += was.hits;
-      sums[i].before += was.total;
-      sums[i].hits_now += is.hits;
-      sums[i].now += is.total;
-      if (was.total == 1 && is.total == 1)
-        sums[i].both.add(was.hits == 1, is.hits == 1);
-    }
-  }
-  std::vector<RateChange> changes;
-  for (std::size_t i = 0; i < infos.size(); ++i)
-    changes.push_back({&infos[i], rate(sums[i].hits_before, sums[i].before, confidence),
-                       rate(sums[i].hits_now, sums[i].now, confidence), sums[i].both,
-                       paired_difference(sums[i].both, confidence)});
-  return changes;
-}
 
-std::vector<RateChange> unpaired_rates(const MethodRun& before, const MethodRun& now, double confidence) {
-  const MethodRates a = before.rates(before.run.records), b = now.rates(now.run.records);
+  std::vector<Sums> sums_;
+};
+
+std::vector<RateChange> unpaired_rates(const MethodRates& before, const MethodRates& now, double confidence) {
   std::vector<RateChange> changes;
   for (const MethodRateInfo& info : method_rate_infos()) {
-    const Rate &was = a.*info.rate, &is = b.*info.rate;
+    const Rate &was = before.*info.rate, &is = now.*info.rate;
     changes.push_back({&info, was, is, {}, independent_difference(was, is, confidence)});
   }
   return changes;
@@ -174,28 +164,27 @@ std::vector<RateChange> corrected(std::vector<RateChange> changes) {
 
 // --- Verdicts ---
 
-VerdictChange verdict_change(const VerdictQuestion& question, const MethodRun& before, const MethodRun& now,
-                             const std::vector<LoopPair>& loops) {
-  VerdictChange verdict{&question};
+/// One more loop for a question.
+void add_verdict(VerdictChange& verdict, const JudgementPair& pair) {
   JudgementChanges& changes = verdict.changes;
-  for (const LoopPair& loop : loops) {
-    const JudgementPair pair{
-        loop.now->draw.index,
-        question.ask(before.run.study, *loop.before, loop.before->assessments[before.place]),
-        question.ask(now.run.study, *loop.now, loop.now->assessments[now.place])};
-    if (pair.before == Correctness::not_judged && pair.now == Correctness::not_judged)
-      continue;
-    ++changes.pairs;
-    const bool was = pair.before == Correctness::right, is = pair.now == Correctness::right;
-    verdict.right_in_both += was && is ? 1 : 0;
-    if (was && !is)
-      changes.lost.push_back(pair);
-    if (is && !was)
-      changes.gained.push_back(pair);
-  }
-  changes.test = mcnemar_test(static_cast<std::int64_t>(changes.lost.size()),
-                              static_cast<std::int64_t>(changes.gained.size()));
-  return verdict;
+  if (pair.before == Correctness::not_judged && pair.now == Correctness::not_judged)
+    return;
+  ++changes.pairs;
+  const bool was = pair.before == Correctness::right, is = pair.now == Correctness::right;
+  verdict.right_in_both += was && is ? 1 : 0;
+  if (was && !is)
+    changes.lost.push_back(pair);
+  if (is && !was)
+    changes.gained.push_back(pair);
+}
+
+/// Those that were judged, with the tests of their changes.
+std::vector<VerdictChange> tested(std::vector<VerdictChange> verdicts) {
+  std::erase_if(verdicts, [](const VerdictChange& verdict) { return verdict.changes.pairs == 0; });
+  for (VerdictChange& verdict : verdicts)
+    verdict.changes.test = mcnemar_test(static_cast<std::int64_t>(verdict.changes.lost.size()),
+                                        static_cast<std::int64_t>(verdict.changes.gained.size()));
+  return verdicts;
 }
 
 // --- Numbers ---
@@ -247,51 +236,89 @@ Eigen::MatrixXd single(double value) {
   return Eigen::MatrixXd::Constant(1, 1, value);
 }
 
-/// The score, and each quantity of loops and CVs that the method has in both runs.
-std::vector<NumberChange> number_changes(const MethodRun& before, const MethodRun& now,
-                                         const std::vector<LoopPair>& loops, double confidence) {
-  std::vector<std::string> names;
-  std::vector<NumberCollection> collections{NumberCollection("score")};
-  for (const NumberPlace& place : now.run.forms[now.place]->places()) {
-    const AssessmentNumberInfo& info = place.info;
-    const bool is_of_cv = info.scope == NumberScope::cv;
-    if ((!is_of_cv && info.scope != NumberScope::loop) || !info.words.empty() ||
-        before.run.forms[before.place]->find(info.name) == nullptr)
-      continue;
-    names.push_back(info.name);
-    collections.emplace_back(info.label.empty() ? info.name : info.label);
+/// Collects the score, and each quantity of loops and CVs that the method has in both runs.
+class NumberChanges {
+ public:
+  NumberChanges(const AssessmentForm& before, const AssessmentForm& now) {
+    for (const NumberPlace& place : now.places()) {
+      const AssessmentNumberInfo& info = place.info;
+      const bool is_of_cv = info.scope == NumberScope::cv;
+      if ((!is_of_cv && info.scope != NumberScope::loop) || !info.words.empty() ||
+          before.find(info.name) == nullptr)
+        continue;
+      names_.push_back(info.name);
+      collections_.emplace_back(info.label.empty() ? info.name : info.label);
+    }
   }
-  for (const LoopPair& loop : loops) {
-    const AssessmentRecord& was = loop.before->assessments[before.place];
-    const AssessmentRecord& is = loop.now->assessments[now.place];
-    if (!was.answered() || !is.answered())
-      continue;
-    collections[0].add(loop.now->draw.index, single(was.score), single(is.score));
-    for (std::size_t i = 0; i < names.size(); ++i)
-      collections[i + 1].add(loop.now->draw.index, was.values(names[i]), is.values(names[i]));
-  }
-  std::vector<NumberChange> changes;
-  for (NumberCollection& collection : collections)
-    if (NumberChange change = std::move(collection).finish(confidence); change.experiments > 0)
-      changes.push_back(std::move(change));
-  return changes;
-}
 
-MethodChange method_change(const MethodRun& before, const MethodRun& now, const RunPairing& pairing) {
-  const double confidence = now.run.study.aggregate.confidence;
-  MethodChange change{now.run.forms[now.place]->method().name, before.place, now.place, {}, {}, {}};
-  if (!pairing.paired()) {
-    change.rates = corrected(unpaired_rates(before, now, confidence));
+  void add(std::int64_t index, const AssessmentRecord& was, const AssessmentRecord& is) {
+    if (!was.answered() || !is.answered())
+      return;
+    collections_[0].add(index, single(was.score), single(is.score));
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      collections_[i + 1].add(index, was.values(names_[i]), is.values(names_[i]));
+  }
+
+  std::vector<NumberChange> finish(double confidence) && {
+    std::vector<NumberChange> changes;
+    for (NumberCollection& collection : collections_)
+      if (NumberChange change = std::move(collection).finish(confidence); change.experiments > 0)
+        changes.push_back(std::move(change));
+    return changes;
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<NumberCollection> collections_{NumberCollection("score")};
+};
+
+/// A method that both runs have, as their experiments come one after the other.
+class MethodComparison {
+ public:
+  MethodComparison(const MethodRun& before, const MethodRun& now)
+      : before_(before),
+        now_(now),
+        numbers_(*before.run.forms[before.place], *now.run.forms[now.place]),
+        rates_before_(before.rates()),
+        rates_now_(now.rates()) {
+    for (const VerdictQuestion& question : kQuestions)
+      verdicts_.push_back({&question});
+  }
+
+  /// An experiment that both have; only of paired runs.
+  void add_pair(const ExperimentRecord& before, const ExperimentRecord& now) {
+    const AssessmentRecord &was = before_.said(before), &is = now_.said(now);
+    rates_.add(before_.rates().of(std::span(&before, 1)), now_.rates().of(std::span(&now, 1)));
+    for (VerdictChange& verdict : verdicts_)
+      add_verdict(verdict, {now.draw.index, verdict.question->ask(before_.run.study, before, was),
+                            verdict.question->ask(now_.run.study, now, is)});
+    numbers_.add(now.draw.index, was, is);
+  }
+
+  /// An experiment of either; only of runs that are not paired.
+  void add_before(const ExperimentRecord& record) { rates_before_.add(record); }
+  void add_now(const ExperimentRecord& record) { rates_now_.add(record); }
+
+  MethodChange finish(bool paired) && {
+    const double confidence = now_.run.study.aggregate.confidence;
+    MethodChange change{now_.run.forms[now_.place]->method().name, before_.place, now_.place, {}, {}, {}};
+    if (!paired) {
+      change.rates = corrected(unpaired_rates(rates_before_.result(), rates_now_.result(), confidence));
+      return change;
+    }
+    change.rates = corrected(rates_.changes(confidence));
+    change.verdicts = tested(std::move(verdicts_));
+    change.numbers = std::move(numbers_).finish(confidence);
     return change;
   }
-  change.rates = corrected(paired_rates(before, now, pairing.loops, confidence));
-  for (const VerdictQuestion& question : kQuestions)
-    if (VerdictChange verdict = verdict_change(question, before, now, pairing.loops);
-        verdict.changes.pairs > 0)
-      change.verdicts.push_back(std::move(verdict));
-  change.numbers = number_changes(before, now, pairing.loops, confidence);
-  return change;
-}
+
+ private:
+  MethodRun before_, now_;
+  PairedRates rates_;
+  std::vector<VerdictChange> verdicts_;
+  NumberChanges numbers_;
+  Collector<MethodRates> rates_before_, rates_now_;
+};
 
 /// Corrects the p-values of all questions.
 void correct_questions(std::vector<MethodChange>& methods) {
@@ -309,13 +336,18 @@ void correct_questions(std::vector<MethodChange>& methods) {
 }  // namespace
 
 RunPairing pair_runs(const StudyRun& before, const StudyRun& now) {
-  std::vector<LoopPair> loops = loops_in_common(before, now);
-  RunPairing pairing{obstacle_of(before, now, loops)};
-  if (!pairing.paired())
-    return pairing;
-  pairing.same_loops = std::count_if(loops.begin(), loops.end(), same_loop);
-  pairing.loops = std::move(loops);
-  return pairing;
+  if (std::string obstacle = obstacle_of(before.study, now.study); !obstacle.empty())
+    return {std::move(obstacle)};
+  RunPairing pairing;
+  each_in_both(before.records, now.records, [&](const ExperimentRecord& a, const ExperimentRecord& b) {
+    ++pairing.loops;
+    pairing.same_loops += same_loop(a, b) ? 1 : 0;
+    if (pairing.paired() && !same_fault(a.draw, b.draw))
+      pairing.obstacle = fmt::format("experiment {} does not have the same fault in both", b.draw.index);
+  });
+  if (pairing.loops == 0)
+    pairing.obstacle = "they have no experiment in common";
+  return pairing.paired() ? pairing : RunPairing{std::move(pairing.obstacle)};
 }
 
 std::span<const VerdictQuestion> verdict_questions() {
@@ -333,11 +365,26 @@ bool MethodChange::changed() const {
 
 std::vector<MethodChange> method_changes(const StudyRun& before, const StudyRun& now,
                                          const RunPairing& pairing) {
-  std::vector<MethodChange> changes;
+  std::vector<MethodComparison> methods;
   for (std::size_t place = 0; place < now.forms.size(); ++place)
     for (std::size_t old = 0; old < before.forms.size(); ++old)
       if (before.forms[old]->method().name == now.forms[place]->method().name)
-        changes.push_back(method_change({before, old}, {now, place}, pairing));
+        methods.emplace_back(MethodRun{before, old}, MethodRun{now, place});
+  const auto for_all = [&methods](auto add) {
+    return [&methods, add](const auto&... records) {
+      for (MethodComparison& method : methods)
+        (method.*add)(records...);
+    };
+  };
+  if (pairing.paired()) {
+    each_in_both(before.records, now.records, for_all(&MethodComparison::add_pair));
+  } else {
+    before.records.each(for_all(&MethodComparison::add_before));
+    now.records.each(for_all(&MethodComparison::add_now));
+  }
+  std::vector<MethodChange> changes;
+  for (MethodComparison& method : methods)
+    changes.push_back(std::move(method).finish(pairing.paired()));
   correct_questions(changes);
   return changes;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/experiment/record_range.hpp"
 #include "analysis/findings/calibration.hpp"
 #include "analysis/findings/judgement_changes.hpp"
 #include "analysis/findings/method_rates.hpp"
@@ -21,22 +22,16 @@ namespace mpm {
 struct StudyRun {
   const Study& study;
   const AssessmentForms& forms;
-  std::span<const ExperimentRecord> records;  ///< in the order of the index
+  RecordRange records;
   const Calibration& calibration;
-};
-
-/// The same experiment in both runs.
-struct LoopPair {
-  const ExperimentRecord* before;
-  const ExperimentRecord* now;
 };
 
 /// Which experiments of two runs are the same. Runs are paired when seed and variables of the studies are the
 /// same, they have experiments in common, and in each of these the same is wrong.
 struct RunPairing {
-  std::string obstacle = {};         ///< why the runs are not paired, as a clause; empty: they are
-  std::vector<LoopPair> loops = {};  ///< in the order of the index; empty when not paired
-  std::int64_t same_loops = 0;       ///< of these: the same end and the same Ivar_basis, bit for bit
+  std::string obstacle = {};    ///< why the runs are not paired, as a clause; empty: they are
+  std::int64_t loops = 0;       ///< experiments in common; none when not paired
+  std::int64_t same_loops = 0;  ///< of these: the same end and the same Ivar_basis, bit for bit
 
   bool paired() const { return obstacle.empty(); }
 };
@@ -93,7 +88,7 @@ struct MethodChange {
   bool changed() const;
 };
 
-/// All methods of both runs, in the order of the second.
+/// All methods of both runs, in the order of the second. Goes through the records once.
 std::vector<MethodChange> method_changes(const StudyRun& before, const StudyRun& now,
                                          const RunPairing& pairing);
 

@@ -52,8 +52,8 @@ ExitCode report_change(const ReportArguments& options) {
     throw InputError("--figures", "two archives", "one archive; two give a page, -o FILE");
   require_no_input("--output", options.output, options.archives);
   require_output_folder(options.output, "page");
-  const Campaign before = read_input(options.archives[0]);
-  const Campaign now = read_input(options.archives[1]);
+  const Campaign before = stream_input(options.archives[0]);
+  const Campaign now = stream_input(options.archives[1]);
   write_text(options.output, change_html(before, options.archives[0], now, options.archives[1]));
   print_result(fmt::format("{}\n", options.output));
   return ExitCode::done;

@@ -42,10 +42,10 @@ std::optional<Panel> number_panel(const ChangeInput& input, const MethodChange& 
   const std::set<std::int64_t> changed = experiments_with_changes(method);
   std::vector<NamedPoint> same, other;
   double least = INFINITY, largest = -INFINITY;
-  for (const LoopPair& loop : input.pairing.loops) {
-    const std::int64_t index = loop.now->draw.index;
-    const Eigen::MatrixXd before = loop.before->assessments[method.before].values(number.name);
-    const Eigen::MatrixXd now = loop.now->assessments[method.now].values(number.name);
+  const auto add = [&](const ExperimentRecord& record_before, const ExperimentRecord& record_now) {
+    const std::int64_t index = record_now.draw.index;
+    const Eigen::MatrixXd before = record_before.assessments[method.before].values(number.name);
+    const Eigen::MatrixXd now = record_now.assessments[method.now].values(number.name);
     for (Eigen::Index i = 0; i < std::min(before.size(), now.size()); ++i) {
       const double x = before.data()[i], y = now.data()[i];
       if (!std::isfinite(x) || !std::isfinite(y) || (number.logarithmic && !(x > 0.0 && y > 0.0)))
@@ -56,9 +56,10 @@ std::optional<Panel> number_panel(const ChangeInput& input, const MethodChange& 
       (changed.count(index) > 0 ? other : same)
           .push_back({x, y,
                       fmt::format("experiment {} ({}){}: A {:.3g}, B {:.3g}", index,
-                                  kind_name(loop.now->draw.kind), cv, x, y)});
+                                  kind_name(record_now.draw.kind), cv, x, y)});
     }
-  }
+  };
+  each_in_both(records_of(input.before), records_of(input.now), add);
   if (same.empty() && other.empty())
     return std::nullopt;
   PanelScript panel(fmt::format("change_{}", number.name), number.label,

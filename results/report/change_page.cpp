@@ -12,7 +12,7 @@ namespace mpm {
 namespace {
 
 StudyRun run_of(const Campaign& campaign, const AssessmentForms& forms) {
-  return {campaign.study, forms, campaign.records, campaign.calibration};
+  return {campaign.study, forms, records_of(campaign), campaign.calibration};
 }
 
 std::string paragraph(const std::string& html) {
@@ -25,15 +25,15 @@ std::string p_text(double p) {
 
 /// Which experiments are compared, and how.
 std::string pairing_html(const ChangeInput& input) {
-  const auto loops = static_cast<std::int64_t>(input.pairing.loops.size());
+  const std::int64_t loops = input.pairing.loops;
   if (!input.pairing.paired())
     return paragraph(fmt::format(
         "<strong>Compared as unrelated runs, not experiment by experiment, because {}.</strong> Each "
         "difference then carries the chance of both draws, and no single experiment can be said to have "
         "changed.",
         html_text(input.pairing.obstacle)));
-  const std::size_t left_out =
-      input.before.records.size() + input.now.records.size() - 2 * input.pairing.loops.size();
+  const std::int64_t left_out =
+      std::ssize(records_of(input.before)) + std::ssize(records_of(input.now)) - 2 * loops;
   std::string html = fmt::format(
       "Compared experiment by experiment: both ran the same {} with seed {}, each with the same fault{}. ",
       loops, input.now.study.seed,

@@ -39,7 +39,7 @@ ReportSection change_studies_section(const ChangeInput& input) {
   };
   row("archive", input.before_file, input.now_file);
   row("study", a.study.name, b.study.name);
-  row("experiments", fmt::format("{}", a.records.size()), fmt::format("{}", b.records.size()));
+  row("experiments", fmt::format("{}", records_of(a).size()), fmt::format("{}", records_of(b).size()));
   row("mpmbench", a.info.mpmbench_version, b.info.mpmbench_version);
   row("revision", a.info.git_sha, b.info.git_sha);
   row("solver", a.info.solver, b.info.solver);

@@ -1,4 +1,5 @@
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -48,10 +49,42 @@ std::map<std::int64_t, Changed> changed_experiments(const MethodChange& method) 
   return experiments;
 }
 
-std::string replay_cell(const ChangeInput& input, const LoopPair& loop) {
+/// The same experiment in both archives, without its loop.
+struct LoopPair {
+  ExperimentRecord before, now;
+};
+
+/// These experiments, by their index.
+std::map<std::int64_t, LoopPair> loops_with(const ChangeInput& input, const std::set<std::int64_t>& indices) {
+  std::map<std::int64_t, LoopPair> loops;
+  each_in_both(records_of(input.before), records_of(input.now),
+               [&](const ExperimentRecord& before, const ExperimentRecord& now) {
+                 if (indices.count(now.draw.index) == 0)
+                   return;
+                 LoopPair& pair = loops.emplace(now.draw.index, LoopPair{before, now}).first->second;
+                 for (ExperimentRecord* const record : {&pair.before, &pair.now}) {
+                   record->loop.reset();
+                   record->truth.reset();
+                 }
+               });
+  return loops;
+}
+
+/// The experiments that have a row, of one method or several.
+std::set<std::int64_t> shown_experiments(const ChangeInput& input) {
+  std::set<std::int64_t> indices;
+  std::size_t rows = 0;
+  for (const MethodChange& method : input.methods)
+    for (const auto& [index, changed] : changed_experiments(method))
+      if (++rows <= kMostChanges)
+        indices.insert(index);
+  return indices;
+}
+
+std::string replay_cell(const ChangeInput& input, const ExperimentDraw& draw) {
   return fmt::format("{}<br><code>mpmbench replay {} {}</code><br><code>mpmbench replay {} {}</code>",
-                     html_text(fault_text(input.now.study, loop.now->draw)), html_text(input.before_file),
-                     loop.now->draw.index, html_text(input.now_file), loop.now->draw.index);
+                     html_text(fault_text(input.now.study, draw)), html_text(input.before_file), draw.index,
+                     html_text(input.now_file), draw.index);
 }
 
 std::string count_table(const ChangeInput& input) {
@@ -94,9 +127,7 @@ std::string experiment_table(const ChangeInput& input) {
                    {"B says", HtmlTable::Align::left},
                    {"Right, then not", HtmlTable::Align::left},
                    {"Not, then right", HtmlTable::Align::left}});
-  std::map<std::int64_t, const LoopPair*> loops;
-  for (const LoopPair& loop : input.pairing.loops)
-    loops[loop.now->draw.index] = &loop;
+  const std::map<std::int64_t, LoopPair> loops = loops_with(input, shown_experiments(input));
   std::size_t rows = 0;
   for (const MethodChange& method : input.methods) {
     const std::map<std::int64_t, Changed> experiments = changed_experiments(method);
@@ -105,13 +136,12 @@ std::string experiment_table(const ChangeInput& input) {
     for (const auto& [index, changed] : experiments) {
       if (++rows > kMostChanges)
         continue;
-      const LoopPair& loop = *loops.at(index);
-      table.row(
-          {fmt::format("{}", index), kind_name(loop.now->draw.kind), replay_cell(input, loop),
-           html_text(answer_text(input.before.study, *loop.before, loop.before->assessments[method.before])),
-           html_text(answer_text(input.now.study, *loop.now, loop.now->assessments[method.now])),
-           "<span class=\"no\">" + html_text(changed.lost) + "</span>",
-           "<span class=\"yes\">" + html_text(changed.gained) + "</span>"});
+      const auto& [before, now] = loops.at(index);
+      table.row({fmt::format("{}", index), kind_name(now.draw.kind), replay_cell(input, now.draw),
+                 html_text(answer_text(input.before.study, before, before.assessments[method.before])),
+                 html_text(answer_text(input.now.study, now, now.assessments[method.now])),
+                 "<span class=\"no\">" + html_text(changed.lost) + "</span>",
+                 "<span class=\"yes\">" + html_text(changed.gained) + "</span>"});
     }
   }
   if (rows == 0)

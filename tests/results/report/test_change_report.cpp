@@ -41,6 +41,7 @@ TEST_CASE("change report: a verdict that is right no more stands there with both
                        Contains("<code>mpmbench replay &lt;i&gt;.h5 6</code>") && !Contains("<i>"));
   CHECK_THAT(page, Contains("flag, fault") && !Contains("<strong>Nothing changed.</strong>"));
   CHECK_THAT(page, !Contains("mpmbench replay a b.h5 5<"));
+  CHECK((change_html(streamed_from(first_run()), "a b.h5", streamed_from(now), "<i>.h5") == page));
 }
 
 TEST_CASE("change report: another seed, other methods and none in common are told") {
@@ -49,6 +50,7 @@ TEST_CASE("change report: another seed, other methods and none in common are tol
   const std::string page = change_html(first_run(), "a.h5", now, "b.h5");
   CHECK_THAT(page, Contains("Compared as unrelated runs") &&
                        Contains("the seeds differ, 12345678901234567890 and 5"));
+  CHECK((change_html(streamed_from(first_run()), "a.h5", streamed_from(now), "b.h5") == page));
   CHECK_THAT(page, Contains("Left out: the runs are not paired"));
 
   Campaign chain = first_run(), others = first_run();
