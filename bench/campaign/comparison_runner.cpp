@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <numeric>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -199,21 +201,6 @@ class ThreadedRunners {
   std::mutex ipopt_;  // no critical region: an exception must not leave one
 };
 
-/// Calls on_done, one call at a time.
-class DoneReports {
- public:
-  explicit DoneReports(const std::function<void()>& on_done) : on_done_(on_done) {}
-  void one_more() {
-    const std::lock_guard one_at_a_time(mutex_);
-    if (on_done_)
-      on_done_();
-  }
-
- private:
-  const std::function<void()>& on_done_;
-  std::mutex mutex_;
-};
-
 /// Has an execution give out loops that it makes itself: `make(index, thread)` returns the record of each.
 template <class Make>
 Execution execution_by(Make make) {
@@ -274,6 +261,18 @@ class RecordsInTurn {
   std::map<std::int64_t, ExperimentRecord> read_;
   std::mutex mutex_;
 };
+
+/// The numbers of blind loops in the order in which they are made: that of the records, and then the
+/// calibration loops.
+std::vector<std::size_t> numbers_in_turn(const std::vector<BlindLoop>& order) {
+  std::vector<std::size_t> numbers(order.size());
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  std::sort(numbers.begin(), numbers.end(), [&](std::size_t a, std::size_t b) {
+    return std::tie(order[a].of_calibration, order[a].place) <
+           std::tie(order[b].of_calibration, order[b].place);
+  });
+  return numbers;
+}
 
 /// Opens the experiments of a comparison, or its calibration loops.
 void open(std::optional<ExperimentSeries>& series, const Study& study, const RunOptions& run,
@@ -371,27 +370,31 @@ void Comparison::add_to(Campaign& campaign, const std::string& command, const St
   }
 }
 
-std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
-                                   const std::function<void()>& on_done) {
+void each_loop(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
+               const std::function<void(std::size_t, const AssessedLoop&)>& take) {
   const int threads = std::max(1, jobs);
   prepare_plant(campaign.study);
   ThreadedRunners runners(campaign, campaign.study, {}, threads);
   const Study calibration = campaign.study.calibration ? calibration_study(campaign.study) : campaign.study;
   ThreadedRunners calibrating(campaign, calibration, {}, threads);
-  std::vector<AssessedLoop> loops(order.size());
-  DoneReports done(on_done);
-  for_each_in_threads(order.size(), threads, [&](std::size_t i, std::size_t thread) {
-    const std::size_t place = order[i].place;
-    if (!order[i].of_calibration) {
-      loops[i] = runners.loop_of(campaign.records[place], thread);
-    } else if (const ExperimentRecord record =
-                   calibrating.run(static_cast<std::int64_t>(place), thread, StorePolicy::all);
-               record.status == ExperimentStatus::ok) {
-      loops[i] = calibrating.loop_of(record, thread);
-    }
-    done.one_more();
+  const std::vector<std::size_t> numbers = numbers_in_turn(order);
+  std::vector<std::int64_t> indices;
+  for (const std::size_t number : numbers)
+    if (!order[number].of_calibration)
+      indices.push_back(order[number].index);
+  RecordsInTurn records(records_of(campaign), indices);
+  const auto make = [&](const BlindLoop& loop, std::size_t thread) {
+    if (!loop.of_calibration)
+      return runners.loop_of(records.take(loop.index), thread);
+    const ExperimentRecord record = calibrating.run(loop.index, thread, StorePolicy::all);
+    return record.status == ExperimentStatus::ok ? calibrating.loop_of(record, thread) : AssessedLoop();
+  };
+  std::mutex taking;
+  for_each_in_threads(numbers.size(), threads, [&](std::size_t i, std::size_t thread) {
+    const AssessedLoop loop = make(order[numbers[i]], thread);
+    const std::lock_guard one_at_a_time(taking);
+    take(numbers[i], loop);
   });
-  return loops;
 }
 
 void add_verdicts(Campaign& campaign, OutsideVerdicts verdicts, const std::string& command) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -80,10 +81,11 @@ class Comparison {
   std::optional<ExperimentSeries> loops_, calibration_;
 };
 
-/// These loops as methods see them; run again where they were not kept. Without samples: a calibration loop
+/// Calls take(number, loop), one call at a time, for these loops as methods see them, in any order; `number`
+/// is the place in `order`. Loops are run again where they were not kept. Without samples: a calibration loop
 /// that does not run to its end.
-std::vector<AssessedLoop> loops_of(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
-                                   const std::function<void()>& on_done);
+void each_loop(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
+               const std::function<void(std::size_t number, const AssessedLoop& loop)>& take);
 
 /// Puts verdicts from outside behind the answers of the methods that the campaign has, in the place of those
 /// of the same name.

@@ -21,6 +21,7 @@
 #include "plants/error.hpp"
 #include "results/archive/csv_table.hpp"
 #include "results/blind/blind_loops.hpp"
+#include "results/blind/loop_store.hpp"
 
 namespace mpm {
 namespace {
@@ -39,7 +40,7 @@ struct ExportArguments {
 
 /// The loops without the truth, into a folder.
 ExitCode export_blind(const ExportArguments& options) {
-  const Campaign campaign = read_input(options.archive);
+  const Campaign campaign = stream_input(options.archive);
   if (options.parts.calibration && !campaign.study.calibration)
     throw InputError("--calibration", "a study without a table `calibration`", "a study with one");
   if (options.parts.windows && !campaign.study.monitoring)
@@ -56,13 +57,15 @@ ExitCode export_blind(const ExportArguments& options) {
   make_output_folder(options.output, "loops");
   Progress progress(options.quiet);
   progress.begin(std::ssize(order));
-  std::vector<AssessedLoop> loops = loops_of(campaign, order, options.jobs, [&] {
+  LoopStore loops(options.output, campaign.study, order.size());
+  each_loop(campaign, order, options.jobs, [&](std::size_t number, const AssessedLoop& loop) {
+    loops.put(number, loop);
     progress.advance();
     progress.end_when_requested();
   });
   const AssessmentContext context =
       assessment_context(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver));
-  write_blind_loops(options.output, campaign, context, std::move(loops), options.parts);
+  write_blind_loops(options.output, campaign, context, loops, options.parts);
   if (!options.key.empty())
     write_text(options.key, blind_key(campaign, options.parts.calibration));
   print_result(

@@ -1,7 +1,9 @@
 #include "results/blind/blind_loops.hpp"
 
-#include <cstdint>
+#include <algorithm>
+#include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -12,10 +14,12 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/methods/method_messages.hpp"
-#include "plants/non_finite.hpp"
+#include "plants/row_major.hpp"
 #include "results/archive/dimensions.hpp"
 #include "results/archive/matrix_io.hpp"
+#include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
+#include "results/files/file_seal.hpp"
 #include "results/files/sha256.hpp"
 #include "scenarios/random_stream.hpp"
 
@@ -24,19 +28,8 @@ namespace {
 
 constexpr const char* kBlindFileType = "mpmbench blind loops";
 
-/// Names of the rows of a signal.
-std::vector<std::string> row_names(const Study& study, const LoopSignal& signal) {
-  const std::string rows = signal.rows;
-  std::vector<std::string> names;
-  if (rows == "candidate")
-    for (int i = 0; i < study.record.candidates; ++i)
-      names.push_back(fmt::format("{}", i + 1));
-  else
-    for (const PlantModel::Variable& variable : rows == "cv"   ? study.plant.cvs
-                                                : rows == "mv" ? study.plant.mvs
-                                                               : study.plant.mds)
-      names.push_back(variable.name);
-  return names;
+bool is_candidates(const LoopSignal& signal) {
+  return std::strcmp(signal.rows, "candidate") == 0;
 }
 
 std::string unit_of_rows(const PlantModel& plant, const LoopSignal& signal) {
@@ -70,17 +63,25 @@ void append_samples(std::string& text, const Study& study, const AssessedLoop& l
 std::string heading_of_samples(const Study& study, bool with_candidates, const char* first) {
   std::string text = fmt::format("{}sample,time", first);
   for (const LoopSignal& signal : loop_signals())
-    if (with_candidates || std::strcmp(signal.rows, "candidate") != 0)
+    if (with_candidates || !is_candidates(signal))
       for (const std::string& name : row_names(study, signal))
         fmt::format_to(std::back_inserter(text), ",{}.{}", signal.name, name);
   return text + "\n";
 }
 
-std::string blind_csv(const Study& study, const std::vector<AssessedLoop>& loops, const std::string& hash) {
-  std::string text = hash_line(hash) + heading_of_samples(study, true, "loop,");
-  for (std::size_t i = 0; i < loops.size(); ++i)
-    append_samples(text, study, loops[i], fmt::format("{},", i));
-  return text;
+void write_blind_csv(const std::filesystem::path& path, const Study& study, LoopStore& loops,
+                     const std::string& hash) {
+  write_file_atomically(path, [&](const std::filesystem::path& temporary) {
+    std::ofstream file(temporary, std::ios::binary);
+    file << hash_line(hash) << heading_of_samples(study, true, "loop,");
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      std::string text;
+      append_samples(text, study, loops.loop(i), fmt::format("{},", i));
+      file << text;
+    }
+    if (!file.flush())
+      throw ArchiveError(fmt::format("{}: cannot write it: {}", path.string(), std::strerror(errno)));
+  });
 }
 
 std::string benchmark_csv(const Study& study, const AssessedLoop& benchmark) {
@@ -102,29 +103,30 @@ std::string empty_verdicts(std::size_t loops, std::optional<int> windows, const 
   return text;
 }
 
-/// In the place of a loop that did not run to its end.
-AssessedLoop missing_loop(const Study& study) {
-  AssessedLoop loop;
-  for (const LoopSignal& signal : loop_signals())
-    loop.*signal.member =
-        Eigen::MatrixXd::Constant(std::ssize(row_names(study, signal)), study.simulation.samples, kNaN);
-  return loop;
+VariableText text_of(const Study& study, const LoopSignal& signal) {
+  return {signal.name, signal.meaning, unit_of_rows(study.plant, signal), "", {}, "time"};
 }
 
-void write_signals(Hdf5Group& group, const Study& study, const std::vector<const AssessedLoop*>& loops,
-                   const std::vector<std::string>& first) {
+/// Each signal of all loops, one after the other.
+void write_loops(Hdf5Group& group, const Study& study, LoopStore& loops) {
   for (const LoopSignal& signal : loop_signals()) {
-    std::vector<const Eigen::MatrixXd*> matrices;
-    for (const AssessedLoop* const loop : loops)
-      matrices.push_back(&(loop->*signal.member));
-    if (matrices.empty() || (std::strcmp(signal.rows, "candidate") == 0 && matrices.front()->rows() == 0))
+    if (row_names(study, signal).empty() && is_candidates(signal))
       continue;
-    std::vector<std::string> dimensions = first;
-    dimensions.insert(dimensions.end(), {signal.rows, "sample"});
-    write_matrices(group, dimensions,
-                   {signal.name, signal.meaning, unit_of_rows(study.plant, signal), "", {}, "time"}, matrices,
-                   static_cast<Eigen::Index>(row_names(study, signal).size()), study.simulation.samples);
+    Hdf5Rows<double> rows = group.create_rows<double>(signal.name, {"loop", signal.rows, "sample"},
+                                                      attributes<double>(text_of(study, signal)));
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      const RowMajorMatrix values = loops.signal(i, signal);
+      std::copy(values.data(), values.data() + values.size(), rows.add());
+    }
+    rows.finish();
   }
+}
+
+void write_benchmark(Hdf5Group& group, const Study& study, const AssessedLoop& benchmark) {
+  for (const LoopSignal& signal : loop_signals())
+    if (const Eigen::MatrixXd& values = benchmark.*signal.member; !is_candidates(signal) || values.rows() > 0)
+      write_matrices(group, {signal.rows, "sample"}, text_of(study, signal), {&values},
+                     static_cast<Eigen::Index>(row_names(study, signal).size()), study.simulation.samples);
 }
 
 void write_dimensions(Hdf5Group& group, const Study& study) {
@@ -132,9 +134,10 @@ void write_dimensions(Hdf5Group& group, const Study& study) {
   write_sample_dimension(group, "sample", "sample number", "time", study, 0, study.simulation.samples);
 }
 
-Hdf5File blind_netcdf(const std::string& name, const Study& study, const AssessmentContext& context,
-                      const std::vector<AssessedLoop>& loops, const std::string& hash) {
-  Hdf5File file = Hdf5File::create(name);
+/// `name` is for messages.
+void write_blind_netcdf(const std::filesystem::path& path, const std::string& name, const Study& study,
+                        const AssessmentContext& context, LoopStore& loops, const std::string& hash) {
+  const Hdf5File file = Hdf5File::create_at(path, name);
   Hdf5Group root = file.root();
   root.write_attribute("filetype", kBlindFileType);
   root.write_attribute("Conventions", "CF-1.8");
@@ -151,17 +154,14 @@ Hdf5File blind_netcdf(const std::string& name, const Study& study, const Assessm
     root.write_dimension("candidate", candidates,
                          attributes<std::int32_t>({"candidate", "number of the logged signal"}));
   }
-  std::vector<const AssessedLoop*> all;
-  for (const AssessedLoop& loop : loops)
-    all.push_back(&loop);
-  write_signals(root, study, all, {"loop"});
+  write_loops(root, study, loops);
   if (context.benchmark) {
     Hdf5Group group = root.create_group("benchmark");
     group.write_attribute("title", "A period in which nothing was wrong");
     write_dimensions(group, study);
-    write_signals(group, study, {&*context.benchmark}, {});
+    write_benchmark(group, study, *context.benchmark);
   }
-  return file;
+  file.finish();
 }
 
 void write_blind_text(const std::filesystem::path& path, const std::string& text) {
@@ -175,11 +175,11 @@ std::vector<BlindLoop> blind_order(const Campaign& campaign, bool with_calibrati
   std::size_t place = 0;
   records_of(campaign).each([&](const ExperimentRecord& record) {
     if (record.status == ExperimentStatus::ok)
-      order.push_back({.of_calibration = false, .place = place});
+      order.push_back({.of_calibration = false, .place = place, .index = record.draw.index});
     ++place;
   });
   for (std::size_t i = 0; with_calibration && i < campaign.calibration.loops.size(); ++i)
-    order.push_back({.of_calibration = true, .place = i});
+    order.push_back({.of_calibration = true, .place = i, .index = static_cast<std::int64_t>(i)});
   RandomStream stream(campaign.study.seed, 0, StreamId::blind_order);
   for (std::size_t left = order.size(); left > 1; --left)
     std::swap(order[left - 1], order[static_cast<std::size_t>(stream.below(left))]);
@@ -209,22 +209,16 @@ std::string hash_line(const std::string& hash) {
 
 std::string blind_key(const Campaign& campaign, bool with_calibration) {
   std::string text = fmt::format("{}loop,experiment\n", hash_line(loops_hash(campaign, with_calibration)));
-  std::vector<std::int64_t> indices;
-  records_of(campaign).each([&](const ExperimentRecord& record) { indices.push_back(record.draw.index); });
   std::size_t number = 0;
   for (const BlindLoop& loop : blind_order(campaign, with_calibration))
-    text += loop.of_calibration ? fmt::format("{},\n", number++)
-                                : fmt::format("{},{}\n", number++, indices[loop.place]);
+    text +=
+        loop.of_calibration ? fmt::format("{},\n", number++) : fmt::format("{},{}\n", number++, loop.index);
   return text;
 }
 
 void write_blind_loops(const std::filesystem::path& folder, const Campaign& campaign,
-                       const AssessmentContext& context, std::vector<AssessedLoop> loops,
-                       const BlindParts& parts) {
+                       const AssessmentContext& context, LoopStore& loops, const BlindParts& parts) {
   const Study& study = campaign.study;
-  for (AssessedLoop& loop : loops)
-    if (loop.samples() == 0)
-      loop = missing_loop(study);
   const std::string hash = loops_hash(campaign, parts.calibration);
   nlohmann::ordered_json description = context_json(context);
   description["loops"] = loops.size();
@@ -236,8 +230,11 @@ void write_blind_loops(const std::filesystem::path& folder, const Campaign& camp
         {"window", study.monitoring->window}, {"stride", study.monitoring->stride}, {"windows", *windows}};
   }
   const std::filesystem::path netcdf = folder / "loops.nc";
-  write_file_atomically(netcdf, blind_netcdf(netcdf.string(), study, context, loops, hash).image());
-  write_blind_text(folder / "loops.csv", blind_csv(study, loops, hash));
+  write_file_atomically(netcdf, [&](const std::filesystem::path& temporary) {
+    write_blind_netcdf(temporary, netcdf.string(), study, context, loops, hash);
+    seal_file(temporary);
+  });
+  write_blind_csv(folder / "loops.csv", study, loops, hash);
   if (context.benchmark)
     write_blind_text(folder / "benchmark.csv", benchmark_csv(study, *context.benchmark));
   write_blind_text(folder / "context.json", description.dump(1) + "\n");

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "results/archive/campaign.hpp"
+#include "results/blind/loop_store.hpp"
 
 // The loops of a campaign without the truth: for somebody who is to assess them and not to know what is
 // wrong.
@@ -22,7 +24,8 @@ struct BlindParts {
 /// A loop of a blind export.
 struct BlindLoop {
   bool of_calibration = false;
-  std::size_t place = 0;  ///< among the records, or in Campaign::calibration.loops
+  std::size_t place = 0;   ///< among the records, or in Campaign::calibration.loops
+  std::int64_t index = 0;  ///< of the experiment, or of the calibration loop
 };
 
 /// Which loops of the campaign are the loops 0, 1, 2, ... of its blind export: records with status ok and, if
@@ -40,11 +43,9 @@ std::string hash_line(const std::string& hash);
 
 /// Writes a blind export into `folder`, which must be there (docs/bring_your_own.md): `loops.nc` (netCDF-4),
 /// `loops.csv`, `benchmark.csv`, `context.json` and `verdicts.csv`, a form to fill in. `loops` are those of
-/// blind_order(); one without samples did not run to its end, and is missing throughout. With windows the
-/// study must monitor. Errors: ArchiveError when a file cannot be written.
+/// blind_order(). With windows the study must monitor. Errors: ArchiveError when a file cannot be written.
 void write_blind_loops(const std::filesystem::path& folder, const Campaign& campaign,
-                       const AssessmentContext& context, std::vector<AssessedLoop> loops,
-                       const BlindParts& parts);
+                       const AssessmentContext& context, LoopStore& loops, const BlindParts& parts);
 
 /// CSV with the columns `loop` and `experiment` (its index; empty: a calibration loop): the key of a blind
 /// export, for whoever trains a method on it.

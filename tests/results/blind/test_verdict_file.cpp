@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 
 #include "plants/error.hpp"
 #include "results/blind/blind_loops.hpp"
+#include "results/blind/loop_store.hpp"
 #include "results/blind/verdict_file.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -81,6 +83,38 @@ TEST_CASE("blind order: without calibration loops every loop that ran, with them
       calibration[loop.place] = true;
   CHECK(calibration == std::vector<bool>{true, true});
   CHECK(loops_hash(campaign, false) != loops_hash(campaign, true));
+
+  const Campaign streamed = streamed_from(campaign);
+  CHECK(loops_hash(streamed, true) == loops_hash(campaign, true));
+  CHECK(blind_key(streamed, true) == blind_key(campaign, true));
+  CHECK(verdicts_in(streamed, "loop,flagged\n0,1\n").answers.size() == 5);
+}
+
+TEST_CASE("loop store: loops come back as they were put, in any order; one that did not run is missing") {
+  const Campaign campaign = five_loops();
+  const Study& study = campaign.study;
+  const auto loop_of = [&](double value) {
+    AssessedLoop loop;
+    for (const LoopSignal& signal : loop_signals())
+      loop.*signal.member = Eigen::MatrixXd::NullaryExpr(
+          std::ssize(row_names(study, signal)), study.simulation.samples,
+          [&](Eigen::Index row, Eigen::Index k) { return value += 0.25 * static_cast<double>(row - k); });
+    return loop;
+  };
+  const TemporaryFolder folder;
+  LoopStore store(folder.path(), study, 3);
+  CHECK(std::filesystem::is_empty(folder.path()));  // whatever ends the process, no file stays
+  store.put(2, loop_of(2.0));
+  store.put(0, loop_of(0.0));
+  store.put(1, {});
+  for (const LoopSignal& signal : loop_signals()) {
+    INFO(signal.name);
+    CHECK((store.loop(0).*signal.member == loop_of(0.0).*signal.member));
+    CHECK((store.signal(2, signal) == loop_of(2.0).*signal.member));
+    CHECK((store.loop(1).*signal.member).array().isNaN().all());
+    CHECK((store.loop(1).*signal.member).rows() == std::ssize(row_names(study, signal)));
+  }
+  CHECK_THROWS_WITH(LoopStore(folder / "none", study, 3), Catch::Contains("none: cannot make a file in it"));
 }
 
 TEST_CASE("verdict file: each line is kept with the record of its loop; one without a line has failed") {
