@@ -227,25 +227,28 @@ void repair_one(const Campaign& campaign, std::int64_t index, const ChannelChoic
 
 /// The repairs of all experiments in which a channel is named; of a changed tuning the model is not to be.
 std::vector<Repair> all_repaired(const Campaign& campaign, const ChannelChoice& choice, bool quiet) {
-  std::vector<const ExperimentRecord*> named;
-  for (const ExperimentRecord& record : campaign.records)
-    if (record.status == ExperimentStatus::ok && record.draw.kind != ExperimentKind::tuning &&
-        choice.in(record))
-      named.push_back(&record);
+  const auto is_named = [&choice](const ExperimentRecord& record) {
+    return record.status == ExperimentStatus::ok && record.draw.kind != ExperimentKind::tuning &&
+           choice.in(record);
+  };
+  std::int64_t named = 0;
+  records_of(campaign).each([&](const ExperimentRecord& record) { named += is_named(record) ? 1 : 0; });
   const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
   Progress progress(quiet);
-  progress.begin(static_cast<std::int64_t>(named.size()));
+  progress.begin(named);
   std::vector<Repair> repairs;
-  for (const ExperimentRecord* record : named) {
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    if (!is_named(record))
+      return;
     progress.end_when_requested();
     try {
-      repairs.push_back(repaired(campaign, *record, *choice.in(*record), factory));
+      repairs.push_back(repaired(campaign, record, *choice.in(record), factory));
       progress.advance();
     } catch (const InputError& error) {  // one channel that cannot be identified does not cost the others
-      progress.warn(fmt::format("experiment {}: {}", record->draw.index, error.what()));
+      progress.warn(fmt::format("experiment {}: {}", record.draw.index, error.what()));
       progress.advance(true);
     }
-  }
+  });
   return repairs;
 }
 
@@ -256,7 +259,7 @@ void repair_all(const Campaign& campaign, const ChannelChoice& choice, const Rep
   const std::string& method = campaign.methods[choice.method].form->method().name;
   if (!options.json) {
     print_result(fmt::format("{}: {} of {} experiments with a channel that {} names\n\n{}",
-                             campaign.study.name, repairs.size(), campaign.records.size(), method,
+                             campaign.study.name, repairs.size(), records_of(campaign).size(), method,
                              text_of(findings)));
     return;
   }
@@ -270,7 +273,7 @@ void repair_all(const Campaign& campaign, const ChannelChoice& choice, const Rep
 }
 
 ExitCode repair(const RepairArguments& options) {
-  const Campaign campaign = read_input(options.archive);
+  const Campaign campaign = stream_input(options.archive);
   if (!campaign.basis.sensitivity.is_known)
     throw InputError(options.archive, "a controller program that runs on the plant only (on_model is false)",
                      "one that runs on its model: a repaired model is judged by the loops that it promises");

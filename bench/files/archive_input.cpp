@@ -64,10 +64,6 @@ auto as_input(Read read) {
 
 }  // namespace
 
-Campaign read_input(const std::string& archive) {
-  return as_input([&] { return read_archive(archive); });
-}
-
 Campaign stream_input(const std::string& archive) {
   const auto file = std::make_shared<const WatchedFile>(archive);
   Campaign campaign = as_input([&] { return stream_archive(archive); });

@@ -15,10 +15,8 @@ class BadArchive : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// read_archive() for an archive that a command was given. Throws BadArchive.
-Campaign read_input(const std::string& archive);
-/// stream_archive() for the same; its records throw BadArchive, too, also when somebody has written into the
-/// file since.
+/// stream_archive() for an archive that a command was given. It and its records throw BadArchive, these also
+/// when somebody has written into the file since.
 Campaign stream_input(const std::string& archive);
 
 /// The experiment of this index. Throws InputError, which names the indices that there are.
