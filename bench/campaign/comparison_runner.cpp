@@ -418,7 +418,7 @@ Campaign with_methods(Campaign campaign, const std::vector<std::string>& methods
   for (const std::string& method : methods)
     places.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), method) - names.begin()));
   campaign.methods = chosen(campaign.methods, places);
-  const RecordChange choose = [places, experiments, forms = forms_of(campaign)](ExperimentRecord& record) {
+  RecordChange choose = [places, experiments, forms = forms_of(campaign)](ExperimentRecord& record) {
     record.assessments = experiments && record.draw.index >= *experiments
                              ? unassessed(forms)
                              : chosen(record.assessments, places);
