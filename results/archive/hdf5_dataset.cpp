@@ -73,7 +73,7 @@ std::vector<T> read_attribute(const Place& place, hid_t object) {
   const Handle type = place.own(H5Aget_type(attribute.get()), H5Tclose, "read its type");
   require_type<T>(place, type.get());
   const Handle space = place.own(H5Aget_space(attribute.get()), H5Sclose, "read its shape");
-  const std::size_t count = product(shape_of(place, space.get()));
+  const std::size_t count = product(shape_of_space(place, space.get()));
   return from_buffer<T>(count, type.get(), space.get(), [&](void* buffer) {
     if (count > 0)
       place.check(H5Aread(attribute.get(), type.get(), buffer), "read it");
@@ -135,7 +135,7 @@ Handle open_dataset(const Place& place, hid_t group) {
 
 Shape shape_of_dataset(const Place& place, const Handle& dataset) {
   const Handle space = place.own(H5Dget_space(dataset.get()), H5Sclose, "read its shape");
-  return shape_of(place, space.get());
+  return shape_of_space(place, space.get());
 }
 
 Handle open_dataset(const Place& place, hid_t group, const std::vector<std::size_t>& shape) {

@@ -15,7 +15,7 @@ Handle make_space(const Place& place, const Shape& shape) {
                    H5Sclose, "make a space");
 }
 
-Shape shape_of(const Place& place, hid_t space) {
+Shape shape_of_space(const Place& place, hid_t space) {
   const int rank = H5Sget_simple_extent_ndims(space);
   place.check(rank, "read the shape");
   Shape shape(static_cast<std::size_t>(rank));

@@ -20,7 +20,7 @@ using Shape = std::vector<hsize_t>;
 std::size_t product(const Shape& shape);
 
 Handle make_space(const Place& place, const Shape& shape);
-Shape shape_of(const Place& place, hid_t space);
+Shape shape_of_space(const Place& place, hid_t space);
 
 /// Texts of any length, UTF-8.
 Handle string_type(const Place& place);

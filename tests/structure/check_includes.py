@@ -2,9 +2,10 @@
 
 Rooms are named from left to right; a file includes only its own room and rooms to its left, by the path from
 the root of the repository. The folders of a room are ordered in the same way, where it has any: a file in the
-room itself may include all of them. Files in tests/ may include everything. The headers of Ceres, Ipopt, HDF5 and
-SUNDIALS stand in one .cpp each at most, and never in a header. A source includes its own header first, so that
-compiling the source shows that the header needs nothing before it.
+room itself may include all of them. Files in tests/ may include everything. The headers of Ceres, Ipopt and
+SUNDIALS stand in one .cpp each at most, and never in a header; those of HDF5 in the files of its wrapper only, whose
+headers that have them belong to the wrapper. A source includes its own header first, so that compiling the source
+shows that the header needs nothing before it.
 """
 
 import re
@@ -19,6 +20,9 @@ CONFINED = {
     "HDF5": re.compile(r"^(hdf5(_hl)?\.h$|H5\w*\.h)"),
     "SUNDIALS": re.compile(r"^(sundials|cvodes?|arkode|idas?|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol)/"),
 }
+
+# Libraries whose wrapper is more than one source, and how the names of its files begin.
+WRAPPERS = {"HDF5": "results/archive/hdf5_"}
 
 
 def includes(path):
@@ -66,6 +70,22 @@ def own_header_complaint(root, relative, name):
     return None
 
 
+def wrapper_complaint(root, relative, name):
+    """What is wrong with including `name`, perhaps a header of a wrapper, from the file `relative`, or None."""
+    for library, begin in WRAPPERS.items():
+        if not name.startswith(begin) or str(relative).startswith(begin):
+            continue
+        waiting, seen = [name], set()
+        while waiting:
+            header = waiting.pop()
+            if CONFINED[library].match(header):
+                return f'"{name}" brings {library} with it and is for {begin}* only'
+            if header not in seen and (root / header).is_file():
+                seen.add(header)
+                waiting += [below for _, below, _ in includes(root / header)]
+    return None
+
+
 def check(root):
     complaints = []
     users = {library: {} for library in CONFINED}  # library -> {.cpp file -> where it first includes it}
@@ -77,13 +97,16 @@ def check(root):
             continue
         for position, (number, name, quoted) in enumerate(includes(path)):
             where = f"{relative}:{number}"
-            complaint = room_complaint(root, room, name, quoted) or folder_complaint(relative, name)
+            complaint = (room_complaint(root, room, name, quoted) or folder_complaint(relative, name)
+                         or wrapper_complaint(root, relative, name))
             if not complaint and position == 0:
                 complaint = own_header_complaint(root, relative, name)
             if complaint:
                 complaints.append(f"{where}: {complaint}")
             for library, pattern in CONFINED.items():
                 if not pattern.match(name) or room in tree.ABOVE_THE_ROOMS:
+                    continue
+                if library in WRAPPERS and str(relative).startswith(WRAPPERS[library]):
                     continue
                 if path.suffix == ".hpp":
                     complaints.append(f"{where}: {library} in a header: <{name}>")

@@ -117,6 +117,16 @@ class Includes(CheckerTest):
             self.assertEqual(len(two), 2, two)
             self.assertIn("included in 2 sources", two[0])
 
+    def test_a_wrapper_of_several_files_keeps_its_library_to_itself(self):
+        wrapper = {"results/archive/hdf5_a.hpp": HEADER + "#include <hdf5.h>\n",
+                   "results/archive/hdf5_b.hpp": HEADER + '#include "results/archive/hdf5_a.hpp"\n',
+                   "results/archive/hdf5_b.cpp": '#include "results/archive/hdf5_b.hpp"\n#include <hdf5_hl.h>\n',
+                   "results/archive/hdf5_open.hpp": HEADER}
+        user = {"results/archive/c.cpp": '#include "results/archive/hdf5_open.hpp"\n'}
+        self.assert_clean(check_includes, {**wrapper, **user})
+        user["results/archive/c.cpp"] += '#include "results/archive/hdf5_b.hpp"\n'
+        self.assert_one(check_includes, {**wrapper, **user}, "results/archive/c.cpp:2:", "is for results/archive/hdf5_* only")
+
     def test_sources_outside_of_the_rooms_are_refused(self):
         self.assert_one(check_includes, {"tools/a.cpp": ""}, "tools/a.cpp:1:", "outside of the rooms")
 
