@@ -149,7 +149,7 @@ void Mpc::set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) {
   input_.head(nu_) = u;
 }
 
-void Mpc::count(const QpResult& answer) {
+void Mpc::note(const QpResult& answer) {
   move_.status = control_status(answer.status);
   move_.iterations += answer.iterations;
   move_.fallbacks += answer.from_ipopt ? 1 : 0;
@@ -160,7 +160,7 @@ bool Mpc::solve_targets() {
   y_at_zero_.noalias() = md_gain_ * input_.tail(md_gain_.cols());
   y_at_zero_ += bias_;
   const QpResult& target = targets_->solve(y_at_zero_);
-  count(target);
+  note(target);
   if (move_.status != ControlStatus::ok)
     return false;
   move_.kkt_residual = target.kkt_residual;
@@ -172,7 +172,7 @@ void Mpc::solve_moves() {
   free_response(model_, input_, scratch_, free_);
   free_.colwise() += bias_;
   const QpResult& plan = solver_->solve(qp_.update({free_, input_.head(nu_), move_.u_target, setpoint_}));
-  count(plan);
+  note(plan);
   if (move_.status != ControlStatus::ok)
     return;
   move_.kkt_residual = std::max(move_.kkt_residual, plan.kkt_residual);

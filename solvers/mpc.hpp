@@ -48,7 +48,7 @@ class Mpc final : public Controller {
 
  private:
   void pass_on_limits();
-  void count(const QpResult& answer);
+  void note(const QpResult& answer);
   bool solve_targets();
   void solve_moves();
 

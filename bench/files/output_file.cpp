@@ -1,8 +1,5 @@
 #include "bench/files/output_file.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <span>
 #include <string>
 #include <system_error>
@@ -12,7 +9,6 @@
 
 #include "plants/error.hpp"
 #include "results/files/archive_error.hpp"
-#include "results/files/atomic_file.hpp"
 
 namespace mpm {
 
@@ -69,19 +65,13 @@ void write_text(const std::filesystem::path& output, std::string_view text) {
     write_file_atomically(output, bytes);
 }
 
-void write_text(const std::filesystem::path& output,
-                const std::function<void(const std::function<void(std::string_view)>&)>& write) {
+void write_text(const std::filesystem::path& output, const std::function<void(const TextSink&)>& write) {
   if (is_stream(output)) {
     std::string text;
     write([&text](std::string_view piece) { text += piece; });
     return write_text(output, text);
   }
-  write_file_atomically(output, [&](const std::filesystem::path& temporary) {
-    std::ofstream file(temporary, std::ios::binary);
-    write([&file](std::string_view piece) { file << piece; });
-    if (!file.flush())
-      throw ArchiveError(fmt::format("{}: cannot write it: {}", output.string(), std::strerror(errno)));
-  });
+  write_text_atomically(output, write);
 }
 
 }  // namespace mpm

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "results/files/atomic_file.hpp"
+
 namespace mpm {
 
 /// Refuses an output that is sure to fail before work is spent on it; `what` is to be written, and a device
@@ -27,7 +29,6 @@ void make_output_folder(const std::filesystem::path& folder, std::string_view wh
 /// `output` is one. Throws ArchiveError when it cannot be written.
 void write_text(const std::filesystem::path& output, std::string_view text);
 /// The same of a text that `write` gives in pieces, which no file but a device or a pipe needs in memory.
-void write_text(const std::filesystem::path& output,
-                const std::function<void(const std::function<void(std::string_view)>&)>& write);
+void write_text(const std::filesystem::path& output, const std::function<void(const TextSink&)>& write);
 
 }  // namespace mpm

@@ -1,9 +1,7 @@
 #include "results/blind/blind_loops.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -17,7 +15,6 @@
 #include "plants/row_major.hpp"
 #include "results/archive/dimensions.hpp"
 #include "results/archive/matrix_io.hpp"
-#include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/file_seal.hpp"
 #include "results/files/sha256.hpp"
@@ -71,16 +68,14 @@ std::string heading_of_samples(const Study& study, bool with_candidates, const c
 
 void write_blind_csv(const std::filesystem::path& path, const Study& study, LoopStore& loops,
                      const std::string& hash) {
-  write_file_atomically(path, [&](const std::filesystem::path& temporary) {
-    std::ofstream file(temporary, std::ios::binary);
-    file << hash_line(hash) << heading_of_samples(study, true, "loop,");
+  write_text_atomically(path, [&](const TextSink& add) {
+    add(hash_line(hash));
+    add(heading_of_samples(study, true, "loop,"));
     for (std::size_t i = 0; i < loops.size(); ++i) {
       std::string text;
       append_samples(text, study, loops.loop(i), fmt::format("{},", i));
-      file << text;
+      add(text);
     }
-    if (!file.flush())
-      throw ArchiveError(fmt::format("{}: cannot write it: {}", path.string(), std::strerror(errno)));
   });
 }
 

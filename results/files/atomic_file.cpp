@@ -3,6 +3,8 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <fstream>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -154,6 +156,16 @@ void flush_folder(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+void write_text_atomically(const std::filesystem::path& path,
+                           const std::function<void(const TextSink&)>& write) {
+  write_file_atomically(path, [&](const std::filesystem::path& temporary) {
+    std::ofstream file(temporary, std::ios::binary);
+    write([&file](std::string_view piece) { file << piece; });
+    if (!file.flush())
+      fail(path, "write it");
+  });
+}
 
 std::filesystem::path link_target(std::filesystem::path path) {
   std::error_code error;  // what cannot be looked at is no link

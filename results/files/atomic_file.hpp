@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <string_view>
 
 namespace mpm {
 
@@ -20,6 +21,11 @@ void write_file_atomically(const std::filesystem::path& path, std::span<const st
 /// throws goes on, and the temporary file is removed.
 void write_file_atomically(const std::filesystem::path& path,
                            const std::function<void(const std::filesystem::path&)>& fill);
+
+/// The same of a text that `write` gives in pieces, so that it is not in memory as a whole.
+using TextSink = std::function<void(std::string_view)>;
+void write_text_atomically(const std::filesystem::path& path,
+                           const std::function<void(const TextSink&)>& write);
 
 /// Where a path leads that may be a link, also one to nothing: what write_file_atomically() replaces. Throws
 /// ArchiveError for links that go in a circle.

@@ -69,8 +69,9 @@ def main(program):
         ranges = tomllib.loads((folder / "ranges.toml").read_text())
         assert ranges["controller"]["sample_time"] == 2 and ranges["controller"]["cv"]["y2"]["soft"] == [0, 4]
         assert ranges["plant"]["channel"][0]["denominator"] == [100, 25, 1]
-        assert "passed" in run("run", folder / "ranges.toml", "-o", archive, "--experiments", 2,
-                              "--solver", "active-set").stdout
+        # Nothing limits its MVs: a loop that runs away while a fault is scaled is no case for Ipopt.
+        said = run("run", folder / "ranges.toml", "-o", archive, "--experiments", 2).stdout
+        assert "passed" in said and "no problem fell back to Ipopt" in said, said
 
         # Nothing is overwritten, and what is wrong is said by option.
         assert "a file that is there" in run("init", study, *TANK, code=2).stderr and study.read_text() == text
