@@ -21,7 +21,7 @@ enable_language(C) # FindHDF5 compiles a C program
 set(HDF5_PREFER_PARALLEL OFF)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C HL)
 
-find_package(SUNDIALS 6.4 REQUIRED COMPONENTS cvode nvecserial sunmatrixdense sunlinsoldense)
+find_package(SUNDIALS 6.4 REQUIRED COMPONENTS arkode cvode nvecserial sunmatrixdense sunlinsoldense)
 
 if(MPMBENCH_PERF)
   find_package(benchmark 1.7 REQUIRED)

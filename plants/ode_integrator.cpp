@@ -4,6 +4,7 @@
 #include <new>
 #include <utility>
 
+#include <arkode/arkode_erkstep.h>
 #include <cvode/cvode.h>
 #include <fmt/format.h>
 #include <nvector/nvector_serial.h>
@@ -33,10 +34,8 @@ using Vector = std::unique_ptr<std::remove_pointer_t<N_Vector>, FreeBy<N_VDestro
 using Matrix = std::unique_ptr<std::remove_pointer_t<SUNMatrix>, FreeBy<SUNMatDestroy>>;
 using LinearSolver = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, FreeBy<SUNLinSolFree>>;
 
-struct FreeCvode {
-  void operator()(void* memory) const { CVodeFree(&memory); }
-};
-using Cvode = std::unique_ptr<void, FreeCvode>;
+using Cvode = std::unique_ptr<void, FreeBy<CVodeFree>>;
+using ErkStep = std::unique_ptr<void, FreeBy<ERKStepFree>>;
 
 using ConstMap = Eigen::Map<const Eigen::VectorXd>;
 using Map = Eigen::Map<Eigen::VectorXd>;
@@ -49,8 +48,9 @@ Handle checked(Handle handle) {
   return handle;
 }
 
+static_assert(CV_SUCCESS == 0 && ARK_SUCCESS == 0);
 void require(int flag) {
-  if (flag != CV_SUCCESS)
+  if (flag != 0)
     throw std::bad_alloc();
 }
 
@@ -74,7 +74,7 @@ void require_signal(const char* name, const Eigen::Ref<const Eigen::VectorXd>& s
 }  // namespace
 
 void OdeOptions::validate() const {
-  // Below some hundred roundings the error test of CVODE cannot be met.
+  // Below some hundred roundings the error test cannot be met.
   if (!(relative_tolerance >= 1e-13 && relative_tolerance < 1))
     throw InputError("relative_tolerance", fmt::to_string(relative_tolerance), "1e-13 to 1");
   if (!(absolute_tolerance > 0 && std::isfinite(absolute_tolerance)))
@@ -83,39 +83,30 @@ void OdeOptions::validate() const {
     throw InputError("step_limit", fmt::to_string(step_limit), ">= 1");
 }
 
+// What the methods share: state, input, and f and df/dx as SUNDIALS calls them.
 class OdeIntegrator::Implementation {
  public:
-  Implementation(std::shared_ptr<const OdeSystem> ode, const OdeOptions& options)
-      : system(std::move(ode)), context(make_context()) {
-    const Eigen::Index n = system->state_count();
-    x.setZero(n);
-    u.setZero(system->input_count());
-    vector = checked(Vector(N_VMake_Serial(n, x.data(), context.get())));
-    matrix = checked(Matrix(SUNDenseMatrix(n, n, context.get())));
-    linear_solver = checked(LinearSolver(SUNLinSol_Dense(vector.get(), matrix.get(), context.get())));
-    cvode = checked(Cvode(CVodeCreate(CV_BDF, context.get())));
-    require(CVodeSetErrHandlerFn(cvode.get(), say_nothing, nullptr));
-    require(CVodeInit(cvode.get(), derivative, 0.0, vector.get()));
-    require(CVodeSStolerances(cvode.get(), options.relative_tolerance, options.absolute_tolerance));
-    require(CVodeSetUserData(cvode.get(), this));
-    require(CVodeSetLinearSolver(cvode.get(), linear_solver.get(), matrix.get()));
-    require(CVodeSetJacFn(cvode.get(), jacobian));
-    require(CVodeSetMaxNumSteps(cvode.get(), options.step_limit));
-  }
+  explicit Implementation(std::shared_ptr<const OdeSystem> ode)
+      : system(std::move(ode)),
+        x(Eigen::VectorXd::Zero(system->state_count())),
+        u(Eigen::VectorXd::Zero(system->input_count())),
+        context(make_context()),
+        vector(checked(Vector(N_VMake_Serial(x.size(), x.data(), context.get())))) {}
+  virtual ~Implementation() = default;
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
 
-  // Forgets the past of the solution; its memory stays.
-  void start() {
-    require(CVodeReInit(cvode.get(), 0.0, vector.get()));
-    time = 0.0;
-    fresh = false;
-  }
+  // At time 0 from x; `fresh` when x was set, else only u has changed since the last step. The memory stays.
+  virtual void start(bool fresh) = 0;
+  // From `time` to `end`, both counted from the last start.
+  virtual OdeStatus integrate(double end) = 0;
 
   static int derivative(realtype, N_Vector state, N_Vector rate, void* self) {
     const auto& integrator = *static_cast<const Implementation*>(self);
     const Eigen::Index n = integrator.x.size();
     Map dx(N_VGetArrayPointer(rate), n);
     integrator.system->derivative(ConstMap(N_VGetArrayPointer(state), n), integrator.u, dx);
-    return dx.allFinite() ? 0 : 1;  // 1: try a shorter step
+    return dx.allFinite() ? 0 : 1;  // 1: CVODE tries a shorter step, ERKStep gives up
   }
 
   static int jacobian(realtype, N_Vector state, N_Vector, SUNMatrix J, void* self, N_Vector, N_Vector,
@@ -134,16 +125,80 @@ class OdeIntegrator::Implementation {
   // In the order in which they depend on each other; x is the memory of `vector`.
   Context context;
   Vector vector;
-  Matrix matrix;
-  LinearSolver linear_solver;
-  Cvode cvode;
+};
+
+class OdeIntegrator::RungeKutta final : public Implementation {
+ public:
+  RungeKutta(std::shared_ptr<const OdeSystem> ode, const OdeOptions& options)
+      : Implementation(std::move(ode)),
+        erk_(checked(ErkStep(ERKStepCreate(derivative, 0.0, vector.get(), context.get())))) {
+    require(ERKStepSetErrHandlerFn(erk_.get(), say_nothing, nullptr));
+    require(ERKStepSetTableNum(erk_.get(), ARKODE_DORMAND_PRINCE_7_4_5));
+    require(ERKStepSStolerances(erk_.get(), options.relative_tolerance, options.absolute_tolerance));
+    require(ERKStepSetUserData(erk_.get(), static_cast<Implementation*>(this)));
+    require(ERKStepSetMaxNumSteps(erk_.get(), options.step_limit));
+  }
+
+  // The length of the last step is a good one where only the input has changed. From a state that was set it
+  // is found anew, so that a loop does not depend on the one before it.
+  void start(bool from_new_state) override {
+    require(from_new_state ? ERKStepReInit(erk_.get(), derivative, 0.0, vector.get())
+                           : ERKStepReset(erk_.get(), 0.0, vector.get()));
+  }
+
+  OdeStatus integrate(double end) override {
+    require(ERKStepSetStopTime(erk_.get(), end));
+    const int flag = ERKStepEvolve(erk_.get(), end, vector.get(), &time, ARK_NORMAL);
+    if (flag >= 0)
+      return OdeStatus::ok;
+    return flag == ARK_TOO_MUCH_WORK ? OdeStatus::step_limit : OdeStatus::failed;
+  }
+
+ private:
+  ErkStep erk_;
+};
+
+class OdeIntegrator::BackwardDifferentiation final : public Implementation {
+ public:
+  BackwardDifferentiation(std::shared_ptr<const OdeSystem> ode, const OdeOptions& options)
+      : Implementation(std::move(ode)),
+        matrix_(checked(Matrix(SUNDenseMatrix(x.size(), x.size(), context.get())))),
+        linear_solver_(checked(LinearSolver(SUNLinSol_Dense(vector.get(), matrix_.get(), context.get())))),
+        cvode_(checked(Cvode(CVodeCreate(CV_BDF, context.get())))) {
+    require(CVodeSetErrHandlerFn(cvode_.get(), say_nothing, nullptr));
+    require(CVodeInit(cvode_.get(), derivative, 0.0, vector.get()));
+    require(CVodeSStolerances(cvode_.get(), options.relative_tolerance, options.absolute_tolerance));
+    require(CVodeSetUserData(cvode_.get(), static_cast<Implementation*>(this)));
+    require(CVodeSetLinearSolver(cvode_.get(), linear_solver_.get(), matrix_.get()));
+    require(CVodeSetJacFn(cvode_.get(), jacobian));
+    require(CVodeSetMaxNumSteps(cvode_.get(), options.step_limit));
+  }
+
+  // Forgets the past of the solution, through which its polynomials would run.
+  void start(bool) override { require(CVodeReInit(cvode_.get(), 0.0, vector.get())); }
+
+  OdeStatus integrate(double end) override {
+    require(CVodeSetStopTime(cvode_.get(), end));
+    const int flag = CVode(cvode_.get(), end, vector.get(), &time, CV_NORMAL);
+    if (flag >= 0)
+      return OdeStatus::ok;
+    return flag == CV_TOO_MUCH_WORK ? OdeStatus::step_limit : OdeStatus::failed;
+  }
+
+ private:
+  Matrix matrix_;
+  LinearSolver linear_solver_;
+  Cvode cvode_;
 };
 
 OdeIntegrator::OdeIntegrator(std::shared_ptr<const OdeSystem> system, const OdeOptions& options) {
   if (!system)
     throw InputError("system to integrate", "none", "a system");
   options.validate();
-  implementation_ = std::make_unique<Implementation>(std::move(system), options);
+  if (options.method == OdeMethod::runge_kutta)
+    implementation_ = std::make_unique<RungeKutta>(std::move(system), options);
+  else
+    implementation_ = std::make_unique<BackwardDifferentiation>(std::move(system), options);
 }
 
 OdeIntegrator::~OdeIntegrator() = default;
@@ -162,14 +217,12 @@ OdeStatus OdeIntegrator::advance(const Eigen::Ref<const Eigen::VectorXd>& u, dou
     throw InputError("duration", fmt::to_string(duration), "> 0");
   const bool changed = my.u != u;
   my.u = u;
-  if (my.fresh || changed)
-    my.start();
-  const double end = my.time + duration;
-  require(CVodeSetStopTime(my.cvode.get(), end));
-  const int flag = CVode(my.cvode.get(), end, my.vector.get(), &my.time, CV_NORMAL);
-  if (flag >= 0)
-    return OdeStatus::ok;
-  return flag == CV_TOO_MUCH_WORK ? OdeStatus::step_limit : OdeStatus::failed;
+  if (my.fresh || changed) {
+    my.start(my.fresh);
+    my.time = 0.0;
+    my.fresh = false;
+  }
+  return my.integrate(my.time + duration);
 }
 
 const Eigen::VectorXd& OdeIntegrator::state() const {

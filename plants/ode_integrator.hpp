@@ -8,7 +8,20 @@
 
 namespace mpm {
 
+enum class OdeMethod {
+  /// The explicit pair of orders 5 and 4 of Dormand and Prince (J. Comput. Appl. Math. 6 (1980) 19-26), by
+  /// ERKStep of ARKODE (Reynolds et al., ACM Trans. Math. Softw. 49 (2023) 19). A method of one step, which
+  /// begins at its full order wherever the input jumps. On stiff equations its steps are as short as their
+  /// fastest time constant.
+  runge_kutta,
+  /// Backward differentiation formulae of variable order and step with Newton's method on the analytic
+  /// Jacobian, by CVODE (Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363-396). For equations of any
+  /// stiffness; begins at order 1 wherever the input jumps.
+  bdf,
+};
+
 struct OdeOptions {
+  OdeMethod method = OdeMethod::runge_kutta;
   /// Local error of a step, relative to the state.
   double relative_tolerance = 1e-9;
   /// Local error of a step of a state near zero, in the state's unit.
@@ -28,8 +41,7 @@ enum class OdeStatus {
   failed,      ///< the error test or Newton's iteration failed again and again, or f is not finite
 };
 
-/// Integrates an OdeSystem with CVODE (Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363-396): backward
-/// differentiation formulae of variable order and step with Newton's method on the analytic Jacobian.
+/// Integrates an OdeSystem with a method of SUNDIALS.
 ///
 /// The input is constant within a call of advance(). No step of the method goes across the end of a call, and
 /// where the input changes it begins anew, so that no polynomial runs through a jump of the derivative.
@@ -57,6 +69,8 @@ class OdeIntegrator {
 
  private:
   class Implementation;
+  class RungeKutta;
+  class BackwardDifferentiation;
 
   std::unique_ptr<Implementation> implementation_;
 };

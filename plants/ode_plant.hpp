@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// A nonlinear plant: an OdeSystem, integrated by CVODE from sample to sample.
+/// A nonlinear plant: an OdeSystem, integrated from sample to sample.
 class OdePlant final : public Plant {
  public:
   /// At the state zero, with the input zero. `at_rest` is the system whose steady states reset() takes, for a

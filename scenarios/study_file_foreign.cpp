@@ -170,10 +170,14 @@ NonlinearModel read_program(const TomlTable& program, const PlantModel& plant) {
 
 NonlinearModel read_foreign_plant(const TomlTable& table, const PlantModel& plant, const fs::path& folder) {
   const std::string key = table.has("fmu") ? "fmu" : "program";
-  for (const char* other : {"simulated", "relative_tolerance", "absolute_tolerance", "step_limit"})
+  const auto refuse_beside = [&](const char* other) {
     if (table.has(other))
       table.refuse(other, fmt::format("a key beside plant.{}", key),
                    fmt::format("plant.{} alone: it integrates itself", key));
+  };
+  refuse_beside("simulated");
+  for (const char* other : kIntegrationKeys)
+    refuse_beside(other);
   if (table.has("fmu") && table.has("program"))
     table.refuse("program", "a table beside plant.fmu", "one of the two");
   const TomlTable foreign = table.table(key, study_file_keys("plant." + key));

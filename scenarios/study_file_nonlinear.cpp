@@ -24,7 +24,10 @@ constexpr const char* kNonlinear = "plant.simulated = \"nonlinear\", plant.fmu o
 
 OdeOptions read_integration(const TomlTable& plant) {
   const OdeOptions standard;
-  OdeOptions options{.relative_tolerance = read_number_or(plant, "relative_tolerance", NumberRule::positive(),
+  OdeOptions options{.method = read_choice_or<OdeMethod>(
+                         plant, "integrator",
+                         {{"runge-kutta", OdeMethod::runge_kutta}, {"bdf", OdeMethod::bdf}}, standard.method),
+                     .relative_tolerance = read_number_or(plant, "relative_tolerance", NumberRule::positive(),
                                                           standard.relative_tolerance),
                      .absolute_tolerance = read_number_or(plant, "absolute_tolerance", NumberRule::positive(),
                                                           standard.absolute_tolerance),
@@ -73,7 +76,7 @@ std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& do
   const bool nonlinear =
       read_choice_or<bool>(plant, "simulated", {{"linear", false}, {"nonlinear", true}}, false);
   if (!nonlinear) {
-    for (const char* key : {"relative_tolerance", "absolute_tolerance", "step_limit"})
+    for (const char* key : kIntegrationKeys)
       if (plant.has(key))
         plant.refuse(key, "a key of the integration of a nonlinear plant", kIntegrated);
     return std::nullopt;

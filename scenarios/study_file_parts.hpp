@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -23,6 +24,10 @@ Study read_study(std::string_view text, const std::string& file_name, TomlDraft*
 
 /// [plant]: a plant of the catalogue, or one that the file defines (study_file_plant.cpp).
 PlantModel read_plant(const TomlTable& document);
+
+/// The keys of [plant] that say how equations of ours are integrated (OdeOptions).
+inline constexpr std::array kIntegrationKeys{"integrator", "relative_tolerance", "absolute_tolerance",
+                                             "step_limit"};
 
 /// How the plant of [plant], whose model is `model`, is simulated; none: by this model
 /// (study_file_nonlinear.cpp, as the next two). `folder` is that of the study file.

@@ -18,7 +18,7 @@ void register_qp_benchmarks(const std::vector<QpSequence>& sequences);
 ///     loop/<loop>/<back end>      a recorded loop of `study`
 ///     loop/setpoint/<back end>    chapter4-shell, scenario 1: setpoint MPC
 ///     basis/<study>/auto          the basis loop of every shipped study
-///     tank/nonlinear, tank/linear the basis loop of chapter5-tank on CVODE, and on its linear model
+///     tank/nonlinear, tank/linear the basis loop of chapter5-tank, integrated, and on its linear model
 ///
 /// | counter          | meaning                                                              |
 /// |------------------|----------------------------------------------------------------------|

@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 
 constexpr double kSampleTime = 10.0;
 constexpr double kSettle = 5000.0;  // both tanks then rest to the last bits
-// Of CVODE in these tests, relative; by default it errs by 1e-7 cm (docs/plants.md).
+// Of our integration in these tests, relative; by default it errs by some 1e-9 cm (docs/plants.md).
 constexpr double kLocalError = 1e-12;
-// Errors of thousands of steps of CVODE add up to some 1e-10 cm; those of the FMU are below 1e-10 cm.
+// Errors of thousands of steps of ours add up to some 1e-10 cm; those of the FMU are below 1e-10 cm.
 constexpr double kTolerance = 1e-8;
 
 FmuSettings tank_settings() {

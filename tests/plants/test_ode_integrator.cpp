@@ -94,10 +94,18 @@ Eigen::VectorXd input(double u) {
   return Eigen::VectorXd::Constant(1, u);
 }
 
+/// What a tenth of a second under the input `u` costs.
+int derivatives_of(OdeIntegrator& integrator, const CountedOscillator& system, double u) {
+  const int before = system.derivatives;
+  REQUIRE(integrator.advance(input(u), 0.1) == OdeStatus::ok);
+  return system.derivatives - before;
+}
+
 /// Largest error over 20 samples of 0.7 with an input that jumps at every second one.
-double square_wave_error(double tolerance) {
-  OdeIntegrator integrator(std::make_shared<Oscillator>(),
-                           {.relative_tolerance = tolerance, .absolute_tolerance = tolerance});
+double square_wave_error(OdeMethod method, double tolerance) {
+  OdeIntegrator integrator(
+      std::make_shared<Oscillator>(),
+      {.method = method, .relative_tolerance = tolerance, .absolute_tolerance = tolerance});
   Eigen::Vector2d exact(1, 0);
   integrator.reset(exact);
   double error = 0;
@@ -110,8 +118,8 @@ double square_wave_error(double tolerance) {
   return error;
 }
 
-std::vector<double> recorded(double gain) {
-  OdePlant plant(std::make_shared<Oscillator>(), 0.5);
+std::vector<double> recorded(double gain, OdeMethod method) {
+  OdePlant plant(std::make_shared<Oscillator>(), 0.5, {.method = method});
   std::vector<double> outputs;
   for (int k = 0; k < 400; ++k) {
     CHECK(plant.advance(input(gain * std::sin(0.3 * k))) == PlantStatus::ok);
@@ -123,9 +131,10 @@ std::vector<double> recorded(double gain) {
 }  // namespace
 
 TEST_CASE("a linear system is integrated to within its tolerance, also over jumps of the input", "[ode]") {
+  const OdeMethod method = GENERATE(OdeMethod::runge_kutta, OdeMethod::bdf);
   double last = 1;
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
-    const double error = square_wave_error(tolerance);
+    const double error = square_wave_error(method, tolerance);
     INFO("tolerance " << tolerance << ", error " << error << ", before " << last);
     // The tolerance bounds the local error; that of some hundred steps adds up, partly damped.
     CHECK(error < 300 * tolerance);
@@ -134,31 +143,52 @@ TEST_CASE("a linear system is integrated to within its tolerance, also over jump
   }
 }
 
-TEST_CASE("the integration begins anew where the input changes, and only there", "[ode]") {
+TEST_CASE("backward differentiation begins anew where the input changes, and only there", "[ode]") {
   const auto system = std::make_shared<CountedOscillator>();
-  OdeIntegrator integrator(system, {});
+  OdeIntegrator integrator(system, {.method = OdeMethod::bdf});
   integrator.reset(Eigen::Vector2d(1, 0));
-  const auto cost = [&](double u) {
-    const int before = system->derivatives;
-    REQUIRE(integrator.advance(input(u), 0.1) == OdeStatus::ok);
-    return system->derivatives - before;
-  };
-  cost(0);
   // Order 1 needs many short steps; what goes on at a high order passes a tenth of a second in a few.
-  const int going_on = cost(0);
+  derivatives_of(integrator, *system, 0);
+  const int going_on = derivatives_of(integrator, *system, 0);
   REQUIRE(going_on > 0);
-  CHECK(cost(0) < 2 * going_on + 2);
-  CHECK(cost(2) > 4 * going_on);
-  CHECK(cost(2) < 2 * going_on + 2);
-  CHECK(cost(0) > 4 * going_on);
+  CHECK(derivatives_of(integrator, *system, 0) < 2 * going_on + 2);
+  CHECK(derivatives_of(integrator, *system, 2) > 4 * going_on);
+  CHECK(derivatives_of(integrator, *system, 2) < 2 * going_on + 2);
+  CHECK(derivatives_of(integrator, *system, 0) > 4 * going_on);
   integrator.reset(integrator.state());
-  CHECK(cost(0) > 4 * going_on);
+  CHECK(derivatives_of(integrator, *system, 0) > 4 * going_on);
   CHECK(system->jacobians > 0);  // Newton's method has the analytic one
 }
 
+TEST_CASE("a jump of the input costs Runge-Kutta nothing", "[ode]") {
+  const auto system = std::make_shared<CountedOscillator>();
+  OdeIntegrator integrator(system, {});
+  integrator.reset(Eigen::Vector2d(1, 0));
+  derivatives_of(integrator, *system, 0);  // finds the length of a step
+  const int going_on = derivatives_of(integrator, *system, 0);
+  REQUIRE(going_on > 0);
+  for (const double u : {2.0, -2.0, 0.5})
+    CHECK(derivatives_of(integrator, *system, u) <= 2 * going_on);
+}
+
+TEST_CASE("an integrator that is used again gives the bits of a new one", "[ode]") {
+  const OdeMethod method = GENERATE(OdeMethod::runge_kutta, OdeMethod::bdf);
+  const auto run = [](OdeIntegrator& integrator) {
+    integrator.reset(Eigen::Vector2d(1, 0));
+    for (int k = 0; k < 20; ++k)
+      REQUIRE(integrator.advance(input(std::sin(0.3 * k)), 0.7) == OdeStatus::ok);
+    return Eigen::Vector2d(integrator.state());
+  };
+  OdeIntegrator used(std::make_shared<Oscillator>(), {.method = method});
+  const Eigen::Vector2d first = run(used);
+  REQUIRE(used.advance(input(5), 30) == OdeStatus::ok);
+  CHECK(run(used) == first);
+}
+
 TEST_CASE("samples of any length add up to the same time", "[ode]") {
+  const OdeMethod method = GENERATE(OdeMethod::runge_kutta, OdeMethod::bdf);
   for (const double duration : {0.1, 1.0, 7.0}) {
-    OdeIntegrator integrator(std::make_shared<Oscillator>(), {});
+    OdeIntegrator integrator(std::make_shared<Oscillator>(), {.method = method});
     integrator.reset(Eigen::Vector2d(1, 0));
     for (int k = 0; k < std::lround(7.0 / duration); ++k)
       REQUIRE(integrator.advance(input(0.5), duration) == OdeStatus::ok);
@@ -168,7 +198,8 @@ TEST_CASE("samples of any length add up to the same time", "[ode]") {
 }
 
 TEST_CASE("a solution that does not exist is a status, and reset recovers from it", "[ode]") {
-  OdeIntegrator integrator(std::make_shared<Explosion>(), {.step_limit = 2000});
+  const OdeMethod method = GENERATE(OdeMethod::runge_kutta, OdeMethod::bdf);
+  OdeIntegrator integrator(std::make_shared<Explosion>(), {.method = method, .step_limit = 2000});
   const Eigen::VectorXd none(0);
   integrator.reset(Eigen::VectorXd::Ones(1));
   CHECK(integrator.advance(none, 2) != OdeStatus::ok);
@@ -176,19 +207,20 @@ TEST_CASE("a solution that does not exist is a status, and reset recovers from i
   CHECK(integrator.advance(none, 0.5) == OdeStatus::ok);
   CHECK(std::abs(integrator.state()(0) - 2) < 1e-6);  // 1 / (1 - t)
 
-  OdeIntegrator hurried(std::make_shared<Explosion>(), {.step_limit = 3});
+  OdeIntegrator hurried(std::make_shared<Explosion>(), {.method = method, .step_limit = 3});
   hurried.reset(Eigen::VectorXd::Ones(1));
   CHECK(hurried.advance(none, 0.5) == OdeStatus::step_limit);
 }
 
 TEST_CASE("integrators in different threads are independent", "[ode]") {
-  const std::vector<double> expected_a = recorded(1.0);
-  const std::vector<double> expected_b = recorded(-3.0);
+  const OdeMethod method = GENERATE(OdeMethod::runge_kutta, OdeMethod::bdf);
+  const std::vector<double> expected_a = recorded(1.0, method);
+  const std::vector<double> expected_b = recorded(-3.0, method);
   for (int repetition = 0; repetition < 5; ++repetition) {
     std::vector<double> a;
     std::vector<double> b;
-    std::thread first([&a] { a = recorded(1.0); });
-    std::thread second([&b] { b = recorded(-3.0); });
+    std::thread first([&] { a = recorded(1.0, method); });
+    std::thread second([&] { b = recorded(-3.0, method); });
     first.join();
     second.join();
     CHECK(a == expected_a);  // bit for bit

@@ -43,8 +43,10 @@ TEST_CASE("the keys of a nonlinear plant land in their place", "[nonlinear]") {
       "[[scenario]]\nname = 'a'\naffected = ['h1']\nparameter = [{name = 'cd1', value = 7.86}, {name = 'A4', "
       "factor = 0.125}]\n[[scenario]]\nname = 'b'\naffected = ['h2', 'h4']\n"
       "disturbance = [{input = 'D4', gain = 8, time_constant = 70}]\n",
-      kNonlinear + "relative_tolerance = 1e-6\nabsolute_tolerance = 1e-5\nstep_limit = 77\n");
+      kNonlinear +
+          "integrator = 'bdf'\nrelative_tolerance = 1e-6\nabsolute_tolerance = 1e-5\nstep_limit = 77\n");
   REQUIRE(study.nonlinear.has_value());
+  CHECK(study.nonlinear->integration.method == OdeMethod::bdf);
   CHECK(study.nonlinear->integration.relative_tolerance == 1e-6);
   CHECK(study.nonlinear->integration.absolute_tolerance == 1e-5);
   CHECK(study.nonlinear->integration.step_limit == 77);
@@ -69,6 +71,9 @@ TEST_CASE("what a nonlinear study cannot be is refused", "[nonlinear]") {
         "plant.simulated = \"nonlinear\", plant.fmu or plant.program");
   CHECK(refused("step_limit = 5\n", "") ==
         "plant.step_limit: found a key of the integration of a nonlinear plant; allowed: plant.simulated = "
+        "\"nonlinear\"");
+  CHECK(refused("integrator = 'bdf'\n", "") ==
+        "plant.integrator: found a key of the integration of a nonlinear plant; allowed: plant.simulated = "
         "\"nonlinear\"");
   CHECK(
       refused(kNonlinear, "parameter = [{name = 'cd1', value = 2}]\n") ==
