@@ -48,10 +48,16 @@ Handle checked(Handle handle) {
   return handle;
 }
 
-static_assert(CV_SUCCESS == 0 && ARK_SUCCESS == 0);
+static_assert(CV_SUCCESS == 0 && ARK_SUCCESS == 0 && CV_TOO_MUCH_WORK == ARK_TOO_MUCH_WORK);
 void require(int flag) {
   if (flag != 0)
     throw std::bad_alloc();
+}
+
+OdeStatus status_of(int flag) {
+  if (flag >= 0)
+    return OdeStatus::ok;
+  return flag == CV_TOO_MUCH_WORK ? OdeStatus::step_limit : OdeStatus::failed;
 }
 
 Context make_context() {
@@ -148,10 +154,7 @@ class OdeIntegrator::RungeKutta final : public Implementation {
 
   OdeStatus integrate(double end) override {
     require(ERKStepSetStopTime(erk_.get(), end));
-    const int flag = ERKStepEvolve(erk_.get(), end, vector.get(), &time, ARK_NORMAL);
-    if (flag >= 0)
-      return OdeStatus::ok;
-    return flag == ARK_TOO_MUCH_WORK ? OdeStatus::step_limit : OdeStatus::failed;
+    return status_of(ERKStepEvolve(erk_.get(), end, vector.get(), &time, ARK_NORMAL));
   }
 
  private:
@@ -179,10 +182,7 @@ class OdeIntegrator::BackwardDifferentiation final : public Implementation {
 
   OdeStatus integrate(double end) override {
     require(CVodeSetStopTime(cvode_.get(), end));
-    const int flag = CVode(cvode_.get(), end, vector.get(), &time, CV_NORMAL);
-    if (flag >= 0)
-      return OdeStatus::ok;
-    return flag == CV_TOO_MUCH_WORK ? OdeStatus::step_limit : OdeStatus::failed;
+    return status_of(CVode(cvode_.get(), end, vector.get(), &time, CV_NORMAL));
   }
 
  private:
