@@ -10,6 +10,7 @@ find_package(pugixml 1.13 REQUIRED)
 find_package(utf8cpp 3.2 REQUIRED)
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto) # SHA-256 of archives
 find_package(Threads REQUIRED)
+find_package(OpenMP 4.5 REQUIRED COMPONENTS CXX) # part of the compiler
 
 find_package(Ceres 2.1 REQUIRED) # analysis/prediction_error_solver.cpp
 

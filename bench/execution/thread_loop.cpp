@@ -3,52 +3,72 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <future>
+#include <mutex>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 #include <fmt/format.h>
+#include <omp.h>
 
 namespace mpm {
+namespace {
 
-void in_threads(int threads, const std::function<void(std::size_t thread)>& body) {
-  std::promise<bool> complete;
-  const std::shared_future<bool> all_are_there(complete.get_future());
+/// Throws std::runtime_error when `threads` threads cannot exist at once: libgomp ends the process then.
+void require_threads(int threads) {
+  std::mutex gate;
+  std::unique_lock closed(gate);
   std::vector<std::jthread> others;
   try {
-    for (std::size_t thread = 1; thread < static_cast<std::size_t>(threads); ++thread)
-      others.emplace_back([&, thread] {
-        if (all_are_there.get())
-          body(thread);
-      });
+    while (static_cast<int>(others.size()) + 1 < threads)
+      others.emplace_back([&gate] { const std::lock_guard wait(gate); });
   } catch (const std::system_error& error) {
-    complete.set_value(false);
+    closed.unlock();
     throw std::runtime_error(
         fmt::format("{} of {} threads could be made ({}): fewer --jobs, or a higher limit", others.size() + 1,
                     threads, error.code().message()));
   }
-  complete.set_value(true);
-  body(0);
+  closed.unlock();
+}
+
+/// Ends the threads that OpenMP keeps for the next loop: a process that forks must have no other thread.
+class ReleasedThreads {
+ public:
+  ReleasedThreads() = default;
+  ~ReleasedThreads() { omp_pause_resource_all(omp_pause_hard); }
+  ReleasedThreads(const ReleasedThreads&) = delete;
+  ReleasedThreads& operator=(const ReleasedThreads&) = delete;
+};
+
+}  // namespace
+
+void in_threads(int threads, const std::function<void(std::size_t thread)>& body) {
+  require_threads(threads);
+  const ReleasedThreads release;
+#pragma omp parallel num_threads(threads)
+  body(static_cast<std::size_t>(omp_get_thread_num()));
 }
 
 void for_each_in_threads(std::size_t count, int threads,
                          const std::function<void(std::size_t index, std::size_t thread)>& body) {
   std::vector<std::exception_ptr> failures(count);  // none may leave a thread
-  std::atomic<std::size_t> next{0};
-  std::atomic<std::size_t> first_failure{count};  // only calls before it can still matter
-  in_threads(threads, [&](std::size_t thread) {
-    for (std::size_t i = next++; i < std::min(count, first_failure.load()); i = next++)
-      try {
-        body(i, thread);
-      } catch (...) {
-        failures[i] = std::current_exception();
-        std::size_t first = first_failure;
-        while (i < first && !first_failure.compare_exchange_weak(first, i)) {
-        }
+  std::atomic<std::size_t> first_failure{count};    // only calls before it can still matter
+  require_threads(threads);
+  const ReleasedThreads release;
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > first_failure)
+      continue;
+    try {
+      body(i, static_cast<std::size_t>(omp_get_thread_num()));
+    } catch (...) {
+      failures[i] = std::current_exception();
+      std::size_t first = first_failure;
+      while (i < first && !first_failure.compare_exchange_weak(first, i)) {
       }
-  });
+    }
+  }
   if (first_failure < count)
     std::rethrow_exception(failures[first_failure]);
 }

@@ -5,8 +5,11 @@
 
 namespace mpm {
 
-/// Calls body(thread) at once in `threads` threads, of which this is one; it must not throw. Throws
-/// std::runtime_error, and calls nothing, when so many threads cannot be made.
+// The only loops of the program that run in threads: OpenMP's, with a dynamic schedule. Both throw
+// std::runtime_error, and call nothing, when so many threads cannot be made. No thread is left when they
+// return.
+
+/// Calls body(thread) at once in `threads` threads, of which this is one; it must not throw.
 void in_threads(int threads, const std::function<void(std::size_t thread)>& body);
 
 /// Calls body(index, thread) for each index below `count` in `threads` threads, in any order; `thread`
