@@ -170,6 +170,45 @@ void check_values(const RecordedVariable& variable, std::vector<std::string>& wa
                     variable.name, longest));
 }
 
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Does a CV stay away from a level for most of the time, by more than it moves meanwhile?
+bool stays_away(const Eigen::RowVectorXd& y, double level) {
+  constexpr Eigen::Index kBlocks = 20;
+  constexpr double kFarAway = 2.0;  // standard deviations within a block
+  std::vector<double> distances, deviations;
+  const Eigen::Index length = y.size() / kBlocks;
+  for (Eigen::Index block = 0; length > 1 && block < kBlocks; ++block) {
+    const Eigen::RowVectorXd part = y.segment(block * length, length);
+    const auto there = !part.array().isNaN();
+    const double count = there.cast<double>().sum();
+    if (count < 2.0)
+      continue;
+    const double mean = there.select(part.array(), 0.0).sum() / count;
+    distances.push_back(std::abs(mean - level));
+    deviations.push_back(std::sqrt(there.select((part.array() - mean).square(), 0.0).sum() / count));
+  }
+  return !distances.empty() && median_of(distances) > kFarAway * median_of(deviations);
+}
+
+void check_setpoints(const Study& study, const PlantRecord& record, std::vector<std::string>& warnings) {
+  for (Eigen::Index cv = 0; cv < record.y.rows(); ++cv) {
+    if (!study.controller.has_setpoint(cv) || !std::isnan(record.y_set(cv, 0)))
+      continue;
+    const double setpoint = study.simulation.initial_setpoint(cv);
+    if (stays_away(record.y.row(cv), setpoint))
+      warnings.push_back(
+          fmt::format("{} does not follow its setpoint {:g}, which is that of the study, since the record "
+                      "has none: name its "
+                      "column (data.setpoint), or else whatever moved the setpoint counts as a fault",
+                      study.plant.cvs[static_cast<std::size_t>(cv)].name, setpoint));
+  }
+}
+
 // --- Exchanged columns ---
 
 Eigen::MatrixXd simulated(const Study& study, const Eigen::MatrixXd& u, const Eigen::MatrixXd& d) {
@@ -275,6 +314,7 @@ std::vector<std::string> check_record(const Study& study, const PlantRecord& rec
   refuse_twins(variables);
   for (const RecordedVariable& variable : variables)
     check_values(variable, warnings);
+  check_setpoints(study, record, warnings);
   for (std::string& finding : ExchangeSearch(study, record).findings())
     warnings.push_back(std::move(finding));
   return warnings;

@@ -9,6 +9,7 @@
 #include "plants/error.hpp"
 #include "plants/row_major.hpp"
 #include "results/archive/record_tables.hpp"
+#include "results/text/csv_text.hpp"
 #include "scenarios/historian.hpp"
 
 namespace mpm {
@@ -18,16 +19,6 @@ constexpr const char* kExperiments = "experiments";
 constexpr const char* kFindings = "findings";
 constexpr const char* kLoops = "loops";
 
-/// A field, in quotes where it must be.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos)
-    return text;
-  std::string quoted = "\"";
-  for (const char c : text)
-    quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string number(double value) {
   return value != value ? "NaN" : fmt::format("{}", value);
 }
@@ -35,14 +26,14 @@ std::string number(double value) {
 template <class T>
 std::string cell(const VariableText& text, const T& value) {
   if constexpr (std::is_same_v<T, std::string>)
-    return field(value);
+    return csv_field(value);
   else if constexpr (std::is_same_v<T, double>)
     return number(value);
   else {
     const auto& [values, meanings] = text.flags;
     const auto place = std::find(values.begin(), values.end(), static_cast<int>(value));
     return place == values.end() ? fmt::format("{}", value)
-                                 : field(meanings[static_cast<std::size_t>(place - values.begin())]);
+                                 : csv_field(meanings[static_cast<std::size_t>(place - values.begin())]);
   }
 }
 
@@ -118,7 +109,7 @@ void write_records(const Campaign& campaign, const std::string& group, const Wri
   std::vector<std::string> head{"experiment"};
   for (const RecordVariable& variable : variables)
     for (const std::string& heading : headings(campaign, variable, variable.dimensions.size()))
-      head.push_back(field(heading));
+      head.push_back(csv_field(heading));
   write(line(head));
   records_of(campaign).each([&](const ExperimentRecord& record) {
     std::vector<std::string> row{fmt::format("{}", record.draw.index)};
@@ -132,7 +123,7 @@ void write_findings(const Campaign& campaign, const Write& write) {
   write("name,meaning,form,value,lower,upper,count,hits,reported\n");
   for (const Finding& finding : findings_of(campaign).rows)
     write(
-        line({field(finding.name), field(finding.meaning), std::string(to_string(finding.form)),
+        line({csv_field(finding.name), csv_field(finding.meaning), std::string(to_string(finding.form)),
               number(finding.value), number(finding.interval.lower), number(finding.interval.upper),
               fmt::format("{}", finding.count), fmt::format("{}", finding.hits), number(finding.reported)}));
 }
@@ -166,10 +157,10 @@ void write_loops(const Campaign& campaign, const Write& write) {
   std::vector<std::string> head{"experiment", "sample", "time"};
   for (const RecordVariable& signal : signals)
     for (const std::string& heading : headings(campaign, signal, 1))
-      head.push_back(field(heading));
+      head.push_back(csv_field(heading));
   if (campaign.study.record.alters())
     for (const std::string& name : coordinates(campaign, "cv", 0))
-      head.push_back(field(fmt::format("y_recorded.{}", name)));
+      head.push_back(csv_field(fmt::format("y_recorded.{}", name)));
   write(line(head));
   const auto samples = static_cast<std::size_t>(campaign.study.simulation.samples);
   records_of(campaign).each([&](const ExperimentRecord& record) {

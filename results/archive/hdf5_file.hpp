@@ -105,7 +105,9 @@ class Hdf5Group {
   template <class T>
   std::vector<T> read_list(const std::string& name) const;
 
-  // Of files that others have written, whatever types they chose:
+  // Of files that others have written, whatever types they chose. A variable whose values HDF5 would read in
+  // another file (external storage, an external link, a virtual variable) is refused, and so is one of more
+  // than 400 MB:
 
   /// Names of the variables of this group, in the order of the alphabet.
   std::vector<std::string> variables() const;
@@ -119,7 +121,8 @@ class Hdf5Group {
   std::vector<double> numbers(const std::string& variable) const;
   /// All values of texts of fixed or variable length.
   std::vector<std::string> texts(const std::string& variable) const;
-  /// An attribute of a variable; none when there is none, or one of another kind.
+  /// An attribute of a variable; none when there is none. One of another kind, or with several values, is
+  /// refused.
   std::optional<double> number_attribute(const std::string& variable, const std::string& name) const;
   std::optional<std::string> text_attribute(const std::string& variable, const std::string& name) const;
 

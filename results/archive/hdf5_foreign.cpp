@@ -1,5 +1,10 @@
 #include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <hdf5_hl.h>
 
 #include "results/archive/hdf5_dataset.hpp"
@@ -11,12 +16,50 @@
 namespace mpm {
 namespace {
 
+constexpr std::size_t kMostForeignBytes = 400'000'000;  // of the values of a variable
+
 bool is_text_type(hid_t type) {
   return H5Tget_class(type) == H5T_STRING;
 }
 
 bool is_number_type(hid_t type) {
   return H5Tget_class(type) == H5T_INTEGER || H5Tget_class(type) == H5T_FLOAT;
+}
+
+/// Refuses what HDF5 would read in another file, which somebody else has chosen.
+void refuse_other_file(const hdf5::Place& place, bool other) {
+  if (other)
+    place.fail("its values lie in another file");
+}
+
+unsigned long file_number(const hdf5::Place& place, hid_t object) {
+  H5O_info_t info;
+  place.check(H5Oget_info2(object, &info, H5O_INFO_BASIC), "look at it");
+  return info.fileno;
+}
+
+/// A variable whose values are in this file.
+hdf5::Handle open_own_dataset(const hdf5::Place& place, hid_t group) {
+  hdf5::Handle dataset = open_dataset(place, group);
+  const hdf5::Handle properties =
+      place.own(H5Dget_create_plist(dataset.get()), H5Pclose, "read its properties");
+  refuse_other_file(place, file_number(place, dataset.get()) != file_number(place, group) ||
+                               H5Pget_external_count(properties.get()) != 0 ||
+                               H5Pget_layout(properties.get()) == H5D_VIRTUAL);
+  return dataset;
+}
+
+/// How many values a variable has, so many of `bytes` each that they can go to memory.
+std::size_t bounded_count(const hdf5::Place& place, const hdf5::Shape& shape, std::size_t bytes) {
+  hsize_t count = 1;
+  for (const hsize_t length : shape) {
+    if (length != 0 && count > kMostForeignBytes / length)
+      place.fail(fmt::format("shape ({}), too many values", fmt::join(shape, ", ")));
+    count *= length;
+  }
+  if (count > kMostForeignBytes / bytes)
+    place.fail(fmt::format("{} values of {} bytes, too many", count, bytes));
+  return count;
 }
 
 /// Texts of any length out of `read`, which fills a buffer of a given type in memory.
@@ -36,7 +79,7 @@ std::vector<std::string> any_texts(hid_t type, hid_t space, std::size_t count, R
   return texts;
 }
 
-/// An attribute of a variable, and its type; none when there is none with one value.
+/// An attribute of a variable, and its type; none when there is none. One with several values is refused.
 struct ForeignAttribute {
   hdf5::Handle attribute, type, space;
 
@@ -48,7 +91,7 @@ struct ForeignAttribute {
     hdf5::Handle type = place.own(H5Aget_type(attribute.get()), H5Tclose, "read its type");
     hdf5::Handle space = place.own(H5Aget_space(attribute.get()), H5Sclose, "read its shape");
     if (H5Sget_simple_extent_npoints(space.get()) != 1)
-      return std::nullopt;
+      place.fail("several values where one is expected");
     return ForeignAttribute{std::move(attribute), std::move(type), std::move(space)};
   }
 };
@@ -78,20 +121,20 @@ std::vector<std::string> Hdf5Group::variables() const {
     H5O_info_t info;
     if (H5Oget_info_by_name2(state_->group.get(), name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0 &&
         info.type == H5O_TYPE_DATASET)
-      names.push_back(std::move(name));
+      names.push_back(std::move(name));  // one that lies in another file is refused when it is read
   }
   return names;
 }
 
 std::vector<std::size_t> Hdf5Group::shape(const std::string& variable) const {
   const hdf5::Place place = state_->place("variable", variable);
-  const hdf5::Shape found = shape_of_dataset(place, open_dataset(place, state_->group.get()));
+  const hdf5::Shape found = shape_of_dataset(place, open_own_dataset(place, state_->group.get()));
   return {found.begin(), found.end()};
 }
 
 std::vector<std::string> Hdf5Group::dimensions(const std::string& variable) const {
   const hdf5::Place place = state_->place("variable", variable);
-  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
   std::vector<std::string> names(shape_of_dataset(place, dataset).size());
   const bool coordinates = names.size() == 1 && H5DSis_scale(dataset.get()) > 0;
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -104,22 +147,22 @@ std::vector<std::string> Hdf5Group::dimensions(const std::string& variable) cons
 
 bool Hdf5Group::is_number(const std::string& variable) const {
   const hdf5::Place place = state_->place("variable", variable);
-  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
   return is_number_type(place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type").get());
 }
 
 bool Hdf5Group::is_text(const std::string& variable) const {
   const hdf5::Place place = state_->place("variable", variable);
-  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
   return is_text_type(place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type").get());
 }
 
 std::vector<double> Hdf5Group::numbers(const std::string& variable) const {
   const hdf5::Place place = state_->place("variable", variable);
-  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
   if (!is_number(variable))
     place.fail("no numbers");
-  std::vector<double> values(hdf5::product(shape_of_dataset(place, dataset)));
+  std::vector<double> values(bounded_count(place, shape_of_dataset(place, dataset), sizeof(double)));
   if (!values.empty())
     place.check(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
                 "read it");
@@ -128,24 +171,28 @@ std::vector<double> Hdf5Group::numbers(const std::string& variable) const {
 
 std::vector<std::string> Hdf5Group::texts(const std::string& variable) const {
   const hdf5::Place place = state_->place("variable", variable);
-  const hdf5::Handle dataset = open_dataset(place, state_->group.get());
+  const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
   const hdf5::Handle type = place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type");
   const hdf5::Handle space = place.own(H5Dget_space(dataset.get()), H5Sclose, "read its shape");
   if (!is_text_type(type.get()))
     place.fail("no texts");
-  return any_texts(
-      type.get(), space.get(), hdf5::product(shape_of_dataset(place, dataset)), [&](hid_t as, void* buffer) {
-        place.check(H5Dread(dataset.get(), as, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer), "read it");
-      });
+  const std::size_t bytes = std::max(H5Tget_size(type.get()), sizeof(std::string));
+  return any_texts(type.get(), space.get(), bounded_count(place, shape_of_dataset(place, dataset), bytes),
+                   [&](hid_t as, void* buffer) {
+                     place.check(H5Dread(dataset.get(), as, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer),
+                                 "read it");
+                   });
 }
 
 std::optional<double> Hdf5Group::number_attribute(const std::string& variable,
                                                   const std::string& name) const {
-  const hdf5::Place place = state_->place("attribute", name);
-  const hdf5::Handle dataset = open_dataset(state_->place("variable", variable), state_->group.get());
+  const hdf5::Place place{state_->file, "attribute", state_->path + variable + "/", name};
+  const hdf5::Handle dataset = open_own_dataset(state_->place("variable", variable), state_->group.get());
   const auto found = ForeignAttribute::find(place, dataset.get());
-  if (!found || !is_number_type(found->type.get()))
+  if (!found)
     return std::nullopt;
+  if (!is_number_type(found->type.get()))
+    place.fail("no number");
   double value = 0.0;
   place.check(H5Aread(found->attribute.get(), H5T_NATIVE_DOUBLE, &value), "read it");
   return value;
@@ -153,11 +200,13 @@ std::optional<double> Hdf5Group::number_attribute(const std::string& variable,
 
 std::optional<std::string> Hdf5Group::text_attribute(const std::string& variable,
                                                      const std::string& name) const {
-  const hdf5::Place place = state_->place("attribute", name);
-  const hdf5::Handle dataset = open_dataset(state_->place("variable", variable), state_->group.get());
+  const hdf5::Place place{state_->file, "attribute", state_->path + variable + "/", name};
+  const hdf5::Handle dataset = open_own_dataset(state_->place("variable", variable), state_->group.get());
   const auto found = ForeignAttribute::find(place, dataset.get());
-  if (!found || !is_text_type(found->type.get()))
+  if (!found)
     return std::nullopt;
+  if (!is_text_type(found->type.get()))
+    place.fail("no text");
   return any_texts(found->type.get(), found->space.get(), 1,
                    [&](hid_t as, void* buffer) {
                      place.check(H5Aread(found->attribute.get(), as, buffer), "read it");

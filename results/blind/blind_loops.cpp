@@ -18,6 +18,7 @@
 #include "results/files/atomic_file.hpp"
 #include "results/files/file_seal.hpp"
 #include "results/files/sha256.hpp"
+#include "results/text/csv_text.hpp"
 #include "scenarios/random_stream.hpp"
 
 namespace mpm {
@@ -62,7 +63,7 @@ std::string heading_of_samples(const Study& study, bool with_candidates, const c
   for (const LoopSignal& signal : loop_signals())
     if (with_candidates || !is_candidates(signal))
       for (const std::string& name : row_names(study, signal))
-        fmt::format_to(std::back_inserter(text), ",{}.{}", signal.name, name);
+        fmt::format_to(std::back_inserter(text), ",{}", csv_field(fmt::format("{}.{}", signal.name, name)));
   return text + "\n";
 }
 

@@ -1,10 +1,11 @@
 #include "results/blind/verdict_file.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -19,14 +20,22 @@
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
-#include "plants/input_file.hpp"
 #include "plants/non_finite.hpp"
 #include "results/blind/blind_loops.hpp"
+#include "results/files/foreign_content.hpp"
+#include "results/files/utf8.hpp"
+#include "results/text/csv_text.hpp"
 
 namespace mpm {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestReason = 2000;  // bytes of an `error`
+
+// How programs and spreadsheets of several languages write a flag; capitals do not matter.
+constexpr std::array kYes{"1", "true", "yes", "wahr", "vrai", "verdadero", "vero", "waar"};
+constexpr std::array kNo{"0", "false", "no", "falsch", "faux", "falso", "onwaar"};
 
 std::vector<std::string> known_columns(const PlantModel& plant) {
   std::vector<std::string> columns{"loop",   "window",    "flagged",   "score", "cv",
@@ -38,34 +47,10 @@ std::vector<std::string> known_columns(const PlantModel& plant) {
   return columns;
 }
 
-std::string trimmed_cell(const std::string& text) {
-  const auto begin = text.find_first_not_of(" \t\r\n");
-  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
-}
-
-/// The fields of a line of CSV; a field in quotes may have commas and doubled quotes, but no end of line.
-std::vector<std::string> verdict_fields(const std::string& line, const std::string& place) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
-      fields.back() += line[++i];
-    else if (line[i] == '"')
-      quoted = !quoted;
-    else if (line[i] == ',' && !quoted)
-      fields.emplace_back();
-    else
-      fields.back() += line[i];
-  }
-  if (quoted)
-    throw InputError(place, "a quote that is not closed on its line", "a line of CSV");
-  std::transform(fields.begin(), fields.end(), fields.begin(), trimmed_cell);
-  return fields;
-}
-
 /// One line of the file: its fields that are not empty, by their columns.
 struct VerdictLine {
-  std::string place;  ///< "FILE:LINE"
+  std::string place;           ///< "FILE:LINE"
+  bool decimal_comma = false;  ///< a number may have one
   std::map<std::string, std::string> fields;
 
   const std::string* find(const std::string& column) const {
@@ -73,7 +58,8 @@ struct VerdictLine {
     return found == fields.end() ? nullptr : &found->second;
   }
   [[noreturn]] void refuse(const std::string& column, const std::string& allowed) const {
-    throw InputError(fmt::format("{}: {}", place, column), fmt::format("'{}'", fields.at(column)), allowed);
+    throw InputError(fmt::format("{}: {}", place, column),
+                     fmt::format("'{}'", cut_utf8(fields.at(column), kShownBytes)), allowed);
   }
 };
 
@@ -100,62 +86,80 @@ void take_heading(VerdictText& text, std::vector<std::string> columns, const std
   for (const std::string& column : columns)
     if (std::find(known.begin(), known.end(), column) == known.end() ||
         std::count(columns.begin(), columns.end(), column) > 1)
-      throw InputError(place, fmt::format("column '{}'", column),
+      throw InputError(place, fmt::format("column '{}'", cut_utf8(column, kShownBytes)),
                        fmt::format("each once: {}", fmt::join(known, ", ")));
   text.columns = std::move(columns);
   if (!text.has("loop") || !text.has("flagged"))
-    throw InputError(place, fmt::format("columns {}", fmt::join(text.columns, ",")),
-                     "at least loop and flagged in the heading line");
+    throw InputError(
+        place, fmt::format("columns {}", cut_utf8(fmt::format("{}", fmt::join(text.columns, ",")), 200)),
+        "at least loop and flagged in the heading line");
+}
+
+/// The hash of the loops in a comment; a spreadsheet may have put separators behind it.
+std::optional<std::string> hash_in(const std::string& comment) {
+  const std::string line = hash_line("");
+  const std::string begin = line.substr(0, line.find_last_not_of(" \n") + 1);
+  if (!comment.starts_with(begin))
+    return std::nullopt;
+  const std::size_t first = comment.find_first_not_of(' ', begin.size());
+  const std::size_t end = comment.find_first_not_of("0123456789abcdef", std::min(first, comment.size()));
+  return comment.substr(std::min(first, comment.size()), end == std::string::npos ? end : end - first);
 }
 
 VerdictText read_verdict_text(const std::filesystem::path& path, const PlantModel& plant) {
-  std::ifstream file = open_input(path, "a CSV file of verdicts");
-  const std::string kHash = trimmed_cell(hash_line(""));
+  const std::string content = foreign_content(path, "a CSV file of verdicts");
+  CsvReader reader(content, path.string(), {.comments_everywhere = true});
+  std::vector<std::string> heading = reader.heading();
+  if (heading.empty())
+    throw InputError(path.string(), "no line", "a heading line and a line for each loop");
   VerdictText text;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const std::string place = fmt::format("{}:{}", path.string(), number);
-    line = trimmed_cell(line);
-    if (line.starts_with(kHash))
-      text.hash = trimmed_cell(line.substr(kHash.size()));
-    if (line.empty() || line.starts_with('#'))
-      continue;
-    std::vector<std::string> fields = verdict_fields(line, place);
-    if (text.columns.empty()) {
-      take_heading(text, std::move(fields), place, plant);
-      continue;
-    }
-    if (fields.size() != text.columns.size())
-      throw InputError(place, fmt::format("{} fields", fields.size()),
-                       fmt::format("{}, as the heading has", text.columns.size()));
-    VerdictLine verdict{place, {}};
-    for (std::size_t i = 0; i < fields.size(); ++i)
-      if (!fields[i].empty())
-        verdict.fields.emplace(text.columns[i], std::move(fields[i]));
+  const bool numbered = heading.size() > 1 && heading.front().empty();  // the index of a pandas.DataFrame
+  if (numbered)
+    heading.erase(heading.begin());
+  take_heading(text, std::move(heading), reader.place(), plant);
+  for (std::vector<std::string> fields; reader.next(fields);) {
+    VerdictLine verdict{reader.place(), reader.separator() != ',', {}};
+    for (std::size_t i = 0; i < text.columns.size(); ++i)
+      if (std::string& field = fields[numbered ? i + 1 : i]; !field.empty())
+        verdict.fields.emplace(text.columns[i], std::move(field));
     text.lines.push_back(std::move(verdict));
   }
-  if (text.columns.empty())
-    throw InputError(path.string(), "no line", "a heading line and a line for each loop");
+  for (const std::string& comment : reader.comments())
+    if (auto hash = hash_in(comment))
+      text.hash = std::move(hash);
   return text;
 }
 
-template <class Number>
-std::optional<Number> number_in(const std::string& text) {
-  Number value{};
+/// A number as it stands, or with the decimal comma that such a file may have.
+std::optional<double> number_in(const VerdictLine& line, std::string text) {
+  if (line.decimal_comma && std::count(text.begin(), text.end(), ',') == 1)
+    std::replace(text.begin(), text.end(), ',', '.');
+  double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// A whole number from 0 on, also with a decimal point, as programs write one that could be missing.
+std::optional<std::size_t> whole_number_in(const VerdictLine& line, const std::string& text) {
+  constexpr double kLargest = 1e15;
+  const std::optional<double> value = number_in(line, text);
+  return value && *value >= 0.0 && *value <= kLargest && *value == std::floor(*value)
+             ? std::optional(static_cast<std::size_t>(*value))
+             : std::nullopt;
 }
 
 Json flag_json(const VerdictLine& line, const std::string& column) {
   const std::string* const field = line.find(column);
   if (field == nullptr)
     return nullptr;
-  for (const char* yes : {"1", "true", "yes"})
-    if (*field == yes)
-      return true;
-  for (const char* no : {"0", "false", "no"})
-    if (*field == no)
-      return false;
+  std::string word = *field;
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::optional<double> number = number_in(line, word);
+  if (number == 1.0 || std::find(kYes.begin(), kYes.end(), word) != kYes.end())
+    return true;
+  if (number == 0.0 || std::find(kNo.begin(), kNo.end(), word) != kNo.end())
+    return false;
   line.refuse(column, "1, 0, true, false, yes, no, or nothing for no verdict");
 }
 
@@ -163,9 +167,11 @@ Json number_json(const VerdictLine& line, const std::string& column) {
   const std::string* const field = line.find(column);
   if (field == nullptr)
     return nullptr;
-  const std::optional<double> value = number_in<double>(*field);
+  const std::optional<double> value = number_in(line, *field);
   if (!value)
     line.refuse(column, "a number");
+  if (std::isnan(*value))
+    return nullptr;
   if (std::isinf(*value))
     return *value > 0 ? "Infinity" : "-Infinity";
   return *value;
@@ -194,16 +200,16 @@ Json candidate_json(const VerdictLine& line) {
   const std::string* const field = line.find("candidate");
   if (field == nullptr)
     return nullptr;
-  const std::optional<std::int64_t> number = number_in<std::int64_t>(*field);
+  const std::optional<std::size_t> number = whole_number_in(line, *field);
   if (!number)
     line.refuse("candidate", "the number of a logged signal, from 1");
-  return *number;
+  return static_cast<std::int64_t>(*number);
 }
 
 /// The answer that a program would give in the place of this line.
 Json answer_json(const VerdictLine& line, const PlantModel& plant, const MethodDescription& method) {
   if (const std::string* const error = line.find("error"))
-    return {{"error", *error}};
+    return {{"error", cut_utf8(*error, kLongestReason)}};
   if (line.find("flagged") == nullptr)
     return {{"error", "the file of verdicts says nothing of this loop"}};
   Json answer{{"flagged", flag_json(line, "flagged")}, {"score", number_json(line, "score")}};
@@ -276,9 +282,10 @@ struct LoopLines {
 /// The number in a column, below `count`, which is above 0.
 std::size_t place_in(const VerdictLine& line, const std::string& column, std::size_t count) {
   const std::string* const field = line.find(column);
-  const std::optional<std::size_t> place = field ? number_in<std::size_t>(*field) : std::nullopt;
+  const std::optional<std::size_t> place = field ? whole_number_in(line, *field) : std::nullopt;
   if (!place || *place >= count)
-    throw InputError(fmt::format("{}: {}", line.place, column), fmt::format("'{}'", field ? *field : ""),
+    throw InputError(fmt::format("{}: {}", line.place, column),
+                     fmt::format("'{}'", field ? cut_utf8(*field, kShownBytes) : ""),
                      fmt::format("0 to {}", count - 1));
   return *place;
 }

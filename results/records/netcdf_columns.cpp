@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -17,14 +18,19 @@
 #include "plants/forked_service.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/files/archive_error.hpp"
+#include "results/files/foreign_content.hpp"
+#include "results/files/utf8.hpp"
 #include "results/records/time_stamps.hpp"
+#include "results/text/csv_text.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr std::array kUsualTimes{"time", "timestamp", "datetime", "date", "t"};
 constexpr double kMillisecondsOfSecond = 1000.0;
-constexpr double kTimeLimit = 120.0;  // s for a file
+constexpr double kTimeLimit = 120.0;          // s for a file
+constexpr double kEarliest = -12212553600.0;  // 1583-01-01 in s since 1970
+constexpr double kLatest = 253402300800.0;    // 10000-01-01
 constexpr const char* kAllowed = "a netCDF-4 file of records, or a CSV file (docs/own_records.md)";
 
 /// Seconds in a unit of CF; none of another one. Months and years have no fixed length.
@@ -90,6 +96,7 @@ class NetcdfReader {
           fmt::format("one of one dimension (data.time), such as {}", fmt::join(kUsualTimes, ", ")));
     dimension_ = root_.dimensions(along).front();
     samples_ = root_.shape(along).front();
+    along_ = along;
   }
 
   std::vector<std::string> time_cells() const {
@@ -101,24 +108,48 @@ class NetcdfReader {
     return since == std::string::npos ? numbers : dates(units.substr(0, since), units.substr(since + 7));
   }
 
+  /// The date that times are counted from, in s since 1970: of the calendar that clocks have.
+  static double beginning(const std::string& place, const std::string& date) {
+    constexpr int kFirstYear = 1583;  // of the Gregorian calendar
+    int year = 0;
+    const auto [end, error] = std::from_chars(date.data(), date.data() + date.size(), year);
+    const bool four_digits = error == std::errc() && end == date.data() + 4;
+    if (!four_digits || year < kFirstYear)
+      throw InputError(
+          place, fmt::format("'{}'", cut_utf8(date, kShownBytes)),
+          fmt::format("a date such as 2024-10-27 00:00:00, with a year of four digits from {} on",
+                      kFirstYear));
+    const std::vector<std::string> cell{date};
+    const std::vector<std::size_t> line{0};
+    const TimeStamps begin = parse_time_stamps({place, cell, line}, DateOrder::year_month_day, '.');
+    if (!begin.calendar)
+      throw InputError(place, fmt::format("'{}'", cut_utf8(date, kShownBytes)),
+                       "a date, such as 2024-10-27 00:00:00");
+    return begin.times.front();
+  }
+
   /// Times in CF units, "UNIT since DATE".
   std::vector<std::string> dates(const std::string& unit, const std::string& date) const {
     const std::string place = fmt::format("{}: units of '{}'", columns_.file, time_);
     const std::optional<double> seconds = seconds_in(unit);
     if (!seconds)
-      throw InputError(place, fmt::format("'{} since {}'", unit, date), "milliseconds to days since a date");
+      throw InputError(place,
+                       fmt::format("'{} since {}'", cut_utf8(unit, kShownBytes), cut_utf8(date, kShownBytes)),
+                       "milliseconds to days since a date");
     const std::string calendar = root_.text_attribute(time_, "calendar").value_or("standard");
     if (calendar != "standard" && calendar != "gregorian" && calendar != "proleptic_gregorian")
       throw InputError(fmt::format("{}: calendar of '{}'", columns_.file, time_),
-                       fmt::format("'{}'", calendar), "standard, gregorian or proleptic_gregorian");
-    const std::vector<std::string> cell{date};
-    const std::vector<std::size_t> line{0};
-    const TimeStamps begin = parse_time_stamps({place, cell, line}, DateOrder::year_month_day, '.');
-    if (!begin.calendar)
-      throw InputError(place, fmt::format("'{}'", date), "a date, such as 2024-10-27 00:00:00");
+                       fmt::format("'{}'", cut_utf8(calendar, kShownBytes)),
+                       "standard, gregorian or proleptic_gregorian");
+    const double begin = beginning(place, date);
     std::vector<std::string> stamps;
-    for (const double time : root_.numbers(time_))
-      stamps.push_back(std::isfinite(time) ? utc_text(begin.times.front() + time * *seconds) : "");
+    for (const double time : root_.numbers(time_)) {
+      const double at = begin + time * *seconds;
+      if (std::isfinite(time) && !(at > kEarliest && at < kLatest))
+        throw InputError(place, fmt::format("{:g} {} since {}", time, unit, date),
+                         "times of the years 1583 to 9999");
+      stamps.push_back(std::isfinite(time) ? utc_text(at) : "");
+    }
     return stamps;
   }
 
@@ -128,6 +159,9 @@ class NetcdfReader {
     const std::optional<double> fill = attribute("_FillValue"), missing = attribute("missing_value");
     const double scale = attribute("scale_factor").value_or(1.0);
     const double offset = attribute("add_offset").value_or(0.0);
+    if (!std::isfinite(scale) || scale == 0.0 || !std::isfinite(offset))
+      throw InputError(fmt::format("{}: scale_factor and add_offset of '{}'", columns_.file, variable),
+                       fmt::format("{} and {}", scale, offset), "finite numbers, scale_factor not 0");
     std::vector<std::string> cells;
     for (const double value : root_.numbers(variable))
       cells.push_back(!std::isfinite(value) || value == fill || value == missing
@@ -137,6 +171,10 @@ class NetcdfReader {
   }
 
   void add(const std::string& name, std::vector<std::string> cells) {
+    cells_ += cells.size();
+    if (cells_ > kMostCells)
+      throw InputError(columns_.file, fmt::format("more than {} values along the time", kMostCells),
+                       "so many: a shorter period, or fewer variables");
     columns_.names.push_back(name);
     columns_.columns.push_back(std::move(cells));
   }
@@ -157,6 +195,10 @@ class NetcdfReader {
     if (dimensions.empty() || dimensions.back() != dimension_ || dimensions.size() > 3 ||
         variable == dimension_ || !(root_.is_number(variable) || root_.is_text(variable)))
       return;
+    if (shape.back() != samples_)
+      throw InputError(fmt::format("{}: variable '{}'", columns_.file, variable),
+                       fmt::format("{} samples", shape.back()),
+                       fmt::format("{}, as '{}' has them", samples_, along_));
     if (dimensions.size() == 3 && shape.front() != 1) {
       several_loops_ = true;
       return;
@@ -179,7 +221,9 @@ class NetcdfReader {
   RecordColumns columns_;
   std::string time_;       ///< variable; empty: none, rows are samples
   std::string dimension_;  ///< along the time
+  std::string along_;      ///< the variable that has it
   std::size_t samples_ = 0;
+  std::size_t cells_ = 0;
   bool several_loops_ = false;
 };
 
@@ -205,9 +249,29 @@ std::vector<double> as_numbers(const std::vector<std::uint8_t>& bytes) {
 }
 
 std::vector<std::uint8_t> as_bytes(const std::vector<double>& numbers) {
+  const double room = static_cast<double>(numbers.size()) * sizeof(double);
+  if (numbers.empty() || !(numbers.front() >= 0.0 && numbers.front() + sizeof(double) <= room))
+    throw ForeignFailure("its process gave an answer that is none");
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(numbers.front()));
   std::memcpy(bytes.data(), numbers.data() + 1, bytes.size());
   return bytes;
+}
+
+/// What the process has read, which a file that HDF5 stumbles over may have spoilt.
+RecordColumns columns_of(const nlohmann::json& answer, const std::string& file) {
+  if (answer.contains("refused"))
+    throw InputError(answer["refused"].get<std::string>());
+  RecordColumns columns;
+  columns.file = file;
+  answer.at("names").get_to(columns.names);
+  answer.at("columns").get_to(columns.columns);
+  answer.at("lines").get_to(columns.lines);
+  const bool whole = columns.names.size() == columns.columns.size() &&
+                     std::all_of(columns.columns.begin(), columns.columns.end(),
+                                 [&](const auto& cells) { return cells.size() == columns.rows(); });
+  if (!whole)
+    throw ForeignFailure("its process gave columns of several lengths");
+  return columns;
 }
 
 }  // namespace
@@ -222,20 +286,14 @@ RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& 
   ForkedService reader(
       [&](const auto&) { return as_numbers(nlohmann::json::to_cbor(read_file(content, file, time))); },
       kTimeLimit);
-  nlohmann::json answer;
   try {
-    answer = nlohmann::json::from_cbor(as_bytes(reader.ask({})));
+    return columns_of(nlohmann::json::from_cbor(as_bytes(reader.ask({}))), file);
   } catch (const ForeignFailure& failure) {
     throw InputError(file, fmt::format("a file that HDF5 cannot read ({})", failure.what()), kAllowed);
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(file, "a file that HDF5 cannot read (its process gave an answer that is none)",
+                     kAllowed);
   }
-  if (answer.contains("refused"))
-    throw InputError(answer["refused"].get<std::string>());
-  RecordColumns columns;
-  columns.file = file;
-  answer["names"].get_to(columns.names);
-  answer["columns"].get_to(columns.columns);
-  answer["lines"].get_to(columns.lines);
-  return columns;
 }
 
 }  // namespace mpm

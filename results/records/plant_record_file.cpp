@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
+#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -15,13 +15,15 @@
 
 #include "analysis/findings/monitored_loop.hpp"
 #include "plants/error.hpp"
-#include "plants/input_file.hpp"
 #include "plants/non_finite.hpp"
+#include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 #include "results/records/csv_columns.hpp"
+#include "results/records/implausible_values.hpp"
 #include "results/records/netcdf_columns.hpp"
 #include "results/records/record_columns.hpp"
 #include "results/records/time_stamps.hpp"
+#include "results/text/csv_text.hpp"
 
 namespace mpm {
 namespace {
@@ -29,6 +31,7 @@ namespace {
 constexpr double kMostSamples = 1e6;
 constexpr double kWorthSaying = 0.05;  // share of missing samples
 constexpr double kSecondsOfHour = 3600.0;
+constexpr std::size_t kWordsShown = 5;  // of a quality
 
 std::string in_lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -46,6 +49,10 @@ std::string percent(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
 }
 
+std::string cut_name(const std::string& text) {
+  return std::string(cut_utf8(text, kShownBytes));
+}
+
 /// What the names of a DataOptions group say of a variable; none: nothing.
 template <class Value>
 std::optional<Value> named(const std::map<std::string, Value>& group, const std::string& variable) {
@@ -60,6 +67,7 @@ class RecordReader {
  public:
   RecordReader(const Study& study, RecordColumns columns)
       : study_(study), data_(study.data), file_(std::move(columns)) {
+    require_names();
     read_times();
     choose_samples();
   }
@@ -88,6 +96,13 @@ class RecordReader {
   }
 
  private:
+  void require_names() const {
+    for (const std::string& name : file_.names)
+      if (name.size() > kLongestCsvName)
+        throw InputError(file_.file, fmt::format("a column with a name of {} bytes", name.size()),
+                         fmt::format("at most {}", kLongestCsvName));
+  }
+
   // --- Cells ---
 
   std::string where(const std::string& key, const std::string& variable) const {
@@ -114,13 +129,13 @@ class RecordReader {
     for (std::size_t row = 0; row < file_.rows(); ++row) {
       const std::string& cell = file_.columns[column][row];
       if (const auto value = file_.number(cell))
-        signal[row] = scale * (*value - zero);
+        signal[row] = *value;
       else if (!cell.empty() && texts++ == 0)
         first_text = row;
       filled += cell.empty() ? 0 : 1;
     }
-    const std::string name = file_.names[column];
-    const std::string_view text = texts == 0 ? "" : cut_utf8(file_.columns[column][first_text], 40);
+    const std::string name = cut_name(file_.names[column]);
+    const std::string_view text = texts == 0 ? "" : cut_utf8(file_.columns[column][first_text], kShownBytes);
     if (texts == filled)
       throw InputError(fmt::format("{}: column '{}', for {}", file_.file, name, variable),
                        texts == 0 ? std::string("no value") : fmt::format("no number, but '{}'", text),
@@ -131,7 +146,41 @@ class RecordReader {
       record_.warnings.push_back(fmt::format(
           "column '{}': {} cells are no numbers and count as missing, the first is '{}' in line {}", name,
           texts, text, file_.lines[first_text]));
+    drop_implausible(column, variable, signal);
+    for (double& value : signal)
+      value = scale * (value - zero);
     return signal;
+  }
+
+  /// The hard limits of a variable; infinite without.
+  std::pair<double, double> hard_limits(const std::string& variable) const {
+    std::pair<double, double> found{-kInfinity, kInfinity};
+    const auto look = [&](const std::vector<PlantModel::Variable>& variables, const Limits& limits) {
+      for (std::size_t i = 0; i < variables.size(); ++i)
+        if (variables[i].name == variable)
+          found = {limits.lower(static_cast<Eigen::Index>(i)), limits.upper(static_cast<Eigen::Index>(i))};
+    };
+    look(study_.plant.cvs, study_.controller.cv_hard);
+    look(study_.plant.mvs, study_.controller.mv_hard);
+    return found;
+  }
+
+  /// Takes out what cannot be measured. The signal is as recorded: it is there that -9999 means something.
+  void drop_implausible(std::size_t column, const std::string& variable, Signal& signal) {
+    const double zero = named(data_.operating_point, variable).value_or(0.0);
+    const double scale = named(data_.scale, variable).value_or(1.0);
+    const std::pair<double, double> limits = hard_limits(variable);
+    const double one = zero + limits.first / scale, other = zero + limits.second / scale;
+    const std::vector<std::size_t> rows =
+        implausible_rows(signal, std::min(one, other), std::max(one, other));
+    if (rows.empty())
+      return;
+    for (const std::size_t row : rows)
+      signal[row] = kNaN;
+    record_.warnings.push_back(fmt::format(
+        "column '{}': {} values cannot be measurements and count as missing, the first is '{}' in line {}",
+        cut_name(file_.names[column]), rows.size(),
+        cut_utf8(file_.columns[column][rows.front()], kShownBytes), file_.lines[rows.front()]));
   }
 
   bool has_numbers(std::size_t column) const {
@@ -146,16 +195,36 @@ class RecordReader {
       return;
     const std::size_t column = file_.column(where("quality", variable), *tag);
     std::size_t bad = 0;
-    for (std::size_t row = 0; row < signal.size(); ++row)
-      if (!is_one_of(file_.columns[column][row], data_.good_quality)) {
-        signal[row] = kNaN;
-        ++bad;
-      }
+    std::map<std::string, std::size_t> words;
+    for (std::size_t row = 0; row < signal.size(); ++row) {
+      const std::string& cell = file_.columns[column][row];
+      if (is_word(cell, data_.good_quality))
+        continue;
+      signal[row] = kNaN;
+      ++bad;
+      if (const std::string word = cut_name(cell); words.size() <= kWordsShown || words.contains(word))
+        ++words[word];
+    }
+    if (bad == 0)
+      return;
+    std::vector<std::string> shown;
+    for (const auto& [word, rows] : words)
+      shown.push_back(shown.size() < kWordsShown ? fmt::format("'{}' ({} rows)", word, rows) : "others");
     if (bad == signal.size())
-      throw InputError(
-          where("quality", variable),
-          fmt::format("no row of good quality, but '{}'", cut_utf8(file_.columns[column].front(), 40)),
-          fmt::format("one of data.good_quality: {}", fmt::join(data_.good_quality, ", ")));
+      throw InputError(where("quality", variable),
+                       fmt::format("no row of good quality, but {}", fmt::join(shown, ", ")),
+                       fmt::format("one of data.good_quality: {}", fmt::join(data_.good_quality, ", ")));
+    record_.warnings.push_back(fmt::format(
+        "{} is missing in {} of {} rows, whose quality is none of data.good_quality ({}): {}", variable, bad,
+        signal.size(), fmt::join(data_.good_quality, ", "), fmt::join(shown, ", ")));
+  }
+
+  /// Is the cell one of these words, or a number that one of them is?
+  bool is_word(const std::string& cell, const std::vector<std::string>& words) const {
+    if (is_one_of(cell, words))
+      return true;
+    const auto value = file_.number(cell);
+    return value && is_one_of(fmt::format("{:g}", *value), words);
   }
 
   // --- Time ---
@@ -166,7 +235,26 @@ class RecordReader {
     for (const char* usual : {"time", "timestamp", "datetime", "date", "t"})
       if (const auto column = file_.find(usual))
         return column;
-    return std::nullopt;
+    return column_of_dates();
+  }
+
+  /// The one column of dates, whatever its heading is.
+  std::optional<std::size_t> column_of_dates() const {
+    std::optional<std::size_t> found;
+    for (std::size_t column = 0; column < file_.names.size(); ++column) {
+      const std::vector<std::string>& cells = file_.columns[column];
+      const auto first =
+          std::find_if(cells.begin(), cells.end(), [](const std::string& cell) { return !cell.empty(); });
+      if (first == cells.end() || file_.number(*first) || !is_date(*first))
+        continue;
+      if (found)
+        throw InputError(fmt::format("{}: time stamps", file_.file),
+                         fmt::format("dates in the columns '{}' and '{}'", cut_name(file_.names[*found]),
+                                     cut_name(file_.names[column])),
+                         "data.time, the column of the time stamps");
+      found = column;
+    }
+    return found;
   }
 
   /// Time units of the plant in one unit of the stamps.
@@ -228,7 +316,7 @@ class RecordReader {
   }
 
   std::string stamp_text(double time) const {
-    return calendar_ ? date_text(time) : fmt::format("{:g}", time);
+    return calendar_ ? date_text(time) : fmt::format("{:.15g}", time);
   }
 
   void require_order(const std::string& place) {
@@ -309,7 +397,7 @@ class RecordReader {
     if (!(count >= 2.0 && count <= kMostSamples))
       throw InputError(
           fmt::format("{}: time stamps", file_.file),
-          fmt::format("{} to {}, {:.0f} samples of {:g} {}", stamp_text(first_), stamp_text(last),
+          fmt::format("{} to {}, {:.10g} samples of {:g} {}", stamp_text(first_), stamp_text(last),
                       std::max(count, 0.0), study_.controller.sample_time, study_.plant.time_unit),
           "2 to 1000000 samples of the controller: look at the stamps, data.time_unit, data.period");
     samples_ = static_cast<Eigen::Index>(count);
@@ -319,9 +407,10 @@ class RecordReader {
 
   double at(Eigen::Index k) const { return first_ + static_cast<double>(k) * sample_; }
 
-  /// The sample to which a time belongs.
+  /// The sample to which a time belongs; -1 and samples_ of one before and behind all of them.
   Eigen::Index nearest_sample(double time) const {
-    return static_cast<Eigen::Index>(std::floor((time - first_) / sample_ + 0.5));
+    const double sample = std::floor((time - first_) / sample_ + 0.5);
+    return static_cast<Eigen::Index>(std::clamp(sample, -1.0, static_cast<double>(samples_)));
   }
 
   std::pair<Eigen::Index, Eigen::Index> samples_between(const char* key,
@@ -432,16 +521,14 @@ class RecordReader {
     const std::size_t column = file_.column(file_.file + ": data.controller_on", data_.controller_on);
     Signal on;
     for (const std::string& cell : file_.columns[column]) {
-      const auto value = file_.number(cell);
-      const bool numeric = value && is_one_of(fmt::format("{:g}", *value), data_.on_values);
-      on.push_back(cell.empty() ? kNaN : numeric || is_one_of(cell, data_.on_values) ? 1.0 : 0.0);
+      on.push_back(cell.empty() ? kNaN : is_word(cell, data_.on_values) ? 1.0 : 0.0);
     }
     const Eigen::RowVectorXd is_on = held(on);
     const double off = (is_on.array() != 1.0).cast<double>().mean();
     if (off == 1.0)
       throw InputError(
           file_.file + ": data.controller_on",
-          fmt::format("'{}' throughout", cut_utf8(file_.columns[column].front(), 40)),
+          fmt::format("'{}' throughout", cut_utf8(file_.columns[column].front(), kShownBytes)),
           fmt::format("a period with one of data.on_values: {}", fmt::join(data_.on_values, ", ")));
     if (off > 0.0)
       record_.warnings.push_back(
@@ -456,8 +543,12 @@ class RecordReader {
       throw InputError(
           fmt::format("{}: {}", file_.file, name), fmt::format("{} of its samples missing", percent(missing)),
           fmt::format("at most {} (data.most_missing): choose another period (data.period), export a value "
-                      "at least every {:g} {}, or raise data.most_missing",
-                      percent(data_.most_missing), study_.controller.sample_time, study_.plant.time_unit));
+                      "at least every {:g} {}, or raise data.most_missing{}",
+                      percent(data_.most_missing), study_.controller.sample_time, study_.plant.time_unit,
+                      calendar_ || data_.time_unit == study_.plant.time_unit
+                          ? ""
+                          : fmt::format("; stamps that are numbers count as {}: data.time_unit",
+                                        data_.time_unit.empty() ? study_.plant.time_unit : data_.time_unit)));
   }
 
   void refuse_missing() {
@@ -494,8 +585,8 @@ PlantRecord read_plant_record(const Study& study, std::string_view text, const s
 }
 
 PlantRecord load_plant_record(const Study& study, const std::filesystem::path& path) {
-  std::ifstream stream = open_input(path, "a CSV or netCDF-4 file of records (docs/own_records.md)");
-  const std::string content = content_of(stream);
+  const std::string content =
+      foreign_content(path, "a CSV or netCDF-4 file of records (docs/own_records.md)");
   const std::string file = path.filename().string();
   if (!is_netcdf4(content))
     return read_plant_record(study, content, file);

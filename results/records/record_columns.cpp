@@ -11,6 +11,8 @@
 #include <fmt/ranges.h>
 
 #include "plants/error.hpp"
+#include "results/files/foreign_content.hpp"
+#include "results/files/utf8.hpp"
 #include "scenarios/nearest_name.hpp"
 
 namespace mpm {
@@ -24,8 +26,9 @@ bool differ_in_capitals_only(const std::string& a, const std::string& b) {
 }
 
 std::string columns_text(const std::vector<std::string>& names) {
-  std::vector<std::string> shown(
-      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kColumnsShown)));
+  std::vector<std::string> shown;
+  for (std::size_t i = 0; i < std::min(names.size(), kColumnsShown); ++i)
+    shown.emplace_back(cut_utf8(names[i], kShownBytes));
   if (shown.size() < names.size())
     shown.push_back(fmt::format("{} more", names.size() - shown.size()));
   return fmt::format("one of the columns {}", fmt::join(shown, ", "));

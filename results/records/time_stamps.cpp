@@ -13,6 +13,7 @@
 
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
+#include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 
 namespace mpm {
@@ -25,8 +26,10 @@ constexpr const char* kForms =
 /// A stamp as it stands: three numbers of the date in their order, and the time of day with its offset.
 struct WrittenDate {
   int first = 0, second = 0, third = 0;
-  double seconds = 0.0;  ///< since midnight, the offset taken off
-  bool offset = false;   ///< it had one
+  double seconds = 0.0;       ///< since midnight, the offset taken off
+  bool offset = false;        ///< it had one
+  bool time_of_day = false;   ///< it had one
+  bool twelve_hours = false;  ///< AM or PM
 };
 
 std::optional<double> number_in(std::string cell, char decimal) {
@@ -39,12 +42,15 @@ std::optional<double> number_in(std::string cell, char decimal) {
              : std::nullopt;
 }
 
-/// "+01:00" in s.
-double offset_of(const std::string& text) {
+/// "+01:00" in s; none for one that no clock has.
+std::optional<double> offset_of(const std::string& text) {
   if (text.empty() || text == "Z" || text == "z")
     return 0.0;
   const double hours = std::stod(text.substr(1, 2));
   const double minutes = text.size() > 3 ? std::stod(text.substr(text.size() - 2)) : 0.0;
+  constexpr double kMostHours = 14.0;
+  if (minutes > 59.0 || hours + minutes / 60.0 > kMostHours)
+    return std::nullopt;
   return (text[0] == '-' ? -1.0 : 1.0) * (3600.0 * hours + 60.0 * minutes);
 }
 
@@ -58,15 +64,21 @@ std::optional<WrittenDate> date_in(const std::string& cell) {
   if (!part[4].matched)
     return date;
   int hour = std::stoi(part[4]);
-  if (part[8].matched)
+  date.time_of_day = true;
+  date.twelve_hours = part[8].matched;
+  if (date.twelve_hours && (hour < 1 || hour > 12))
+    return std::nullopt;
+  if (date.twelve_hours)
     hour = hour % 12 + (std::tolower(part[8].str()[0]) == 'p' ? 12 : 0);
   const int minute = std::stoi(part[5]);
   const double second = (part[6].matched ? std::stod(part[6]) : 0.0) +
                         (part[7].matched ? std::stod(fmt::format("0.{}", part[7].str())) : 0.0);
-  if (hour > 24 || minute > 59 || second > 60.0)
+  const bool end_of_day = hour == 24 && minute == 0 && second == 0.0;
+  const std::optional<double> offset = offset_of(part[9]);
+  if ((hour > 23 && !end_of_day) || minute > 59 || second > 60.0 || !offset)
     return std::nullopt;
   date.offset = part[9].matched;
-  date.seconds = 3600.0 * hour + 60.0 * minute + second - offset_of(part[9]);
+  date.seconds = 3600.0 * hour + 60.0 * minute + second - *offset;
   return date;
 }
 
@@ -108,10 +120,29 @@ std::optional<double> days_of(const WrittenDate& date, DateOrder order) {
 
 [[noreturn]] void refuse_stamp(const StampSource& source, std::size_t row, const char* allowed) {
   throw InputError(fmt::format("{}, line {}", source.where, source.lines[row]),
-                   fmt::format("'{}'", cut_utf8(source.cells[row], 40)), allowed);
+                   fmt::format("'{}'", cut_utf8(source.cells[row], kShownBytes)), allowed);
+}
+
+/// An hour that some stamps mean in another way than the others moves these without a word.
+void refuse_mixed_forms(const StampSource& source, const std::vector<std::optional<WrittenDate>>& dates) {
+  const std::optional<WrittenDate>* first = nullptr;
+  for (std::size_t row = 0; row < dates.size(); ++row) {
+    if (!dates[row] || !dates[row]->time_of_day)
+      continue;
+    if (first == nullptr)
+      first = &dates[row];
+    if (dates[row]->offset != (*first)->offset)
+      refuse_stamp(source, row, "stamps that all have their offset from UTC (or Z), or none of them");
+    if (dates[row]->twelve_hours != (*first)->twelve_hours)
+      refuse_stamp(source, row, "stamps that all have AM or PM, or none of them");
+  }
 }
 
 }  // namespace
+
+bool is_date(const std::string& cell) {
+  return date_in(cell).has_value();
+}
 
 TimeStamps parse_time_stamps(const StampSource& source, DateOrder order, char decimal) {
   TimeStamps stamps;
@@ -135,6 +166,7 @@ TimeStamps parse_time_stamps(const StampSource& source, DateOrder order, char de
   }
   if (!stamps.calendar)
     return stamps;
+  refuse_mixed_forms(source, dates);
   const DateOrder of_all = order == DateOrder::automatic ? shown_order(source, dates) : order;
   stamps.offsets = true;
   for (std::size_t row = 0; row < dates.size(); ++row) {

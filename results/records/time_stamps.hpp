@@ -29,8 +29,12 @@ struct StampSource {
 ///
 /// Without an offset they are taken as they stand. Of a day and a month that could be either way round
 /// DateOrder decides, or a stamp with a number above 12. An empty cell is no stamp. Errors: InputError for a
-/// cell that is none of this, for an order that nothing decides, and for numbers and dates in one column.
+/// cell that is none of this or no time that a clock shows, for an order that nothing decides, and for a
+/// column of two forms: numbers and dates, times with and without an offset, with and without AM or PM.
 TimeStamps parse_time_stamps(const StampSource& source, DateOrder order, char decimal);
+
+/// Is it a date of one of these forms?
+bool is_date(const std::string& cell);
 
 /// "2024-10-27 02:59:30" of a time in s since 1970.
 std::string date_text(double seconds);

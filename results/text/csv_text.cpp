@@ -1,0 +1,153 @@
+#include "results/text/csv_text.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "results/files/foreign_content.hpp"
+#include "results/files/utf8.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::string_view kSeparators = ",;\t|";
+constexpr std::string_view kBlanks = " \t\r";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+std::string_view without_blanks(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+void refuse_bytes(std::string_view text, const std::string& file) {
+  const bool utf16 = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+  if (utf16 || text.find('\0') != std::string_view::npos)
+    throw InputError(file, utf16 ? "a text in UTF-16" : "bytes that are no text",
+                     "a CSV file in UTF-8 or ASCII: export it again, or save the sheet as \"CSV UTF-8\"");
+}
+
+/// The one that the heading has most often.
+char found_separator(std::string_view heading) {
+  const auto count = [&](char c) { return std::count(heading.begin(), heading.end(), c); };
+  return *std::max_element(kSeparators.begin(), kSeparators.end(),
+                           [&](char a, char b) { return count(a) < count(b); });
+}
+
+}  // namespace
+
+CsvReader::CsvReader(std::string_view text, std::string file, CsvForm form)
+    : text_(text), file_(std::move(file)), form_(std::move(form)) {
+  refuse_bytes(text_, file_);
+  if (text_.starts_with(kByteOrderMark))
+    text_.remove_prefix(kByteOrderMark.size());
+  read_heading();
+}
+
+std::string CsvReader::place() const {
+  return fmt::format("{}:{}", file_, line_);
+}
+
+/// The next line that is neither empty nor a comment.
+bool CsvReader::next_line(std::string_view& line) {
+  while (at_ < text_.size()) {
+    const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
+    line = text_.substr(at_, end - at_);
+    at_ = end + (text_.substr(end).starts_with("\r\n") ? 2 : 1);
+    ++line_;
+    const std::string_view content = without_blanks(line);
+    if (content.empty())
+      continue;
+    if (!content.starts_with('#') || !(heading_.empty() || form_.comments_everywhere))
+      return true;
+    comments_.emplace_back(content);
+  }
+  return false;
+}
+
+std::vector<std::string> CsvReader::fields_of(std::string_view line) const {
+  std::vector<std::string> fields;
+  for (std::size_t at = 0; at <= line.size();) {
+    std::string field;
+    const std::size_t first = std::min(line.find_first_not_of(" \t", at), line.size());
+    const std::size_t quote = line.find('"', at);
+    if (quote == first && line.find(separator_, at) > first) {
+      std::size_t close = quote + 1;
+      for (;; ++close) {
+        const std::size_t next = line.find('"', close);
+        if (next == std::string_view::npos)
+          throw InputError(
+              place(), "a quote that is not closed on its line",
+              "a field that begins with \" ends with \" on its line, and holds \"\" for each \"");
+        field += line.substr(close, next - close);
+        close = next + 1;
+        if (!line.substr(close).starts_with('"'))
+          break;
+        field += '"';
+      }
+      at = std::min(line.find(separator_, close), line.size());
+      if (const std::string_view behind = without_blanks(line.substr(close, at - close)); !behind.empty())
+        throw InputError(place(), fmt::format("'{}' behind a field in quotes", cut_utf8(behind, kShownBytes)),
+                         "the separator or the end of the line, and \"\" for each \" in a field in quotes");
+      field = without_blanks(field);
+    } else {
+      const std::size_t end = std::min(line.find(separator_, at), line.size());
+      field = without_blanks(line.substr(at, end - at));
+      at = end;
+    }
+    fields.push_back(std::move(field));
+    ++at;
+  }
+  return fields;
+}
+
+void CsvReader::read_heading() {
+  std::string_view line;
+  if (!next_line(line))
+    return;
+  separator_ = form_.separator.empty() ? found_separator(line) : form_.separator.front();
+  heading_ = fields_of(line);
+  for (const std::string& name : heading_)
+    if (name.size() > kLongestCsvName)
+      throw InputError(
+          place(),
+          fmt::format("a column with a name of {} bytes, '{}...'", name.size(), cut_utf8(name, kShownBytes)),
+          fmt::format("at most {}", kLongestCsvName));
+}
+
+bool CsvReader::next(std::vector<std::string>& fields) {
+  std::string_view line;
+  if (!next_line(line))
+    return false;
+  fields = fields_of(line);
+  if (fields.size() != heading_.size()) {
+    const bool decimal_commas = separator_ == ',' && fields.size() > heading_.size();
+    throw InputError(
+        place(), fmt::format("{} fields", fields.size()),
+        fmt::format("{}, as the heading has them{}", heading_.size(),
+                    decimal_commas ? "; if these are decimal commas in a file separated by commas, export it "
+                                     "with ';' between the columns, or with decimal points"
+                                   : ""));
+  }
+  cells_ += fields.size();
+  if (cells_ > kMostCells)
+    throw InputError(place(), fmt::format("more than {} cells", kMostCells),
+                     "so many (rows times columns): a shorter period, fewer columns, or fewer rows a sample");
+  return true;
+}
+
+std::string csv_field(const std::string& text) {
+  const bool formula =
+      !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  const std::string shown = formula ? "'" + text : text;
+  if (shown.find_first_of(",\"\r\n") == std::string::npos)
+    return shown;
+  std::string quoted = "\"";
+  for (const char c : shown)
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace mpm
