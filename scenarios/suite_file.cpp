@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr const char* kSuiteExtension = ".toml";
 
 const std::vector<std::string> kPlantKeys{"name", "study", "remove", "set"};
-const std::vector<std::string> kFamilyKeys{"name", "title", "plants", "remove", "set"};
+const std::vector<std::string> kFamilyKeys{"name", "title", "plants", "reference", "remove", "set"};
 const std::vector<std::string> kCellKeys{"plant", "family", "remove", "set"};
 
 std::vector<std::string> names_of(const std::vector<SuiteAxis>& axis) {
@@ -43,7 +43,8 @@ struct BasePlant {
 
 BasePlant read_base_plant(const TomlTable& plant, const fs::path& folder, const std::string& file_name) {
   const Study study = read_base_study(plant, folder);
-  BasePlant base{{read_name(plant, "name"), study.title}, parse_toml(study.source, file_name)};
+  BasePlant base{{.name = read_name(plant, "name"), .title = study.title},
+                 parse_toml(study.source, file_name)};
   make_changes(base.text, plant);
   return base;
 }
@@ -62,7 +63,9 @@ FamilyChanges read_family(const TomlTable& family, const std::vector<std::string
   else
     for (std::size_t plant = 0; plant < plant_names.size(); ++plant)
       plants.push_back(plant);
-  return {{read_name(family, "name"), read_text(family, "title")}, family, plants};
+  return {{read_name(family, "name"), read_text(family, "title"), read_flag_or(family, "reference", false)},
+          family,
+          plants};
 }
 
 /// Refuses a name that the list has twice: archives would overwrite each other.

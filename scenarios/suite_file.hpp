@@ -15,6 +15,8 @@ namespace mpm {
 struct SuiteAxis {
   std::string name;   ///< part of the name of a file
   std::string title;  ///< one line for people
+  /// Of a family: it draws exactly what the method `ceiling` knows of, which is a reference there.
+  bool has_reference = false;
 };
 
 /// A plant under the experiments of a family: a study of its own.

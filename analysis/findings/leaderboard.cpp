@@ -77,26 +77,25 @@ std::vector<SuiteAxis> used(const std::vector<SuiteAxis>& axis, std::vector<Cell
   return kept;
 }
 
-void add_shares(const PooledScores& ceiling, PooledScores& scores) {
+void add_shares(const PooledScores& reference, PooledScores& scores) {
   for (const LeaderboardScore& score : leaderboard_scores()) {
     const Rate* const reached = scores.of(score.rate);
-    const Rate* const possible = ceiling.of(score.rate);
+    const Rate* const possible = reference.of(score.rate);
     const bool counted = !score.low_is_good && reached->total > 0 && possible->hits > 0;
     scores.shares_of_ceiling.push_back(counted ? reached->value / possible->value : kNaN);
   }
 }
 
+/// Holds every method against the reference, family by family.
 void add_shares(Leaderboard& board) {
-  const auto ceiling = std::find(board.methods.begin(), board.methods.end(), kCeilingMethod);
-  if (ceiling == board.methods.end())
+  const auto reference = std::find(board.methods.begin(), board.methods.end(), kReferenceMethod);
+  if (reference == board.methods.end())
     return;
-  const auto place = static_cast<std::size_t>(ceiling - board.methods.begin());
-  for (std::size_t method = 0; method < board.methods.size(); ++method) {
-    for (auto* const along : {&board.by_family, &board.by_plant})
-      for (std::size_t column = 0; column < (*along)[method].size(); ++column)
-        add_shares((*along)[place][column], (*along)[method][column]);
-    add_shares(board.overall[place], board.overall[method]);
-  }
+  const auto place = static_cast<std::size_t>(reference - board.methods.begin());
+  for (std::vector<PooledScores>& of_method : board.by_family)
+    for (std::size_t family = 0; family < board.families.size(); ++family)
+      if (board.families[family].has_reference)
+        add_shares(board.by_family[place][family], of_method[family]);
 }
 
 }  // namespace
@@ -136,11 +135,6 @@ CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
 bool PooledScores::answers_in_part() const {
   const Rate* const answered = of("answered");
   return answered != nullptr && answered->hits > 0 && answered->value < kFewestAnswers;
-}
-
-bool PooledScores::has_ceiling() const {
-  return std::any_of(shares_of_ceiling.begin(), shares_of_ceiling.end(),
-                     [](double share) { return !std::isnan(share); });
 }
 
 bool PooledScores::too_many_false_alarms() const {
@@ -184,6 +178,14 @@ std::vector<LeaderboardScore> leaderboard_scores() {
   return known;
 }
 
+bool has_reference(const Leaderboard& board) {
+  return std::any_of(
+      board.by_family.begin(), board.by_family.end(), [](const std::vector<PooledScores>& of_method) {
+        return std::any_of(of_method.begin(), of_method.end(),
+                           [](const PooledScores& scores) { return !scores.shares_of_ceiling.empty(); });
+      });
+}
+
 Leaderboard make_leaderboard(const Suite& suite, const std::vector<std::string>& methods,
                              const std::string& program, std::vector<CellScores> cells) {
   Leaderboard board{.suite = suite.name,
@@ -196,16 +198,20 @@ Leaderboard make_leaderboard(const Suite& suite, const std::vector<std::string>&
   board.families = used(suite.families, cells, &CellScores::family);
   board.cells = std::move(cells);
   for (std::size_t method = 0; method < methods.size(); ++method) {
-    const auto pooled = [&](const Belongs& belongs) {
-      return pool(method, board.cells, board.confidence, belongs);
+    const bool counts = methods[method] != kReferenceMethod;
+    const auto pooled = [&](const Belongs& belongs, bool counts_here) {
+      return pool(
+          method, board.cells, board.confidence,
+          counts_here ? belongs : [](const CellScores&) { return false; });
     };
     std::vector<PooledScores>& families = board.by_family.emplace_back();
     for (std::size_t family = 0; family < board.families.size(); ++family)
-      families.push_back(pooled([family](const CellScores& cell) { return cell.family == family; }));
+      families.push_back(pooled([family](const CellScores& cell) { return cell.family == family; },
+                                counts || board.families[family].has_reference));
     std::vector<PooledScores>& plants = board.by_plant.emplace_back();
     for (std::size_t plant = 0; plant < board.plants.size(); ++plant)
-      plants.push_back(pooled([plant](const CellScores& cell) { return cell.plant == plant; }));
-    board.overall.push_back(pooled([](const CellScores&) { return true; }));
+      plants.push_back(pooled([plant](const CellScores& cell) { return cell.plant == plant; }, counts));
+    board.overall.push_back(pooled([](const CellScores&) { return true; }, counts));
   }
   add_shares(board);
   return board;

@@ -49,13 +49,10 @@ CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings);
 struct PooledScores : MethodScores {
   std::size_t cells = 0;            ///< that were run
   std::size_t answering_cells = 0;  ///< on some loop of which it gave a verdict
-  /// Each of leaderboard_scores() over that of the method kCeilingMethod on the same cells; NaN where it was
-  /// not asked, where one of the two was not counted, and where low is good. It is above 1 where the loops
-  /// have what the ceiling does not know of.
+  /// Each of leaderboard_scores() over that of the reference on the same cells; NaN where one of the two was
+  /// not counted, and where low is good. Empty where there is no reference: it was not asked, or the family
+  /// is not its own.
   std::vector<double> shares_of_ceiling = {};
-
-  /// Is there any of them?
-  bool has_ceiling() const;
   /// It gave a verdict on fewer than kFewestAnswers of the loops: its rates rest on a part of what those of
   /// others rest on.
   bool answers_in_part() const;
@@ -66,8 +63,9 @@ struct PooledScores : MethodScores {
 inline constexpr double kFewestAnswers = 0.9;
 inline constexpr double kMostFalseAlarms = 0.05;
 
-/// The method that knows what a study draws.
-inline constexpr std::string_view kCeilingMethod = "ceiling";
+/// The method that knows what a study draws: a reference in the families that draw exactly what it knows of
+/// (SuiteAxis::has_reference). Elsewhere, and over plants and families together, it is not counted.
+inline constexpr std::string_view kReferenceMethod = "ceiling";
 
 /// What a method is asked to do.
 enum class LeaderboardTask { detection, location, source };
@@ -119,6 +117,9 @@ struct Leaderboard {
   std::vector<std::vector<PooledScores>> by_plant = {};   ///< [method][plant]
   std::vector<PooledScores> overall = {};                 ///< [method]
 };
+
+/// Was the reference asked, on a family of its own?
+bool has_reference(const Leaderboard& board);
 
 /// Pools the cells of a suite. `cells` are those of `suite`, in any number and order; `methods` those of each
 /// cell that was run, in its order.

@@ -11,7 +11,7 @@
 
 // The one interface of all methods that assess a loop, the chain of the thesis among them. A method is one
 // file that implements AssessmentMethod and describes it by an AssessmentMethodInfo, and its function in the
-// list of methods.hpp.
+// list of analysis/methods/method_table.cpp.
 
 namespace mpm {
 

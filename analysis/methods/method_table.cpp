@@ -19,6 +19,7 @@ namespace mpm {
   method(badwe2009) /* partial correlations, appendix A1.2 */                  \
   method(badwe2010) /* designed outputs, section 3.1 */                        \
   method(yu_qin)    /* variability against a benchmark, section 2.2.2, A1.3 */ \
+  method(variance_ratio) /* var y against that of the benchmark: the baseline */ \
   method(sse)       /* simulation errors against a benchmark (4.17), (6.21) */ \
   method(counterfactual) /* the simulated nominal loop, (3.24), (4.14) */      \
   method(mpmbench)  /* impact, CV, source, channel, parameter and size together */ \

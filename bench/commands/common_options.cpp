@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sched.h>
 
 #include "analysis/methods/method_table.hpp"
@@ -86,7 +87,9 @@ void add_solver(CLI::App& app, std::string& solver) {
 }
 
 void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description) {
-  app.add_option("--methods", methods, description)->delimiter(',');
+  app.add_option("--methods", methods,
+                 fmt::format("{}. There are {}", description, fmt::join(assessment_method_names(), ", ")))
+      ->delimiter(',');
 }
 
 void add_method_files(CLI::App& app, std::vector<std::string>& files) {
@@ -109,10 +112,15 @@ std::vector<std::string> take_method_files(const std::vector<std::string>& files
 
 std::vector<std::string> with_programs(const std::vector<std::string>& named, std::vector<std::string> own,
                                        const std::vector<std::string>& programs) {
-  if (!named.empty() || programs.empty() || own == std::vector<std::string>{"all"})
+  if (programs.empty())
     return named;
-  own.insert(own.end(), programs.begin(), programs.end());
-  return own;
+  std::vector<std::string> methods = named.empty() ? std::move(own) : named;
+  if (methods == std::vector<std::string>{"all"})  // the programs among them
+    return methods;
+  for (const std::string& program : programs)
+    if (std::find(methods.begin(), methods.end(), program) == methods.end())
+      methods.push_back(program);
+  return methods;
 }
 
 void add_shard_of(CLI::App& app, std::string& shard, const std::string& what) {
@@ -133,6 +141,12 @@ void add_shard_interval(CLI::App& app, double& interval) {
 
 std::optional<ShardNumber> shard_of(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional(parse_shard(text, process_environment));
+}
+
+void add_overwrite(CLI::App& app, bool& overwrite) {
+  app.add_flag("--overwrite", overwrite,
+               "Replace a file that is there whatever it is; without it the archive of another study or seed "
+               "is kept, and the command refused");
 }
 
 void add_json(CLI::App& app, bool& json) {

@@ -40,7 +40,7 @@ void add_method_files(CLI::App& app, std::vector<std::string>& files);
 /// InputError.
 std::vector<std::string> take_method_files(const std::vector<std::string>& files);
 /// The methods that assess when programs were given: those that the user names, or those of the study or
-/// suite and the programs.
+/// suite, and the programs. Empty, as `named`, without programs.
 std::vector<std::string> with_programs(const std::vector<std::string>& named, std::vector<std::string> own,
                                        const std::vector<std::string>& programs);
 /// --shard of a command that runs several studies, `what`: which of them it runs.
@@ -48,6 +48,8 @@ void add_shard_of(CLI::App& app, std::string& shard, const std::string& what);
 /// What that option says; none without it. Throws InputError.
 std::optional<ShardNumber> shard_of(const std::string& text);
 void add_shard_interval(CLI::App& app, double& interval);
+/// --overwrite of a command that writes archives (require_replaceable()).
+void add_overwrite(CLI::App& app, bool& overwrite);
 void add_json(CLI::App& app, bool& json);
 CLI::Option* add_quiet(CLI::App& app, bool& quiet, const std::string& description = "No progress");
 

@@ -24,6 +24,7 @@
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/files/outside_files.hpp"
+#include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard_folder.hpp"
@@ -48,6 +49,7 @@ struct CompareArguments {
   std::optional<std::int64_t> experiments;
   int jobs = 1;
   bool discard = false;
+  bool overwrite = false;
   bool dry_run = false;
   double shard_interval = RunOptions().shard_interval;
   bool json = false;
@@ -318,6 +320,8 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
   const std::string archive = digest_of_archive(options.archive);
   Campaign campaign = stream_input(options.archive);
   require_output(options);
+  if (!options.output.empty() && options.shard.empty() && !options.overwrite)
+    require_replaceable(options.output, campaign.study);
   if (compared_loops(campaign, options.experiments) == 0)
     throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
   const std::vector<std::string> asked = take_asked(campaign, options, command_line);
@@ -355,9 +359,10 @@ void add_compare(CommandSet& commands) {
   add_shard_of(app, options->shard, "loops");
   app.add_flag("--discard", options->discard,
                "Delete what an interrupted comparison of this output has done, and start anew");
+  add_overwrite(app, options->overwrite);
   add_shard_interval(app, options->shard_interval);
   add_jobs(app, options->jobs, "How many loops are assessed at once");
-  add_dry_run(app, options->dry_run);
+  add_untimed_dry_run(app, options->dry_run);
   add_json(app, options->json);
   add_quiet(app, options->quiet);
 }

@@ -1,6 +1,7 @@
 #include "bench/commands/dry_run.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <system_error>
 
@@ -15,6 +16,7 @@
 #include "bench/campaign/study_pilot.hpp"
 #include "bench/console/output.hpp"
 #include "bench/shards/shard_folder.hpp"
+#include "plants/error.hpp"
 
 namespace mpm {
 namespace {
@@ -61,11 +63,40 @@ std::string loops_text(const Study& study, std::int64_t experiments) {
                      calibration > 0 ? fmt::format(" and {} calibration loops", calibration) : "");
 }
 
+/// How long the studies take together, from a few of them, evenly spread, whose first loops are run and
+/// timed.
+std::string together_time(const std::vector<const IntendedStudy*>& studies, const RunOptions& options,
+                          const CampaignHooks& hooks) {
+  constexpr std::size_t kMostTimed = 8;
+  const std::size_t step = (studies.size() + kMostTimed - 1) / kMostTimed;
+  double seconds = 0.0;
+  std::size_t timed = 0;
+  for (std::size_t place = 0; place < studies.size(); place += step) {
+    try {
+      seconds += run_pilot(studies[place]->study, options, std::max<std::int64_t>(kFewestTimed, options.jobs),
+                           {.stop = hooks.stop, .on_warning = hooks.on_warning})
+                     .seconds;
+      ++timed;
+    } catch (const InputError&) {
+      continue;  // one that cannot be run takes no time to speak of
+    }
+  }
+  if (timed == 0)
+    return "time: not known, none of the studies that were tried can be run\n";
+  return fmt::format(
+      "time: about {}, from the first loops of {} of them\n",
+      duration_text(seconds / static_cast<double>(timed) * static_cast<double>(studies.size())), timed);
+}
+
 }  // namespace
 
 void add_dry_run(CLI::App& app, bool& dry_run) {
   app.add_flag("--dry-run", dry_run,
                "Say what would be run and written, and how long it takes; write nothing");
+}
+
+void add_untimed_dry_run(CLI::App& app, bool& dry_run) {
+  app.add_flag("--dry-run", dry_run, "Say what would be run and written; run and write nothing");
 }
 
 std::string solver_text(const Study& study, const RunOptions& options) {
@@ -91,20 +122,25 @@ std::string part_text(const std::string& output) {
   return fmt::format("shards in {}, for `mpmbench merge`", parts_folder_of(output).string());
 }
 
-std::string dry_run_text(const std::vector<IntendedStudy>& studies, const RunOptions& options) {
+std::string dry_run_text(const std::vector<IntendedStudy>& studies, const RunOptions& options,
+                         const CampaignHooks& hooks) {
   std::string text;
   std::int64_t loops = 0;
+  std::vector<const IntendedStudy*> to_run;
   for (const IntendedStudy& study : studies) {
     const bool kept = kept_campaign(study.archive, study.study, options, {}).has_value();
     const std::int64_t of_study = experiment_count(study.study, options) + calibration_loops(study.study);
     loops += kept ? 0 : of_study;
+    if (!kept)
+      to_run.push_back(&study);
     text += fmt::format("{}: {} loops, {}{}\n", study.name, of_study, study.archive.string(),
                         kept ? ", done already" : "");
   }
-  return text + fmt::format(
-                    "together: {} studies, {} loops to run, with {} at once by {}\nnothing was run, nothing "
-                    "was written; `mpmbench run --dry-run` times a study\n",
-                    studies.size(), loops, options.jobs, options.solver);
+  text += fmt::format("together: {} studies, {} loops to run, with {} at once by {}\n", studies.size(), loops,
+                      options.jobs, options.solver);
+  if (!to_run.empty())
+    text += together_time(to_run, options, hooks);
+  return text + "nothing was written\n";
 }
 
 std::string dry_run_text(const IntendedRun& intended, const CampaignHooks& hooks) {

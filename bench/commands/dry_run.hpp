@@ -16,6 +16,8 @@ namespace mpm {
 // What a command says of its work: instead of it (--dry-run), or beside it (--verbose).
 
 void add_dry_run(CLI::App& app, bool& dry_run);
+/// The same of a command that says no time.
+void add_untimed_dry_run(CLI::App& app, bool& dry_run);
 
 /// A run that is asked for.
 struct IntendedRun {
@@ -36,8 +38,10 @@ struct IntendedStudy {
   std::filesystem::path archive;
 };
 
-/// The same of several studies, without a time: nothing is run.
-std::string dry_run_text(const std::vector<IntendedStudy>& studies, const RunOptions& options);
+/// The same of several studies, with the time that they take together: a few loops of some of them are run
+/// and timed.
+std::string dry_run_text(const std::vector<IntendedStudy>& studies, const RunOptions& options,
+                         const CampaignHooks& hooks);
 
 /// "solver: active-set, in 2 threads": who solves the problems, and how many loops run at once.
 std::string solver_text(const Study& study, const RunOptions& options);

@@ -175,6 +175,35 @@ std::vector<IdentifiedChannel> identified_channels(const Study& study,
   return channels;
 }
 
+/// Refuses steps that move nothing: there is no model to print.
+void require_channels(const Study& study, const std::vector<IdentifiedChannel>& channels,
+                      const Eigen::VectorXd& sizes) {
+  if (!channels.empty())
+    return;
+  const std::vector<PlantModel::Variable> inputs = all_inputs(study);
+  std::vector<std::string> steps;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    steps.push_back(fmt::format("{}={:.4g}", inputs[i].name, sizes(static_cast<Eigen::Index>(i))));
+  throw InputError("--step", fmt::format("no channel: {} move no CV", fmt::join(steps, ", ")),
+                   "steps that move a CV, larger ones where valves stick");
+}
+
+/// A sentence for each CV that nothing moves, and for each input that moves nothing.
+std::vector<std::string> unconnected(const Study& study, const std::vector<IdentifiedChannel>& channels) {
+  std::vector<std::string> sentences;
+  const auto none_has = [&channels](std::string IdentifiedChannel::*end, const std::string& name) {
+    return std::none_of(channels.begin(), channels.end(),
+                        [&](const IdentifiedChannel& channel) { return channel.*end == name; });
+  };
+  for (const PlantModel::Variable& cv : study.plant.cvs)
+    if (none_has(&IdentifiedChannel::cv, cv.name))
+      sentences.push_back(fmt::format("no step moves {}: it has no channel", cv.name));
+  for (const PlantModel::Variable& input : all_inputs(study))
+    if (none_has(&IdentifiedChannel::input, input.name))
+      sentences.push_back(fmt::format("the step of {} moves no CV: larger steps with --step", input.name));
+  return sentences;
+}
+
 std::string channel_entry(const IdentifiedChannel& channel) {
   return fmt::format(
       "# {:.3f} % explained, error {:.2g} {} rms under this step; asymmetry of up and down {:.2g}\n"
@@ -238,6 +267,9 @@ ExitCode identify(const IdentifyArguments& arguments) {
   const int samples = arguments.samples > 0 ? arguments.samples : study.sensitivity.samples;
   const std::vector<IdentifiedChannel> channels = identified_channels(
       study, step_test(study, {.sizes = sizes, .samples = samples, .noise = arguments.noise}), sizes);
+  require_channels(study, channels, sizes);
+  for (const std::string& text : unconnected(study, channels))
+    progress.note("warning: " + text);
   for (const IdentifiedChannel& channel : channels)
     if (!channel.doubt.empty())
       progress.note(fmt::format("warning: {} to {}: {}", channel.input, channel.cv, channel.doubt));

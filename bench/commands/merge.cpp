@@ -14,6 +14,7 @@
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/files/replaced_archive.hpp"
 #include "bench/parts/loop_ranges.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "results/archive/archive.hpp"
@@ -29,6 +30,7 @@ struct MergeArguments {
   std::vector<std::string> parts;  ///< empty: those beside the output
   std::vector<std::string> method_files;
   bool missing = false;
+  bool overwrite = false;
   bool json = false;
   bool quiet = false;
 };
@@ -85,6 +87,8 @@ ExitCode merge(const MergeArguments& options, const std::string& command_line) {
   const PartMerge parts(
       options.parts.empty() ? std::vector{parts_folder_of(options.output).string()} : options.parts,
       [&progress](const std::string& text) { progress.warn(text); });
+  if (!options.missing && !options.overwrite)
+    require_replaceable(options.output, parts.study());
   const bool complete = parts.missing().empty();
   if (complete && !options.missing)
     write_merged(options, parts, progress, command_line);
@@ -109,6 +113,7 @@ void add_merge(CommandSet& commands) {
   app.add_option("PARTS", options->parts, "Folders with parts, at any depth; OUTPUT.parts without any");
   app.add_flag("--missing", options->missing,
                "Write nothing, and say what no part has: exit code 0 when nothing is missing, else 3");
+  add_overwrite(app, options->overwrite);
   add_method_files(app, options->method_files);
   add_json(app, options->json);
   add_quiet(app, options->quiet, "No summary");

@@ -171,7 +171,7 @@ void add_reproduce(CommandSet& commands) {
                  "Run each table with N seeds, and report medians and the share of seeds that agree")
       ->check(whole_number(1, 100000));
   add_shard_of(app, options->shard, "tables and seeds");
-  add_dry_run(app, options->dry_run);
+  add_untimed_dry_run(app, options->dry_run);
   add_quiet(app, options->quiet);
   add_jobs(app, options->run.jobs, "How many tables run at once, with --solver active-set");
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/parts/loop_ranges.hpp"
 #include "bench/parts/part_folder.hpp"
@@ -42,6 +44,7 @@ struct RunArguments {
   std::string shard, range;  ///< which part is run; both empty: the whole campaign
   RunOptions run;
   std::vector<std::string> method_files;
+  bool overwrite = false;
   bool dry_run = false;
   bool verbose = false;
   bool quiet = false;
@@ -122,6 +125,26 @@ void run_one_part(const RunArguments& options, const PartFolder& part, const Cam
                              part.part.loops.empty() ? "none" : to_string(part.part.loops), run));
 }
 
+/// Parts that lie beside the output and are of another run: `merge` refuses them beside this one, and no run
+/// takes them up.
+void warn_of_other_parts(const RunArguments& options, const Study& study, const RunOptions& run_options,
+                         Progress& progress) {
+  const std::filesystem::path folder = parts_folder_of(options.output);
+  std::error_code no_status;
+  if (!std::filesystem::is_directory(folder, no_status) || std::filesystem::is_empty(folder, no_status))
+    return;
+  const ShardIdentity identity = shard_identity(study, run_options);
+  try {
+    for (const std::filesystem::path& path : find_parts({folder.string()})) {
+      const PartFolder part = read_part(path);
+      require_same(shard_identity(part.study, part.options), identity, path.string());
+    }
+  } catch (const InputError& error) {
+    progress.warn(
+        fmt::format("{}; it is left as it is, and `merge` takes parts of one run only", error.what()));
+  }
+}
+
 ExitCode run(const RunArguments& options, const std::string& command_line) {
   const Study study = find_study(options.study);
   std::vector<std::string> inputs = options.method_files;
@@ -134,6 +157,8 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
   std::optional<PartFolder> part;
   if (options.is_part())
     part = part_of(options, study, run_options);
+  else if (!options.overwrite)
+    require_replaceable(options.output, study_to_run(study, run_options));
 
   Progress progress(options.quiet);
   if (options.dry_run) {
@@ -142,6 +167,8 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
         hooks_of(progress)));
     return ExitCode::done;
   }
+  if (part || options.run.leftovers == Leftovers::resume)
+    warn_of_other_parts(options, study_to_run(study, run_options), run_options, progress);
   Narrator narrator(options.verbose, progress);
   narrator.say_what_is_run(options.study, study, run_options,
                            options.is_part() ? part_text(options.output)
@@ -236,6 +263,7 @@ void add_run(CommandSet& commands) {
   app.add_flag("--allow-unhealthy-basis", options->run.allow_unhealthy_basis,
                "Run although the basis case fails its self-check");
   add_part(app, *options);
+  add_overwrite(app, options->overwrite);
   add_interruption(app, options->run);
   add_dry_run(app, options->dry_run);
   CLI::Option* const verbose = app.add_flag(

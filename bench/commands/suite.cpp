@@ -17,6 +17,7 @@
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
 #include "results/plot/figure_drawing.hpp"
@@ -35,6 +36,7 @@ struct SuiteArguments {
   std::string shard;  ///< which of the cells are run; empty: all of them, and the leaderboard
   RunOptions run;
   std::vector<std::string> method_files;
+  bool overwrite = false;
   bool dry_run = false;
   bool json = false;
   bool quiet = false;
@@ -71,12 +73,16 @@ ExitCode run_suite_command(const SuiteArguments& options, const std::string& com
   const std::optional<ShardNumber> shard = shard_of(options.shard);
   run.is_wanted = [&](std::size_t cell) { return is_in_shard(cell, shard); };
   if (options.dry_run) {
-    print_result(dry_run_text(intended(suite, run), run.run));
+    Progress progress(options.quiet);
+    print_result(dry_run_text(intended(suite, run), run.run, hooks_of(progress)));
     return ExitCode::done;
   }
   make_output_folder(run.folder, "archives");
-  for (const IntendedStudy& study : intended(suite, run))
+  for (const IntendedStudy& study : intended(suite, run)) {
     require_output_archive(study.archive, "archive");
+    if (!options.overwrite)
+      require_replaceable(study.archive, study_to_run(study.study, run.run), Unreadable::replaced);
+  }
 
   Progress progress(options.quiet);
   std::string cell_name;
@@ -136,6 +142,7 @@ void add_suite(CommandSet& commands) {
                      "Methods that assess the loops, separated by commas, or all; in place of the suite's");
   add_method_files(app, options->method_files);
   add_jobs(app, options->run.jobs, "How many experiments run at once");
+  add_overwrite(app, options->overwrite);
   add_dry_run(app, options->dry_run);
   add_json(app, options->json);
   add_quiet(app, options->quiet);

@@ -17,6 +17,7 @@
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
@@ -33,6 +34,7 @@ struct SweepArguments {
   std::string output;
   std::string shard;  ///< which of the studies are run; empty: all of them, and the table
   RunOptions run;
+  bool overwrite = false;
   bool dry_run = false;
   bool quiet = false;
 };
@@ -82,12 +84,16 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
   const std::optional<ShardNumber> shard = shard_of(options.shard);
   const fs::path folder = options.output;
   if (options.dry_run) {
-    print_result(dry_run_text(intended(sweep, shard, folder), options.run));
+    Progress progress(options.quiet);
+    print_result(dry_run_text(intended(sweep, shard, folder), options.run, hooks_of(progress)));
     return ExitCode::done;
   }
   make_output_folder(folder, "archives");
-  for (const IntendedStudy& study : intended(sweep, shard, folder))
+  for (const IntendedStudy& study : intended(sweep, shard, folder)) {
     require_output_archive(study.archive, "archive");
+    if (!options.overwrite)
+      require_replaceable(study.archive, study_to_run(study.study, options.run), Unreadable::replaced);
+  }
   Progress progress(options.quiet);
   std::vector<SweepRow> rows;
   for (std::size_t i = 0; i < sweep.variants.size(); ++i) {
@@ -133,6 +139,7 @@ void add_sweep(CommandSet& commands) {
   add_shard_of(app, options->shard, "studies");
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
+  add_overwrite(app, options->overwrite);
   add_dry_run(app, options->dry_run);
   add_quiet(app, options->quiet);
 }

@@ -54,7 +54,7 @@ Validation validated(const ValidateArguments& arguments, Progress& progress) {
     found.pilot = run_pilot(study, options, loops, hooks_of(progress));
   } catch (const UnhealthyBasis&) {  // which does not run to its end: the warnings may say why
     for (const StudyWarning& warning : found.warnings)
-      progress.warn(fmt::format("warning: {}", to_string(warning)));
+      progress.warn(to_string(warning));
     throw;
   }
   const Campaign& campaign = found.pilot.campaign;

@@ -14,7 +14,7 @@ std::string cell_html(const ReproducedCell& cell) {
   if (cell.cell.thesis)
     html += fmt::format(" <small>({:g})</small>", *cell.cell.thesis);
   if (cell.agrees() == false)
-    html = fmt::format("<strong>{} &#10007;</strong><br><small>{}, thesis: {}</small>", html,
+    html = fmt::format("<strong>{} &#10007;</strong><small class=\"words\">{}, thesis: {}</small>", html,
                        html_text(cell.our_verdict.value_or("no verdict")), html_text(*cell.thesis_verdict));
   return html;
 }
@@ -24,8 +24,8 @@ std::string table_html(const ReproducedTable& table, std::size_t index) {
   for (const std::string& head : table.table.heads)
     columns.push_back({html_text(head), HtmlTable::Align::right});
   const auto [agreeing, judged] = table.agreement();
-  HtmlTable html(fmt::format("{} of {} verdicts agree; ours, the thesis's in brackets", agreeing, judged),
-                 columns);
+  HtmlTable html(
+      fmt::format("{} of {} verdicts agree; ours, {}", agreeing, judged, thesis_words(table.table)), columns);
   for (const ReproducedRow& row : table.rows) {
     std::vector<std::string> cells{html_text(row.label + (row.remark.empty() ? "" : ": " + row.remark))};
     for (const ReproducedCell& cell : row.cells)

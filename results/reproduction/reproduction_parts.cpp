@@ -33,6 +33,14 @@ std::string rule_text(const VerdictRule& rule) {
 
 }  // namespace
 
+std::string thesis_words(const ThesisTable& table) {
+  for (const TableRow& row : table.rows)
+    for (const TableCell& cell : row.cells)
+      if (cell.thesis)
+        return "the thesis's in brackets";
+  return "the thesis gives no numbers here, only verdicts";
+}
+
 std::string three_digits(double value, const std::string& none) {
   return std::isnan(value) ? none : fmt::format("{:.3g}", value);
 }

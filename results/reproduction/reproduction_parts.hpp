@@ -34,6 +34,9 @@ std::string table_rows_text(const ThesisTable& table, const std::vector<TextRow>
 /// on the page.
 std::string table_section_html(const ThesisTable& table, const std::string& html_table, std::size_t index);
 
+/// What stands in the cells of a table beside ours: "the thesis's in brackets", or that it has no number.
+std::string thesis_words(const ThesisTable& table);
+
 /// "With A, B." and a blank line; nothing without changes.
 std::string changes_text(const std::vector<std::string>& changes);
 /// The same as a paragraph.

@@ -64,7 +64,8 @@ ordered_json table_json(const ReproducedTable& table) {
 std::string reproduction_text(const std::vector<ReproducedTable>& tables,
                               const std::vector<std::string>& changes) {
   std::string text = changes_text(changes) +
-                     "In each cell ours, the thesis's in brackets, x where another verdict follows.\n\n";
+                     "In each cell ours, the thesis's in brackets where it gives a number, x where another "
+                     "verdict follows.\n\n";
   Agreement total;
   for (const ReproducedTable& table : tables) {
     text += table_text(table);

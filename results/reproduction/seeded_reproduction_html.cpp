@@ -25,11 +25,9 @@ std::string table_html(const SeededTable& table, std::size_t index) {
   std::vector<HtmlTable::Column> columns{{"", HtmlTable::Align::left}};
   for (const std::string& head : table.table.heads)
     columns.push_back({html_text(head), HtmlTable::Align::right});
-  HtmlTable html(
-      fmt::format("Median of ours over {} seeds, the thesis's in brackets; the share of the seeds whose "
-                  "verdict agrees",
-                  table.agreeing.size()),
-      columns);
+  HtmlTable html(fmt::format("Median of ours over {} seeds, {}; the share of the seeds whose verdict agrees",
+                             table.agreeing.size(), thesis_words(table.table)),
+                 columns);
   for (const SeededRow& row : table.rows) {
     std::vector<std::string> cells{html_text(row.label + (row.remark.empty() ? "" : ": " + row.remark))};
     for (const SeededCell& cell : row.cells)

@@ -67,8 +67,10 @@ ordered_json table_json(const SeededTable& table) {
 std::string seeded_reproduction_text(const std::vector<SeededTable>& tables,
                                      const std::vector<std::string>& changes) {
   std::string text = fmt::format(
-      "{}In each cell the median of ours over {} seeds, the thesis's in brackets, and the share of the seeds "
-      "whose\nverdict agrees; below a table how many agree on average (fewest to most).\n\n",
+      "{}In each cell the median of ours over {} seeds, the thesis's in brackets where it gives a number, "
+      "and "
+      "the share of\nthe seeds whose verdict agrees; below a table how many agree on average (fewest to "
+      "most).\n\n",
       changes_text(changes), tables.front().agreeing.size());
   double agreeing = 0.0;
   int judged = 0;

@@ -7,6 +7,7 @@
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/suite/leaderboard_output.hpp"
+#include "results/suite/leaderboard_words.hpp"
 
 namespace mpm {
 namespace {
@@ -36,7 +37,7 @@ Panel family_panel(const Leaderboard& board, std::size_t family) {
   for (std::size_t method = 0; method < board.methods.size(); ++method) {
     Pen pen = method_pen(method);
     pen.size *= 1.3;
-    panel.points(family_point(board.methods[method], board.by_family[method][family]), pen);
+    panel.points(family_point(label_of(board.methods[method]), board.by_family[method][family]), pen);
   }
   return panel.finish(fmt::format("Faults that are detected against false alarms in the family {}, a mark a "
                                   "method.",
@@ -59,7 +60,7 @@ Figure leaderboard_figure(const Leaderboard& board) {
   for (std::size_t method = 0; method < board.methods.size(); ++method) {
     Pen pen = method_pen(method);
     pen.dash = Dash::none;
-    figure.legend.push_back({as_label(board.methods[method]), pen});
+    figure.legend.push_back({as_label(label_of(board.methods[method])), pen});
   }
   for (std::size_t family = 0; family < board.families.size(); ++family)
     figure.panels.push_back(family_panel(board, family));

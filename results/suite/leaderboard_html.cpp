@@ -18,12 +18,12 @@ namespace {
 
 using AllScores = std::vector<std::vector<PooledScores>>;  // [method][column]
 
-/// The share of what the ceiling reached; nothing where it was not asked.
+/// The share of what the reference reached; nothing where there is none.
 std::string share_html(const PooledScores& scores, const LeaderboardScore& score) {
   const std::vector<LeaderboardScore> known = leaderboard_scores();
   for (std::size_t i = 0; i < scores.shares_of_ceiling.size(); ++i)
     if (known[i].rate == score.rate && !std::isnan(scores.shares_of_ceiling[i]))
-      return fmt::format("<br><small>{:.0f} % of ceiling</small>", 100 * scores.shares_of_ceiling[i]);
+      return fmt::format("<br><small>{:.0f} % of reference</small>", 100 * scores.shares_of_ceiling[i]);
   return "";
 }
 
@@ -55,7 +55,7 @@ std::string methods_table(const Leaderboard& board, const std::string& caption,
                           const std::vector<SuiteAxis>& axis, const AllScores& scores, const auto& cell) {
   HtmlTable table(caption, columns_for(axis));
   for (std::size_t method = 0; method < board.methods.size(); ++method) {
-    std::vector<std::string> cells{html_text(board.methods[method])};
+    std::vector<std::string> cells{html_text(label_of(board.methods[method]))};
     for (const PooledScores& entry : scores[method])
       cells.push_back(cell(entry));
     cells.push_back(cell(board.overall[method]));
@@ -86,7 +86,7 @@ std::string delays_section(const Leaderboard& board) {
       columns.push_back({html_text(plant_and_unit(board, *cell))});
     HtmlTable table(fmt::format("{}: {}", html_text(board.families[family].name), kDelayTitle), columns);
     for (std::size_t method = 0; method < board.methods.size(); ++method) {
-      std::vector<std::string> row{html_text(board.methods[method])};
+      std::vector<std::string> row{html_text(label_of(board.methods[method]))};
       for (const CellScores* const cell : cells)
         row.push_back(delay_words(cell->methods[method]));
       table.row(row);
@@ -99,6 +99,8 @@ std::string delays_section(const Leaderboard& board) {
 }
 
 std::string passed_html(const PooledScores& scores) {
+  if (scores.cells == 0)
+    return "<span class=\"none\">&ndash;</span>";
   std::string html;
   for (const LeaderboardTask task : kLeaderboardTasks)
     html += passes(scores, task) ? fmt::format("<span class=\"yes\">{}</span>", letter_of(task))

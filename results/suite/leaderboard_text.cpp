@@ -79,7 +79,7 @@ std::string blocks_text(const Leaderboard& board, const std::string& title,
                 heads.begin() + static_cast<std::ptrdiff_t>(last));
     table.add(head);
     for (std::size_t method = 0; method < board.methods.size(); ++method) {
-      TextTable::Row row{board.methods[method]};
+      TextTable::Row row{label_of(board.methods[method])};
       for (std::size_t column = first; column < last; ++column)
         row.push_back(cell(method, column));
       table.add(row);
@@ -112,26 +112,35 @@ std::string delays_text(const Leaderboard& board) {
 }
 
 std::string passed_text(const PooledScores& scores) {
+  if (scores.cells == 0)
+    return "-";
   std::string text;
   for (const LeaderboardTask task : kLeaderboardTasks)
     text += passes(scores, task) ? letter_of(task) : '.';
   return text;
 }
 
-/// The tables of shares of the ceiling; nothing where it was not asked.
-std::string ceiling_text(const Leaderboard& board) {
+/// The tables of shares of the reference, a column for each family of its own; nothing without one.
+std::string reference_text(const Leaderboard& board) {
+  if (!has_reference(board))
+    return "";
+  std::vector<std::string> heads;
+  std::vector<std::size_t> families;
+  for (std::size_t family = 0; family < board.families.size(); ++family)
+    if (board.families[family].has_reference) {
+      heads.push_back(board.families[family].name);
+      families.push_back(family);
+    }
   std::string text;
   const std::vector<LeaderboardScore> known = leaderboard_scores();
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    if (known[i].low_is_good || std::none_of(board.overall.begin(), board.overall.end(),
-                                             [](const PooledScores& all) { return all.has_ceiling(); }))
-      continue;
-    text += families_text(board, fmt::format("{}, % of the ceiling", known[i].title),
-                          [&](const PooledScores& scores) -> std::string {
-                            const double share = scores.shares_of_ceiling[i];
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (!known[i].low_is_good)
+      text += blocks_text(board, fmt::format("{}, % of the reference", known[i].title), heads,
+                          kColumnsAbreast, [&](std::size_t method, std::size_t column) -> std::string {
+                            const double share =
+                                board.by_family[method][families[column]].shares_of_ceiling[i];
                             return std::isnan(share) ? "-" : fmt::format("{:.0f}", 100 * share);
                           });
-  }
   return text;
 }
 
@@ -180,7 +189,7 @@ std::string leaderboard_text(const Leaderboard& board) {
     text += families_text(board, std::string(score.title),
                           [&](const PooledScores& scores) { return score_text(scores, score); });
   text += delays_text(board);
-  text += ceiling_text(board);
+  text += reference_text(board);
   return fmt::format("{}\n{}\n{}{}{}", text, legend_text(board), nobody_text(board), silences_text(board),
                      troubles_text(board));
 }

@@ -24,13 +24,17 @@ std::vector<std::string> legend_sentences(const Leaderboard& board) {
                   "flagged loops "
                   "the affected CV named; S, in {2:g} % of all loops with a fault the right source named.",
                   100 * kFewestAnswers, 100 * kPassingFalseAlarms, 100 * kPassingShare)};
-  if (std::any_of(board.overall.begin(), board.overall.end(),
-                  [](const PooledScores& scores) { return scores.has_ceiling(); }))
-    sentences.push_back(fmt::format(
-        "The ceiling is what the method `{}` reaches, which knows what the study draws. Above 100 % "
-        "of it is where a study draws what it does not know of, or where chance was kinder.",
-        kCeilingMethod));
+  if (has_reference(board))
+    sentences.push_back(
+        fmt::format("The reference is the method `{}`, which knows what the study draws. It is shown in the "
+                    "families that "
+                    "draw exactly what it knows of; above 100 % of it chance was kinder.",
+                    kReferenceMethod));
   return sentences;
+}
+
+std::string label_of(const std::string& method) {
+  return method == kReferenceMethod ? "reference" : method;
 }
 
 char letter_of(LeaderboardTask task) {
@@ -87,10 +91,14 @@ std::string delay_words(const MethodScores& scores) {
 
 std::vector<std::string> passed_by_nobody(const Leaderboard& board, LeaderboardTask task) {
   std::vector<std::string> names;
+  const auto somebody_passes = [&](std::size_t family) {
+    for (std::size_t method = 0; method < board.methods.size(); ++method)
+      if (board.methods[method] != kReferenceMethod && passes(board.by_family[method][family], task))
+        return true;
+    return false;
+  };
   for (std::size_t family = 0; family < board.families.size(); ++family)
-    if (std::none_of(
-            board.by_family.begin(), board.by_family.end(),
-            [&](const std::vector<PooledScores>& of_method) { return passes(of_method[family], task); }))
+    if (!somebody_passes(family))
       names.push_back(board.families[family].name);
   return names;
 }

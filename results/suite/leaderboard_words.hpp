@@ -14,6 +14,9 @@ std::string marks_of(const PooledScores& scores);
 /// What the marks mean, and what is passed: a sentence each.
 std::vector<std::string> legend_sentences(const Leaderboard& board);
 
+/// What a method is called where people read it: "reference" for kReferenceMethod.
+std::string label_of(const std::string& method);
+
 /// 'D', 'L', 'S'
 char letter_of(LeaderboardTask task);
 

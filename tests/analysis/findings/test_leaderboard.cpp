@@ -82,30 +82,39 @@ TEST_CASE("loops of the cells are added up, by family, by plant and over all", "
   CHECK(board.overall[0].of("no_such_rate") == nullptr);
 }
 
-TEST_CASE("every score is held against that of the ceiling on the same cells", "[leaderboard]") {
-  const auto cell = [](std::size_t family, const HitsOf& of_method, const HitsOf& of_ceiling) {
+TEST_CASE("the reference counts in the families that are its own alone, and shares of it stand there",
+          "[leaderboard]") {
+  const auto cell = [](std::size_t family, const HitsOf& of_method, const HitsOf& of_reference) {
     return CellScores{
-        .plant = 0, .family = family, .methods = {scores_with(of_method), scores_with(of_ceiling)}};
+        .plant = 0, .family = family, .methods = {scores_with(of_method), scores_with(of_reference)}};
   };
   const std::vector<CellScores> cells{cell(0, {{"located", {6, 10}}, {"false_alarm_healthy", {1, 9}}},
                                            {{"located", {15, 20}}, {"false_alarm_healthy", {1, 9}}}),
-                                      cell(1, {{"located", {3, 10}}}, {{"located", {0, 20}}})};
-  const Leaderboard board = make_leaderboard(two_families(), {"m", "ceiling"}, "1.0", cells);
+                                      cell(1, {{"located", {3, 10}}}, {{"located", {20, 20}}})};
+  Suite suite = two_families();
+  suite.families[0].has_reference = true;
+  const Leaderboard board = make_leaderboard(suite, {"m", "ceiling"}, "1.0", cells);
+  CHECK(has_reference(board));
   const std::vector<LeaderboardScore> known = leaderboard_scores();
   const auto share = [&](const PooledScores& scores, std::string_view rate) {
     for (std::size_t i = 0; i < known.size(); ++i)
       if (known[i].rate == rate)
-        return scores.shares_of_ceiling[i];
+        return scores.shares_of_ceiling.at(i);
     return 0.0;
   };
   CHECK(share(board.by_family[0][0], "located") == Approx(0.6 / 0.75));
   CHECK(share(board.by_family[1][0], "located") == 1.0);
-  CHECK(share(board.overall[0], "located") == Approx(0.45 / 0.375));
-  CHECK(std::isnan(share(board.by_family[0][1], "located")));              // of nothing
   CHECK(std::isnan(share(board.by_family[0][0], "source")));               // not counted
   CHECK(std::isnan(share(board.by_family[0][0], "false_alarm_healthy")));  // low is good
-  CHECK(board.overall[0].has_ceiling());
-  CHECK_FALSE(make_leaderboard(two_families(), {"m", "n"}, "1.0", cells).overall[0].has_ceiling());
+  CHECK(board.by_family[0][1].shares_of_ceiling.empty());
+  CHECK(board.by_family[1][1].cells == 0);
+  CHECK(board.by_family[1][1].of("located")->total == 0);
+  CHECK(board.by_plant[1][0].cells == 0);
+  CHECK(board.overall[1].cells == 0);
+  CHECK(board.overall[0].of("located")->total == 20);
+  CHECK(board.overall[0].shares_of_ceiling.empty());
+  CHECK_FALSE(has_reference(make_leaderboard(suite, {"m", "n"}, "1.0", cells)));
+  CHECK_FALSE(has_reference(make_leaderboard(two_families(), {"m", "ceiling"}, "1.0", cells)));
 }
 
 TEST_CASE("a cell that was not run counts nowhere, and keeps its place", "[leaderboard]") {

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "scenarios/study.hpp"
+
+namespace mpm {
+
+/// What becomes of a file in the place of an output that cannot be read as an archive.
+enum class Unreadable { kept, replaced };
+
+/// Refuses to replace the archive of another study or seed, and, where `unreadable` says so, a file that is
+/// no archive that this program reads; an empty file is nothing. `study` is that of the new archive, with its
+/// seed, as study_to_run() gives it. An archive of the same study and seed may be replaced: it can be made
+/// again by the same command. Throws InputError, which says what is there and names `--overwrite`.
+void require_replaceable(const std::filesystem::path& output, const Study& study,
+                         Unreadable unreadable = Unreadable::kept);
+
+}  // namespace mpm
