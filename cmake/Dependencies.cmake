@@ -12,7 +12,7 @@ find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto) # SHA-256 of archives
 find_package(Threads REQUIRED)
 find_package(OpenMP 4.5 REQUIRED COMPONENTS CXX) # part of the compiler
 
-find_package(Ceres 2.1 REQUIRED) # analysis/prediction_error_solver.cpp
+find_package(Ceres 2.1 REQUIRED) # analysis/identification/prediction_error_search.cpp
 
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip) # its CMake file asks for the programs as well

@@ -32,7 +32,7 @@ enum class SunIndex : std::int8_t {
   mqi = 1,   ///< (2.4) of that CV alone, without it: the square
 };
 
-/// Of the method of Sun et al. (2013), analysis/assessment/sun_method.
+/// Of the method of Sun et al. (2013), analysis/methods/sun_method.
 struct SunOptions {
   double tolerance = 0.85;  ///< MQI and iMQI below it show a poor model (2.4.2)
   SunIndex index = SunIndex::imqi;
@@ -57,7 +57,7 @@ enum class DesignedOrderCriterion : std::int8_t {
   bic = 2,             ///< smallest n log V + p log n over the record
 };
 
-/// Of the method of Badwe et al. (2010), analysis/assessment/badwe2010.
+/// Of the method of Badwe et al. (2010), analysis/methods/badwe2010_method.
 struct Badwe2010Options {
   int smallest_order = 3, largest_order = 7;  ///< of the output-error models (3.3.2)
   DesignedOrderCriterion criterion = DesignedOrderCriterion::record_fit;
@@ -66,7 +66,7 @@ struct Badwe2010Options {
   bool operator==(const Badwe2010Options&) const = default;
 };
 
-/// Of the method of Yu and Qin (2008), analysis/assessment/yu_qin.
+/// Of the method of Yu and Qin (2008), analysis/methods/yu_qin_method.
 struct YuQinOptions {
   double confidence = 0.95;  ///< of the limits of eigenvalues and angles
   int largest_lag = 0;       ///< of the sum over autocorrelations (2.9); 0: all lags
@@ -75,7 +75,7 @@ struct YuQinOptions {
   bool operator==(const YuQinOptions&) const = default;
 };
 
-/// Of a monitor of the simulation errors alone, analysis/assessment/sse_method.
+/// Of a monitor of the simulation errors alone, analysis/methods/sse_method.
 struct SseOptions {
   double threshold =
       1.5;  ///< a CV is flagged when its mean squared error is above so many times the benchmark's

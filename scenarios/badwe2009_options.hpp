@@ -4,14 +4,14 @@
 
 namespace mpm {
 
-/// The model by which a signal is freed of the effect of others (analysis/assessment/decorrelation).
+/// The model by which a signal is freed of the effect of others (analysis/methods/decorrelation).
 enum class DecorrelationModel : std::int8_t {
   output_error = 0,  ///< output-error models by search (2.5), (2.6)
   fir = 1,           ///< regression on Laguerre filters, the finite impulse response for a pole of 0
 };
 
 /// How noise is taken out of the signals before they are correlated (A1.2, step 1;
-/// analysis/assessment/noise_filter).
+/// analysis/methods/noise_filter).
 enum class NoiseFilter : std::int8_t {
   /// `external` where at least as many signals from outside move as there are MVs to be told apart, `none`
   /// where fewer do.

@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// A method of assessment that is a program of its own (analysis/methods/program_method).
+/// A method of assessment that is a program of its own (analysis/methods/outside_program).
 struct MethodProgram {
   std::string name;                  ///< of the method
   std::vector<std::string> command;  ///< the program and its arguments

@@ -66,7 +66,7 @@ enum class SensitivityStructure {
   by_instant,       ///< that which is active at each sample, from the data
 };
 
-/// What changes when the constraint set does (analysis/nominal_estimator).
+/// What changes when the constraint set does (analysis/sensitivity/nominal_estimator).
 enum class SensitivitySwitching { output, input };
 
 /// What T0 is: the step responses of the controller on its own model, or Box-Jenkins models identified in a

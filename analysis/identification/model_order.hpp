@@ -17,7 +17,7 @@ struct PathOrder {
   friend bool operator==(const PathOrder&, const PathOrder&) = default;
 };
 
-/// Orders of a polynomial model of one output (analysis/polynomial_model.hpp).
+/// Orders of a polynomial model of one output (analysis/identification/polynomial_model.hpp).
 struct ModelOrder {
   Eigen::Index na = 0;            ///< order of A
   std::vector<PathOrder> inputs;  ///< one path an input

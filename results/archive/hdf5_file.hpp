@@ -140,8 +140,8 @@ class Hdf5Group {
 ///
 /// The library leaves wreckage behind when a disk is full or it is killed, so that a file is put in its place
 /// by write_file_atomically(): the finished image, or the temporary file that was made on the disk. It holds
-/// no time stamps: the same content is the same bytes. It is read after its seal (results/file_seal.hpp) has
-/// shown that it is what was written.
+/// no time stamps: the same content is the same bytes. It is read after its seal
+/// (results/files/file_seal.hpp) has shown that it is what was written.
 class Hdf5File {
  public:
   /// An empty file in memory. `name` is for messages.

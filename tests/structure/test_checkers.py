@@ -11,6 +11,7 @@ import check_format
 import check_hygiene
 import check_includes
 import check_links
+import check_paths
 import check_used_names
 
 HEADER = "#pragma once\n"
@@ -48,6 +49,25 @@ class CheckerTest(unittest.TestCase):
         self.assertEqual(len(complaints), 1, complaints)
         self.assertTrue(complaints[0].startswith(where), complaints)
         self.assertIn(text, complaints[0])
+
+
+class Paths(CheckerTest):
+    def test_files_folders_names_without_suffix_and_stars_are_found(self):
+        self.assert_clean(check_paths, {
+            "plants/fast/a.cpp": "// plants/fast, plants/fast/a.cpp, plants/fast/a, plants/fast/*.cpp and b.hpp\n",
+            "plants/b.hpp": HEADER,
+            "docs/page.md": "See plants/fast/a (and NAME_method.cpp), but not ../plants/gone or that/plants/gone.\n"})
+
+    def test_a_path_that_is_not_there_is_found_in_comments_and_documents(self):
+        self.assert_one(check_paths, {"plants/a.hpp": HEADER + "/// As plants/gone has it.\n"}, "plants/a.hpp:2:", "plants/gone")
+        self.assert_one(check_paths, {"docs/page.md": "Read plants/gone.hpp.\n"}, "docs/page.md:1:", "plants/gone.hpp")
+        self.assert_one(check_paths, {"tests/a.py": '"""About plants/gone*."""\n'}, "tests/a.py:1:", "plants/gone*")
+
+    def test_a_header_that_no_folder_has_is_found(self):
+        self.assert_one(check_paths, {"plants/a.hpp": HEADER + "// the list of gone.hpp\n"}, "plants/a.hpp:2:", "gone.hpp")
+
+    def test_code_is_not_read(self):
+        self.assert_clean(check_paths, {"plants/a.cpp": 'const char* x = "plants/gone";\n'})
 
 
 class Includes(CheckerTest):
