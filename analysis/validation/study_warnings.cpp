@@ -31,6 +31,12 @@ std::string with_unit(double value, std::string_view unit) {
   return unit == "1" ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
 }
 
+/// Every digit of what people count, three of what nobody does.
+std::string count_text(double count) {
+  constexpr double kMostCounted = 1e9;
+  return count < kMostCounted ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
+}
+
 std::string_view cv_unit(const Study& study, Eigen::Index cv) {
   return study.plant.cvs[static_cast<std::size_t>(cv)].unit;
 }
@@ -87,15 +93,15 @@ void check_times(const Study& study, Warnings& warnings) {
                         fmt::format("{} samples, {}, are shorter than the settling time of {}, {}",
                                     study.controller.prediction_horizon, with_unit(horizon, unit),
                                     slowest.channel, with_unit(slowest.time, unit)),
-                        fmt::format("{:.0f} samples see it settle", std::ceil(slowest.time / Ts))});
+                        fmt::format("{} samples see it settle", count_text(std::ceil(slowest.time / Ts)))});
   const int samples = study.simulation.samples;
   if (samples * Ts < 3.0 * slowest.time)
     warnings.push_back(
         {"simulation.samples",
          fmt::format("a record of {}, {:.1f} settling times of {}", with_unit(samples * Ts, unit),
                      samples * Ts / slowest.time, slowest.channel),
-         fmt::format("variances need several: {:.0f} samples are three of them",
-                     std::ceil(3.0 * slowest.time / Ts))});
+         fmt::format("variances need several: {} samples are three of them",
+                     count_text(std::ceil(3.0 * slowest.time / Ts)))});
   else if (samples < kFewSamples)
     warnings.push_back(
         {"simulation.samples", fmt::format("{}", samples), "variances of so few samples are mostly chance"});
@@ -193,8 +199,8 @@ void check_noise(const Study& study, Warnings& warnings) {
                           "without noise every method looks better than it is"});
     else if (scale > 0.0 && noise > kLargestNoiseShare * scale)
       warnings.push_back({key,
-                          fmt::format("{} for {} is {:.0f} % of {}, {}", with_unit(noise, cv_unit(study, cv)),
-                                      name_of(study.plant.cvs, cv), 100.0 * noise / scale, what,
+                          fmt::format("{} for {} is {} % of {}, {}", with_unit(noise, cv_unit(study, cv)),
+                                      name_of(study.plant.cvs, cv), count_text(100.0 * noise / scale), what,
                                       with_unit(scale, cv_unit(study, cv))),
                           "1 to 2 % are usual; is it a variance, or in another unit?"});
   }

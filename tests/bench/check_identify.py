@@ -43,6 +43,13 @@ def main(program, fmu, base):
         assert abs(channel["gain"] - gain) <= 1e-5 * abs(gain) and channel["warning"] is None, (channel, written)
         assert channel["numerator"] and len(channel["denominator"]) >= 2 and channel["explained"] > 0.999, channel
 
+    # Steps that move nothing give no model; one of them alone is told.
+    tiny = [f"{step}=1e-12" for step in ("u1", "u2", "u3", "d1", "d2")]
+    result = run("identify", "chapter6", *[word for step in tiny for word in ("--step", step)], code=2)
+    assert "no channel: " in result.stderr and "move no CV" in result.stderr and not result.stdout, result
+    result = run("identify", "chapter6", "--step", tiny[0])
+    assert "warning: the step of u1 moves no CV" in result.stderr and len(channels(result.stdout)) == 28, result
+
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         shutil.copy(fmu, folder / "tank.fmu")

@@ -426,6 +426,17 @@ def check_programs(outside, octave):
     assert "mine-py" in outside.run("summary", path)
 
 
+def check_beside_named(outside, source):
+    """A program of --method-file assesses whatever --methods names besides."""
+    methods = outside.folder / "beside.toml"
+    methods.write_text(f"[method.mine]\ncommand = ['{sys.executable}', '{source}/examples/mine.py']\n")
+    archive = outside.folder / "beside.h5"
+    for words, expected in ((["--methods", "order"], ["order", "mine"]), (["--methods", "mine,order"], ["mine", "order"])):
+        outside.run("run", "wood-berry", "--experiments", 2, "-o", archive, "--quiet", "--method-file", methods, *words)
+        with h5py.File(archive) as file:
+            assert list(file["method"].asstr()) == expected, (words, list(file["method"].asstr()))
+
+
 def check_changed_programs(outside):
     """A name is not enough: behind it the command, its files and the options have to be those of before."""
     program, methods, out = (outside.folder / name for name in ("own.py", "own.toml", "own.h5"))
@@ -475,6 +486,7 @@ def main(program, source, octave=""):
         check_refusals(outside, verdicts, sha256)
         check_programs(outside, octave)
         check_odd_programs(outside)
+        check_beside_named(outside, source)
         check_program_refusals(outside)
         check_changed_programs(outside)
 

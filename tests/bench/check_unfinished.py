@@ -51,6 +51,10 @@ def main(program, study):
         suite = run("suite", "quick", "-o", folder / "suite", "--experiments", 2, "--dry-run").stdout
         cells = re.findall(r"^[\w-]+\.[\w-]+: 42 loops, ", suite, re.MULTILINE)  # 40 of them calibrate
         assert f"together: {len(cells)} studies, {42 * len(cells)} loops" in suite and len(cells) > 3, suite
+        for several in sweep, suite:
+            assert re.search(r"^time: about [\d.]+ (s|min|h), from the first loops of \d of them$", several, re.MULTILINE), several
+        for command in "compare", "reproduce":  # which say no time do not promise one
+            assert "how long" not in run(command, "--help").stdout
         assert not list(folder.iterdir()), list(folder.iterdir())
 
         # A study from stdin is the study of the file: the same archive, which a run of the file goes on with.

@@ -75,6 +75,45 @@ TEST_CASE("yu-qin: the CV that varies more is named, the one that varies less is
   CHECK(same.number("i_v") == Approx(1.0));
 }
 
+TEST_CASE(
+    "variance-ratio: the variance over that of the benchmark, about setpoints, against the band of impact") {
+  const AssessedLoop benchmark = made_up_loop(400, 1);
+  AssessedLoop loop = benchmark;
+  loop.y.row(1) = loop.y_set.row(1) + 2.0 * (loop.y - loop.y_set).row(1);
+  loop.y.row(2) = loop.y_set.row(2) + 0.95 * (loop.y - loop.y_set).row(2);
+  loop.y_sim.setZero();  // it knows no model
+  const Assessment found = Setting(benchmark).assess("variance-ratio", loop);
+  REQUIRE(found.status == AssessmentStatus::ok);
+  CHECK(found.flagged);
+  CHECK(found.number("ratio", 0) == 1.0);
+  CHECK(found.number("ratio", 1) == Approx(4.0));
+  CHECK(found.number("ratio", 2) == Approx(0.9025));  // within 0.8 to 1.2
+  CHECK(found.score == Approx(3.0));
+  CHECK(found.worst_cv() == 1);
+  CHECK(found.cvs[1].flagged == true);
+  CHECK(found.cvs[2].flagged == false);
+
+  // Another size of the steps under the same errors is no change; less variance than the band has is one.
+  AssessedLoop moved = benchmark;
+  moved.y.array() += 7.0;
+  moved.y_set.array() += 7.0;
+  CHECK_FALSE(Setting(benchmark).assess("variance-ratio", moved).flagged);
+  AssessedLoop calm = benchmark;
+  calm.y.row(0) = calm.y_set.row(0) + 0.8 * (calm.y - calm.y_set).row(0);
+  CHECK(Setting(benchmark).assess("variance-ratio", calm).flagged);
+
+  // A gap is closed along a straight line; a CV that stands still in both is passed over.
+  AssessedLoop gaps = benchmark;
+  gaps.y(0, 17) = kNone;
+  CHECK_FALSE(Setting(benchmark).assess("variance-ratio", gaps).flagged);
+  AssessedLoop still = benchmark;
+  still.y.row(0) = still.y_set.row(0);
+  const Assessment passed_over = Setting(still).assess("variance-ratio", still);
+  CHECK_FALSE(passed_over.flagged);
+  CHECK_FALSE(passed_over.cvs[0].flagged.has_value());
+  CHECK(passed_over.score == 0.0);
+}
+
 TEST_CASE("yu-qin: when every direction is worse, the CV of the worst comes first") {
   const AssessedLoop benchmark = made_up_loop(400, 9);
   AssessedLoop loop = benchmark;
