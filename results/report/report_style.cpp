@@ -78,7 +78,7 @@ table { border-collapse: collapse; font-size: 0.9rem; line-height: 1.35; font-va
 th, td { padding: 0.36rem 0.65rem; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
 th:first-child, td:first-child { padding-left: 0.3rem; }
 td.number, th.number { text-align: right; white-space: nowrap; }
-td.number .words { display: block; white-space: normal; }
+td.number .wraps { white-space: normal; }
 thead th { border-bottom: 1.5px solid var(--ink); vertical-align: bottom; font-weight: 600; }
 thead th.number { white-space: normal; }
 tbody th { font-weight: 400; }

@@ -14,9 +14,9 @@ std::string cell_html(const ReproducedCell& cell) {
   if (cell.cell.thesis)
     html += fmt::format(" <small>({:g})</small>", *cell.cell.thesis);
   if (cell.agrees() == false)
-    html = fmt::format("<strong>{} &#10007;</strong><small class=\"words\">{}, thesis: {}</small>", html,
+    html = fmt::format("<strong>{} &#10007;</strong><br><small>{}, thesis: {}</small>", html,
                        html_text(cell.our_verdict.value_or("no verdict")), html_text(*cell.thesis_verdict));
-  return html;
+  return wrapping(html);
 }
 
 std::string table_html(const ReproducedTable& table, std::size_t index) {

@@ -69,6 +69,10 @@ std::string table_rows_text(const ThesisTable& table, const std::vector<TextRow>
   return text;
 }
 
+std::string wrapping(const std::string& html) {
+  return fmt::format("<span class=\"wraps\">{}</span>", html);
+}
+
 std::string table_section_html(const ThesisTable& table, const std::string& html_table, std::size_t index) {
   std::string text;
   for (const VerdictRule& rule : table.rules)

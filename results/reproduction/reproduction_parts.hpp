@@ -30,6 +30,9 @@ struct TextRow {
 /// Number, title, heads and rows of a table, in columns as wide as they have to be.
 std::string table_rows_text(const ThesisTable& table, const std::vector<TextRow>& rows);
 
+/// A cell of numbers and words that may be broken between them: a table of twelve CVs has to fit on a screen.
+std::string wrapping(const std::string& html);
+
 /// A section of a page: the title of the table, `html_table`, its rules and its note. `index` is its number
 /// on the page.
 std::string table_section_html(const ThesisTable& table, const std::string& html_table, std::size_t index);

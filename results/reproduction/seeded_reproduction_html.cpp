@@ -16,9 +16,9 @@ std::string cell_html(const SeededCell& cell) {
   if (cell.cell.thesis)
     html += fmt::format(" <small>({:g})</small>", *cell.cell.thesis);
   if (!cell.share)
-    return html;
+    return wrapping(html);
   const std::string share = fmt::format("{:.0f} %", 100.0 * *cell.share);
-  return html + (*cell.share < 0.5 ? "<br><strong>" + share + "</strong>" : "<br>" + share);
+  return wrapping(html + (*cell.share < 0.5 ? "<br><strong>" + share + "</strong>" : "<br>" + share));
 }
 
 std::string table_html(const SeededTable& table, std::size_t index) {

@@ -162,9 +162,20 @@ def main(program, root, chromium=""):
         # The page needs nothing else and opens without complaint.
         parsed = check_page(page.read_text(encoding="utf-8"))
         assert [a["id"] for tag, a in parsed.elements if tag == "section"] == ["table-4.5"]
+        assert "the thesis's in brackets" in page.read_text(encoding="utf-8")
+        wide, words = folder / "wide.html", folder / "words.html"
+        run("reproduce", "7.1", "-o", wide)  # twelve CVs
+        run("reproduce", "figure2.8", "-o", words)  # of which the thesis gives no number
+        shown = words.read_text(encoding="utf-8")
+        assert "in brackets" not in shown and "the thesis gives no numbers here, only verdicts" in shown
         if chromium:
             with Browser(chromium, folder) as browser:
                 check_shown(browser, page)
+                check_shown(browser, wide)
+                browser.open(wide.as_uri(), 1280)
+                hidden = browser.evaluate("Math.max(...[...document.querySelectorAll('.scroll')].map("
+                                          "box => box.scrollWidth - box.clientWidth))")
+                assert hidden <= 0, hidden
 
         # A loop that stops: no number, no NaN, and the reason.
         studies, tables = folder / "studies", folder / "tables"
