@@ -192,13 +192,14 @@ class NetcdfReader {
   void add_variable(const std::string& variable) {
     const std::vector<std::string> dimensions = root_.dimensions(variable);
     const std::vector<std::size_t> shape = root_.shape(variable);
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      if (dimensions[i] == dimension_ && shape[i] != samples_)
+        throw InputError(fmt::format("{}: variable '{}'", columns_.file, variable),
+                         fmt::format("{} samples", shape[i]),
+                         fmt::format("{}, as '{}' has them", samples_, along_));
     if (dimensions.empty() || dimensions.back() != dimension_ || dimensions.size() > 3 ||
         variable == dimension_ || !(root_.is_number(variable) || root_.is_text(variable)))
       return;
-    if (shape.back() != samples_)
-      throw InputError(fmt::format("{}: variable '{}'", columns_.file, variable),
-                       fmt::format("{} samples", shape.back()),
-                       fmt::format("{}, as '{}' has them", samples_, along_));
     if (dimensions.size() == 3 && shape.front() != 1) {
       several_loops_ = true;
       return;

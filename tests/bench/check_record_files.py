@@ -83,6 +83,7 @@ def check_netcdf(files, right):
     refused(lambda f: f.pop("time"), "no variable of the time", "data.time")
     refused(lambda f: f.move("xD", "AI101"), "no column 'xD'", "AI101")
     refused(None, "no variable 'stamp'", data="time = 'stamp'")
+    check_foreign(files, refused)
     stream = random.Random(5)
     whole = files.write("whole.nc").read_bytes()
     for share in (0.3, 0.9):  # cut off: a sentence, no crash
@@ -90,6 +91,88 @@ def check_netcdf(files, right):
         assert "found" in files.assess("cut.nc", code=2)
     (files.folder / "noise.nc").write_bytes(whole[:8] + bytes(stream.randrange(256) for _ in range(3000)))
     assert "no HDF5 file" in files.assess("noise.nc", code=2)
+
+
+def check_foreign(files, refused):
+    """Lengths, attributes and places of values that do not fit are refused by name, in the order of the reader."""
+    def replaced(name, values, **attributes):
+        def change(file):
+            old = file[name]
+            scale = file["time"]
+            kept = dict(attributes)
+            del file[name]
+            new = file.create_dataset(name, data=values(old[:] if old.shape else old[()]))
+            new.dims[0].attach_scale(scale)
+            new.attrs.update(kept)
+        return change
+    count = len(files.rows)
+    refused(replaced("xD", lambda v: v[:-1]), "variable 'xD'", f"found {count - 1} samples", f"{count}, as 'time'")
+    refused(replaced("R", lambda v: numpy.append(v, 0.0)), "variable 'R'", f"found {count + 1} samples")
+    refused(replaced("q", lambda v: v[:5]), "variable 'q'", "found 5 samples")
+    refused(replaced("q", lambda v: numpy.stack([v, v])), "variable 'q'", f"{count}, as 'time'")
+    for name in ("scale_factor", "add_offset", "_FillValue", "missing_value"):
+        refused(replaced("xD", lambda v: v, **{name: "0.1"}), f"attribute 'xD/{name}'", "no number")
+    refused(replaced("xD", lambda v: v, scale_factor=[1.0, 2.0]), "attribute 'xD/scale_factor'", "several values")
+    for value in (0.0, float("nan"), float("inf")):
+        refused(replaced("xD", lambda v: v, scale_factor=value), "scale_factor and add_offset of 'xD'", "finite")
+    refused(lambda f: f["time"].attrs.update({"units": 3}), "attribute 'time/units'", "no text")
+    for units in ("minutes since 0024-03-01", "days since 1-1-1", "days since 24-03-01", "days since 1582-10-01"):
+        refused(None, f"'{units.split(' since ')[1]}'", "four digits", units=units)
+    refused(lambda f: f["time"].write_direct(numpy.full(count, 1e300)), "years 1583 to 9999")
+
+    def external(file):
+        del file["xD"]
+        values = files.folder / "values.bin"
+        values.write_bytes(b"\0" * 8 * count)
+        new = file.create_dataset("xD", (count,), "f8", external=[(str(values), 0, 8 * count)])
+        new.dims[0].attach_scale(file["time"])
+
+    def linked(file):
+        with h5py.File(files.folder / "other.nc", "w") as other:
+            other["xD"] = numpy.zeros(count)
+        del file["xD"]
+        file["xD"] = h5py.ExternalLink(str(files.folder / "other.nc"), "xD")
+
+    def virtual(file):
+        linked(file)
+        del file["xD"]
+        layout = h5py.VirtualLayout((count,), "f8")
+        layout[:] = h5py.VirtualSource(str(files.folder / "other.nc"), "xD", (count,))
+        file.create_virtual_dataset("xD", layout).dims[0].attach_scale(file["time"])
+
+    def huge(file):
+        del file["xD"]
+        file.create_dataset("xD", (1 << 40, count), "f8", chunks=(1, count)).dims[1].attach_scale(file["time"])
+    for change in (external, linked, virtual):
+        refused(change, "variable '/xD'", "its values lie in another file")
+    refused(huge, "variable '/xD'", "too many values")
+
+
+def check_written(files):
+    """CSV of others with quotes: read row by row, or refused by line; values that nobody has measured are missing."""
+    text = text_of(files.rows).splitlines()
+    noted = [text[0] + ",note"] + [line + ",ok" for line in text[1:]]
+    inches = list(noted)
+    for row in (101, 111):
+        inches[row] = text[row] + ',5" pipe'
+    (files.folder / "inches.csv").write_text("\n".join(inches))
+    assert files.assess("inches.csv")["samples"] == len(files.rows)
+    opened = list(noted)
+    opened[201] = text[201] + ',"bad'
+    (files.folder / "open.csv").write_text("\n".join(opened))
+    assert "open.csv:202: found a quote that is not closed" in files.assess("open.csv", code=2)
+    fillers = [dict(row, xD=-9999.0 if 61 <= k < 64 else row["xD"]) for k, row in enumerate(files.rows)]
+    (files.folder / "clean.csv").write_text(text_of(files.rows))
+    (files.folder / "fillers.csv").write_text(text_of(fillers))
+    clean, answer = files.assess("clean.csv"), files.assess("fillers.csv")
+    assert verdict(answer) == verdict(clean), answer["methods"][0]
+    assert any("3 values cannot be measurements" in warning for warning in answer["warnings"]), answer["warnings"]
+    assert not any("cannot be measurements" in warning for warning in clean["warnings"]), clean["warnings"]
+    moved = [dict(row, xB=row["xB"] + (0.75 if k >= 100 else 0.0)) for k, row in enumerate(files.rows)]
+    (files.folder / "moved.csv").write_text(text_of(moved))
+    warned = files.assess("moved.csv")["warnings"]
+    assert any("xB does not follow its setpoint 0" in warning for warning in warned), warned
+    assert not any("does not follow" in warning for warning in clean["warnings"]), clean["warnings"]
 
 
 def check_candidates(files):
@@ -165,6 +248,7 @@ def main(program, study):
     with tempfile.TemporaryDirectory() as name:
         files = Files(program, pathlib.Path(name), study)
         check_netcdf(files, (True, "xB", "mpm", ("xB", "S", "dead_time")))
+        check_written(files)
         check_candidates(files)
         check_benchmark(files)
         check_several_faults(files)

@@ -56,7 +56,8 @@ using namespace mpm;
 using namespace mpm::testing;
 namespace fs = std::filesystem;
 
-constexpr unsigned kPatience = 60;  // s for one input
+constexpr std::uint64_t kNetcdfSamples = 60;  // of foreign_record.nc
+constexpr unsigned kPatience = 60;            // s for one input
 
 /// One kind of input: a whole one, how it is damaged, and how it is read.
 struct Kind {
@@ -64,6 +65,7 @@ struct Kind {
   std::vector<std::string> whole;
   bool is_text = true;
   std::function<void(const std::string& content)> read;
+  std::vector<std::pair<std::string, std::string>> swaps = {};  ///< what people and programs write otherwise
   std::int64_t accepted = 0;
   std::int64_t refused = 0;
   std::int64_t crashed = 0;  ///< refused since HDF5 crashed, in a process of its own
@@ -131,6 +133,47 @@ MethodDescription answering_all() {
   return method;
 }
 
+/// What is written otherwise in records: quotes, stamps, fillers, line ends.
+std::vector<std::pair<std::string, std::string>> csv_swaps() {
+  return {{";", ";\""},           {";", "\";"},      {"\n", "\"\n"},        {";0", ";5\" pipe"},
+          {"\n", "\r"},           {":00;", ":00Z;"}, {":00;", ":00 PM;"},   {":00;", ":00+99:99;"},
+          {" 12:", " 24:"},       {" 12:", " 99:"},  {"2024", "0024"},      {"2024-03-01 ", "1709251200"},
+          {";0", ";-9999"},       {";0", ";1e308"},  {";0", ";9.96921e36"}, {";0", ";\"\"\"0\"\"\""},
+          {"time", "\"ti\nme\""}, {"time", ""},      {";xD", ";=xD"},       {"\n", ";\n"}};
+}
+
+std::vector<std::pair<std::string, std::string>> verdict_swaps() {
+  return {{",", ",\""},
+          {"\"\"", "\""},
+          {"\n", "\"\n"},
+          {",", ";"},
+          {"1,yes", "1.0,1.0"},
+          {"loop", ",loop"},
+          {"\n", "\r"},
+          {"7.5", "nan"},
+          {"2,", "2.0,"},
+          {"#", "\xEF\xBB\xBF#"},
+          {"0,0", "0,WAHR"},
+          {"-inf", "7,5"},
+          {"flagged,", "flagged,window,"}};
+}
+
+/// Other lengths of its variables and other attributes in a netCDF-4 file of kNetcdfSamples samples.
+std::vector<std::pair<std::string, std::string>> netcdf_swaps() {
+  const auto length = [](std::uint64_t samples) {
+    return std::string(reinterpret_cast<const char*>(&samples), sizeof samples);
+  };
+  std::vector<std::pair<std::string, std::string>> swaps{{"2024-", "0024-"},
+                                                         {"minutes", "months "},
+                                                         {"scale_factor", std::string("_FillValue\0\0", 12)},
+                                                         {"add_offset", "_FillValue"},
+                                                         {"standard", "360_days"}};
+  for (const std::uint64_t other : {0ULL, 1ULL, 59ULL, 61ULL, 6000ULL, 1ULL << 40, ~0ULL})
+    for (int often = 0; often < 3; ++often)
+      swaps.emplace_back(length(kNetcdfSamples), length(other));
+  return swaps;
+}
+
 /// What no reader of studies, sweeps, suites, methods and gates takes for its own stays the text of a study.
 std::vector<Kind> text_kinds(const fs::path& folder, const fs::path& source) {
   const std::vector<std::string> studies{file_content(source / "tests/scenarios/data/small.toml"),
@@ -154,7 +197,8 @@ std::vector<Kind> text_kinds(const fs::path& folder, const fs::path& source) {
       {"records, CSV",
        {record_csv()},
        true,
-       [study](const std::string& text) { read_plant_record(study, text, "r.csv"); }},
+       [study](const std::string& text) { read_plant_record(study, text, "r.csv"); },
+       csv_swaps()},
       {"FMU description", {kFmu}, true, [](const std::string& xml) { parse_fmu_description(xml, "m.fmu"); }},
       {"answer of a method", {kAnswer}, true, [study, method = answering_all()](const std::string& text) {
          const auto answer = nlohmann::ordered_json::parse(text, nullptr, false);
@@ -185,7 +229,7 @@ Kind plant_answers(const fs::path& file) {
 }
 
 /// Archives, and what else is made of campaigns. `campaign` must outlive them.
-std::vector<Kind> campaign_kinds(const fs::path& folder, const Campaign& campaign) {
+std::vector<Kind> campaign_kinds(const fs::path& folder, const fs::path& source, const Campaign& campaign) {
   const fs::path archive = folder / "a.h5", shard = folder / "00000001.shard", part = folder / "part";
   write_archive(archive, campaign, findings_of(campaign));
   const std::string whole = file_content(archive);
@@ -218,28 +262,50 @@ std::vector<Kind> campaign_kinds(const fs::path& folder, const Campaign& campaig
     const std::vector<std::byte> file = sealed(bytes_of(content));
     return std::string(reinterpret_cast<const char*>(file.data()), file.size());
   };
-  return {{"archive", {whole}, false, from_file(archive, [](const fs::path& f) { read_archive(f); })},
-          {"records, netCDF",
-           {whole},
-           false,
-           [](const std::string& content) { netcdf_columns(bytes_of(content), "r.nc", "experiment"); }},
-          {"description of a part",
-           {file_content(part / "campaign.json")},
-           true,
-           from_file(part / "campaign.json", [part](const fs::path&) { read_part(part); })},
-          {"shard", {sealed_shard}, false, from_file(shard, read)},
-          {"shard, checksum right",
-           {sealed_shard.substr(0, sealed_shard.size() - kSealBytes)},
-           false,
-           [write_and_read = from_file(shard, read), resealed](const std::string& content) {
-             write_and_read(resealed(content));
-           }},
-          {"verdicts", {verdicts}, true, from_file(folder / "mine.csv", [&campaign](const fs::path& f) {
-             read_verdicts(f, "mine", campaign);
-           })}};
+  return {
+      {"archive", {whole}, false, from_file(archive, [](const fs::path& f) { read_archive(f); })},
+      {"records, netCDF",
+       {whole},
+       false,
+       [](const std::string& content) { netcdf_columns(bytes_of(content), "r.nc", "experiment"); }},
+      {"records, netCDF of others",
+       {file_content(source / "tests/reliability/foreign_record.nc")},
+       false,
+       [](const std::string& content) { netcdf_columns(bytes_of(content), "r.nc", "time"); },
+       netcdf_swaps()},
+      {"description of a part",
+       {file_content(part / "campaign.json")},
+       true,
+       from_file(part / "campaign.json", [part](const fs::path&) { read_part(part); })},
+      {"shard", {sealed_shard}, false, from_file(shard, read)},
+      {"shard, checksum right",
+       {sealed_shard.substr(0, sealed_shard.size() - kSealBytes)},
+       false,
+       [write_and_read = from_file(shard, read), resealed](const std::string& content) {
+         write_and_read(resealed(content));
+       }},
+      {"verdicts",
+       {verdicts},
+       true,
+       from_file(folder / "mine.csv", [&campaign](const fs::path& f) { read_verdicts(f, "mine", campaign); }),
+       verdict_swaps()}};
 }
 
-/// One input in 16 is random bytes, one the whole one; the others are changed in one to four places.
+/// One to three of the swaps of the kind, each at the next place behind a random one that has it.
+std::string swapped(const Kind& kind, std::string text, Mutator& mutator) {
+  for (std::size_t n = mutator.below(3) + 1; n > 0; --n) {
+    const auto& [from, to] = kind.swaps[mutator.below(kind.swaps.size())];
+    std::size_t at = text.find(from, mutator.below(text.size() + 1));
+    if (at == std::string::npos)
+      at = text.find(from);
+    if (at != std::string::npos)
+      text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+/// One input in 16 is random bytes, one the whole one; the others are changed in one to four places, half of
+/// those with swaps by these.
 std::string damaged(const Kind& kind, Mutator& mutator) {
   const std::string& whole = kind.whole[mutator.below(kind.whole.size())];
   const std::size_t way = mutator.below(16);
@@ -247,6 +313,8 @@ std::string damaged(const Kind& kind, Mutator& mutator) {
     return mutator.random_bytes(2000);
   if (way == 1)
     return whole;
+  if (!kind.swaps.empty() && way % 2 == 0)
+    return swapped(kind, whole, mutator);
   return kind.is_text && way < 14 ? mutator.mutated_toml(whole) : mutator.mutated_bytes(whole);
 }
 
@@ -309,7 +377,7 @@ int main(int argc, char** argv) {
     const Campaign campaign = drawn_campaign();
     std::vector<Kind> kinds = text_kinds(folder.path(), argv[1]);
     kinds.push_back(plant_answers(folder / "answers"));
-    for (Kind& kind : campaign_kinds(folder.path(), campaign))
+    for (Kind& kind : campaign_kinds(folder.path(), argv[1], campaign))
       kinds.push_back(std::move(kind));
     std::printf("the number of the input is in %s\n", at.c_str());
     std::fflush(stdout);

@@ -179,6 +179,46 @@ TEST_CASE("verdict file: the hash says whether calibration loops are among the o
   CHECK((std::isnan(others.calibration_scores[0]) && std::isnan(others.calibration_scores[1])));
 }
 
+TEST_CASE("verdict file: as spreadsheets and data frames write it") {
+  const Campaign campaign = five_loops();
+  const std::string plain =
+      with_hash(false, "loop,flagged,score,cv\n0,1,1.5,y1\n1,0,nan,\n2,1,-inf,y2\n3,0,0.25,\n");
+  const OutsideVerdicts right = verdicts_in(campaign, plain);
+  const std::string hash = plain.substr(0, plain.find('\n'));
+  for (const std::string& text :
+       {"\xEF\xBB\xBF" + hash +
+            "\r\nloop,flagged,score,cv\r\n0,True,1.5,y1\r\n1,FALSE,,\r\n2,YES,-inf,y2\r\n3,no,.25,\r\n",
+        hash + ";;;\nloop;flagged;score;cv\n0;WAHR;1,5;y1\n1;FALSCH;;\n2;1,0;-inf;y2\n3;0,0;0,25;\n",
+        hash + "\n,loop,flagged,score,cv\n0,0.0,1.0,1.5,y1\n1,1.0,0.0,NaN,y2\n2,2.0,1.0,-inf,y2\n3,3.0,0.0,0."
+               "25,\n",
+        hash + "\n\"loop\",\"flagged\",\"score\",\"cv\"\n\"0\",\"1\",1.5,\"y1\"\n# "
+               "none\n1,0,,\n2,1,-inf,y2\n3,0,0.25,\n"}) {
+    INFO(text);
+    const OutsideVerdicts read = verdicts_in(campaign, text);
+    CHECK(read.says_which_loops);
+    for (std::size_t i = 0; i < right.answers.size(); ++i) {
+      CHECK(read.answers[i].answered() == right.answers[i].answered());
+      CHECK(read.answers[i].flagged == right.answers[i].flagged);
+      CHECK((read.answers[i].score == right.answers[i].score ||
+             (std::isnan(read.answers[i].score) && std::isnan(right.answers[i].score))));
+    }
+  }
+}
+
+TEST_CASE("verdict file: one rule for quotes, and bounds for what others write") {
+  CHECK(refusal_of("loop,flagged,error\n0,,5\" pipe\n") == "accepted");
+  CHECK_THAT(refusal_of("loop,flagged,error\n0,,\"open\n1,1,\n2,0,\"ok\"\n"),
+             Catch::StartsWith("mine.csv:2: found a quote that is not closed on its line"));
+  CHECK_THAT(refusal_of("loop,flagged\n" + std::string(5'000'000, '7') + ",1\n"),
+             Catch::StartsWith("mine.csv:2: loop: found '777") && Catch::EndsWith("7'; allowed: 0 to 3"));
+  CHECK(refusal_of("loop,flagged\n" + std::string(5'000'000, '7') + ",1\n").size() < 200);
+  CHECK(refusal_of("loop,flagged," + std::string(5'000'000, 'x') + "\n0,1,1\n").size() < 200);
+  const OutsideVerdicts read =
+      verdicts_in(five_loops(), "loop,flagged,error\n0,," + std::string(5'000'000, 'x') + "\n");
+  for (const AssessmentRecord& answer : read.answers)
+    CHECK(answer.reason.size() < 2100);
+}
+
 TEST_CASE("verdict file: every kind of line that is no verdict is refused by line and column") {
   const std::string heading = "loop,window,flagged,score,cv,source,channels,parameter,candidate\n";
   const auto line = [&](const std::string& text) { return refusal_of(heading + text); };

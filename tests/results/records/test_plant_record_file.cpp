@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -50,8 +52,8 @@ TEST_CASE("a CSV text is read as RFC 4180 and spreadsheets have it", "[records]"
 
 TEST_CASE("time stamps are those of the calendar", "[records]") {
   const double noon = 1709294400.0;  // date -u -d "2024-03-01 12:00" +%s
-  CHECK(times_of({"2024-03-01 12:00", "2024-03-01T12:00:00Z", "2024-03-01T13:00:00+01:00",
-                  "2024-03-01 12:00:00.25"}) == std::vector<double>{noon, noon, noon, noon + 0.25});
+  CHECK(times_of({"2024-03-01 12:00", "2024-03-01 12:00:00.25"}) == std::vector<double>{noon, noon + 0.25});
+  CHECK(times_of({"2024-03-01T12:00:00Z", "2024-03-01T13:00:00+01:00"}) == std::vector<double>{noon, noon});
   CHECK(times_of({"01.03.2024 12:00"}) == std::vector<double>{noon});
   CHECK(times_of({"3/1/2024 12:00 PM", "3/13/2024 12:00 am"}) ==
         std::vector<double>{noon, noon + 11.5 * 86400.0});
@@ -60,6 +62,22 @@ TEST_CASE("time stamps are those of the calendar", "[records]") {
   CHECK(date_text(noon + 59.9) == "2024-03-01 12:00:59");
   CHECK_THROWS_WITH(times_of({"2024-02-30"}), Catch::Contains("a day that there is"));
   CHECK_THROWS_WITH(times_of({"2024-02-28", "5"}), Catch::Contains("stamps of one form"));
+  CHECK(times_of({"2024-02-29 24:00", "2024-03-01 00:00:00"}) == std::vector<double>(2, noon - 43200.0));
+}
+
+TEST_CASE("a time that no clock shows is refused, and so are two ways to write it", "[records]") {
+  for (const char* wrong : {"1/13/2024 99:00 PM", "1/13/2024 13:00 PM", "1/13/2024 0:30 AM",
+                            "2024-01-13 24:59", "2024-01-13 24:00:01", "2024-01-13 25:00",
+                            "2024-01-13 12:00+99:99", "2024-01-13 12:00+14:30", "2024-01-13 12:00-01:60"}) {
+    INFO(wrong);
+    CHECK_THROWS_WITH(times_of({wrong}), Catch::Contains("t, line 2: found '" + std::string(wrong)));
+    CHECK_FALSE(is_date(wrong));
+  }
+  CHECK_THROWS_WITH(times_of({"2024-01-13 12:00Z", "2024-01-13 12:01"}),
+                    Catch::Contains("found '2024-01-13 12:01'") && Catch::Contains("all have their offset"));
+  CHECK_THROWS_WITH(times_of({"1/13/2024 11:59 AM", "1/13/2024 12:00"}),
+                    Catch::Contains("all have AM or PM"));
+  CHECK(times_of({"13.01.2024", "13.01.2024 00:01"}).size() == 2);  // as spreadsheets drop midnight
 }
 
 TEST_CASE("rows become samples of the controller", "[records]") {
@@ -88,6 +106,60 @@ TEST_CASE("values are deviations in the unit of the study", "[records]") {
   CHECK(record.y.row(0) == Eigen::RowVector2d(1.0, 1.5));
   CHECK(record.y_set.row(0) == Eigen::RowVector2d::Constant(-37.5));  // recorded as the CV is
   CHECK(record.benchmark == std::pair<Eigen::Index, Eigen::Index>{1, 2});
+}
+
+bool warns(const PlantRecord& record, const std::string& text) {
+  return std::any_of(record.warnings.begin(), record.warnings.end(),
+                     [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+TEST_CASE("what cannot be measured is missing, with a warning", "[records]") {
+  std::vector<std::string> rows;
+  for (int k = 0; k < 40; ++k)
+    rows.push_back(fmt::format("{},{},5,{},1,7", k, k == 20 || k == 21 ? "-9999.0" : fmt::format("{}", k % 7),
+                               k == 30 ? "1e30" : fmt::format("{}", k % 3)));
+  const PlantRecord record = read_plant_record(
+      study_with("operating_point = {level = 3}\nscale = {level = 2}"), record_text(rows), "r.csv");
+  CHECK(record.y.row(0).array().isNaN().count() == 2);
+  CHECK((std::isnan(record.y(0, 20)) && std::isnan(record.y(0, 21))));
+  CHECK(record.u(0, 30) == record.u(0, 29));
+  CHECK(warns(record,
+              "column 'level': 2 values cannot be measurements and count as missing, the first is "
+              "'-9999.0' in line 22"));
+}
+
+TEST_CASE("dates are found under any heading, numbers of seconds are named in full", "[records]") {
+  const auto read = [](const std::string& heading, const std::string& begin, const std::string& data = "") {
+    return read_plant_record(study_with(data),
+                             heading + ",level,heat,hot,cold,drain\n" + begin + "0,1,5,9,1,7\n" + begin +
+                                 "1,2,6,9,1,7\n" + begin + "2,3,7,9,1,7\n",
+                             "r.csv");
+  };
+  for (const char* heading : {"", "Timestamp (UTC)"})
+    CHECK(read(heading, "2024-03-01 12:00:0").stamps.back() == "2024-03-01 12:00:02");
+  CHECK(read("time", "170925120").stamps.back() == "1709251202");
+  CHECK_THROWS_WITH(
+      read_plant_record(study_with(""), "a,b,level,heat,hot,cold,drain\n2024-03-01,2024-03-01,1,1,1,1,1\n",
+                        "r.csv"),
+      Catch::Contains("found dates in the columns 'a' and 'b'; allowed: data.time"));
+  CHECK_THROWS_WITH(
+      read_plant_record(study_with(""), record_text({"-1e308,1,5,9,1,7", "1e308,2,5,9,1,7"}), "r.csv"),
+      Catch::Contains("inf samples of"));
+  CHECK(read("time", "", "period = ['0', '1']").samples() == 2);
+  CHECK(read_plant_record(study_with("period = ['0', '1']"),
+                          record_text({"0,1,5,9,1,7", "1,2,6,9,1,7", "1e300,3,7,9,1,7"}), "r.csv")
+            .samples() == 2);
+}
+
+TEST_CASE("qualities that are not good are named, and numbers are known in any form", "[records]") {
+  std::string text = "time,level,heat,hot,cold,drain,q\n";
+  for (int k = 0; k < 10; ++k)
+    text += fmt::format("{},{},{},9,1,7,{}\n", k, k, k + 1, k == 4 ? "216.0" : k == 5 ? "Bad" : "192.0");
+  const PlantRecord record = read_plant_record(study_with("quality = {level = 'q'}"), text, "r.csv");
+  CHECK(record.y.row(0).array().isNaN().count() == 2);
+  CHECK(warns(record,
+              "level is missing in 2 of 10 rows, whose quality is none of data.good_quality (good, "
+              "192): '216.0' (1 rows), 'Bad' (1 rows)"));
 }
 
 TEST_CASE("what a record lacks is said by name", "[records]") {
