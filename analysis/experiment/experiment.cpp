@@ -58,13 +58,17 @@ Diagnosis ExperimentRecord::chain() const {
   return said == nullptr ? Diagnosis{} : diagnosis_of(*said);
 }
 
+ExperimentRunner::ExperimentRunner(const Study& study, AssessmentContext context,
+                                   const std::vector<std::string>& methods)
+    : study_(study),
+      basis_(context.basis),
+      factory_(context.factory),
+      panel_(study, std::move(context), methods),
+      perturbation_(study, basis_.sensitivity) {}
+
 ExperimentRunner::ExperimentRunner(const Study& study, const BasisCase& basis,
                                    const std::vector<std::string>& methods, QpSolverFactory factory)
-    : study_(study),
-      basis_(basis),
-      factory_(std::move(factory)),
-      panel_(study, basis, methods, factory_),
-      perturbation_(study, basis.sensitivity) {}
+    : ExperimentRunner(study, assessment_context(study, basis, std::move(factory)), methods) {}
 
 ExperimentRunner::FinishedLoop ExperimentRunner::simulate(const ExperimentDraw& draw,
                                                           const StepObserver& observer) {

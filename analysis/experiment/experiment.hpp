@@ -86,8 +86,12 @@ struct ExperimentRecord {
 /// on the index only.
 class ExperimentRunner {
  public:
-  /// `study` and `basis` must outlive the runner; the basis case must have status ok. Throws InputError for
+  /// Experiments of `study`, assessed by what the methods have learnt in `context`: that of the study, or of
+  /// a calibration study that of its experiments (scenarios/calibration.hpp). `study`, and study and basis
+  /// case of the context, must outlive the runner; the basis case must have status ok. Throws InputError for
   /// an unknown method.
+  ExperimentRunner(const Study& study, AssessmentContext context, const std::vector<std::string>& methods);
+  /// With the context of the study itself.
   ExperimentRunner(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,
                    QpSolverFactory factory);
 

@@ -7,13 +7,9 @@
 #include "plants/thread_clock.hpp"
 
 namespace mpm {
-MethodPanel::MethodPanel(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,
-                         QpSolverFactory factory, std::optional<AssessedLoop> benchmark)
-    : factory_(std::move(factory)),
-      context_(assessment_context(study, basis, factory_)),
-      forms_(assessment_forms(study, methods)) {
-  if (benchmark)
-    context_.benchmark = std::move(benchmark);
+MethodPanel::MethodPanel(const Study& study, AssessmentContext context,
+                         const std::vector<std::string>& methods)
+    : study_(study), context_(std::move(context)), forms_(assessment_forms(study, methods)) {
   for (const auto& form : forms_)
     assessors_.emplace_back(assessment_method(form->method().name), context_);
 }
@@ -23,7 +19,7 @@ AssessmentRecord MethodPanel::assessed(std::size_t method, const AssessedLoop& l
     return timed(method, assessors_[method], loop);
   // The controller is another one, and its S0 with it; the benchmark is still what the study was designed
   // for.
-  const AssessmentContext context{own->study, own->basis, factory_, context_.benchmark};
+  const AssessmentContext context{own->study, own->basis, context_.factory, context_.benchmark};
   Assessor assessor(assessment_method(forms_[method]->method().name), context);
   return timed(method, assessor, loop);
 }
@@ -32,7 +28,7 @@ AssessmentRecord MethodPanel::timed(std::size_t method, Assessor& assessor, cons
   const double start = thread_seconds();
   AssessmentRecord record = kept(forms_[method], assessor.assess(loop));
   record.milliseconds = 1e3 * (thread_seconds() - start);
-  if (const auto& monitoring = context_.study.monitoring; monitoring && record.answered())
+  if (const auto& monitoring = study_.monitoring; monitoring && record.answered())
     for (int window = 0; window < monitoring->count(static_cast<int>(loop.samples())); ++window)
       add_window(record, window,
                  assessor.assess(window_of(loop, monitoring->begin(window), monitoring->window)));

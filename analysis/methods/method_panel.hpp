@@ -17,10 +17,9 @@ namespace mpm {
 /// own; an answer depends on the loop only.
 class MethodPanel {
  public:
-  /// `study` and `basis` must outlive the panel; the basis case must have status ok, and is the benchmark
-  /// unless there is another one. Throws InputError for an unknown method.
-  MethodPanel(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,
-              QpSolverFactory factory, std::optional<AssessedLoop> benchmark = {});
+  /// Methods that assess loops of `study` by what they have learnt in `context`, whose basis case must have
+  /// status ok. The study must outlive the panel. Throws InputError for an unknown method.
+  MethodPanel(const Study& study, AssessmentContext context, const std::vector<std::string>& methods);
   MethodPanel(const MethodPanel&) = delete;
   MethodPanel& operator=(const MethodPanel&) = delete;
 
@@ -39,7 +38,7 @@ class MethodPanel {
   /// The answer of a method, the time that it took for the whole record, and its windows.
   AssessmentRecord timed(std::size_t method, Assessor& assessor, const AssessedLoop& loop) const;
 
-  QpSolverFactory factory_;
+  const Study& study_;
   AssessmentContext context_;
   AssessmentForms forms_;
   std::vector<Assessor> assessors_;  ///< of loops under the controller of the study

@@ -75,9 +75,9 @@ class CampaignLoops {
     BasisCase basis = checked_basis(study_, options_, hooks, tally);
     if (hooks.on_start)
       hooks.on_start(tally.done, tally.count);
-    experiments_->run(basis, execute_, hooks, tally);
+    experiments_->run(study_, basis, execute_, hooks, tally);
     if (calibration_)
-      calibration_->run(basis, execute_, hooks, tally);
+      calibration_->run(study_, basis, execute_, hooks, tally);
     return basis;
   }
 

@@ -142,8 +142,9 @@ std::vector<CampaignMethod> methods_of(const Study& study, const std::string& co
 
 namespace {
 
-/// Methods that assess the loops of a study in threads: by the active-set method, and one loop at a time by
-/// the solver of the campaign where that is Ipopt, whose linear solver does not bear two threads.
+/// Methods that assess the loops of a study in threads, by what they have learnt in the campaign: by the
+/// active-set method, and one loop at a time by the solver of the campaign where that is Ipopt, whose linear
+/// solver does not bear two threads.
 class ThreadedRunners {
  public:
   ThreadedRunners(const Campaign& campaign, const Study& study, const std::vector<std::string>& methods,
@@ -192,7 +193,8 @@ class ThreadedRunners {
 
   static Runner runner_of(const Campaign& campaign, const Study& study,
                           const std::vector<std::string>& methods, const std::string& solver) {
-    return std::make_unique<ExperimentRunner>(study, campaign.basis, methods, qp_solver_factory(solver));
+    return std::make_unique<ExperimentRunner>(
+        study, assessment_context(campaign.study, campaign.basis, qp_solver_factory(solver)), methods);
   }
 
   std::string solver_;
@@ -341,14 +343,14 @@ void Comparison::run(const CampaignHooks& hooks) {
       return record;
     })(plan, stop, deliver);
   };
-  loops_->run(campaign_.basis, assess, hooks, tally);
+  loops_->run(campaign_.study, campaign_.basis, assess, hooks, tally);
   if (!calibration_)
     return;
   ThreadedRunners calibrating(campaign_, calibration_study_, study_.methods, run_.jobs);
-  calibration_->run(campaign_.basis, execution_by([&](std::int64_t index, std::size_t thread) {
-                      return calibrating.run(index, thread);
-                    }),
-                    hooks, tally);
+  calibration_->run(
+      campaign_.study, campaign_.basis,
+      execution_by([&](std::int64_t index, std::size_t thread) { return calibrating.run(index, thread); }),
+      hooks, tally);
 }
 
 void Comparison::compact() {

@@ -36,8 +36,8 @@ ExperimentSeries::ExperimentSeries(const Study& study, RunOptions options, const
   earlier_seconds_ = shards_->seconds();
 }
 
-void ExperimentSeries::run(const BasisCase& basis, const Execution& execute, const CampaignHooks& hooks,
-                           ExperimentTally& tally) {
+void ExperimentSeries::run(const Study& basis_study, const BasisCase& basis, const Execution& execute,
+                           const CampaignHooks& hooks, ExperimentTally& tally) {
   std::int64_t left = std::ssize(missing_);
   const auto take = [&](ExperimentOutcome outcome) {
     ++tally.done;
@@ -51,7 +51,7 @@ void ExperimentSeries::run(const BasisCase& basis, const Execution& execute, con
       shards_->flush();  // what else runs may not end in the time that there is
   };
   if (!missing_.empty())
-    execute({study_, basis, options_, missing_, hooks.on_warning}, hooks.stop, take);
+    execute({study_, basis_study, basis, options_, missing_, hooks.on_warning}, hooks.stop, take);
   if (shards_)
     shards_->flush();
   if (left > 0)

@@ -49,9 +49,10 @@ class ExperimentSeries {
   ExperimentTally tally() const { return {count_ - std::ssize(missing_), count_}; }
   double earlier_seconds() const { return earlier_seconds_; }
 
-  /// Runs what is missing, and counts it in `tally`. Throws Interrupted when it was stopped before.
-  void run(const BasisCase& basis, const Execution& execute, const CampaignHooks& hooks,
-           ExperimentTally& tally);
+  /// Runs what is missing, and counts it in `tally`; the methods have learnt from the basis case of
+  /// `basis_study`. Throws Interrupted when it was stopped before.
+  void run(const Study& basis_study, const BasisCase& basis, const Execution& execute,
+           const CampaignHooks& hooks, ExperimentTally& tally);
 
   /// Brings the outcomes into order, all of which must be there.
   OutcomeCollection collect();

@@ -16,7 +16,7 @@ namespace {
 Calibration calibrate_serially(const Campaign& campaign, const RunOptions& options,
                                const QpSolverFactory& factory) {
   const Study loops = calibration_study(campaign.study);
-  ExperimentWork work(loops, campaign.basis, options, factory);
+  ExperimentWork work(loops, campaign.study, campaign.basis, options, factory);
   std::vector<ExperimentRecord> records;
   for (std::int64_t index = 0; index < loops.experiment_count(); ++index)
     records.push_back(work.run(index).record);
@@ -32,7 +32,7 @@ Campaign run_serially(Study study, const RunOptions& options) {
   const QpSolverFactory factory = qp_solver_factory(options.solver);
   campaign.basis = run_basis_case(campaign.study, factory);
 
-  ExperimentWork work(campaign.study, campaign.basis, options, factory);
+  ExperimentWork work(campaign.study, campaign.study, campaign.basis, options, factory);
   const std::int64_t count = options.experiments.value_or(campaign.study.experiment_count());
   for (std::int64_t index = 0; index < count; ++index) {
     ExperimentOutcome outcome = work.run(index);

@@ -14,6 +14,7 @@ namespace mpm {
 /// The experiments that are to be run.
 struct ExecutionPlan {
   const Study& study;
+  const Study& basis_study;  ///< whose basis case the methods have learnt from: of calibration loops another
   const BasisCase& basis;
   const RunOptions& options;
   std::vector<std::int64_t> indices;                  ///< each once

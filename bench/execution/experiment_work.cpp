@@ -7,9 +7,11 @@
 #include "plants/thread_clock.hpp"
 
 namespace mpm {
-ExperimentWork::ExperimentWork(const Study& study, const BasisCase& basis, const RunOptions& options,
-                               const QpSolverFactory& factory)
-    : study_(study), options_(options), runner_(study, basis, study_methods(study), factory) {}
+ExperimentWork::ExperimentWork(const Study& study, const Study& basis_study, const BasisCase& basis,
+                               const RunOptions& options, const QpSolverFactory& factory)
+    : study_(study),
+      options_(options),
+      runner_(study, assessment_context(basis_study, basis, factory), study_methods(study)) {}
 
 ExperimentOutcome ExperimentWork::run(std::int64_t index) {
   ExperimentOutcome outcome;

@@ -13,10 +13,11 @@ namespace mpm {
 /// process.
 class ExperimentWork {
  public:
-  /// `study`, `basis` and `options` must outlive it. `factory` makes the solvers of the controllers: that of
-  /// `options.solver`, or the part of it that bears threads.
-  ExperimentWork(const Study& study, const BasisCase& basis, const RunOptions& options,
-                 const QpSolverFactory& factory);
+  /// Experiments of `study`; the methods have learnt from the basis case of `basis_study`. All but `factory`
+  /// must outlive it, which makes the solvers of the controllers: that of `options.solver`, or the part of it
+  /// that bears threads.
+  ExperimentWork(const Study& study, const Study& basis_study, const BasisCase& basis,
+                 const RunOptions& options, const QpSolverFactory& factory);
 
   /// Experiment `index` without its audits. An exception makes a record `failed` with its text.
   ExperimentOutcome run(std::int64_t index);

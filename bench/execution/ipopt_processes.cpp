@@ -25,7 +25,7 @@ IpoptProcesses::IpoptProcesses(const ExecutionPlan& plan)
     : study_(plan.study),
       warn_(plan.warn),
       bytes_(plan.study),
-      work_(std::make_shared<ExperimentWork>(plan.study, plan.basis, plan.options,
+      work_(std::make_shared<ExperimentWork>(plan.study, plan.basis_study, plan.basis, plan.options,
                                              qp_solver_factory(plan.options.solver))),
       pool_(plan.options.jobs, [work = work_, &bytes = bytes_](const std::string& request) {
         return answer(*work, bytes, request);

@@ -14,7 +14,7 @@ namespace mpm {
 namespace {
 
 WorkerPool workers_for(const ExecutionPlan& plan) {
-  const auto work = std::make_shared<ExperimentWork>(plan.study, plan.basis, plan.options,
+  const auto work = std::make_shared<ExperimentWork>(plan.study, plan.basis_study, plan.basis, plan.options,
                                                      qp_solver_factory(plan.options.solver));
   const auto jobs = std::min(static_cast<std::size_t>(plan.options.jobs), plan.indices.size());
   const auto bytes = std::make_shared<OutcomeBytes>(plan.study);

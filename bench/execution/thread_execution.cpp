@@ -88,7 +88,8 @@ void execute_in_threads(const ExecutionPlan& plan, const StopRequest& stop, cons
   const QpSolverFactory in_thread = qp_solver_factory("active-set");
   ThreadWork work;
   for (int thread = 0; thread < plan.options.jobs; ++thread)
-    work.push_back(std::make_unique<ExperimentWork>(plan.study, plan.basis, plan.options, in_thread));
+    work.push_back(
+        std::make_unique<ExperimentWork>(plan.study, plan.basis_study, plan.basis, plan.options, in_thread));
 
   const OutcomeSink sort_out = [&](ExperimentOutcome outcome) {
     if (fall_back && needs_ipopt(outcome.record))

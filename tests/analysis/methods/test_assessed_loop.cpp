@@ -286,7 +286,7 @@ TEST_CASE("a stored loop that did not reach its end gives no verdict, whatever t
 TEST_CASE("a panel has its methods in the order in which they are named, and no others", "[assessed_loop]") {
   const Study study = find_study("chapter6");
   const BasisCase basis = run_basis_case(study, testing::kFactory);
-  MethodPanel panel(study, basis, {"sse", "botelho"}, testing::kFactory);
+  MethodPanel panel(study, assessment_context(study, basis, testing::kFactory), {"sse", "botelho"});
   REQUIRE(panel.forms().size() == 2);
   const AssessedLoop loop = assessed_loop(study, basis.point, basis.trajectory);
   const std::vector<AssessmentRecord> said = panel.assess(loop);
@@ -298,7 +298,7 @@ TEST_CASE("a panel has its methods in the order in which they are named, and no 
   }
   CHECK(said[0].form->method().name == "sse");
   CHECK_FALSE(panel.assess_by("sun", loop));
-  CHECK_THROWS_WITH(MethodPanel(study, basis, {"nobody"}, testing::kFactory),
+  CHECK_THROWS_WITH(MethodPanel(study, assessment_context(study, basis, testing::kFactory), {"nobody"}),
                     Contains("found 'nobody'; allowed: botelho"));
 }
 
