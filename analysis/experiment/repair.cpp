@@ -38,20 +38,31 @@ Trajectory promised(const Study& repaired, const OperatingPoint& point, const As
 }
 
 ChannelFit fit_of(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
-                  const Channel& channel) {
+                  const Channel& channel, const std::optional<MismatchParameter>& only = {}) {
   const Eigen::VectorXd e = (loop.y.row(channel.cv) - loop.y_sim.row(channel.cv)).transpose();
   return fit_channel(study.plant.G(channel.cv, channel.mv), study.controller.sample_time, e,
-                     loop.u.row(channel.mv).transpose(), point.u(channel.mv), study.aggregate.confidence);
+                     loop.u.row(channel.mv).transpose(), point.u(channel.mv), study.aggregate.confidence,
+                     only);
 }
 
 }  // namespace
 
-PromisedRepair promised_repair(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
-                               const Channel& channel, const QpSolverFactory& factory) {
-  PromisedRepair result{
-      .channel = channel, .fit = fit_of(study, point, loop, channel), .now = {}, .predicted = {}};
+std::optional<PromisedRepair> promised_repair(const Study& study, const OperatingPoint& point,
+                                              const AssessedLoop& loop, const AssessmentRecord& said,
+                                              const QpSolverFactory& factory) {
+  const std::optional<Channel> channel = channel_to_repair(said);
+  if (!channel)
+    return std::nullopt;
+  std::optional<MismatchParameter> only;
+  if (const auto named = said.named_mismatch(); named && is_fitted_alone(named->parameter))
+    only = named->parameter;
+  PromisedRepair result{.channel = *channel,
+                        .only = only,
+                        .fit = fit_of(study, point, loop, *channel, only),
+                        .now = {},
+                        .predicted = {}};
   Study repaired = study;
-  repaired.plant.G(channel.cv, channel.mv) = result.fit.channel;
+  repaired.plant.G(channel->cv, channel->mv) = result.fit.channel;
   result.now = variances_of(study, promised(study, point, loop, factory));
   result.predicted = variances_of(study, promised(repaired, point, loop, factory));
   return result;

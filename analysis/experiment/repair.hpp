@@ -49,13 +49,16 @@ RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, cons
 /// repaired one (`predicted`).
 struct PromisedRepair {
   Channel channel;
+  std::optional<MismatchParameter> only;  ///< that was identified again; none: the whole channel
   ChannelFit fit;
   Eigen::VectorXd now, predicted;
 };
 
-/// Throws InputError as fit_channel().
-PromisedRepair promised_repair(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
-                               const Channel& channel, const QpSolverFactory& factory);
+/// The repair that the method's answer asks for: of the parameter that it names, or of the whole channel
+/// where it names none. None where it names no channel. Throws InputError as fit_channel().
+std::optional<PromisedRepair> promised_repair(const Study& study, const OperatingPoint& point,
+                                              const AssessedLoop& loop, const AssessmentRecord& said,
+                                              const QpSolverFactory& factory);
 
 /// The channel that the method would have repaired: that of the mismatch it names, or of a method that names
 /// none the first channel that it flags. None of a loop that it does not flag.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/findings/method_rates.hpp"
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
@@ -60,7 +61,6 @@ struct PooledScores : MethodScores {
   bool too_many_false_alarms() const;
 };
 
-inline constexpr double kFewestAnswers = 0.9;
 inline constexpr double kMostFalseAlarms = 0.05;
 
 /// The method that knows what a study draws: a reference in the families that draw exactly what it knows of

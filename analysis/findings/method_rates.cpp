@@ -384,6 +384,15 @@ std::vector<UnansweredPart> unanswered_parts(const Study& study, const MethodRat
   return parts;
 }
 
+bool answers_and_detects(const MethodRates& rates) {
+  constexpr double kDetects = 0.5;
+  const Rate& detected = rates.detected_impact.total > 0 ? rates.detected_impact : rates.detected;
+  const bool answers = rates.answered.total > 0 && rates.answered.value >= kFewestAnswers;
+  const bool detects = detected.total > 0 && detected.value >= kDetects;
+  return answers && detects &&
+         (rates.false_alarm_healthy.total == 0 || detected.value > rates.false_alarm_healthy.value);
+}
+
 std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method) {
   std::vector<Finding> rows;
   const auto like = [&](const char* name, const std::string& label, const char* meaning) {

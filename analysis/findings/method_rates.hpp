@@ -96,6 +96,14 @@ struct UnansweredPart {
 };
 std::vector<UnansweredPart> unanswered_parts(const Study& study, const MethodRates& rates);
 
+/// Of the loops: with a verdict on fewer, a method is not judged on the same loops as the others.
+inline constexpr double kFewestAnswers = 0.9;
+
+/// Can this method be called the best at something? It gives a verdict on nearly all loops (kFewestAnswers),
+/// and flags at least half of the faults with an impact (of all faults, where none has one), and more of them
+/// than of the healthy loops. One that flags next to nothing may be right in all that it flags.
+bool answers_and_detects(const MethodRates& rates);
+
 /// Its rows: "compare.METHOD.RATE" for each rate that the study can have, "compare.METHOD.roc_area",
 /// "compare.METHOD.roc_area_impact", the estimates, and in a study with a calibration the thresholds.
 std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method);

@@ -21,6 +21,27 @@ std::string_view to_string(AssessmentStatus status) {
   return "unknown";
 }
 
+std::string_view to_string(SizeBound bound) {
+  switch (bound) {
+    case SizeBound::none:
+      return "none";
+    case SizeBound::at_most:
+      return "at most";
+    case SizeBound::at_least:
+      return "at least";
+  }
+  return "unknown";
+}
+
+SizeBound bound_within(double estimate, double first, double last, double share) {
+  const double close = share * (last - first);
+  if (!std::isfinite(close))
+    return SizeBound::none;
+  return estimate <= first + close  ? SizeBound::at_most
+         : estimate >= last - close ? SizeBound::at_least
+                                    : SizeBound::none;
+}
+
 std::optional<Eigen::Index> Assessment::worst_cv() const {
   std::optional<Eigen::Index> worst;
   for (std::size_t i = 0; i < cvs.size(); ++i) {

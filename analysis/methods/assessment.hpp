@@ -43,12 +43,24 @@ struct Channel {
   friend bool operator==(const Channel&, const Channel&) = default;
 };
 
+/// Where an estimate lies in the range in which it was looked for. At an end of it the estimate is no more
+/// than a bound: what is looked for may lie beyond.
+enum class SizeBound : std::int8_t { none = 0, at_most = 1, at_least = 2 };
+
+/// "none", "at most", "at least"
+std::string_view to_string(SizeBound bound);
+
+/// The bound that an estimate is in a range whose ends are ends of the search only: it is one within `share`
+/// of the range.
+SizeBound bound_within(double estimate, double first, double last, double share = 1e-6);
+
 /// The mismatch that a method is surest of: which parameter of which channel, and how large.
 struct NamedMismatch {
   Channel channel;
   MismatchParameter parameter;
   double size = kNaN;                 ///< as Mismatch::value; NaN: the method gives no size
   double lower = kNaN, upper = kNaN;  ///< its interval, of the confidence aggregate.confidence; NaN: none
+  SizeBound bound = SizeBound::none;  ///< the size lies at an end of the range that was searched
 };
 
 /// One number of a method, by a name of MethodDescription::numbers. Of the whole loop (cv and column -1), of

@@ -24,6 +24,11 @@ std::vector<std::string> mismatch_parameters() {
   return words;
 }
 
+/// None in an answer that has no such number.
+SizeBound bound_of(double number) {
+  return std::isnan(number) ? SizeBound::none : static_cast<SizeBound>(number);
+}
+
 std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& method) {
   std::vector<AssessmentNumberInfo> numbers;
   if (method.locates_cvs) {
@@ -47,6 +52,11 @@ std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& metho
         {"mismatch_size", NumberScope::channel, "its size, as `mismatch_value` of an experiment is one"});
     numbers.push_back({"mismatch_lower", NumberScope::channel, "lower end of the interval of the size"});
     numbers.push_back({"mismatch_upper", NumberScope::channel, "upper end of the interval of the size"});
+    numbers.push_back({"mismatch_bound",
+                       NumberScope::channel,
+                       "the size lies at an end of the range that was searched, and is no more than a bound",
+                       "1",
+                       {"none", "at_most", "at_least"}});
   }
   if (method.names_candidates)
     numbers.push_back({"named_candidate", NumberScope::loop,
@@ -146,7 +156,8 @@ std::optional<NamedMismatch> AssessmentRecord::named_mismatch() const {
                              static_cast<MismatchParameter>(parameters(cv, mv)),
                              number("mismatch_size", cv, mv),
                              number("mismatch_lower", cv, mv),
-                             number("mismatch_upper", cv, mv)};
+                             number("mismatch_upper", cv, mv),
+                             bound_of(number("mismatch_bound", cv, mv))};
   return std::nullopt;
 }
 
@@ -191,6 +202,7 @@ AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessme
     const auto [cv, mv] = named->channel;
     record.set_number("mismatch_parameter", static_cast<double>(named->parameter), cv, mv);
     record.set_number("mismatch_size", named->size, cv, mv);
+    record.set_number("mismatch_bound", static_cast<double>(named->bound), cv, mv);
     record.set_number("mismatch_lower", named->lower, cv, mv);
     record.set_number("mismatch_upper", named->upper, cv, mv);
   }

@@ -31,11 +31,27 @@ constexpr int kBisections = 16;
 /// The logarithm of the time factor, and the shift of the dead time.
 using Point = std::array<double, 2>;
 
+/// Which numbers of the channel are looked for; the others are those of the model.
+struct Freedom {
+  bool gain = true;
+  std::array<bool, 2> numbers{true, true};  ///< of a Point
+};
+
+Freedom freedom_of(const std::optional<MismatchParameter>& only) {
+  if (only == MismatchParameter::gain)
+    return {true, {false, false}};
+  if (only == MismatchParameter::time_constant)
+    return {false, {true, false}};
+  if (only == MismatchParameter::dead_time)
+    return {false, {false, true}};
+  return {};
+}
+
 class ChannelSearch {
  public:
   ChannelSearch(const TransferFunction& nominal, double sample_time, const Eigen::VectorXd& e,
-                const Eigen::VectorXd& u, double u_start)
-      : nominal_(nominal), sample_time_(sample_time), u_(u), u_start_(u_start) {
+                const Eigen::VectorXd& u, double u_start, const Freedom& freedom)
+      : nominal_(nominal), sample_time_(sample_time), u_(u), u_start_(u_start), freedom_(freedom) {
     z_ = e + response({0.0, 0.0});
     whiteness_ = fit_autoregression(z_, 0);
     const double record = sample_time * static_cast<double>(u.size());
@@ -57,8 +73,9 @@ class ChannelSearch {
     double least = squares(best, {});
     for (const double share_f : {-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75})
       for (const double share_s : {0.0, 0.25, 0.5, 0.75, 1.0, -1.0}) {
-        const Point point{share_f * largest_[0],
-                          share_s < 0.0 ? 0.0 : least_[1] + share_s * (largest_[1] - least_[1])};
+        const Point point{
+            freedom_.numbers[0] ? share_f * largest_[0] : 0.0,
+            share_s < 0.0 || !freedom_.numbers[1] ? 0.0 : least_[1] + share_s * (largest_[1] - least_[1])};
         if (const double found = squares(point, {}); found < least) {
           least = found;
           best = point;
@@ -67,19 +84,15 @@ class ChannelSearch {
     return searched(best, {}, {true, true});
   }
 
-  double gain_at(const Point& point) const {
-    const auto [zw, xw] = whitened(point);
-    return xw.dot(zw) / xw.squaredNorm();
-  }
+  double gain_at(const Point& point) const { return gain_of(whitened(point)); }
 
   /// The sum of squares of the model without any change.
   double squares_of_model() const { return squares({0.0, 0.0}, 1.0); }
 
   /// The least sum of squares at a point, with this factor of the gain or with the best one.
   double squares(const Point& point, std::optional<double> gain) const {
-    const auto [zw, xw] = whitened(point);
-    const double factor = gain ? *gain : xw.dot(zw) / xw.squaredNorm();
-    return (zw - factor * xw).squaredNorm();
+    const Whitened white = whitened(point);
+    return (white.z - gain.value_or(gain_of(white)) * white.x).squaredNorm();
   }
 
   /// A pattern search (Hooke and Jeeves 1961) from `start` over those numbers that are free.
@@ -90,7 +103,7 @@ class ChannelSearch {
       bool better = false;
       for (std::size_t number = 0; number < point.size(); ++number)
         for (const double direction : {-1.0, 1.0}) {
-          if (!is_free[number])
+          if (!is_free[number] || !freedom_.numbers[number])
             continue;
           Point trial = point;
           trial[number] =
@@ -116,6 +129,10 @@ class ChannelSearch {
     Eigen::VectorXd z, x;
   };
 
+  double gain_of(const Whitened& white) const {
+    return freedom_.gain ? white.x.dot(white.z) / white.x.squaredNorm() : 1.0;
+  }
+
   Eigen::VectorXd response(const Point& point) const {
     const TransferFunction channel =
         nominal_.with_time_scaled(std::exp(point[0])).with_dead_time_shifted(point[1]);
@@ -136,6 +153,7 @@ class ChannelSearch {
   double sample_time_;
   const Eigen::VectorXd& u_;
   double u_start_;
+  Freedom freedom_;
   Eigen::VectorXd z_;
   Point least_, largest_;
   Autoregression whiteness_;
@@ -164,16 +182,22 @@ double outer_gain(double gain, double direction, const std::function<double(doub
 
 }  // namespace
 
+bool is_fitted_alone(MismatchParameter parameter) {
+  return parameter == MismatchParameter::gain || parameter == MismatchParameter::time_constant ||
+         parameter == MismatchParameter::dead_time;
+}
+
 ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
                        const Eigen::Ref<const Eigen::VectorXd>& e, const Eigen::Ref<const Eigen::VectorXd>& u,
-                       double u_start, double confidence) {
+                       double u_start, double confidence, const std::optional<MismatchParameter>& only) {
   require_confidence(confidence);
   if (nominal.is_zero())
     throw InputError("channel", "one that is zero in the model", "a channel of the model");
   if ((u.array() == u(0)).all())
     throw InputError("MV of the channel", "one that does not move", "an MV that moves");
   const Eigen::VectorXd errors = e, moves = u;
-  ChannelSearch search(nominal, sample_time, errors, moves, u_start);
+  const Freedom freedom = freedom_of(only);
+  ChannelSearch search(nominal, sample_time, errors, moves, u_start, freedom);
   // First as if the noise were white: an autoregression of all that the model leaves would take the mismatch
   // for noise, and the search would end where that is nearly true.
   Point point = search.best({0.0, 0.0});
@@ -197,14 +221,22 @@ ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
     };
   };
   const auto end = [&](std::size_t number, double bound) {
-    return interval_end(point[number], bound, of_number(number));
+    return freedom.numbers[number] ? interval_end(point[number], bound, of_number(number)) : point[number];
   };
-  const FittedNumber gain_factor{gain, interval_end(gain, outer_gain(gain, -1.0, of_gain), of_gain),
-                                 interval_end(gain, outer_gain(gain, 1.0, of_gain), of_gain)};
+  const auto gain_end = [&](double direction) {
+    return freedom.gain ? interval_end(gain, outer_gain(gain, direction, of_gain), of_gain) : gain;
+  };
+  const auto bound_of_number = [&](std::size_t number) {
+    return bound_within(point[number], search.least()[number], search.largest()[number]);
+  };
+  // At its lower end the dead time is 0, and there is nothing beyond.
+  const SizeBound bound_of_time = bound_of_number(0), bound_of_shift = bound_of_number(1);
+  const FittedNumber gain_factor{gain, gain_end(-1.0), gain_end(1.0)};
   return {.gain_factor = gain_factor,
           .time_factor = {std::exp(point[0]), std::exp(end(0, search.least()[0])),
-                          std::exp(end(0, search.largest()[0]))},
-          .dead_time_shift = {point[1], end(1, search.least()[1]), end(1, search.largest()[1])},
+                          std::exp(end(0, search.largest()[0])), bound_of_time},
+          .dead_time_shift = {point[1], end(1, search.least()[1]), end(1, search.largest()[1]),
+                              bound_of_shift == SizeBound::at_most ? SizeBound::none : bound_of_shift},
           .noise_order = search.whiteness().order(),
           .explained = std::max(0.0, 1.0 - least / search.squares_of_model()),
           .channel = nominal.with_gain_scaled(gain)

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
+#include "analysis/methods/assessment.hpp"
 #include "plants/transfer_function.hpp"
+#include "scenarios/fault.hpp"
 
 namespace mpm {
 
 /// A number that was fitted, with its interval.
 struct FittedNumber {
   double value, lower, upper;
+  SizeBound bound = SizeBound::none;  ///< the value lies at an end of its search
 };
 
 /// A channel of the model that was identified again from the record of a loop, all other channels as they
@@ -21,6 +26,9 @@ struct ChannelFit {
   double explained;              ///< share of the whitened error of the model that the fit takes away, 0 to 1
   TransferFunction channel;      ///< with the values above
 };
+
+/// Can this parameter be fitted with the others as in the model: gain, time constant, dead time?
+bool is_fitted_alone(MismatchParameter parameter);
 
 /// Identifies the channel G of one CV again. With G0 its model, e the simulation error of the CV and u the
 /// MV,
@@ -41,10 +49,13 @@ struct ChannelFit {
 /// |        | u_start | 1     | MV, at rest before the record     |
 ///
 /// f is looked for in 1/8 ... 8, and s from -dead time to the dead time and residence time of G0 together, or
-/// a quarter of the record; an interval ends there. Throws InputError for a channel that is zero, an MV that
-/// does not move, and a record with too few samples for the fit.
+/// a quarter of the record; an interval ends there, and a value there is a bound, but for a dead time of 0.
+///
+/// Where it is known which parameter is wrong, `only` (is_fitted_alone()), the others are those
+/// of the model: one that a record does not tell from it cannot take its place. Throws InputError for a
+/// channel that is zero, an MV that does not move, and a record with too few samples for the fit.
 ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
                        const Eigen::Ref<const Eigen::VectorXd>& e, const Eigen::Ref<const Eigen::VectorXd>& u,
-                       double u_start, double confidence);
+                       double u_start, double confidence, const std::optional<MismatchParameter>& only = {});
 
 }  // namespace mpm

@@ -237,10 +237,12 @@ class FaultPosterior final : public AssessmentMethod {
     assessment.flagged_channels.push_back(named.channel);
     if (!worst)
       return;
-    const Interval sizes =
-        up_to_ends(shortest_interval(likeliest->sizes, study_.aggregate.confidence), support(named.size));
-    assessment.named_mismatch = {named.channel, named.parameter, mixture_quantile(likeliest->sizes, 0.5),
-                                 sizes.lower, sizes.upper};
+    const auto ends = support(named.size);
+    const Interval sizes = up_to_ends(shortest_interval(likeliest->sizes, study_.aggregate.confidence), ends);
+    // The likeliest size says whether larger ones would be likelier: the median lies within the range.
+    assessment.named_mismatch = {
+        named.channel, named.parameter, mixture_quantile(likeliest->sizes, 0.5),
+        sizes.lower,   sizes.upper,     bound_within(likeliest->best_size, ends.first, ends.second)};
   }
 
   /// An end that differs from one of the possible sizes by rounding is this one. A size that studies scale to

@@ -225,8 +225,12 @@ class Lasso final : public AssessmentMethod {
       best = profiled(cv, static_cast<Eigen::Index>(surest), found,
                       e - explained_by_others(found, surest, filters), inputs);
     }
-    return NamedMismatch{
-        {cv, static_cast<Eigen::Index>(surest)}, best->parameter, best->value, best->lower, best->upper};
+    return NamedMismatch{{cv, static_cast<Eigen::Index>(surest)},
+                         best->parameter,
+                         best->value,
+                         best->lower,
+                         best->upper,
+                         best->bound};
   }
 
   static bool explains_as_much(const ProfiledMismatch& one, const LassoCv& found, Eigen::Index samples) {

@@ -57,7 +57,8 @@ std::vector<ProfiledMismatch> profiled_mismatches(const Eigen::Ref<const Eigen::
     const double step = 0.01 * (family.grid.last - family.grid.first);
     found.push_back({family.parameter, family.value(best),
                      family.value(level_crossing(V, best, family.grid.first, step, level)),
-                     family.value(level_crossing(V, best, family.grid.last, step, level)), least});
+                     family.value(level_crossing(V, best, family.grid.last, step, level)), least,
+                     bound_within(best, family.grid.first, family.grid.last, 1e-3)});
   }
   std::stable_sort(found.begin(), found.end(), [](const ProfiledMismatch& a, const ProfiledMismatch& b) {
     return a.residual_sum < b.residual_sum;

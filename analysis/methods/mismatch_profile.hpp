@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "analysis/methods/assessment.hpp"
 #include "plants/transfer_function.hpp"
 #include "scenarios/fault.hpp"
 
@@ -20,6 +21,7 @@ struct ProfiledMismatch {
   MismatchParameter parameter;
   double value, lower, upper;
   double residual_sum;
+  SizeBound bound = SizeBound::none;  ///< the value lies at an end of the search
 };
 
 /// The best mismatch of gain, of time constant and of dead time of a channel, in the order of their residual

@@ -118,7 +118,7 @@ class PlantModelRatio final : public AssessmentMethod {
               .front();
       if (!named || best.residual_sum < least) {
         least = best.residual_sum;
-        named = {{cv, mv}, best.parameter, best.value, best.lower, best.upper};
+        named = {{cv, mv}, best.parameter, best.value, best.lower, best.upper, best.bound};
       }
     }
     return named;

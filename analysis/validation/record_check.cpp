@@ -21,6 +21,7 @@ constexpr double kFrozenShare = 0.1;
 constexpr Eigen::Index kFrozenSamples = 20;
 constexpr double kFarMore = 0.8;   // explained, in the sum over the CVs
 constexpr double kNothing = 0.05;  // explained
+constexpr double kRoundingShare = 1e-12;
 
 /// One variable of the record.
 struct RecordedVariable {
@@ -73,13 +74,16 @@ bool is_far_off(const RecordedVariable& variable) {
   return mean < variable.lower - width || mean > variable.upper + width;
 }
 
-/// The mean as the file has it.
+/// The mean as the file has it; 0 where it differs from 0 by the rounding of a sum only.
 double recorded_mean(const Study& study, const RecordedVariable& variable) {
   const auto of = [&](const DataOptions::Numbers& numbers, double fallback) {
     const auto found = numbers.find(variable.name);
     return found == numbers.end() ? fallback : found->second;
   };
-  return variable.present().mean() / of(study.data.scale, 1.0) + of(study.data.operating_point, 0.0);
+  const Eigen::ArrayXd recorded =
+      variable.present() / of(study.data.scale, 1.0) + of(study.data.operating_point, 0.0);
+  const double mean = recorded.mean();
+  return std::abs(mean) < kRoundingShare * recorded.abs().maxCoeff() ? 0.0 : mean;
 }
 
 void check_absolute(const Study& study, const std::vector<RecordedVariable>& variables,

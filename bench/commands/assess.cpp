@@ -103,11 +103,9 @@ BasisCase basis_of(const Study& study, const QpSolverFactory& factory) {
 
 /// Puts what the identified channel promises into the assessment, when the verdict names one.
 void add_repair_to(RecordAssessment& assessment, const BasisCase& basis, const QpSolverFactory& factory) {
-  const std::optional<Channel> channel = channel_to_repair(assessment.verdict());
-  if (!channel)
-    return;
   try {
-    assessment.repair = promised_repair(assessment.study, basis.point, assessment.loop, *channel, factory);
+    assessment.repair =
+        promised_repair(assessment.study, basis.point, assessment.loop, assessment.verdict(), factory);
   } catch (const InputError& error) {
     assessment.no_repair = error.what();
   }
@@ -227,10 +225,11 @@ RecordAssessment assessed(const AssessArguments& options, const Study& study) {
     const bool closes = needs_every_sample(name);
     const AssessedLoop loop =
         closes ? without_gaps(assessment.loop, assessment.unjudged, fill) : assessment.loop;
-    std::optional<AssessedLoop> benchmark;
+    const Study& of_method = closes ? closed : as_kept;
+    AssessmentContext context = assessment_context(of_method, basis, factory);
     if (end > first)
-      benchmark = window_of(loop, first, end - first);
-    MethodPanel panel(closes ? closed : as_kept, basis, {name}, factory, benchmark);
+      context.benchmark = window_of(loop, first, end - first);
+    MethodPanel panel(of_method, std::move(context), {name});
     assessment.said.push_back(panel.assess(loop).front());
   }
   assessment.y0 = nominal_loop(assessment.study, assessment.loop, factory);

@@ -94,7 +94,10 @@ Repair repaired(const Campaign& campaign, const ExperimentRecord& record, const 
 }
 
 Json json_of(const FittedNumber& number) {
-  return {{"value", number.value}, {"lower", number.lower}, {"upper", number.upper}};
+  return {{"value", number.value},
+          {"lower", number.lower},
+          {"upper", number.upper},
+          {"bound", to_string(number.bound)}};
 }
 
 Json json_of(const Eigen::VectorXd& variances) {
@@ -118,18 +121,20 @@ Json json_of(const Study& study, const Repair& repair) {
 }
 
 std::string text_of(const FittedNumber& number) {
-  return fmt::format("{:.3g} ({:.3g} to {:.3g})", number.value, number.lower, number.upper);
+  return estimate_text(number.value, number.lower, number.upper, number.bound);
 }
 
 /// One repair in full.
 std::string text_of(const Study& study, const Repair& repair) {
   const RepairedLoop& loop = repair.loop;
+  const FittedNumber& shift = loop.fit.dead_time_shift;
   std::string text = fmt::format(
-      "{}\nchannel {}, identified again: gain x {}, time constants x {}, dead time + {} {}\n"
+      "{}\nchannel {}, identified again: gain x {}, time constants x {}, dead time {}\n"
       "{:.0f} % of the error of its CV is explained by it\n\n",
       experiment_title(study, repair.record->draw), channel_name(study, loop.channel),
-      text_of(loop.fit.gain_factor), text_of(loop.fit.time_factor), text_of(loop.fit.dead_time_shift),
-      study.plant.time_unit, 100.0 * loop.fit.explained);
+      text_of(loop.fit.gain_factor), text_of(loop.fit.time_factor),
+      dead_time_text(shift.value, shift.lower, shift.upper, shift.bound, study.plant.time_unit),
+      100.0 * loop.fit.explained);
   TextTable table;
   table.add({"variance", "now", "predicted", "repaired", "perfect"});
   const auto cell = [](const Eigen::VectorXd& variances, Eigen::Index cv) {

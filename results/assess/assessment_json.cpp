@@ -47,7 +47,8 @@ Json named_json(const Study& study, const NamedMismatch& named) {
           {"parameter", to_string(named.parameter)},
           {"size", named.size},
           {"lower", named.lower},
-          {"upper", named.upper}};
+          {"upper", named.upper},
+          {"bound", to_string(named.bound)}};
 }
 
 Json trust_json(const TrialFindings& found) {
@@ -77,13 +78,17 @@ Json method_json(const RecordAssessment& of, std::size_t m) {
 }
 
 Json fitted_json(const FittedNumber& number) {
-  return {{"value", number.value}, {"lower", number.lower}, {"upper", number.upper}};
+  return {{"value", number.value},
+          {"lower", number.lower},
+          {"upper", number.upper},
+          {"bound", to_string(number.bound)}};
 }
 
 Json repair_json(const Study& study, const PromisedRepair& repair) {
   const auto variances = [](const Eigen::VectorXd& of) { return std::vector<double>(of.begin(), of.end()); };
   return {{"cv", cv_name(study, repair.channel.cv)},
           {"mv", mv_name(study, repair.channel.mv)},
+          {"parameter", repair.only ? Json(to_string(*repair.only)) : Json()},
           {"gain_factor", fitted_json(repair.fit.gain_factor)},
           {"time_factor", fitted_json(repair.fit.time_factor)},
           {"dead_time_shift", fitted_json(repair.fit.dead_time_shift)},

@@ -35,6 +35,14 @@ std::string flag_sentence(const RecordAssessment& of) {
              : fmt::format("{} finds nothing in this record that is worth a repair{}.", name, costs_text(of));
 }
 
+/// The mismatch without its size where the repair beside it says that: the same record gives one number.
+NamedMismatch told_once(const RecordAssessment& of, NamedMismatch named) {
+  if (of.repair && of.repair->only && *of.repair->only == named.parameter &&
+      of.repair->channel == named.channel)
+    named.size = named.lower = named.upper = kNaN;
+  return named;
+}
+
 void add_source(const RecordAssessment& of, Sentences& sentences) {
   const AssessmentRecord& said = of.verdict();
   if (said.predicted_cv < 0)
@@ -66,7 +74,7 @@ void add_source(const RecordAssessment& of, Sentences& sentences) {
       break;
   }
   if (const auto named = said.named_mismatch())
-    sentences.push_back(fmt::format("Most likely: {}.", mismatch_sentence(of.study, *named)));
+    sentences.push_back(fmt::format("Most likely: {}.", mismatch_sentence(of.study, told_once(of, *named))));
 }
 
 /// What else than the worst CV is flagged: records of plants have more than one fault.
@@ -95,21 +103,35 @@ void add_candidates(const RecordAssessment& of, Sentences& sentences) {
                                     fmt::join(named, ", ")));
 }
 
+std::string number_text(const FittedNumber& number) {
+  return estimate_text(number.value, number.lower, number.upper, number.bound);
+}
+
+/// What was fitted: the parameter that the verdict names, or all of the channel.
+std::string fitted_text(const Study& study, const PromisedRepair& repair) {
+  const ChannelFit& fit = repair.fit;
+  const FittedNumber& shift = fit.dead_time_shift;
+  const std::string gain = fmt::format("{} times the gain", number_text(fit.gain_factor));
+  const std::string time = fmt::format("{} times the time constants", number_text(fit.time_factor));
+  const std::string dead_time = "a dead time " + dead_time_text(shift.value, shift.lower, shift.upper,
+                                                                shift.bound, study.plant.time_unit);
+  if (!repair.only)
+    return fmt::format("{}, {} and {}", gain, time, dead_time);
+  const std::string& named = *repair.only == MismatchParameter::gain            ? gain
+                             : *repair.only == MismatchParameter::time_constant ? time
+                                                                                : dead_time;
+  return named + ", all else as in the model";
+}
+
 void add_repair(const RecordAssessment& of, Sentences& sentences) {
   if (!of.no_repair.empty())
     sentences.push_back(fmt::format("What a repair would bring is not known: {}.", of.no_repair));
   if (!of.repair)
     return;
   const PromisedRepair& repair = *of.repair;
-  const ChannelFit& fit = repair.fit;
-  std::string text = fmt::format(
-      "Identified again from this record, {}/{} has {:.3g} times the gain ({:.3g} to {:.3g}), {:.3g} times "
-      "the "
-      "time constants ({:.3g} to {:.3g}) and a dead time longer by {:.3g} {} ({:.3g} to {:.3g})",
-      cv_name(of.study, repair.channel.cv), mv_name(of.study, repair.channel.mv), fit.gain_factor.value,
-      fit.gain_factor.lower, fit.gain_factor.upper, fit.time_factor.value, fit.time_factor.lower,
-      fit.time_factor.upper, fit.dead_time_shift.value, of.study.plant.time_unit, fit.dead_time_shift.lower,
-      fit.dead_time_shift.upper);
+  std::string text =
+      fmt::format("Identified again from this record, {}/{} has {}", cv_name(of.study, repair.channel.cv),
+                  mv_name(of.study, repair.channel.mv), fitted_text(of.study, repair));
   Sentences changes;
   if (repair.now.size() > 0 && repair.predicted.size() > 0)
     for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
@@ -183,17 +205,19 @@ std::string named_candidate(const RecordAssessment& assessment, const Assessment
 std::string mismatch_sentence(const Study& study, const NamedMismatch& named) {
   const std::string channel =
       fmt::format("{}/{}", cv_name(study, named.channel.cv), mv_name(study, named.channel.mv));
-  const std::string interval =
-      std::isnan(named.lower) ? "" : fmt::format(" ({:.3g} to {:.3g})", named.lower, named.upper);
-  const std::string size = std::isnan(named.size) ? "another" : fmt::format("{:.3g}{}", named.size, interval);
+  const bool has_size = !std::isnan(named.size);
+  const std::string size = estimate_text(named.size, named.lower, named.upper, named.bound);
+  const std::string times = has_size ? fmt::format("{} times that of the model", size) : "another one";
   const std::string& unit = study.plant.time_unit;
   switch (named.parameter) {
     case MismatchParameter::gain:
-      return fmt::format("the gain of {} in the plant is {} times that of the model", channel, size);
+      return fmt::format("the gain of {} in the plant is {}", channel, times);
     case MismatchParameter::time_constant:
-      return fmt::format("the time constant of {} in the plant is {} times that of the model", channel, size);
+      return fmt::format("the time constant of {} in the plant is {}", channel, times);
     case MismatchParameter::dead_time:
-      return fmt::format("the dead time of {} in the plant is longer by {} {}", channel, size, unit);
+      return fmt::format(
+          "the dead time of {} in the plant is {}", channel,
+          has_size ? dead_time_text(named.size, named.lower, named.upper, named.bound, unit) : "another one");
     case MismatchParameter::second_order:
       return fmt::format("{} has a further lag of {} {}", channel, size, unit);
     case MismatchParameter::inverse_response:

@@ -49,24 +49,23 @@ Rate right_scenarios(const ReportInput& input) {
   return rate(right, judged, confidence_of(input));
 }
 
-/// The method that is right most often; null when none was judged. The first one wins a tie.
+/// The method that is right most often, of those that answer and detect; null when there is none. The first
+/// one wins a tie.
 const MethodFindings* best_method(const ReportInput& input, Rate MethodRates::*member) {
   const MethodFindings* best = nullptr;
   for (const MethodFindings& method : input.findings().methods)
-    if ((method.rates.*member).total > 0 &&
+    if ((method.rates.*member).total > 0 && answers_and_detects(method.rates) &&
         (best == nullptr || (method.rates.*member).value > (best->rates.*member).value))
       best = &method;
   return best;
 }
 
-/// A method whose interval for the right source lies above that of the chain; null when there is none.
-const MethodFindings* better_than_the_chain(const ReportInput& input) {
-  const MethodFindings* const best = best_method(input, &MethodRates::source);
-  const MethodFindings* const chain = input.findings().chain();
-  return best != nullptr && chain != nullptr && best != chain &&
-                 best->rates.source.interval.lower > chain->rates.source.interval.upper
-             ? best
-             : nullptr;
+/// Is there a method that was right or wrong on some loop?
+bool was_judged(const ReportInput& input) {
+  const std::vector<MethodFindings>& methods = input.findings().methods;
+  return std::any_of(methods.begin(), methods.end(), [](const MethodFindings& method) {
+    return method.rates.located.total > 0 || method.rates.source.total > 0;
+  });
 }
 
 std::string asked(const ReportInput& input) {
@@ -117,33 +116,42 @@ std::string found(const ReportInput& input) {
                         text.empty() ? "" : "; ", html_text(best->name()), share_words(best->rates.source));
   if (text.empty())
     text = found_of_cvs(input);
-  return text.empty() ? "no loop has a verdict that could be right or wrong." : text + ".";
+  if (!text.empty())
+    return text + ".";
+  return was_judged(input) ? "no method both answers nearly always and detects most faults."
+                           : "no loop has a verdict that could be right or wrong.";
 }
 
-/// What a plant would do with such a result. The limits are those of a tool that is right nine times in ten.
-std::string advice(const ReportInput& input) {
+/// What a plant would do with what `who` says. The limits are those of a tool that is right nine times in
+/// ten.
+std::string advice_on(const std::string& who, const Rate& located, const Rate& source) {
   constexpr double kReliable = 0.9;
+  if (located.total > 0 && located.interval.lower < kReliable)
+    return fmt::format("do not re-identify a channel on the word of {} alone: it may be the wrong CV.", who);
+  if (source.total > 0 && source.interval.lower >= kReliable)
+    return fmt::format("act on both, the CV and the source that {} names.", who);
+  return fmt::format(
+      "look at the CV that {} names, but ask further before a re-identification: the source that it names is "
+      "not safe enough.",
+      who);
+}
+
+/// Of the method that found() says is best, so that both say the same.
+std::string advice(const ReportInput& input) {
   if (!input.campaign.basis.healthy)
     return "nothing with these numbers, for the basis case failed its self-check: mend the study first.";
   if (input.campaign.study.names_scenarios())
     return "read the scenarios that went wrong, one by one.";
+  const MethodFindings* const best = best_method(input, &MethodRates::source);
+  if (best != nullptr && best != input.findings().chain())
+    return advice_on(fmt::format("<code>{}</code>", html_text(best->name())), best->rates.located,
+                     best->rates.source);
   if (input.kinds().empty())
     return "compare detection and false alarms of the methods below before you choose one.";
   const Rate located = of_all_kinds(input, &KindFindings::located);
-  const Rate source = of_all_kinds(input, &KindFindings::source_recognised);
   if (located.total == 0)
     return "draw larger faults: none of these has an impact that the chain sees.";
-  if (located.interval.lower < kReliable)
-    return "do not re-identify a channel on the word of this chain alone: it may be the wrong CV.";
-  if (source.total > 0 && source.interval.lower >= kReliable)
-    return "act on both, the CV and the source that it names.";
-  const MethodFindings* const better = better_than_the_chain(input);
-  return "look at the CV that it names, but ask further before a re-identification: the source that it names "
-         "is not "
-         "safe enough" +
-         (better == nullptr
-              ? std::string(".")
-              : fmt::format("; <code>{}</code> is right more often.", html_text(better->name())));
+  return advice_on("this chain", located, of_all_kinds(input, &KindFindings::source_recognised));
 }
 
 /// "MPM 71.0 % (60.0 to 80.0), UD 85 % (...)": of the kinds that have any.
@@ -283,7 +291,9 @@ std::string comparison_answer(const ReportInput& input) {
   best("the source", &MethodRates::source);
   best("the channel", &MethodRates::channel);
   if (text.empty())
-    return "";
+    return was_judged(input)
+               ? "No method both answers nearly always and detects most faults: none is called best."
+               : "";
   text.front() = 'T';
   return text + ". The table has what each pays for it in false alarms.";
 }

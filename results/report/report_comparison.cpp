@@ -12,6 +12,7 @@
 #include "results/report/html_table.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
 
 namespace mpm {
 namespace {
@@ -94,9 +95,9 @@ std::string rates_legend(const Study& study) {
     html += fmt::format("<strong>{}</strong>: {}. ", html_text(info.title), html_text(info.meaning));
   return fmt::format(
       "{}<strong>false alarms, stated</strong>: share of healthy loops that the method says it flags; marked "
-      "when the interval of the share that it does flag does not hold it, or {:g} % where it states none."
+      "when the interval of the share that it does flag does not hold it, or {:g} % where it states none. {}"
       "</small></p>\n",
-      html, 100.0 * kUsualFalseAlarms);
+      html, 100.0 * kUsualFalseAlarms, kOfOneBenchmark);
 }
 
 /// On what the thresholds were calibrated, and what they are.

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "results/text/experiment_text.hpp"
+
 namespace mpm {
 
 std::string marks_of(const PooledScores& scores) {
@@ -30,6 +32,7 @@ std::vector<std::string> legend_sentences(const Leaderboard& board) {
                     "families that "
                     "draw exactly what it knows of; above 100 % of it chance was kinder.",
                     kReferenceMethod));
+  sentences.emplace_back(kOfOneBenchmark);
   return sentences;
 }
 

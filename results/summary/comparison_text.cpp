@@ -7,6 +7,7 @@
 
 #include "analysis/findings/method_rates.hpp"
 #include "results/summary/comparison.hpp"
+#include "results/text/experiment_text.hpp"
 #include "results/text/text_table.hpp"
 
 namespace mpm {
@@ -159,9 +160,9 @@ std::string comparison_text(const Campaign& campaign, const StudyFindings& findi
   for (std::size_t first = 0; first < findings.methods.size(); first += kMethodsAbreast)
     text += fmt::format("\n{}", rates_text(campaign.study, findings.methods, first,
                                            std::min(first + kMethodsAbreast, findings.methods.size())));
-  return fmt::format("{}{}{}{}{}{}", text, marks_text(findings), calibration_text(campaign, findings),
-                     unanswered_text(campaign.study, findings.methods), reasons_text(findings.methods),
-                     pairs_text(findings));
+  return fmt::format("{}\n{}\n{}{}{}{}{}", text, kOfOneBenchmark, marks_text(findings),
+                     calibration_text(campaign, findings), unanswered_text(campaign.study, findings.methods),
+                     reasons_text(findings.methods), pairs_text(findings));
 }
 
 }  // namespace mpm

@@ -1,6 +1,8 @@
 #include "results/text/experiment_text.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
@@ -10,6 +12,9 @@
 
 namespace mpm {
 namespace {
+
+/// Rounding of a search that ends at 0; no plant has a gain factor or a dead time of this size.
+constexpr double kPrintedAsZero = 1e-9;
 
 /// "0.3 s + 2" of [0.3, 2].
 std::string polynomial_text(const Eigen::VectorXd& coefficients) {
@@ -218,6 +223,32 @@ std::string verdict_text(const Study& study, const ExperimentRecord& record) {
   return fmt::format("{}located {}, I_MPM {:.3f}: {}", chain.impactful ? "" : "no impact, ",
                      cv_name(study, chain.predicted_cv), chain.indicator.i_mpm,
                      source_name(chain.predicted_source));
+}
+
+std::string estimate_text(double value, double lower, double upper, SizeBound bound) {
+  const auto number = [](double of) {
+    return fmt::format("{:.3g}", std::abs(of) < kPrintedAsZero ? 0.0 : of);
+  };
+  const std::string interval =
+      std::isnan(lower) ? "" : fmt::format(" ({} to {})", number(lower), number(upper));
+  return fmt::format("{}{}{}", bound == SizeBound::none ? "" : fmt::format("{} ", to_string(bound)),
+                     number(value), interval);
+}
+
+std::string dead_time_text(double shift, double lower, double upper, SizeBound bound,
+                           const std::string& unit) {
+  const bool shorter = shift < -kPrintedAsZero;
+  if (shorter) {  // the same in sizes of what is taken away
+    shift = -shift;
+    std::swap(lower, upper);
+    lower = -lower;
+    upper = -upper;
+    bound = bound == SizeBound::at_most    ? SizeBound::at_least
+            : bound == SizeBound::at_least ? SizeBound::at_most
+                                           : SizeBound::none;
+  }
+  return fmt::format("{} by {} {}", shorter ? "shorter" : "longer", estimate_text(shift, lower, upper, bound),
+                     unit);
 }
 
 std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record) {

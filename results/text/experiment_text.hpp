@@ -8,6 +8,14 @@
 
 namespace mpm {
 
+/// Stands beside every table of rates with intervals.
+inline constexpr const char* kOfOneBenchmark =
+    "Intervals hold for the one benchmark from which the methods of this study have learnt: over 14 "
+    "benchmarks "
+    "the number of false alarms of sse, likelihood, arx-oe and under coloured noise varied 3 to 6 times as "
+    "much as "
+    "a binomial number.";
+
 // How reports name experiments and what is in them; plain text. Foreign names in it are as in the study.
 
 /// "healthy", "MPM", "UD", "MPM+UD", "tuning".
@@ -32,6 +40,14 @@ std::string experiment_title(const Study& study, const ExperimentDraw& draw);
 /// What the chain says of it: "located y1, I_MPM 0.123: MPM", with "no impact, " before it where there is
 /// none; of a named scenario "flagged y1 (MPM); right"; how it ended when there is no verdict.
 std::string verdict_text(const Study& study, const ExperimentRecord& record);
+
+/// "0.62 (0.55 to 0.7)", without the brackets where the ends are not known; "at least 8 (7.1 to 8)" of an
+/// estimate at the end of its search. What differs from 0 by rounding is 0.
+std::string estimate_text(double value, double lower, double upper, SizeBound bound);
+
+/// "longer by 1.5 min (1.2 to 1.8)", "shorter by at most 0.4 min (0.1 to 0.7)", "the same": a dead time.
+std::string dead_time_text(double shift, double lower, double upper, SizeBound bound,
+                           const std::string& unit);
 
 /// Title and verdict in lines that fit above a figure, however many faults there are.
 std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record);
