@@ -26,7 +26,10 @@ std::vector<std::string> mismatch_parameters() {
 
 /// None in an answer that has no such number.
 SizeBound bound_of(double number) {
-  return std::isnan(number) ? SizeBound::none : static_cast<SizeBound>(number);
+  for (const SizeBound bound : {SizeBound::at_most, SizeBound::at_least})
+    if (number == static_cast<double>(bound))
+      return bound;
+  return SizeBound::none;
 }
 
 std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& method) {

@@ -206,6 +206,30 @@ TEST_CASE("false alarms are marked when their interval does not hold what the me
   CHECK_FALSE(testing::form_of(other, "sse")->method().stated_false_alarms.has_value());
 }
 
+TEST_CASE("the best method is one that answers and detects", "[method_rates]") {
+  MethodRates rates{};
+  rates.answered = rate(95, 100, 0.95);
+  rates.detected = rate(20, 80, 0.95);
+  rates.detected_impact = rate(18, 30, 0.95);
+  rates.false_alarm_healthy = rate(1, 20, 0.95);
+  rates.located = rates.source = rate(20, 20, 0.95);
+  CHECK(answers_and_detects(rates));
+  MethodRates silent = rates;
+  silent.detected_impact = rate(2, 30, 0.95);
+  CHECK_FALSE(answers_and_detects(silent));
+  MethodRates absent = rates;
+  absent.answered = rate(80, 100, 0.95);
+  CHECK_FALSE(answers_and_detects(absent));
+  MethodRates indifferent = rates;
+  indifferent.false_alarm_healthy = rate(19, 20, 0.95);
+  CHECK_FALSE(answers_and_detects(indifferent));
+  MethodRates without_impact = rates;
+  without_impact.detected_impact = rate(0, 0, 0.95);
+  CHECK_FALSE(answers_and_detects(without_impact));
+  without_impact.detected = rate(50, 80, 0.95);
+  CHECK(answers_and_detects(without_impact));
+}
+
 TEST_CASE("rates of a method: a loop with bad tuning is no healthy one, and not on the ROC curve",
           "[method_rates]") {
   Case made;

@@ -145,11 +145,13 @@ TEST_CASE("an answer that is kept names its mismatch in the place of its channel
   const auto form = form_of(method);
   CHECK_FALSE(kept(form, {}).named_mismatch());
   Assessment said;
-  said.named_mismatch = {{4, 2}, MismatchParameter::dead_time, 3.0, 2.5, 4.0};
+  said.named_mismatch = {{4, 2}, MismatchParameter::dead_time, 3.0, 2.5, 4.0, SizeBound::at_least};
   const AssessmentRecord record = kept(form, said);
   CHECK(record.values("mismatch_parameter").array().isNaN().count() ==
         short_study().cv_count() * short_study().mv_count() - 1);
   const auto named = record.named_mismatch();
+  REQUIRE(named);
+  CHECK(named->bound == SizeBound::at_least);
   REQUIRE(named);
   CHECK(named->channel == Channel{4, 2});
   CHECK(named->parameter == MismatchParameter::dead_time);

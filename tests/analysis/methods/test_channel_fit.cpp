@@ -109,4 +109,34 @@ TEST_CASE("channel fit: an MV at rest and a channel that is zero are refused") {
   CHECK_THROWS_AS(fit_channel(TransferFunction::zero(), kTs, e, e, 3.0, 0.95), InputError);
 }
 
+TEST_CASE("channel fit: where one parameter is wrong the others keep to the model, however alike they act") {
+  RandomStream stream(9, 0, StreamId::measurement_noise);
+  Eigen::VectorXd sine(kFitted);
+  for (Eigen::Index k = 0; k < kFitted; ++k)
+    sine(k) = 3.0 + std::sin(0.3 * static_cast<double>(k));
+  // One sine has an amplitude and a phase: gain and dead time together make any of them.
+  const Eigen::VectorXd e =
+      error_of(modelled_channel().with_dead_time_shifted(2.0), sine, 0.005, 0.0, stream);
+  const ChannelFit fit =
+      fit_channel(modelled_channel(), kTs, e, sine, 3.0, 0.95, MismatchParameter::dead_time);
+  CHECK(fit.gain_factor.value == 1.0);
+  CHECK(fit.gain_factor.lower == 1.0);
+  CHECK(fit.time_factor.value == 1.0);
+  CHECK(fit.time_factor.upper == 1.0);
+  CHECK(fit.dead_time_shift.value == Approx(2.0).margin(0.3));  // some ten standard deviations
+  CHECK(fit.dead_time_shift.bound == SizeBound::none);
+}
+
+TEST_CASE("channel fit: a value at the end of its search is a bound") {
+  RandomStream stream(9, 1, StreamId::measurement_noise);
+  const Eigen::VectorXd u = moving_mv(stream);
+  const auto fitted = [&](const TransferFunction& plant) {
+    return fit_channel(modelled_channel(), kTs, error_of(plant, u, 1e-3, 0.0, stream), u, 3.0, 0.95);
+  };
+  CHECK(fitted(modelled_channel().with_time_scaled(30.0)).time_factor.bound == SizeBound::at_least);
+  CHECK(fitted(modelled_channel().with_time_scaled(2.0)).time_factor.bound == SizeBound::none);
+  // No dead time can be shorter than none.
+  CHECK(fitted(modelled_channel().with_dead_time_shifted(-10.0)).dead_time_shift.bound == SizeBound::none);
+}
+
 }  // namespace mpm

@@ -234,6 +234,20 @@ TEST_CASE("report: a campaign without the chain has no section of it") {
 TEST_CASE("report: the verdict on top is of the CV where no method names a source") {
   Campaign campaign = made_up_campaign();
   remove_methods(campaign, [](const std::string& name) { return name != "sse"; });
+  const auto flag = [&campaign](std::size_t loops) {
+    for (ExperimentRecord& record : campaign.records)
+      if (record.status == ExperimentStatus::ok) {
+        record.assessments = {plain_verdict(campaign.methods.front().form, loops > 0, 1.0)};
+        loops -= loops > 0 ? 1 : 0;
+      }
+  };
+  // Right in all that it flags, of which there is one loop: that is no winner.
+  flag(1);
+  REQUIRE(findings_of(campaign).methods.front().rates.located.total == 1);
+  REQUIRE(findings_of(campaign).methods.front().rates.answered.total > 2);
+  CHECK_THAT(page_of(campaign, "f.h5"), Contains("no method both answers nearly always and detects") &&
+                                            !Contains("<code>sse</code> flags"));
+  flag(campaign.records.size());
   const StudyFindings findings = findings_of(campaign);
   const MethodRates& rates = findings.methods.front().rates;
   REQUIRE(rates.source.total == 0);
