@@ -16,8 +16,8 @@ title = "One cell"
 seed = 1
 methods = ["sse"]
 [[plant]]
-name = "wb"
-study = "wood-berry"
+name = "column"
+study = "suite-column"
 [[family]]
 name = "one"
 title = "as it is"
@@ -95,7 +95,7 @@ def main(program, study):
         words = ["suite", suite, "-o", kept, "--experiments", 2, "--quiet"]
         run(*words)
         run(*words, "--methods", "botelho")  # the same cells
-        refused(kept / "wb.one.h5", *words, "--seed", 2, found="another study")
+        refused(kept / "column.one.h5", *words, "--seed", 2, found="another study")
         run(*words, "--seed", 2, "--overwrite")
 
         sweep, kept = folder / "noise.toml", folder / "sweep"
