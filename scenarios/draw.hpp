@@ -65,6 +65,8 @@ struct ExperimentDraw {
 inline constexpr std::int64_t kBasisIndex = -1;
 /// The index of the basis case with other noise (SelfCheck::repeat).
 inline constexpr std::int64_t kRepeatIndex = -2;
+/// The index under which a sequence that all experiments share is drawn (SignalSequence::shared).
+inline constexpr std::int64_t kSharedIndex = -3;
 
 /// The order of kinds over the experiments of a study.
 ///

@@ -11,6 +11,7 @@
 
 #include "scenarios/distribution.hpp"
 #include "scenarios/fault.hpp"
+#include "scenarios/signal_sequence.hpp"
 
 // What the random mismatches and disturbances of a study are drawn from.
 
@@ -101,7 +102,8 @@ std::string_view to_string(DisturbancePlace place);
 struct DisturbanceRanges {
   Distribution gain = Distribution::uniform(0.1, 3.0);
   Distribution time_constant = Distribution::uniform(30.0, 300.0);
-  double v_standard_deviation = 1.0;  ///< of the white normal sequence, held over a sample
+  double v_standard_deviation = 1.0;               ///< of the white normal sequence, held over a sample
+  SignalSequence sequence = SignalSequence::each;  ///< of the random numbers of v
   /// Relative frequency of each of kDisturbanceShapes and of kDisturbancePlaces.
   std::array<double, kDisturbanceShapes.size()> signal_weight{1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   std::array<double, kDisturbancePlaces.size()> place_weight{1.0, 0.0, 0.0};

@@ -145,9 +145,10 @@ StreamId disturbance_stream(std::size_t number) {
 
 Eigen::RowVectorXd signal_values(const Study& study, std::int64_t index, std::size_t number,
                                  const DisturbanceSignal& signal) {
+  const std::int64_t whose = study.disturbance.sequence == SignalSequence::shared ? kSharedIndex : index;
   return disturbance_signal(signal, study.disturbance.v_standard_deviation, study.controller.sample_time,
                             study.simulation.samples,
-                            experiment_stream(study, index, disturbance_stream(number)));
+                            experiment_stream(study, whose, disturbance_stream(number)));
 }
 
 void begin_at(const Onset& onset, Eigen::Ref<Eigen::RowVectorXd> signal) {
@@ -230,7 +231,9 @@ Eigen::MatrixXd setpoints(const Study& study) {
 Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index) {
   const SimulationOptions& simulation = study.simulation;
   const double phi = simulation.noise.autocorrelation;
-  RandomStream stream = experiment_stream(study, index, StreamId::measurement_noise);
+  const bool is_shared = simulation.noise.sequence == SignalSequence::shared && index != kRepeatIndex;
+  RandomStream stream =
+      experiment_stream(study, is_shared ? kSharedIndex : index, StreamId::measurement_noise);
   Eigen::MatrixXd noise(study.cv_count(), simulation.samples);
   for (Eigen::Index k = 0; k < noise.cols(); ++k)
     for (Eigen::Index cv = 0; cv < noise.rows(); ++cv)

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "scenarios/distribution.hpp"
+#include "scenarios/signal_sequence.hpp"
 
 namespace mpm {
 
@@ -50,6 +51,9 @@ struct NoiseOptions {
   /// Factor of the standard deviations of all CVs, drawn for each experiment. The basis case has 1: noise of
   /// another size than in the benchmark.
   Distribution factor = Distribution::constant(1);
+  /// Of the innovations. With a shared sequence the basis case has it as well, but not the basis case with
+  /// other noise (kRepeatIndex).
+  SignalSequence sequence = SignalSequence::each;
 
   bool operator==(const NoiseOptions&) const = default;
 };

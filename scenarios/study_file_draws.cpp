@@ -103,6 +103,11 @@ void refuse_no_weight(const TomlTable& table, std::span<const double> weights) {
     table.refuse("", "weights that are all 0", "at least one > 0");
 }
 
+SignalSequence read_sequence_or(const TomlTable& table, SignalSequence otherwise) {
+  return read_choice_or<SignalSequence>(
+      table, "sequence", {{"each", SignalSequence::each}, {"shared", SignalSequence::shared}}, otherwise);
+}
+
 std::optional<Distribution> read_impact(const TomlTable& table) {
   if (!table.has("impact"))
     return std::nullopt;
@@ -140,6 +145,7 @@ DisturbanceRanges read_disturbance(const TomlTable& document) {
       read_distribution_or(table, "time_constant", NumberRule::positive(), ranges.time_constant);
   ranges.v_standard_deviation =
       read_number_or(table, "v_standard_deviation", NumberRule::positive(), ranges.v_standard_deviation);
+  ranges.sequence = read_sequence_or(table, ranges.sequence);
   read_weights_of(table, "signal_weights", "disturbance.signal_weights", kDisturbanceShapes, 0,
                   ranges.signal_weight);
   read_weights_of(table, "place_weights", "disturbance.place_weights", kDisturbancePlaces, 0,

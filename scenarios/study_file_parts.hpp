@@ -110,6 +110,9 @@ void refuse_no_weight(const TomlTable& table, std::span<const double> weights);
 /// The size of an effect (FaultScales) under `key`; none without the key.
 std::optional<Distribution> read_impact(const TomlTable& table);
 
+/// The key `sequence` of a table of signals.
+SignalSequence read_sequence_or(const TomlTable& table, SignalSequence otherwise);
+
 /// [tuning]; `study` has its controller and its experiments.
 TuningRanges read_tuning(const TomlTable& document, const Study& study);
 

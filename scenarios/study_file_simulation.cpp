@@ -44,6 +44,7 @@ NoiseOptions read_noise(const TomlTable& simulation) {
   noise.autocorrelation =
       read_number_or(table, "autocorrelation", NumberRule::inside(-1, 1), noise.autocorrelation);
   noise.factor = read_distribution_or(table, "factor", NumberRule::at_least(0), noise.factor);
+  noise.sequence = read_sequence_or(table, noise.sequence);
   return noise;
 }
 

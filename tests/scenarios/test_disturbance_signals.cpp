@@ -52,6 +52,23 @@ TEST_CASE("disturbance signals: sine, ramp and steps are what they are called") 
   }
 }
 
+TEST_CASE("disturbance signals: a shared sequence is the same in every experiment, and no other's") {
+  Study study = study_of(60);
+  const auto v = [&study](std::int64_t index) {
+    return disturbance_output(study, index, direct(WhiteNoise{}));
+  };
+  const Eigen::RowVectorXd own = v(3);
+  CHECK(v(4) != own);
+  study.disturbance.sequence = SignalSequence::shared;
+  CHECK(v(4) == v(3));
+  CHECK(v(3) != own);
+  CHECK(signal_of(study, direct(WhiteNoise{})) == v(7));
+  ++study.seed;
+  const Eigen::RowVectorXd other = v(3);
+  --study.seed;
+  CHECK(other != v(3));
+}
+
 TEST_CASE("disturbance signals: a step through G_d is its step response, an integrator's a ramp") {
   const Study study = study_of(60);
   const StepSequence step{{{10, 2.0}}};

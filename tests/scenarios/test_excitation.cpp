@@ -39,6 +39,22 @@ double deviation(const Eigen::RowVectorXd& signal) {
   return std::sqrt(signal.squaredNorm() / static_cast<double>(signal.size()));
 }
 
+TEST_CASE("measurement noise: a shared sequence is that of every loop but the repeated basis case",
+          "[excitation]") {
+  const Study each = excited_study("");
+  const Study shared = excited_study("noise = {sequence = 'shared'}");
+  const Eigen::MatrixXd noise = measurement_noise(shared, 0);
+  CHECK(measurement_noise(shared, 4) == noise);
+  CHECK(measurement_noise(shared, kBasisIndex) == noise);
+  CHECK(measurement_noise(shared, kRepeatIndex) == measurement_noise(each, kRepeatIndex));
+  for (const std::int64_t index : {kBasisIndex, kRepeatIndex, std::int64_t{0}, std::int64_t{4}})
+    CHECK(measurement_noise(each, index) != noise);
+  CHECK(measurement_noise(each, 4) != measurement_noise(each, 0));
+  Study other = shared;
+  ++other.seed;
+  CHECK(measurement_noise(other, 0) != noise);
+}
+
 TEST_CASE("measurement noise: variance, tails and colour are those that are asked for", "[excitation]") {
   struct Case {
     std::string key;
