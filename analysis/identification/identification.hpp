@@ -16,7 +16,9 @@ enum class IdentificationStatus : std::int8_t {
                            ///< on others, or orders that are too high
   not_converged = 2,       ///< the search ended where the gradient of the loss is not small
   at_stability_limit = 3,  ///< the search ended with a root of C, D or F at the largest radius allowed
-  noise_free = 4,          ///< nothing above rounding is left for C and D to describe: they are 1
+  noise_free = 4,  ///< nothing above rounding is left for C and D to describe: they are 1. With orders
+                   ///< above those of the data the coefficients are not determined, and there is no
+                   ///< covariance; the response is, of one input from rest
 };
 
 /// Whether the response to the inputs is an answer: ok, noise_free, and at_stability_limit, which is one with

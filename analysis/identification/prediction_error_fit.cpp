@@ -31,6 +31,13 @@ struct Data {
     return prediction_error_gradient(model, y, u, options.start).bottomRows(samples());
   }
   double size() const { return y.tail(samples()).squaredNorm(); }
+  bool is_exact(double sum) const { return sum <= kNoiseFree * size(); }
+  /// Is there one response only that explains the output without an error? Of two such responses the
+  /// difference h has sum_l h(l) u(k - l) = 0 at every sample k, from rest on: from the first move of the
+  /// input on all h(l) must be 0, as far as the record reaches. Several inputs could make up for each other.
+  bool determines_response() const {
+    return u.rows() == 1 && options.start == StartState::rest && options.first_sample == 0 && !u.isZero(0.0);
+  }
 };
 
 PolynomialModel without_noise_model(PolynomialModel model) {
@@ -52,14 +59,19 @@ Identification assess(const Data& data, const PolynomialModel& model) {
 
   const LeastSquares step = least_squares(data.gradient(model), e, data.options.rank_tolerance);
   if (step.rank < p) {
-    result.status = IdentificationStatus::rank_deficient;
+    // Orders above those of the data: coefficients of common factors are free, and the response is what it
+    // is.
+    const bool has_noise_model = model.C.size() + model.D.size() > 2;
+    result.status = !has_noise_model && data.is_exact(sum) && data.determines_response()
+                        ? IdentificationStatus::noise_free
+                        : IdentificationStatus::rank_deficient;
     return result;
   }
   result.covariance = result.model.noise_variance * step.inverse;
   const double border = 1.0 - 2.0 * (1.0 - data.options.largest_radius);
   if (search_radius(model) > border)
     result.status = IdentificationStatus::at_stability_limit;
-  else if (sum <= kNoiseFree * data.size() || sum - step.residual_sum <= kConverged * sum)
+  else if (data.is_exact(sum) || sum - step.residual_sum <= kConverged * sum)
     result.status = IdentificationStatus::ok;
   return result;
 }
@@ -74,8 +86,10 @@ Identification noise_free_result(const Identification& exact, const ModelOrder& 
   const double variance = exact.model.noise_variance;
   result.model = model_from_parameters(order, theta);
   result.model.noise_variance = variance;
-  result.covariance = Eigen::MatrixXd::Zero(p, p);
-  result.covariance.topLeftCorner(of_inputs, of_inputs) = exact.covariance;
+  if (exact.covariance.size() > 0) {
+    result.covariance = Eigen::MatrixXd::Zero(p, p);
+    result.covariance.topLeftCorner(of_inputs, of_inputs) = exact.covariance;
+  }
   result.status = IdentificationStatus::noise_free;
   return result;
 }
@@ -84,20 +98,20 @@ bool leaves_at_most(const Data& data, const PolynomialModel& model, double share
   return data.errors(model).squaredNorm() <= share * data.size();
 }
 
+bool is_minimum(IdentificationStatus status) {
+  return status == IdentificationStatus::ok || status == IdentificationStatus::noise_free;
+}
+
 Identification search_from(const Data& data, const PolynomialModel& start) {
   const ModelOrder order = start.order();
   if (order.nc + order.nd > 0 && leaves_at_most(data, without_noise_model(start), kNearlyExact)) {
     const PolynomialModel plain =
         search_prediction_error(without_noise_model(start), data.y, data.u, data.options);
     const Identification exact = assess(data, plain);
-    if (leaves_at_most(data, plain, kNoiseFree) && exact.status == IdentificationStatus::ok)
+    if (leaves_at_most(data, plain, kNoiseFree) && is_minimum(exact.status))
       return noise_free_result(exact, order);
   }
   return assess(data, search_prediction_error(start, data.y, data.u, data.options));
-}
-
-bool is_minimum(IdentificationStatus status) {
-  return status == IdentificationStatus::ok || status == IdentificationStatus::noise_free;
 }
 
 }  // namespace

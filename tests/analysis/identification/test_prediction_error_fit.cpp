@@ -190,6 +190,25 @@ TEST_CASE("data that do not determine a model are a status") {
   }
 }
 
+TEST_CASE("orders above those of data without noise leave the coefficients open, and not the response") {
+  PolynomialModel truth = box_jenkins_sample();
+  truth.C = truth.D = Eigen::VectorXd::Ones(1);
+  Eigen::MatrixXd u = random_steps(1, 200, 45);
+  u(0, 0) = 0.0;
+  const Eigen::VectorXd y = simulate(truth, u, StartState::rest);
+  const mpm::ModelOrder high = box_jenkins_order(1, 8, 6, 1, 1);
+  const Identification fit = identify_prediction_error(y, u, high);
+  CHECK(fit.status == IdentificationStatus::noise_free);
+  CHECK(fit.covariance.size() == 0);
+  // Rounding of the data, through an ill-conditioned search.
+  CHECK((step_response(fit.model, 100) - step_response(truth, 100)).cwiseAbs().maxCoeff() < 1e-6);
+  // Of two inputs that move together the responses are open, however exact the model is.
+  Eigen::MatrixXd twice(2, 200);
+  twice << u, 2.0 * u;
+  CHECK(identify_prediction_error(y, twice, box_jenkins_order(2, 4, 2, 1, 1)).status ==
+        IdentificationStatus::rank_deficient);
+}
+
 TEST_CASE("with one start allowed the search from the best one is all there is") {
   // A noise that drifts ends at the stability limit from every start, so that all of them are tried.
   const Eigen::MatrixXd u = random_steps(1, 400, 47);
