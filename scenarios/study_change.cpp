@@ -127,13 +127,22 @@ StudyChange parse_study_change(const std::string& text) {
   return change;
 }
 
+std::vector<StudyChange> parse_study_changes(const std::vector<std::string>& texts) {
+  std::vector<StudyChange> changes;
+  for (const std::string& text : texts)
+    changes.push_back(parse_study_change(text));
+  return changes;
+}
+
 Study changed_study(const Study& study, const std::vector<StudyChange>& changes, const std::string& name) {
+  if (changes.empty())
+    return study;
   toml::table toml = parse_toml(study.source, name);
   for (const StudyChange& change : changes)
     apply(toml, change, name);
-  std::ostringstream text;
+  std::stringstream text;
   text << toml << '\n';
-  return parse_study(text.str(), name);
+  return load_study(text, name);
 }
 
 void change_studies(ThesisTable& table, const std::vector<StudyChange>& changes) {

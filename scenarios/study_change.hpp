@@ -20,11 +20,15 @@ struct StudyChange {
 /// is no TOML.
 StudyChange parse_study_change(const std::string& text);
 
+/// The changes that several of them ask for.
+std::vector<StudyChange> parse_study_changes(const std::vector<std::string>& texts);
+
 /// The study whose text has these values, laid over it in their order as those of a variant
-/// (read_study_variant()). `name` stands for the file in messages.
+/// (read_study_variant()); without changes the study itself. `name` stands for the file in messages, and
+/// paths in the study are from its folder.
 ///
 /// Errors: InputError for a name that is not in its list, a key to be taken out that is not there; as
-/// parse_study() for what comes out, which refuses unknown keys.
+/// load_study() for what comes out, which refuses unknown keys.
 Study changed_study(const Study& study, const std::vector<StudyChange>& changes, const std::string& name);
 
 /// Makes these changes to every study of the table, after those of its variants. Errors: as changed_study();

@@ -28,6 +28,7 @@ AddCommand add_repair;      // identifies a named channel again, and says what t
 AddCommand add_reproduce;   // the tables of the thesis
 AddCommand add_export;      // a table of an archive as CSV
 AddCommand add_list;        // the shipped studies
+AddCommand add_show;        // the text of one of them
 AddCommand add_manual;      // the manual page, from the declarations of all commands
 AddCommand add_completion;  // what completes them in a shell
 
@@ -42,7 +43,7 @@ inline std::vector<Task> tasks() {
            {add_init, add_validate, add_run, add_merge, add_sweep, add_suite, add_compare}},
           {"See what was found", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
           {"Assess the records of a plant", {add_assess, add_identify, add_repair}},
-          {"What there is", {add_list, add_reproduce, add_manual, add_completion}}};
+          {"What there is", {add_list, add_show, add_reproduce, add_manual, add_completion}}};
 }
 
 }  // namespace mpm

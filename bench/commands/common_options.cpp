@@ -47,6 +47,10 @@ void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::stri
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
 }
 
+void add_changes(CLI::App& app, std::vector<std::string>& changes, const std::string& description) {
+  app.add_option("--set", changes, description)->allow_extra_args(false);
+}
+
 void add_archive(CLI::App& app, std::string& archive) {
   add_path(app, "ARCHIVE", archive, "Archive")->required();
 }

@@ -26,6 +26,8 @@ void add_part_option(CLI::App& app, const std::string& name, std::string& part, 
                      const std::string& description);
 /// The master seed of a study or a suite.
 void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& description);
+/// --set of a command that runs studies: parse_study_changes().
+void add_changes(CLI::App& app, std::vector<std::string>& changes, const std::string& description);
 void add_archive(CLI::App& app, std::string& archive);
 void add_index(CLI::App& app, std::int64_t& index);
 void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments, const std::string& description);

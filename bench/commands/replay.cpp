@@ -53,6 +53,8 @@ ExitCode replay(const ReplayArguments& options) {
   print_result(fmt::format("experiment {}: {}, {}\n", options.index, to_string(again.draw.kind),
                            to_string(again.status)));
   print_result(fmt::format("{}\n", experiment_line(campaign.study, again)));
+  if (const std::string conditions = conditions_text(again); !conditions.empty())
+    print_result(conditions + "\n");
   if (differences.empty())
     print_result("bit-identical to the archive\n");
   else

@@ -45,9 +45,7 @@ struct ReproduceArguments {
 
 /// The tables that the command names, with its changes made to their studies.
 std::vector<ThesisTable> tables_of(const ReproduceArguments& options) {
-  std::vector<StudyChange> changes;
-  for (const std::string& text : options.changes)
-    changes.push_back(parse_study_change(text));
+  const std::vector<StudyChange> changes = parse_study_changes(options.changes);
   std::vector<ThesisTable> tables = find_tables(options.tables, ScenarioQuantities::known());
   for (ThesisTable& table : tables)
     change_studies(table, changes);
@@ -164,9 +162,8 @@ void add_reproduce(CommandSet& commands) {
            "Page to write (HTML). What is done is kept beside it until then, and the same command goes on");
   add_solver(app, options->run.solver);
   add_json(app, options->json);
-  app.add_option("--set", options->changes,
-                 "A key of the study of every table with another value, KEY=VALUE; may be repeated")
-      ->allow_extra_args(false);
+  add_changes(app, options->changes,
+              "A key of the study of every table with another value, KEY=VALUE; may be repeated");
   app.add_option("--seeds", options->seeds,
                  "Run each table with N seeds, and report medians and the share of seeds that agree")
       ->check(whole_number(1, 100000));

@@ -33,6 +33,7 @@
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/study_change.hpp"
 #include "scenarios/study_library.hpp"
 
 namespace mpm {
@@ -45,6 +46,7 @@ struct RunArguments {
   RunOptions run;
   std::vector<std::string> method_files;
   bool overwrite = false;
+  std::vector<std::string> changes;  ///< --set, each KEY=VALUE
   bool dry_run = false;
   bool verbose = false;
   bool quiet = false;
@@ -146,7 +148,8 @@ void warn_of_other_parts(const RunArguments& options, const Study& study, const 
 }
 
 ExitCode run(const RunArguments& options, const std::string& command_line) {
-  const Study study = find_study(options.study);
+  const Study study =
+      changed_study(find_study(options.study), parse_study_changes(options.changes), options.study);
   std::vector<std::string> inputs = options.method_files;
   inputs.push_back(options.study);
   require_no_input("--output", options.output, inputs);
@@ -250,6 +253,9 @@ void add_run(CommandSet& commands) {
                                [options, &commands] { return run(*options, commands.command_line()); });
   add_path(app, "STUDY", options->study, "Study file, name of a shipped study, or - for stdin")->required();
   add_path(app, "-o,--output", options->output, "Archive to write (HDF5)")->required();
+  add_changes(app, options->changes,
+              "A key of the study with another value, KEY=VALUE; may be repeated. The archive has the study "
+              "that comes out");
   add_experiments(app, options->run.experiments, "Run the first N experiments; any N keeps the proportions");
   add_seed(app, options->run.seed, "Master seed instead of the study's");
   add_methods_option(app, options->run.methods,
