@@ -109,6 +109,12 @@ enum class VarianceCentre { setpoint, mean };
 /// Which experiments the rates of I_MPM are counted over.
 enum class SourcePopulation { impactful, feasible };
 
+/// What becomes of loops that are not stable.
+enum class UnstableLoops : std::int8_t {
+  keep,
+  exclude,  ///< they are left out, as infeasible ones are
+};
+
 /// How a study assures itself of its basis case.
 enum class SelfCheck {
   ivar,    ///< Ivar of the chain lies in the band for every CV: what the verdicts of the thesis need
@@ -127,6 +133,7 @@ struct DiagnosisOptions {
   double longest_window = 2.0;
   int window_stride = 1;  ///< samples between window lengths
   SourcePopulation source_population = SourcePopulation::impactful;
+  UnstableLoops unstable = UnstableLoops::keep;
   SelfCheck self_check = SelfCheck::ivar;
   double self_check_lower = 0.8;  ///< the index of the self-check must lie in this band for every CV
   double self_check_upper = 1.2;

@@ -122,6 +122,9 @@ DiagnosisOptions read_diagnosis(const TomlTable& document) {
       table, "source_population",
       {{"impactful", SourcePopulation::impactful}, {"feasible", SourcePopulation::feasible}},
       options.source_population);
+  options.unstable = read_choice_or<UnstableLoops>(
+      table, "unstable", {{"keep", UnstableLoops::keep}, {"exclude", UnstableLoops::exclude}},
+      options.unstable);
   options.self_check = read_choice_or<SelfCheck>(
       table, "self_check",
       {{"ivar", SelfCheck::ivar}, {"repeat", SelfCheck::repeat}, {"none", SelfCheck::none}},

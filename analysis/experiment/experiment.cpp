@@ -42,6 +42,8 @@ std::string_view to_string(ExperimentStatus status) {
       return "infeasible";
     case ExperimentStatus::failed:
       return "failed";
+    case ExperimentStatus::unstable:
+      return "unstable";
   }
   return "unknown";
 }
@@ -64,7 +66,8 @@ ExperimentRunner::ExperimentRunner(const Study& study, AssessmentContext context
       basis_(context.basis),
       factory_(context.factory),
       panel_(study, std::move(context), methods),
-      perturbation_(study, basis_.sensitivity) {}
+      perturbation_(study, basis_.sensitivity),
+      stability_(study, basis_.point) {}
 
 ExperimentRunner::ExperimentRunner(const Study& study, const BasisCase& basis,
                                    const std::vector<std::string>& methods, QpSolverFactory factory)
@@ -94,6 +97,11 @@ ExperimentRunner::FinishedLoop ExperimentRunner::finished(const ExperimentDraw& 
     loop.assessed = assessed_loop(study_, basis_.point, recorded(study_, draw.index, loop.trajectory));
   loop.assessed.candidates = logged_candidates(study_, draw);
   return loop;
+}
+
+double ExperimentRunner::spectral_radius(const ExperimentDraw& draw) const {
+  return draw.tuning ? LoopStability(with_tuning(study_, draw), basis_.point).spectral_radius(draw)
+                     : stability_.spectral_radius(draw);
 }
 
 /// Runs the loops with one of two faults alone, without which the experiment is not complete.
@@ -141,6 +149,11 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
   record.solver.add(main.trajectory.solver);
   if (main.own)
     record.solver.add(main.own->solver);
+  record.conditions = loop_conditions(study_, basis_, main.trajectory);
+  record.conditions.spectral_radius = spectral_radius(record.draw);
+  if (record.status == ExperimentStatus::ok && study_.diagnosis.unstable == UnstableLoops::exclude &&
+      has_cause(record.conditions, NonlinearCause::unstable))
+    record.status = ExperimentStatus::unstable;
   if (record.status == ExperimentStatus::ok)
     record.assessments = panel_.assess(main.assessed, main.own ? &*main.own : nullptr);
   if (store == StorePolicy::truth) {

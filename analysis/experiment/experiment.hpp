@@ -11,8 +11,10 @@
 
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/basis/tuned_basis.hpp"
+#include "analysis/experiment/loop_conditions.hpp"
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/method_panel.hpp"
+#include "analysis/sensitivity/loop_stability.hpp"
 #include "analysis/sensitivity/s0_perturbation.hpp"
 #include "scenarios/closed_loop.hpp"
 #include "scenarios/draw.hpp"
@@ -24,9 +26,10 @@ enum class ExperimentStatus : std::int8_t {
   infeasible = 1,  ///< some MPC problem had no solution; the experiment is left out, as in the thesis
   failed = 2,      ///< the solver gave no answer, the plant could not be integrated or had no steady state to
                    ///< begin at, or the process that ran the experiment died
+  unstable = 3,    ///< the loop is not stable, and the study leaves such loops out (UnstableLoops)
 };
 
-/// "ok", "infeasible", "failed"
+/// "ok", "infeasible", "failed", "unstable"
 std::string_view to_string(ExperimentStatus status);
 
 /// Whose closed-loop data an archive keeps.
@@ -66,6 +69,7 @@ struct ExperimentRecord {
   ExperimentDraw draw;
   ExperimentStatus status = ExperimentStatus::failed;
   std::string message;                        ///< why it failed; empty otherwise
+  LoopConditions conditions;                  ///< of the loop that was assessed
   Eigen::VectorXd ivar_basis;                 ///< ny, basis_variance_indices(); empty unless the status is ok
   std::vector<AssessmentRecord> assessments;  ///< by each method of the study, in their order
   PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for, or
@@ -123,6 +127,7 @@ class ExperimentRunner {
 
   FinishedLoop simulate(const ExperimentDraw& draw, const StepObserver& observer);
   FinishedLoop finished(const ExperimentDraw& draw, Trajectory trajectory);
+  double spectral_radius(const ExperimentDraw& draw) const;
   FinishedLoop finished_again(const ExperimentRecord& record);
   void assess_alone(ExperimentRecord& record, const StepObserver& observer);
   /// Has the chain say how much the mismatch dominates, from the loops with one fault alone.
@@ -134,6 +139,7 @@ class ExperimentRunner {
   QpSolverFactory factory_;
   MethodPanel panel_;
   S0Perturbation perturbation_;
+  LoopStability stability_;
 };
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/statistics/interval.hpp"
@@ -11,15 +12,25 @@ namespace mpm {
 struct Endings {
   std::int64_t experiments = 0;
   std::int64_t failed = 0;
-  Rate infeasible;  ///< of the experiments that did not fail
+  Rate infeasible;            ///< of the experiments that did not fail
+  Rate unstable;              ///< of the experiments of which it is known whether their loop is stable
+  std::int64_t excluded = 0;  ///< unstable ones that the study leaves out
 
-  /// Counts an experiment; `infeasible` is a rate once all are counted.
-  void add(ExperimentStatus status) {
+  /// Counts an experiment; `infeasible` and `unstable` are rates once all are counted.
+  void add(const ExperimentRecord& record) {
     ++experiments;
-    failed += status == ExperimentStatus::failed ? 1 : 0;
-    infeasible.hits += status == ExperimentStatus::infeasible ? 1 : 0;
+    failed += record.status == ExperimentStatus::failed ? 1 : 0;
+    infeasible.hits += record.status == ExperimentStatus::infeasible ? 1 : 0;
+    excluded += record.status == ExperimentStatus::unstable ? 1 : 0;
+    if (const std::optional<bool> stable = record.conditions.stable()) {
+      ++unstable.total;
+      unstable.hits += *stable ? 0 : 1;
+    }
   }
-  void finish(double confidence) { infeasible = rate(infeasible.hits, experiments - failed, confidence); }
+  void finish(double confidence) {
+    infeasible = rate(infeasible.hits, experiments - failed, confidence);
+    unstable = rate(unstable.hits, unstable.total, confidence);
+  }
 };
 
 }  // namespace mpm

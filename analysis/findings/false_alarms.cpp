@@ -17,7 +17,7 @@ struct AlarmCounts {
   void add(const ExperimentRecord& record, const AssessmentRecord& said) {
     if (!group.has(record.draw))
       return;
-    group.add(record.status);
+    group.add(record);
     if (!said.answered())
       return;
     ++verdicts;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -56,6 +57,36 @@ class IvarPairs {
   std::vector<std::int64_t> experiments_;
 };
 
+/// Are conditions of the loop known that could be a cause?
+bool some_known(const LoopConditions& conditions) {
+  return !std::isnan(conditions.spectral_radius) || !std::isnan(conditions.other_cv_active) ||
+         !std::isnan(conditions.mv_at_limit);
+}
+
+/// The pairs of the experiments without one cause.
+struct PairsWithoutCause {
+  NonlinearCause cause;
+  std::int64_t experiments = 0;
+  std::vector<double> x = {}, y = {};
+
+  void add(const ExperimentRecord& record, const Eigen::MatrixXd& estimate) {
+    if (cause == NonlinearCause::none ? !has_cause(record.conditions, cause)
+                                      : has_cause(record.conditions, cause)) {
+      ++experiments;
+      return;
+    }
+    for (Eigen::Index cv = 0; cv < estimate.rows(); ++cv) {
+      x.push_back(estimate(cv));
+      y.push_back(record.ivar_basis(cv));
+    }
+  }
+  KindFindings::WithoutCause result() const {
+    using Pairs = Eigen::Map<const Eigen::VectorXd>;
+    const auto size = static_cast<Eigen::Index>(x.size());
+    return {cause, experiments, linear_fit(Pairs(x.data(), size), Pairs(y.data(), size))};
+  }
+};
+
 /// The name of the number that estimates Ivar_basis; empty without one.
 std::string estimate_name(const AssessmentForm& form) {
   for (const NumberPlace& place : form.places())
@@ -75,12 +106,14 @@ class KindCounts {
         values_(numbers_.size()) {
     found_.kind = kind;
     found_.confusion = ConfusionMatrix(study.cv_count());
+    for (const NonlinearCause cause : kNonlinearCauses)
+      without_cause_.push_back({cause});
   }
 
   void add(const ExperimentRecord& record) {
     if (record.draw.kind != found_.kind)
       return;
-    found_.add(record.status);
+    found_.add(record);
     const AssessmentRecord& said = record.assessments[method_];
     if (!said.answered())
       return;
@@ -94,8 +127,12 @@ class KindCounts {
     if (in_source_population(study_, said))
       for (std::size_t n = 0; n < numbers_.size(); ++n)
         values_[n].push_back(said.number(numbers_[n]->name));
-    if (!estimate_.empty())
-      pairs_.add(record, said.values(estimate_));
+    if (estimate_.empty())
+      return;
+    pairs_.add(record, said.values(estimate_));
+    causes_known_ = causes_known_ || some_known(record.conditions);
+    for (PairsWithoutCause& pairs : without_cause_)
+      pairs.add(record, said.values(estimate_));
   }
 
   KindFindings result() const {
@@ -120,6 +157,9 @@ class KindCounts {
     result.regression = pairs_.fit(study_, first);
     for (std::size_t cv = 0; cv < ny; ++cv)
       result.regression_of_cv.push_back(pairs_.fit_of(cv, ny, study_, first + 1 + cv));
+    if (causes_known_)
+      for (const PairsWithoutCause& pairs : without_cause_)
+        result.without_cause.push_back(pairs.result());
   }
 
   const Study& study_;
@@ -130,6 +170,8 @@ class KindCounts {
   std::int64_t verdicts_ = 0, flagged_ = 0, judged_ = 0, recognised_ = 0;
   std::vector<std::vector<double>> values_;
   IvarPairs pairs_;
+  bool causes_known_ = false;
+  std::vector<PairsWithoutCause> without_cause_;
 };
 
 struct AllKindCounts {
@@ -204,6 +246,20 @@ void append_regression(const LinearFitIntervals& fit, const Finding& like, const
   rows.back().prominence = Prominence::detail;
 }
 
+/// What one linear S0 explains of loops without a cause why it does not.
+Finding without_cause_row(const KindFindings::WithoutCause& without, Finding like,
+                          const std::string& prefix) {
+  const bool any = without.cause == NonlinearCause::none;
+  const std::string loops =
+      any ? "loops with none of the causes" : fmt::format("loops without: {}", title_of(without.cause));
+  like.name = fmt::format("{}r_squared_without_{}", prefix, any ? "causes" : to_string(without.cause));
+  like.label = fmt::format("R\xC2\xB2 of Ivar_{{basis}} on Ivar, {}", loops);
+  like.meaning = fmt::format("R^2 of Ivar_basis on Ivar, {}", loops);
+  like.prominence = Prominence::detail;
+  like.has_interval = false;
+  return like.with(without.fit.r_squared, {kNaN, kNaN}, without.fit.pairs);
+}
+
 /// A plot label as plain text: "I_{MPM}" is "I_MPM".
 std::string without_marks(std::string label) {
   std::erase_if(label, [](char c) { return c == '{' || c == '}'; });
@@ -219,6 +275,12 @@ Collector<std::vector<KindFindings>> kind_collector(const Study& study, const As
     if (study.experiments.of(kind) > 0)
       counts.kinds.emplace_back(study, form, method, kind);
   return collector_of(std::move(counts));
+}
+
+Finding unstable_row(const Endings& endings, Finding like) {
+  like.label = "loop unstable";
+  like.meaning = "share of loops that are not stable under the active set of the basis case";
+  return like.with(endings.unstable);
 }
 
 std::vector<const AssessmentNumberInfo*> summarised_numbers(const AssessmentForm& form) {
@@ -253,11 +315,15 @@ std::vector<Finding> rows_of(const KindFindings& kind, const Study& study, const
           ? like("impactful", "with impact", "share of impactful ones among the feasible").with(kind.flagged)
           : like("flagged", "flagged", "share of flagged ones among those with a verdict")
                 .with(kind.flagged)};
+  if (kind.unstable.total > 0)
+    rows.push_back(unstable_row(kind, like("unstable", "", "", Prominence::detail)));
   const Finding regression = like("", "", "");
   if (!kind.regression_of_cv.empty()) {
     append_regression(kind.regression, regression, of, "", rows);
     rows[rows.size() - 3].prominence = Prominence::headline;
   }
+  for (const KindFindings::WithoutCause& without : kind.without_cause)
+    rows.push_back(without_cause_row(without, regression, of));
   if (method.locates_cvs)
     rows.push_back(like("located", "CV located",
                         prefix.empty() ? "CV located by Ivar_diag, impactful experiments"

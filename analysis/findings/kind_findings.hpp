@@ -23,6 +23,14 @@ struct KindFindings : Endings {
   /// (figures 6.18, 6.22), and CV by CV. Without pairs for a method that estimates none.
   LinearFitIntervals regression;
   std::vector<LinearFitIntervals> regression_of_cv;
+  /// The fit over all CVs of the experiments that have not this cause, whatever others they have; with `none`
+  /// that of those without any. Empty where no cause of an experiment is known.
+  struct WithoutCause {
+    NonlinearCause cause;
+    std::int64_t experiments = 0;  ///< that have the cause; with `none` those that have one
+    LinearFit fit;
+  };
+  std::vector<WithoutCause> without_cause;
   ConfusionMatrix confusion{1};  ///< true CV against predicted CV over the flagged experiments (6.20, 6.23)
   Rate located;                  ///< its accuracy
   /// Experiments whose source is the right one (6.21), over in_source_population(). No trials for experiments
@@ -41,6 +49,9 @@ Collector<std::vector<KindFindings>> kind_collector(const Study& study, const As
 /// Its rows; names begin with `prefix`.
 std::vector<Finding> rows_of(const KindFindings& kind, const Study& study, const AssessmentForm& form,
                              const std::string& prefix);
+
+/// The share of loops that are not stable, in a row that is `like` this.
+Finding unstable_row(const Endings& endings, Finding like);
 
 /// The numbers of the method that are summarised, in the order of KindFindings::summaries.
 std::vector<const AssessmentNumberInfo*> summarised_numbers(const AssessmentForm& form);

@@ -51,6 +51,10 @@ std::vector<Finding> all_rows(const Study& study, const StudyFindings& findings)
   std::vector<Finding> rows{count("experiments", "number of experiments", findings.experiments),
                             count("failed", "number of experiments without a result", findings.failed),
                             infeasible.with(findings.infeasible)};
+  if (findings.unstable.total > 0)
+    rows.push_back(unstable_row(findings, Finding{.name = "unstable", .label = "", .meaning = ""}));
+  if (study.diagnosis.unstable == UnstableLoops::exclude)
+    rows.push_back(count("excluded", "number of unstable loops that are left out", findings.excluded));
   if (const MethodFindings* const chain = findings.chain()) {
     for (const KindFindings& kind : chain->kinds)
       append(rows_of(kind, study, *chain->form, ""), rows);
@@ -120,7 +124,7 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
   }
 
   records.each([&](const ExperimentRecord& record) {
-    findings.add(record.status);
+    findings.add(record);
     findings.assessed += std::any_of(record.assessments.begin(), record.assessments.end(), looked_at) ? 1 : 0;
     for (const MethodCollector& method : methods)
       method.add(record);

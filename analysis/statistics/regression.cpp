@@ -251,6 +251,13 @@ void ClusterBootstrapOptions::validate() const {
   require_confidence(confidence);
 }
 
+LinearFit linear_fit(const Signal& x, const Signal& y) {
+  require_same_length("x", x, "y", y);
+  const std::vector<std::int64_t> one(static_cast<std::size_t>(x.size()), 0);
+  const ClusterSums sums(x, y, one);
+  return fit_all(sums.clusters, sums.centre, x.size());
+}
+
 LinearFitIntervals cluster_bootstrap(const Signal& x, const Signal& y, std::span<const std::int64_t> cluster,
                                      RandomStream& stream, const ClusterBootstrapOptions& options) {
   require_same_length("x", x, "y", y);

@@ -53,6 +53,9 @@ struct LinearFitIntervals {
   int replications_used = 0;
 };
 
+/// The line alone. Throws InputError when the lengths differ.
+LinearFit linear_fit(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& y);
+
 /// The line with intervals by the studentised cluster bootstrap (Davison and Hinkley 1997, sections 3.8 and
 /// 5.2), m out of n: half as many whole clusters as there are (but 5) are drawn with replacement, and the
 /// line is fitted to their pairs. With t = (result of a resample - result)/standard error of the resample, by

@@ -166,8 +166,12 @@ ArchiveRecordReader::ArchiveRecordReader(const Hdf5Group& root, const Study& stu
     return table.dimension == "stored" && !root.has_group(table.group);
   });
   block_ = std::clamp<std::size_t>(kBlockBytes / bytes_of(tables_), 1, kBlockRecords);
-  for (const RecordTable& table : tables_) {
+  for (RecordTable& table : tables_) {
     groups_.push_back(group_at(root, table.group));
+    const std::vector<std::string> names = groups_.back().variables();
+    std::erase_if(table.variables, [&names](const RecordVariable& variable) {
+      return variable.may_lack && std::find(names.begin(), names.end(), variable.text.name) == names.end();
+    });
     std::vector<std::size_t> places = places_along(groups_.back(), table, indices_, file_);
     if (table.has)
       places_.push_back(std::move(places));

@@ -1,5 +1,7 @@
 #include "results/archive/record_bytes.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <type_traits>
 
@@ -54,6 +56,15 @@ void read(ByteReader& reader, const RecordVariable& variable, ExperimentRecord& 
 
 bool is_in(const RecordTable& table, const ExperimentRecord& record) {
   return !table.has || table.has(record);
+}
+
+/// Does the record come from an archive that has not this variable? It then has no number there.
+bool is_lacking(const RecordVariable& variable, const ExperimentRecord& record) {
+  const auto* const access = std::get_if<RecordAccess<double>>(&variable.access);
+  if (!variable.may_lack || access == nullptr)
+    return false;
+  const std::vector<double> values = values_of(variable, *access, record);
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
 }
 
 std::string bytes_of(const RecordVariable& variable, const ExperimentRecord& record) {
@@ -115,7 +126,7 @@ std::vector<std::string> RecordBytes::differences(const ExperimentRecord& one,
       continue;
     }
     for (const RecordVariable& variable : table.variables)
-      if (variable.use == RecordUse::everywhere && is_in(table, one) &&
+      if (variable.use == RecordUse::everywhere && is_in(table, one) && !is_lacking(variable, one) &&
           bytes_of(variable, one) != bytes_of(variable, other))
         names.push_back(prefix + variable.text.name);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -356,6 +357,23 @@ Flags source_flags() {
                                FaultSource::other});
 }
 
+Flags stable_flags() {
+  return {{-1, 0, 1}, {"not_known", "no", "yes"}};
+}
+
+/// What archives have since version 2.3.
+RecordVariable lately(RecordVariable variable) {
+  variable.may_lack = true;
+  return variable;
+}
+
+/// A number of the conditions under which the loop worked.
+RecordVariable of_conditions(VariableText text, double LoopConditions::*member) {
+  return lately(scalar<double>(
+      std::move(text), [member](const Record& r) { return r.conditions.*member; },
+      [member](Record& r, double value) { r.conditions.*member = value; }));
+}
+
 RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
   RecordTable table;
   table.dimension = "experiment";
@@ -365,9 +383,9 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
       plain<std::int8_t>(
           {"status", "how the experiment ended", "1",
            "infeasible: an MPC problem had no solution, the experiment is left out; failed: see "
-           "message",
-           enum_flags(
-               std::array{ExperimentStatus::ok, ExperimentStatus::infeasible, ExperimentStatus::failed})},
+           "message; unstable: the loop is not stable, the experiment is left out",
+           enum_flags(std::array{ExperimentStatus::ok, ExperimentStatus::infeasible, ExperimentStatus::failed,
+                                 ExperimentStatus::unstable})},
           &Record::status),
       plain<std::string>({"message", "why the experiment failed", "1", "empty unless the status is failed"},
                          &Record::message),
@@ -385,6 +403,25 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
                                  return static_cast<std::int8_t>(has_impact(options, r));
                                },
                                {})),
+      of_conditions({"spectral_radius", "spectral radius of the loop with the active set of the basis case",
+                     "1", "below 1: stable; NaN: not known"},
+                    &LoopConditions::spectral_radius),
+      only(RecordUse::archive_only,
+           scalar<std::int8_t>({"stable", "the spectral radius is below 1", "1", "", stable_flags()},
+                               [](const Record& r) {
+                                 const std::optional<bool> stable = r.conditions.stable();
+                                 return static_cast<std::int8_t>(stable ? (*stable ? 1 : 0) : -1);
+                               },
+                               {})),
+      of_conditions({"other_cv_active",
+                     "share of the samples in which a CV that the basis case has inside its range is at a "
+                     "soft limit or over it",
+                     "1", "NaN: not known"},
+                    &LoopConditions::other_cv_active),
+      of_conditions({"mv_at_limit",
+                     "share of the samples in which an MV that the basis case has free is at a hard limit",
+                     "1", "NaN: not known"},
+                    &LoopConditions::mv_at_limit),
       of_methods<std::int8_t>(
           {"assessment_status", "how the assessment by a method ended", "1",
            "see reason of the method's group",
@@ -582,8 +619,9 @@ RecordTable perturbed(const Study& study) {
 [[maybe_unused]] void every_member_is_in_a_table(const Record& record, const AssessmentRecord& assessment,
                                                  const LoopRecord& loop, const LoopTruth& truth,
                                                  const SolverStatistics& statistics) {
-  [[maybe_unused]] const auto& [draw, status, message, ivar_basis, assessments, perturbed, solver, kept,
-                                known] = record;
+  [[maybe_unused]] const auto& [draw, status, message, conditions, ivar_basis, assessments, perturbed, solver,
+                                kept, known] = record;
+  [[maybe_unused]] const auto& [radius, other_cv, mv] = conditions;
   [[maybe_unused]] const auto& [form, ended, reason, flagged, score, cv, source, numbers, milliseconds] =
       assessment;
   [[maybe_unused]] const auto& [trajectory, y_sim] = loop;

@@ -38,6 +38,8 @@ struct RecordVariable {
                RecordAccess<double>, RecordAccess<std::string>>
       access;
   RecordUse use = RecordUse::everywhere;
+  bool may_lack =
+      false;  ///< archives of earlier minor versions have it not; records then keep what they are made with
 
   std::size_t size() const;
 };

@@ -44,10 +44,10 @@ std::string controller_text(const Study& study) {
 
 std::string experiments_text(const ReportInput& input) {
   const StudyFindings& total = input.findings();
-  return fmt::format("{}, each a loop of {} samples<br><small>{}; {} infeasible, {} failed</small>",
-                     total.experiments, input.campaign.study.simulation.samples,
-                     kinds_text(input.campaign.study, input.parts.kinds), total.infeasible.hits,
-                     total.failed);
+  return fmt::format("{}, each a loop of {} samples<br><small>{}; {}</small>", total.experiments,
+                     input.campaign.study.simulation.samples,
+                     kinds_text(input.campaign.study, input.parts.kinds),
+                     endings_text(input.campaign.study, total));
 }
 
 std::string program_text(const CampaignInfo& info) {

@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -14,18 +17,34 @@ namespace mpm {
 namespace {
 
 const Pen kOther{colour::kLightGrey, Dash::none, Mark::circle, 1.0, 0.32};
-const Pen kAffected{colour::kBlue, Dash::none, Mark::dot, 1.0, 0.38};
+/// The affected CV, by why one linear S0 does not describe the loop.
+Pen affected_pen(NonlinearCause cause) {
+  switch (cause) {
+    case NonlinearCause::unstable:
+      return {colour::kVermillion, Dash::none, Mark::dot, 1.0, 0.45};
+    case NonlinearCause::other_cv_active:
+      return {colour::kOrange, Dash::none, Mark::dot, 1.0, 0.38};
+    case NonlinearCause::mv_at_limit:
+      return {colour::kGreen, Dash::none, Mark::dot, 1.0, 0.38};
+    case NonlinearCause::none:
+      break;
+  }
+  return {colour::kBlue, Dash::none, Mark::dot, 1.0, 0.38};
+}
 const Pen kLine{colour::kVermillion, Dash::solid, Mark::none, 2.0};
 const Pen kIdentity{colour::kBlack, Dash::dashed, Mark::none, 1.0};
 
 struct Pairs {
-  std::vector<NamedPoint> affected, others;
+  std::map<NonlinearCause, std::vector<NamedPoint>> affected;
+  std::vector<NamedPoint> others;
   double least = INFINITY, largest = -INFINITY;  ///< Ivar
   double least_basis = INFINITY;                 ///< Ivar_basis
 
   void add(const ReportInput& input, const ExperimentRecord& record) {
     const Study& study = input.campaign.study;
     const Diagnosis chain = record.chain();
+    const NonlinearCause cause = first_cause(record.conditions);
+    const std::string because = cause == NonlinearCause::none ? "" : fmt::format("; {}", title_of(cause));
     for (Eigen::Index cv = 0; cv < chain.ivar.size(); ++cv) {
       const double x = chain.ivar(cv);
       const double y = record.ivar_basis(cv);
@@ -34,11 +53,12 @@ struct Pairs {
       least = std::min(least, x);
       largest = std::max(largest, x);
       least_basis = std::min(least_basis, y);
-      (cv == record.draw.true_cv() ? affected : others)
-          .push_back({x, y,
-                      fmt::format("experiment {} ({}), {}: Ivar {:.3g}, Ivar_basis {:.3g}", record.draw.index,
-                                  kind_name(record.draw.kind), cv_name(study, cv), x, y),
-                      experiment_anchor(input, record)});
+      (cv == record.draw.true_cv() ? affected[cause] : others)
+          .push_back(
+              {x, y,
+               fmt::format("experiment {} ({}), {}: Ivar {:.3g}, Ivar_basis {:.3g}{}", record.draw.index,
+                           kind_name(record.draw.kind), cv_name(study, cv), x, y, because),
+               experiment_anchor(input, record)});
     }
   }
   bool empty() const { return affected.empty() && others.empty(); }
@@ -81,7 +101,8 @@ Panel kind_panel(const ReportInput& input, const KindFindings& kind, const Pairs
                     {.label = "Ivar_{basis} (-)", .logarithmic = true});
   panel.upright_band(options.impact_lower, options.impact_upper);
   panel.points(pairs.others, kOther);
-  panel.points(pairs.affected, kAffected);
+  for (const auto& [cause, points] : pairs.affected)
+    panel.points(points, affected_pen(cause));
   panel.line({pairs.least, pairs.largest}, {pairs.least, pairs.largest}, kIdentity);
   add_fit(panel, fit.fit, pairs);
   return panel.finish(fmt::format("Ivar_basis against Ivar of every CV of the {} experiments, with the "
@@ -111,6 +132,35 @@ std::string regression_table(const ReportInput& input) {
   return table.html();
 }
 
+bool causes_are_known(const ReportInput& input) {
+  return std::any_of(input.kinds().begin(), input.kinds().end(),
+                     [](const KindFindings& kind) { return !kind.without_cause.empty(); });
+}
+
+/// What one linear S0 explains of the loops without each cause why it does not.
+std::string cause_table(const ReportInput& input) {
+  HtmlTable table(
+      fmt::format(
+          "R&sup2; of Ivar<sub>basis</sub> on Ivar, all CVs, without the experiments in which one linear "
+          "S0 cannot describe the loop: it is unstable with the active set of the basis case, a CV that "
+          "is inside its range there is at a limit in more than {:g} % of the samples, or an MV is.",
+          100.0 * kOftenActive),
+      {{"Kind", HtmlTable::Align::left},
+       {"Without", HtmlTable::Align::left},
+       {"Experiments left out"},
+       {"R&sup2;"},
+       {"Slope"},
+       {"Pairs"}});
+  for (const KindFindings& kind : input.kinds())
+    for (const KindFindings::WithoutCause& without : kind.without_cause)
+      table.row(
+          {kind_name(kind.kind),
+           without.cause == NonlinearCause::none ? "all of these" : std::string(title_of(without.cause)),
+           fmt::format("{}", without.experiments), html_number(without.fit.r_squared),
+           html_number(without.fit.slope), fmt::format("{}", without.fit.pairs)});
+  return table.html();
+}
+
 }  // namespace
 
 ReportSection variance_section(const ReportInput& input) {
@@ -123,10 +173,14 @@ ReportSection variance_section(const ReportInput& input) {
       "one point a CV and experiment; thesis figures 6.18 and 6.22. Grey band: no impact, Ivar from {:g} to "
       "{:g}. The regression is a straight line, which logarithmic axes bend.",
       options.impact_lower, options.impact_upper);
-  figure.legend = {{"affected CV", kAffected},
-                   {"other CVs", kOther},
-                   {"regression, all CVs", kLine},
-                   {"Ivar_{basis} = Ivar", kIdentity}};
+  figure.legend = {{"affected CV", affected_pen(NonlinearCause::none)}};
+  if (causes_are_known(input))
+    for (const NonlinearCause cause : kNonlinearCauses)
+      if (cause != NonlinearCause::none)
+        figure.legend.push_back({fmt::format("the same, {}", title_of(cause)), affected_pen(cause)});
+  figure.legend.push_back({"other CVs", kOther});
+  figure.legend.push_back({"regression, all CVs", kLine});
+  figure.legend.push_back({"Ivar_{basis} = Ivar", kIdentity});
   for (const KindFindings& kind : input.kinds())
     if (const Pairs pairs = pairs_of(input, kind.kind); !pairs.empty())
       figure.panels.push_back(kind_panel(input, kind, pairs));
@@ -137,6 +191,8 @@ ReportSection variance_section(const ReportInput& input) {
   section.answer = variance_answer(input);
   section.add(std::move(figure));
   section.add(regression_table(input));
+  if (causes_are_known(input))
+    section.add(cause_table(input));
   return section;
 }
 

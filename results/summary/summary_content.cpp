@@ -31,6 +31,15 @@ std::string kinds_text(const Study& study, const std::vector<KindCount>& kinds) 
   return text;
 }
 
+std::string endings_text(const Study& study, const Endings& endings) {
+  std::string text = fmt::format("{} infeasible, {} failed", endings.infeasible.hits, endings.failed);
+  if (endings.unstable.total > 0)
+    text += fmt::format(", {} of {} loops unstable", endings.unstable.hits, endings.unstable.total);
+  if (study.diagnosis.unstable == UnstableLoops::exclude)
+    text += fmt::format(", {} left out", endings.excluded);
+  return text;
+}
+
 SummaryContent summary_content(const Campaign& campaign, const StudyFindings& findings, std::size_t most) {
   const Study& study = campaign.study;
   SummaryContent parts(findings);

@@ -48,6 +48,10 @@ struct SummaryContent {
 /// "150 MPM, 150 UD, 100 MPM+UD"; "named scenarios".
 std::string kinds_text(const Study& study, const std::vector<KindCount>& kinds);
 
+/// "11 infeasible, 0 failed, 9 of 150 loops unstable": the last where it is known, with ", 9 left out" where
+/// the study leaves them out.
+std::string endings_text(const Study& study, const Endings& endings);
+
 /// `campaign` and `findings` must outlive the parts.
 /// Of one that is streamed, it has `most` records of failures and of wrong verdicts.
 SummaryContent summary_content(const Campaign& campaign, const StudyFindings& findings,

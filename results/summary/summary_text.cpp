@@ -76,9 +76,9 @@ void add_heading(SummaryLines& text, const Campaign& campaign, const SummaryCont
                                            fmt::join(study.controller_program->command(), " ")));
   if (!campaign.basis.sensitivity.is_known)
     text.entry("S0", "none: the program runs on the plant only, not on its own model");
-  text.entry("experiments", fmt::format("{} ({}) of {} samples; {} infeasible, {} failed",
-                                        findings.experiments, kinds_text(study, parts.kinds),
-                                        study.simulation.samples, findings.infeasible.hits, findings.failed));
+  text.entry("experiments",
+             fmt::format("{} ({}) of {} samples; {}", findings.experiments, kinds_text(study, parts.kinds),
+                         study.simulation.samples, endings_text(study, findings)));
   text.entry("seed", fmt::format("{}", study.seed));
   text.entry("program", fmt::format("mpmbench {} ({}), solver {}", info.mpmbench_version,
                                     info.git_sha.empty() ? "unknown revision" : info.git_sha, info.solver));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -251,6 +252,19 @@ std::string dead_time_text(double shift, double lower, double upper, SizeBound b
                      unit);
 }
 
+std::string conditions_text(const ExperimentRecord& record) {
+  const LoopConditions& conditions = record.conditions;
+  std::string text;
+  if (const std::optional<bool> stable = conditions.stable())
+    text = fmt::format("loop {} (spectral radius {:.4g})", *stable ? "stable" : "unstable",
+                       conditions.spectral_radius);
+  if (!std::isnan(conditions.other_cv_active) && !std::isnan(conditions.mv_at_limit))
+    text += fmt::format("{}another CV at a limit in {:.0f} % of the samples, an MV in {:.0f} %",
+                        text.empty() ? "" : "; ", 100.0 * conditions.other_cv_active,
+                        100.0 * conditions.mv_at_limit);
+  return text;
+}
+
 std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record) {
   constexpr std::size_t kLongest = 100;
   std::vector<std::string> lines;
@@ -264,6 +278,8 @@ std::vector<std::string> experiment_heading(const Study& study, const Experiment
   }
   lines.push_back(rest);
   lines.push_back(verdict_text(study, record));
+  if (std::string conditions = conditions_text(record); !conditions.empty())
+    lines.push_back(std::move(conditions));
   return lines;
 }
 

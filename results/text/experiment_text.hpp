@@ -45,11 +45,16 @@ std::string verdict_text(const Study& study, const ExperimentRecord& record);
 /// estimate at the end of its search. What differs from 0 by rounding is 0.
 std::string estimate_text(double value, double lower, double upper, SizeBound bound);
 
-/// "longer by 1.5 min (1.2 to 1.8)", "shorter by at most 0.4 min (0.1 to 0.7)", "the same": a dead time.
+/// "longer by 1.5 min (1.2 to 1.8)", "shorter by at most 0.4 min (0.1 to 0.7)": a dead time.
 std::string dead_time_text(double shift, double lower, double upper, SizeBound bound,
                            const std::string& unit);
 
-/// Title and verdict in lines that fit above a figure, however many faults there are.
+/// Whether the loop is stable, and how often it works with other constraints than the basis case: "loop
+/// stable (spectral radius 0.982); another CV at a limit in 2 % of the samples, an MV in 0 %". Empty when
+/// nothing is known.
+std::string conditions_text(const ExperimentRecord& record);
+
+/// Title, verdict and conditions in lines that fit above a figure, however many faults there are.
 std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record);
 
 /// Title and verdict in one line.

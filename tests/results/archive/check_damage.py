@@ -20,7 +20,8 @@ FOR_PEOPLE = {"/cv", "/mv", "/md", "/impact", "/basis/cv", "/basis/mv", "/basis/
               "/nominal_direct/cv", "/nominal_direct/time", "/nominal_direct/largest_difference", "/trajectories/cv",
               "/trajectories/mv", "/trajectories/md", "/trajectories/sample", "/trajectories/time", "/audit",
               "/trajectories", "/truth", "/truth/cv", "/truth/sample", "/truth/time", "/truth_alone", "/truth_alone/cv",
-              "/truth_alone/mv", "/truth_alone/sample", "/truth_alone/time"}
+              "/truth_alone/mv", "/truth_alone/sample", "/truth_alone/time",
+              "/stable", "/spectral_radius", "/other_cv_active", "/mv_at_limit"}  # the last not before 2.3
 # The same of groups: what of them is read, nothing when it is the group of figures alone.
 READ_OF = {"/s0_perturbation": {"perturbed", "ivar_diag_time_constant", "ivar_diag_damping"},
            "/scenarios": set(), "/findings": set()}
