@@ -24,15 +24,15 @@ Eigen::Index count_of(const Indices& indices) {
 }
 
 /// A channel from MV `mvs[col]` to CV `cvs[row]` of those that are in the loop.
-struct Channel {
+struct DelayedChannel {
   Eigen::Index row, col;
   DiscreteChannel model;
 };
 
 /// The channels of G in the loop that are not zero.
-std::vector<Channel> channels_of(const TransferMatrix& G, double sample_time, const Indices& cvs,
-                                 const Indices& mvs) {
-  std::vector<Channel> channels;
+std::vector<DelayedChannel> channels_of(const TransferMatrix& G, double sample_time, const Indices& cvs,
+                                        const Indices& mvs) {
+  std::vector<DelayedChannel> channels;
   for (Eigen::Index row = 0; row < count_of(cvs); ++row)
     for (Eigen::Index col = 0; col < count_of(mvs); ++col) {
       const TransferFunction& channel =
@@ -44,9 +44,9 @@ std::vector<Channel> channels_of(const TransferMatrix& G, double sample_time, co
 }
 
 /// How many past inputs the channels look back at.
-Eigen::Index memory_of(const std::vector<Channel>& channels) {
+Eigen::Index memory_of(const std::vector<DelayedChannel>& channels) {
   Eigen::Index memory = 1;
-  for (const Channel& channel : channels)
+  for (const DelayedChannel& channel : channels)
     memory = std::max<Eigen::Index>(memory, channel.model.delay + 1);
   return memory;
 }
@@ -57,9 +57,10 @@ Eigen::Index memory_of(const std::vector<Channel>& channels) {
 struct Realisation {
   Eigen::MatrixXd A, B, B_past, C, D_past;
 
-  Realisation(const std::vector<Channel>& channels, Eigen::Index ny, Eigen::Index nu, Eigen::Index memory) {
+  Realisation(const std::vector<DelayedChannel>& channels, Eigen::Index ny, Eigen::Index nu,
+              Eigen::Index memory) {
     Eigen::Index n = 0;
-    for (const Channel& channel : channels)
+    for (const DelayedChannel& channel : channels)
       n += channel.model.A.rows();
     A.setZero(n, n);
     B.setZero(n, nu);
@@ -217,7 +218,7 @@ LoopStability::LoopStability(const Study& study, const OperatingPoint& point)
     return;
 
   const Eigen::Index nu = count_of(mvs_), hp = study.controller.prediction_horizon;
-  const std::vector<Channel> channels = channels_of(model_, sample_time_, cvs_, mvs_);
+  const std::vector<DelayedChannel> channels = channels_of(model_, sample_time_, cvs_, mvs_);
   const Eigen::Index memory = memory_of(channels);
   const Realisation model(channels, count_of(cvs_), nu, memory);
   const Eigen::MatrixXd response = free_response_of(model, nu, memory, hp);
@@ -258,15 +259,15 @@ double LoopStability::spectral_radius(const ExperimentDraw& draw) const {
 /// is right has one state in both, since both have had the same inputs since they were at rest.
 double LoopStability::radius_with(const Law& law, const TransferMatrix& plant) const {
   const Eigen::Index ny = count_of(cvs_), nu = count_of(mvs_);
-  const auto differs = [&](const Channel& channel) {
+  const auto differs = [&](const DelayedChannel& channel) {
     const Eigen::Index cv = cvs_[static_cast<std::size_t>(channel.row)];
     const Eigen::Index mv = mvs_[static_cast<std::size_t>(channel.col)];
     return !(model_(cv, mv) == plant(cv, mv));
   };
-  const std::vector<Channel> all = channels_of(model_, sample_time_, cvs_, mvs_);
-  std::vector<Channel> real = channels_of(plant, sample_time_, cvs_, mvs_), wrong = all;
-  std::erase_if(real, [&](const Channel& channel) { return !differs(channel); });
-  for (Channel& channel : wrong)
+  const std::vector<DelayedChannel> all = channels_of(model_, sample_time_, cvs_, mvs_);
+  std::vector<DelayedChannel> real = channels_of(plant, sample_time_, cvs_, mvs_), wrong = all;
+  std::erase_if(real, [&](const DelayedChannel& channel) { return !differs(channel); });
+  for (DelayedChannel& channel : wrong)
     if (!differs(channel)) {
       channel.model.c.setZero();
       channel.model.d = 0.0;
