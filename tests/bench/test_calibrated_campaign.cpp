@@ -109,7 +109,7 @@ TEST_CASE("calibration: in each family of the suite its loops have the scores of
     options.audit_share = 0.0;
     options.methods = {"sse", "order", "excitation"};
     const Campaign campaign = run_campaign(study, options);
-    for (std::size_t method = 0; method < options.methods->size(); ++method) {
+    for (std::size_t method = 0; method < options.methods.size(); ++method) {
       std::vector<double> experiments, calibration;
       for (const ExperimentRecord& record : campaign.records)
         if (record.status == ExperimentStatus::ok)
@@ -117,7 +117,7 @@ TEST_CASE("calibration: in each family of the suite its loops have the scores of
       for (const CalibrationLoop& loop : campaign.calibration.loops)
         if (!std::isnan(loop.scores[method]))
           calibration.push_back(loop.scores[method]);
-      INFO(family << ", " << (*options.methods)[method]);
+      INFO(family << ", " << options.methods[method]);
       REQUIRE(experiments.size() >= 30);
       REQUIRE(calibration.size() >= 30);
       CHECK(std::abs(rank_z(experiments, calibration)) < limit);
