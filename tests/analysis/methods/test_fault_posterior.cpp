@@ -9,9 +9,11 @@
 #include "analysis/methods/base_noise.hpp"
 #include "analysis/methods/fault_posterior.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "plants/linear_plant.hpp"
 #include "plants/non_finite.hpp"
+#include "plants/transfer_matrix.hpp"
 #include "scenarios/signals.hpp"
 #include "scenarios/study_library.hpp"
 #include "tests/analysis/exact_interval.hpp"
@@ -300,6 +302,26 @@ TEST_CASE("outliers are left out, steps and gaps are not") {
   CHECK(cleaned.array().isNaN().count() == 3);
   CHECK(std::isnan(cleaned(50)));
   CHECK(std::isnan(cleaned(300)));
+}
+
+TEST_CASE("likelihood: a size that lies beyond what is looked for is a bound") {
+  const Study study = find_study("chapter6");
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
+  const auto named_where_the_gain_is = [&](double factor) {
+    AssessedLoop loop = *context.benchmark;
+    const Eigen::MatrixXd response = simulated_output(
+        TransferMatrix{{study.plant.G(4, 0)}}, study.controller.sample_time,
+        Eigen::VectorXd::Constant(1, basis.point.u(0)), loop.u.row(0), Eigen::MatrixXd(0, loop.samples()));
+    loop.y.row(4) += (factor - 1.0) * response.row(0);
+    const Assessment said = Assessor(assessment_method("likelihood"), context).assess(loop);
+    REQUIRE(said.named_mismatch);
+    CHECK(said.named_mismatch->channel == Channel{4, 0});
+    CHECK(said.named_mismatch->parameter == MismatchParameter::gain);
+    return said.named_mismatch->bound;
+  };
+  CHECK(named_where_the_gain_is(-1.0) == SizeBound::at_most);
+  CHECK(named_where_the_gain_is(0.5) == SizeBound::none);
 }
 
 // Seed 20150401: experiment 0 has a mismatch on y2, experiment 15 a disturbance on y1.

@@ -9,12 +9,14 @@
 
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/chain_numbers.hpp"
+#include "plants/non_finite.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/report/report.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
+#include "results/text/experiment_text.hpp"
 #include "tests/results/campaign_sample.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -255,6 +257,18 @@ TEST_CASE("report: the verdict on top is of the CV where no method names a sourc
   CHECK_THAT(page_of(campaign, "f.h5"),
              Contains("no method names a source; <code>sse</code> flags " + share_words(rates.detected)) &&
                  Contains("in " + share_words(rates.located) + " of those that it flags."));
+}
+
+TEST_CASE("an estimate in words: bounds say so, what is shorter is not longer by less, and rounding is 0") {
+  CHECK(estimate_text(0.62, 0.55, 0.7, SizeBound::none) == "0.62 (0.55 to 0.7)");
+  CHECK(estimate_text(0.101, 0.1, 0.103, SizeBound::at_most) == "at most 0.101 (0.1 to 0.103)");
+  CHECK(estimate_text(8, 7.1, 8, SizeBound::at_least) == "at least 8 (7.1 to 8)");
+  CHECK(estimate_text(2, kNaN, kNaN, SizeBound::none) == "2");
+  CHECK(estimate_text(-7.97973e-19, -0.1, 0.1, SizeBound::none) == "0 (-0.1 to 0.1)");
+  CHECK(dead_time_text(1.99, 1.9, 2.1, SizeBound::none, "s") == "longer by 1.99 (1.9 to 2.1) s");
+  CHECK(dead_time_text(-0.434, -0.6, 0.1, SizeBound::none, "min") == "shorter by 0.434 (-0.1 to 0.6) min");
+  CHECK(dead_time_text(-3, -3, -2, SizeBound::at_most, "s") == "shorter by at least 3 (2 to 3) s");
+  CHECK(dead_time_text(-1e-17, -1, 1, SizeBound::none, "s") == "longer by 0 (-1 to 1) s");
 }
 
 TEST_CASE("report: false alarms have a section and rows where model and plant agree in some experiments") {
