@@ -32,7 +32,9 @@ void require_replaceable(const std::filesystem::path& output, const Study& study
     return;
   }
   if (there.source != study.source)
-    refuse(output, fmt::format("the archive of another study, {}", there.name),
+    refuse(output,
+           there.name == study.name ? fmt::format("an archive of {} with another study text", there.name)
+                                    : fmt::format("the archive of another study, {}", there.name),
            fmt::format("an archive of {} as it is now", study.name));
   if (there.seed != study.seed)
     refuse(output, fmt::format("the archive of {} with seed {}", there.name, there.seed),

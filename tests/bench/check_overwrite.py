@@ -58,7 +58,7 @@ def main(program, study):
         refused(archive, *words, 4, "--seed", 9, "--dry-run", found="the archive of wood-berry with seed")
         other = folder / "other.toml"
         other.write_text(pathlib.Path(study).read_text() + "\n# another\n")
-        refused(archive, "run", other, "-o", archive, "--experiments", 2, found="another study, wood-berry")
+        refused(archive, "run", other, "-o", archive, "--experiments", 2, found="wood-berry with another study text")
         run(*words, 2, "--seed", 9, "--overwrite")
         refused(archive, *words, 2, found="with seed 9")
 

@@ -140,7 +140,9 @@ def check_kept(tiny, shown):
     part = json.loads(tiny.run("private", "--seed", 6, "--plants", "column", "--families", "classic", "--quiet", "--json"))
     assert part["seed"] == 6 and len(part["cells"]) == 1
     assert part["cells"][0]["seed"] != json.loads(shown)["cells"][0]["seed"]
-    tiny.run("private", "--plants", "column", "--families", "classic", "--quiet")
+    words = ["private", "--plants", "column", "--families", "classic", "--quiet"]
+    assert "--overwrite" in tiny.run(*words, code=2)
+    tiny.run(*words, "--overwrite")
     check_same(tiny.folder / "private" / "column.classic.h5", tiny.folder / "one" / "column.classic.h5")
 
 
