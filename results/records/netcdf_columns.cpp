@@ -237,7 +237,10 @@ nlohmann::json read_file(std::vector<std::byte>& content, const std::string& fil
   } catch (const InputError& error) {
     return {{"refused", error.what()}};
   } catch (const ArchiveError& error) {
-    return {{"refused", InputError(file, error.what(), kAllowed).what()}};
+    const std::string_view what = error.what(), place = file;
+    const bool named = what.starts_with(place) && what.substr(place.size()).starts_with(": ");
+    return {{"refused",
+             InputError(file, std::string(named ? what.substr(place.size() + 2) : what), kAllowed).what()}};
   }
 }
 
