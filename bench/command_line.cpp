@@ -14,6 +14,7 @@
 #include "bench/files/archive_input.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
+#include "plants/program_trust.hpp"
 #include "scenarios/toml_table.hpp"
 
 namespace mpm {
@@ -47,6 +48,8 @@ CommandResult work(const CommandSet& commands) {
   } catch (const InputError& error) {
     return complaint(ExitCode::bad_input, error);
   } catch (const BadArchive& error) {
+    return complaint(ExitCode::bad_input, error);
+  } catch (const UntrustedProgram& error) {
     return complaint(ExitCode::bad_input, error);
   } catch (const std::exception& error) {
     return complaint(ExitCode::not_finished, error);

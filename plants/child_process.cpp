@@ -18,6 +18,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "plants/foreign_text.hpp"
+#include "plants/program_trust.hpp"
+
 namespace mpm {
 namespace {
 
@@ -116,15 +119,6 @@ class SpawnFiles {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// One line of printable ASCII out of whatever a program wrote: it goes into messages and archives.
-std::string printable(const std::string& text) {
-  std::string line;
-  for (const char c : text)
-    line += c == '\n' || c == '\t' ? ' ' : c >= ' ' && c <= '~' ? c : '?';
-  const auto begin = line.find_first_not_of(' ');
-  return begin == std::string::npos ? "" : line.substr(begin, line.find_last_not_of(' ') - begin + 1);
-}
-
 int milliseconds_until(ChildProcess::Deadline deadline) {
   constexpr std::int64_t kLongest = 3600 * 1000;
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
@@ -137,6 +131,7 @@ ChildProcess::ChildProcess(std::vector<std::string> command)
     : name_(fmt::format("{}", fmt::join(command, " "))), owner_(::getpid()), ends_{-1, -1, -1} {
   if (command.empty())
     throw ChildFailure("a program without a name");
+  require_trusted_program(command);
   Pipe in, out, error;
   std::vector<char*> arguments;
   for (std::string& word : command)
@@ -218,7 +213,7 @@ std::string ChildProcess::how_it_ended() {
 void ChildProcess::fail(const std::string& what) {
   kill_and_reap();
   read_errors();
-  const std::string errors = printable(last_errors_);
+  const std::string errors = foreign_text(last_errors_, kKeptErrors);
   throw ChildFailure(errors.empty()
                          ? fmt::format("program `{}` {}", name_, what)
                          : fmt::format("program `{}` {}; at the end of its stderr: {}", name_, what, errors));

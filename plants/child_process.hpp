@@ -35,7 +35,8 @@ class ChildProcess {
   static constexpr std::size_t kLongestLine = std::size_t{64} << 20;  ///< bytes of an answer
 
   /// Starts the program `command[0]`, which is looked for in PATH, with the arguments after it, in the
-  /// working folder of this process. Throws ChildFailure when there is no such program.
+  /// working folder of this process. Throws ChildFailure when there is no such program, UntrustedProgram
+  /// when nobody has allowed it (program_trust.hpp).
   explicit ChildProcess(std::vector<std::string> command);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;

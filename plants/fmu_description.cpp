@@ -1,6 +1,10 @@
 #include "plants/fmu_description.hpp"
 
+#include <cctype>
+#include <charconv>
 #include <cstddef>
+#include <limits>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -9,12 +13,14 @@
 #include <pugixml.hpp>
 
 #include "plants/error.hpp"
+#include "plants/foreign_text.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr const char* kDescriptionFile = "modelDescription.xml";
-constexpr std::size_t kMostNames = 20;  // in a message
+constexpr std::size_t kMostNames = 20;    // in a message
+constexpr std::size_t kShownOfXml = 100;  // bytes of a text, in a message
 
 std::string attribute_of(const pugi::xml_node& node, const char* name, const std::string& file) {
   const pugi::xml_attribute attribute = node.attribute(name);
@@ -32,12 +38,36 @@ std::string type_of(const pugi::xml_node& variable) {
   return "no type";
 }
 
+/// All digits, of a number that fits.
+fmi2::ValueReference reference_of(const pugi::xml_node& node, const std::string& file) {
+  const std::string text = node.attribute("valueReference").value();
+  fmi2::ValueReference reference = 0;
+  const char* const end = text.data() + text.size();
+  if (const auto read = std::from_chars(text.data(), end, reference);
+      text.empty() || read.ec != std::errc() || read.ptr != end)
+    throw InputError(
+        fmt::format("{}: {}: valueReference of '{}'", file, kDescriptionFile,
+                    foreign_text(node.attribute("name").value(), kShownOfXml)),
+        text.empty() ? "nothing" : fmt::format("'{}'", foreign_text(text, kShownOfXml)),
+        fmt::format("a whole number from 0 to {}", std::numeric_limits<fmi2::ValueReference>::max()));
+  return reference;
+}
+
+/// The name of the library: a name of C, so that it is no path either.
+std::string identifier_of(const pugi::xml_node& co_simulation, const std::string& file) {
+  constexpr std::size_t kLongest = 200;
+  const std::string identifier = attribute_of(co_simulation, "modelIdentifier", file);
+  if (identifier.size() > kLongest || std::isdigit(static_cast<unsigned char>(identifier.front())) != 0 ||
+      identifier.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
+          std::string::npos)
+    throw InputError(fmt::format("{}: {}: modelIdentifier", file, kDescriptionFile),
+                     fmt::format("'{}'", foreign_text(identifier, kShownOfXml)),
+                     fmt::format("a name of C with at most {} characters", kLongest));
+  return identifier;
+}
+
 FmuVariable read_variable(const pugi::xml_node& node, const std::string& file) {
-  const pugi::xml_attribute reference = node.attribute("valueReference");
-  if (!reference)
-    throw InputError(fmt::format("{}: {}: valueReference of a ScalarVariable", file, kDescriptionFile),
-                     "nothing", "a whole number");
-  return {.reference = reference.as_uint(),
+  return {.reference = reference_of(node, file),
           .type = type_of(node),
           .causality = node.attribute("causality").as_string("local"),
           .variability = node.attribute("variability").as_string("continuous")};
@@ -108,7 +138,7 @@ FmuDescription parse_fmu_description(const std::string& xml, const std::string& 
                      "co-simulation, which brings its own solver; export it as such");
   FmuDescription description{.file = file,
                              .guid = attribute_of(root, "guid", file),
-                             .identifier = attribute_of(co_simulation, "modelIdentifier", file),
+                             .identifier = identifier_of(co_simulation, file),
                              .variables = {}};
   for (const pugi::xml_node& node : root.child("ModelVariables").children("ScalarVariable"))
     description.variables.emplace(attribute_of(node, "name", file), read_variable(node, file));

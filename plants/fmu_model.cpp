@@ -1,6 +1,7 @@
 #include "plants/fmu_model.hpp"
 
-#include <cassert>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <mutex>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "plants/fmu_instance.hpp"
 #include "plants/fmu_package.hpp"
 #include "plants/fork_server.hpp"
+#include "plants/program_trust.hpp"
 
 namespace mpm {
 namespace {
@@ -82,6 +84,9 @@ class FmuSimulation final : public ForeignSimulation {
   }
   Eigen::VectorXd step(const Eigen::VectorXd& input) override {
     const std::vector<double> y = service_->ask(request_of(FmuRequest::step, input));
+    if (y.size() != fmu_->references.outputs.size() ||
+        !std::all_of(y.begin(), y.end(), [](double each) { return std::isfinite(each); }))
+      throw ForeignFailure("an answer that is not of its interface");
     return Eigen::Map<const Eigen::VectorXd>(y.data(), static_cast<Eigen::Index>(y.size()));
   }
 
@@ -110,6 +115,7 @@ class FmuModel final : public ForeignModel {
     const std::lock_guard lock(mutex_);
     if (loaded_)
       return;
+    require_trusted_fmu(settings_.file);
     std::error_code no_status;
     if (!std::filesystem::is_regular_file(settings_.file, no_status))
       throw InputError(

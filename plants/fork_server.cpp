@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstring>
@@ -10,7 +11,10 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <thread>
 
+#include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -73,29 +77,33 @@ class ServiceOrder {
 
 /// Stands between the user of a service and its process.
 void mediate(int socket, const ForkedService::Serve& serve, double time_limit) {
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   std::vector<double> numbers;
   std::string failure;
   std::optional<ForkedService> service;
   bool open = true;
-  while (open && receive_numbers(socket, numbers, failure) == Received::all) {
+  while (open && receive_numbers(socket, numbers, failure, ForkedService::kMostNumbers) == Received::all) {
     try {
       if (!service)
         service.emplace(serve, time_limit);
-      open = send_numbers(socket, service->ask(numbers));
+      open = send_numbers(socket, service->ask(numbers, socket));
     } catch (const std::exception& error) {
       open = send_failure(socket, error.what());
     }
   }
+  service.reset();
+  end_children();
 }
 
 void make_services(int socket, const ForkServer::MakeService& make) {
-  ::signal(SIGCHLD, SIG_IGN);  // nobody asks how a mediator ended
+  ::signal(SIGCHLD, SIG_IGN);          // nobody asks how a mediator ended
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // of what one leaves behind that was killed
   std::vector<double> setting;
   for (;;) {
     ServiceOrder order;
     const std::optional<int> user = order.receive(socket, setting);
     if (!user)
-      return;
+      return end_children();
     if (::fork() == 0) {
       const int own = leave_parent(*user);
       const double time_limit = setting.back();
@@ -116,16 +124,22 @@ ForkServer::ForkServer(const MakeService& make) : owner_(::getpid()) {
 }
 
 ForkServer::~ForkServer() {
-  ::close(socket_);
-  if (owner_ != ::getpid())
+  if (owner_ != ::getpid()) {
+    ::close(socket_);
     return;
-  ::kill(pid_, SIGKILL);  // it does nothing but wait
-  while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  ::shutdown(socket_, SHUT_RDWR);  // it ends, with all that it has made, whoever else has this socket
+  ::close(socket_);
+  constexpr int kLooks = 3000;  // of a millisecond
+  for (int look = 0; ::waitpid(pid_, nullptr, WNOHANG) == 0; ++look) {
+    if (look == kLooks)
+      ::kill(pid_, SIGKILL);  // somebody has stopped it
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
 
-ServedProcess::ServedProcess(const ForkServer& server, const std::vector<double>& setting,
-                             double time_limit) {
+ServedProcess::ServedProcess(const ForkServer& server, const std::vector<double>& setting, double time_limit)
+    : time_limit_(time_limit) {
   const std::array<int, 2> ends = socket_pair(SOCK_STREAM, "no socket for a simulation");
   std::vector<double> numbers = setting;
   numbers.push_back(time_limit);
@@ -142,12 +156,22 @@ ServedProcess::~ServedProcess() {
   ::close(socket_);
 }
 
+/// The mediator has a time limit of its own; this one is for a mediator that somebody has stopped.
 std::vector<double> ServedProcess::ask(const std::vector<double>& request) {
-  send_numbers(socket_, request);  // a failure shows below
+  constexpr double kGrace = 5.0;  // s
+  constexpr double kCentury = 3.2e9;
+  const SocketPatience patience{SocketDeadline::clock::now() +
+                                std::chrono::duration_cast<SocketDeadline::duration>(
+                                    std::chrono::duration<double>(std::min(time_limit_, kCentury) + kGrace))};
+  send_numbers(socket_, request, &patience);  // a failure shows below
   std::vector<double> numbers;
   std::string failure;
-  if (receive_numbers(socket_, numbers, failure) != Received::all)
-    throw ForeignFailure("its process has ended");
+  const Received got = receive_numbers(socket_, numbers, failure, ForkedService::kMostNumbers, &patience);
+  if (got != Received::all) {
+    ::shutdown(socket_, SHUT_RDWR);  // a late answer would be that to the next question
+    throw ForeignFailure(got == Received::late ? fmt::format("no answer within {} s", time_limit_)
+                                               : "its process has ended");
+  }
   if (!failure.empty())
     throw ForeignFailure(failure);
   return numbers;

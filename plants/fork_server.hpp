@@ -14,7 +14,9 @@ namespace mpm {
 /// forked once, while no other thread is at work, has one thread itself, and forks whenever it is asked to.
 ///
 /// Each service has two processes, both of its making: one that does the work, and one that waits for it,
-/// ends it when it takes too long or its user is gone, and says how it ended (ForkedService).
+/// ends it when it takes too long or its user is gone, and says how it ended (ForkedService). Whatever the
+/// first one has started, in whatever session, ends with its service: the other one is its reaper, and the
+/// server that of one that was killed.
 class ForkServer {
  public:
   /// What a service does that is made with this setting; called in its process.
@@ -24,7 +26,7 @@ class ForkServer {
   explicit ForkServer(const MakeService& make);
   ForkServer(const ForkServer&) = delete;
   ForkServer& operator=(const ForkServer&) = delete;
-  /// Services go on that are at work.
+  /// Ends its services, and whatever they have started.
   ~ForkServer();
 
  private:
@@ -49,6 +51,7 @@ class ServedProcess {
   std::vector<double> ask(const std::vector<double>& request);
 
  private:
+  double time_limit_;
   int socket_ = -1;
 };
 

@@ -1,15 +1,22 @@
 #include "plants/forked_process.hpp"
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <system_error>
+#include <thread>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+#include "plants/foreign_text.hpp"
 
 namespace mpm {
 namespace {
@@ -20,9 +27,19 @@ struct MessageHeader {
   std::int64_t size;
 };
 
-bool send_message(int socket, const void* data, std::size_t size, bool failed) {
+constexpr std::size_t kLongestFailure = 1000;  // bytes
+
+bool send_message(int socket, const void* data, std::size_t size, bool failed,
+                  const SocketPatience* patience) {
   const MessageHeader header{failed ? 1 : 0, static_cast<std::int64_t>(size)};
-  return send_bytes(socket, &header, sizeof header) && send_bytes(socket, data, size);
+  return send_bytes(socket, &header, sizeof header, patience) && send_bytes(socket, data, size, patience);
+}
+
+/// Kills those that are there now.
+void kill_children() {
+  std::ifstream list("/proc/thread-self/children");
+  for (pid_t child = 0; list >> child;)
+    ::kill(child, SIGKILL);
 }
 
 }  // namespace
@@ -66,24 +83,53 @@ ForkedProcess fork_process(int socket_type, const std::function<void(int)>& work
   return {pid, ends[0]};
 }
 
-bool send_numbers(int socket, const std::vector<double>& numbers) {
-  return send_message(socket, numbers.data(), numbers.size() * sizeof(double), false);
+void end_children() {
+  constexpr int kLooks = 2000;  // of a millisecond: what makes processes faster than that is not waited for
+  for (int look = 0; look < kLooks; ++look) {
+    kill_children();
+    pid_t ended = 0;
+    while ((ended = ::waitpid(-1, nullptr, WNOHANG)) > 0) {
+    }
+    if (ended < 0 && errno == ECHILD)
+      return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+bool send_numbers(int socket, const std::vector<double>& numbers, const SocketPatience* patience) {
+  return send_message(socket, numbers.data(), numbers.size() * sizeof(double), false, patience);
 }
 
 bool send_failure(int socket, const std::string& text) {
-  return send_message(socket, text.data(), text.size(), true);
+  const std::string shown = foreign_text(text, kLongestFailure);
+  return send_message(socket, shown.data(), shown.size(), true, nullptr);
 }
 
-Received receive_numbers(int socket, std::vector<double>& numbers, std::string& failure,
-                         const SocketDeadline* deadline) {
+Received receive_numbers(int socket, std::vector<double>& numbers, std::string& failure, std::size_t most,
+                         const SocketPatience* patience) {
+  numbers.clear();
+  failure.clear();
   MessageHeader header{};
-  if (const Received got = receive_bytes(socket, &header, sizeof header, deadline); got != Received::all)
+  if (const Received got = receive_bytes(socket, &header, sizeof header, patience); got != Received::all)
     return got;
+  const bool failed = header.failed != 0;
+  const std::size_t longest = failed ? 2 * kLongestFailure : most * sizeof(double);
+  if (header.size < 0 || static_cast<std::size_t>(header.size) > longest ||
+      (!failed && static_cast<std::size_t>(header.size) % sizeof(double) != 0)) {
+    failure = fmt::format("a message of {} bytes; allowed: 0 to {}", header.size, longest);
+    return Received::all;
+  }
   const auto size = static_cast<std::size_t>(header.size);
-  failure.resize(header.failed != 0 ? size : 0);
-  numbers.resize(header.failed != 0 ? 0 : size / sizeof(double));
-  return header.failed != 0 ? receive_bytes(socket, failure.data(), size, deadline)
-                            : receive_bytes(socket, numbers.data(), size, deadline);
+  if (!failed) {
+    numbers.resize(size / sizeof(double));
+    return receive_bytes(socket, numbers.data(), numbers.size() * sizeof(double), patience);
+  }
+  failure.resize(size);
+  const Received got = receive_bytes(socket, failure.data(), size, patience);
+  failure = foreign_text(failure, 2 * kLongestFailure);
+  if (failure.empty())
+    failure = "it failed without a reason";
+  return got;
 }
 
 }  // namespace mpm

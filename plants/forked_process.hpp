@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -33,12 +34,19 @@ struct ForkedProcess {
 /// end of this one's socket, and its end would not show. Throws std::system_error.
 ForkedProcess fork_process(int socket_type, const std::function<void(int)>& work);
 
-/// A message of numbers, or the text of a failure in their place. False when the other end is gone.
-bool send_numbers(int socket, const std::vector<double>& numbers);
+/// Kills the children of this process and theirs, whatever session or group they are in: what a child leaves
+/// behind becomes a child of this process, which has to be their reaper (PR_SET_CHILD_SUBREAPER). For a
+/// process that has no other children.
+void end_children();
+
+/// A message of numbers, or the text of a failure in their place. False when the other end is gone or does
+/// not take it in time.
+bool send_numbers(int socket, const std::vector<double>& numbers, const SocketPatience* patience = nullptr);
 bool send_failure(int socket, const std::string& text);
 
-/// The next message: numbers, or the text of a failure and no numbers.
-Received receive_numbers(int socket, std::vector<double>& numbers, std::string& failure,
-                         const SocketDeadline* deadline = nullptr);
+/// The next message: at most so many numbers, or the text of a failure and no numbers. What is neither counts
+/// as a failure: the other end may be somebody else's.
+Received receive_numbers(int socket, std::vector<double>& numbers, std::string& failure, std::size_t most,
+                         const SocketPatience* patience = nullptr);
 
 }  // namespace mpm

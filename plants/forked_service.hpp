@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <stdexcept>
 #include <vector>
@@ -17,29 +18,34 @@ class ForeignFailure : public std::runtime_error {
 /// A function at work in a process of its own, so that a crash of what it calls, a call that never comes back
 /// and what it leaves in memory end with this process.
 ///
-/// The process is a copy of this one; what it prints goes nowhere, and it writes no core. It is to be made
+/// The process is a copy of this one, with a session of its own; what it prints goes nowhere, and it writes
+/// no core. What it sends is not trusted: it may write into its socket whatever it likes. It is to be made
 /// where there are no other threads (fork_process); where there are, a ForkServer makes it.
 class ForkedService {
  public:
   /// Numbers in, numbers out; its exceptions become those of ask().
   using Serve = std::function<std::vector<double>(const std::vector<double>&)>;
 
-  /// An answer that takes longer than `time_limit` seconds counts as none. Errors: std::system_error when no
-  /// process can be made.
-  ForkedService(const Serve& serve, double time_limit);
+  static constexpr std::size_t kMostNumbers = std::size_t{1} << 17;  ///< of an answer, unless it is said
+
+  /// An answer that takes longer than `time_limit` seconds counts as none, as does one of more numbers than
+  /// `most`. Errors: std::system_error when no process can be made.
+  ForkedService(const Serve& serve, double time_limit, std::size_t most = kMostNumbers);
   ForkedService(const ForkedService&) = delete;
   ForkedService& operator=(const ForkedService&) = delete;
   ~ForkedService();
 
   /// The answer. Errors: ForeignFailure with what the function threw, how its process ended, or that the time
-  /// was over; after the last two the process is gone.
-  std::vector<double> ask(const std::vector<double>& request);
+  /// was over; after the last two the process is gone, with all of its group. So it is, and at once, when the
+  /// other end of the socket `user` is gone, for whom the answer is.
+  std::vector<double> ask(const std::vector<double>& request, int user = -1);
 
  private:
   void end();
   ForeignFailure how_it_ended();
 
   double time_limit_;
+  std::size_t most_;
   pid_t pid_ = -1;
   int socket_ = -1;
 };

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plants/child_process.hpp"
+#include "plants/foreign_text.hpp"
 
 namespace mpm {
 namespace {
@@ -70,10 +70,11 @@ class ProgramSimulation final : public ForeignSimulation {
     }
     PlantJson answer = PlantJson::parse(line, nullptr, false);
     if (!answer.is_object())
-      throw ForeignFailure(fmt::format("an answer that is no JSON object: {}",
-                                       std::string_view(line).substr(0, kShownOfAnswer)));
+      throw ForeignFailure(
+          fmt::format("an answer that is no JSON object: {}", foreign_text(line, kShownOfAnswer)));
     if (const auto error = answer.find("error"); error != answer.end())
-      throw ForeignFailure(fmt::format("it says: {}", error->dump()));
+      throw ForeignFailure(
+          fmt::format("it says: {}", foreign_text(error->dump(-1, ' ', true), kShownOfAnswer)));
     return answer;
   }
 

@@ -1,25 +1,18 @@
 #include "plants/program_talk.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "plants/error.hpp"
+#include "plants/foreign_text.hpp"
 #include "plants/thread_clock.hpp"
 
 namespace mpm {
 namespace {
 
-/// What a message shows of a line.
-std::string shown_of(const std::string& line) {
-  constexpr std::size_t kShown = 60;
-  std::string text = line.substr(0, kShown);
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return line.size() > kShown ? fmt::format("{}...", text) : text;
-}
+constexpr std::size_t kShownOfLine = 60;  // bytes, in a message
 
 }  // namespace
 
@@ -44,7 +37,7 @@ std::optional<nlohmann::ordered_json> ProgramTalk::answer_in(const std::string& 
   const auto number = answer.is_object() ? answer.find("number") : answer.end();
   if (!answer.is_object() || number == answer.end() || !number->is_number_integer() ||
       number->get<std::int64_t>() > number_)
-    throw InputError(place_, fmt::format("the line '{}'", shown_of(line)),
+    throw InputError(place_, fmt::format("the line '{}'", foreign_text(line, kShownOfLine)),
                      "a JSON object with the number of the message");
   if (number->get<std::int64_t>() < number_)
     return std::nullopt;

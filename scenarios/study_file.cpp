@@ -10,6 +10,7 @@
 #include "plants/error.hpp"
 #include "scenarios/study_file_keys.hpp"
 #include "scenarios/study_file_parts.hpp"
+#include "scenarios/study_programs.hpp"
 #include "scenarios/toml_file.hpp"
 #include "scenarios/toml_text.hpp"
 #include "scenarios/toml_values.hpp"
@@ -95,8 +96,9 @@ Study parse_study(std::string_view text, const std::string& file_name) {
 
 namespace {
 
-/// With what parse_study() leaves for the first loop.
+/// With what parse_study() leaves for the first loop. The file is the user's own.
 Study with_outside_parts(Study study) {
+  trust_programs_of(study);
   if (study.nonlinear && study.nonlinear->model.foreign)
     study.nonlinear->model.foreign->load();
   if (study.controller_program)

@@ -18,9 +18,10 @@ namespace mpm {
 /// for a missing key that of its table, and for a text that is no TOML the one where the parser stopped.
 Study parse_study(std::string_view text, const std::string& file_name);
 
-/// Reads a study file, and the FMU of its plant if it has one, which parse_study() leaves until a loop is
-/// simulated: an archive can be read without it. Errors: as parse_study(), as ForeignModel::load(), and
-/// InputError for a file that cannot be read.
+/// Reads a study file of the user, whose programs may be started from now on (study_programs.hpp), and the
+/// FMU of its plant if it has one, which parse_study() leaves until a loop is simulated: an archive can be
+/// read without it. Errors: as parse_study(), as ForeignModel::load(), and InputError for a file that cannot
+/// be read.
 Study load_study(const std::filesystem::path& path);
 
 /// The same from a stream that has this name in messages; paths in the study are from the current folder.

@@ -11,6 +11,7 @@
 #include "plants/error.hpp"
 #include "scenarios/random_stream.hpp"
 #include "scenarios/study_library.hpp"
+#include "scenarios/study_programs.hpp"
 #include "scenarios/study_variant.hpp"
 #include "scenarios/toml_file.hpp"
 #include "scenarios/toml_table.hpp"
@@ -193,6 +194,7 @@ Suite load_suite(const fs::path& path, const SuiteChoice& choice) {
         make_changes(text, own->second);
       name_cell(text, suite, cell);
       cell.study = study_of(text, fmt::format("{} ({})", file_name, suite.name_of(cell)));
+      trust_programs_of(cell.study);
       suite.cells.push_back(std::move(cell));
     }
   }

@@ -4,6 +4,7 @@
 
 #include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
+#include "scenarios/study_programs.hpp"
 #include "scenarios/study_variant.hpp"
 #include "scenarios/toml_file.hpp"
 #include "scenarios/toml_table.hpp"
@@ -23,6 +24,7 @@ SweepVariant read_variant(const TomlTable& variant, const toml::table& base, con
   result.value = read_text(variant, "value");
   result.study =
       read_study_variant(variant, base, fmt::format("{} ({} = {})", file_name, result.choice, result.value));
+  trust_programs_of(result.study);
   return result;
 }
 

@@ -10,6 +10,7 @@
 
 #include "plants/error.hpp"
 #include "scenarios/study_library.hpp"
+#include "scenarios/study_programs.hpp"
 #include "scenarios/study_variant.hpp"
 #include "scenarios/table_file_parts.hpp"
 #include "scenarios/toml_file.hpp"
@@ -46,8 +47,10 @@ std::map<std::string, Study> read_studies(const TomlTable& document, const TomlT
     const std::string name = read_name(table, "name");
     if (name == kStudyItself)
       table.refuse("name", in_quotes(name), "another name: it stands for the study as it is");
-    if (!studies.emplace(name, read_variant(table, text, path, name)).second)
+    const auto [study, is_new] = studies.emplace(name, read_variant(table, text, path, name));
+    if (!is_new)
       table.refuse("name", in_quotes(name), "each name once");
+    trust_programs_of(study->second);
   }
   return studies;
 }

@@ -1,2 +1,10 @@
-#define CATCH_CONFIG_MAIN
+#define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
+
+#include "plants/program_trust.hpp"
+
+/// The programs of tests are our own.
+int main(int argc, char** argv) {
+  mpm::trust_every_program();
+  return Catch::Session().run(argc, argv);
+}

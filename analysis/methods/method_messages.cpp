@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plants/error.hpp"
+#include "plants/foreign_text.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/model_json.hpp"
 
@@ -19,6 +21,8 @@ namespace mpm {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kShownOfKey = 100;  // bytes, in a message
 
 std::string found_text(const Json& value) {
   constexpr std::size_t kLongest = 60;
@@ -64,7 +68,7 @@ class AnswerReader {
   void refuse_unknown(const Json& object, const std::vector<std::string>& known) const {
     for (const auto& item : object.items())
       if (std::find(known.begin(), known.end(), item.key()) == known.end())
-        throw InputError(place_, fmt::format("the unknown key '{}'", item.key()),
+        throw InputError(place_, fmt::format("the unknown key '{}'", foreign_text(item.key(), kShownOfKey)),
                          fmt::format("{}", fmt::join(known, ", ")));
   }
 
@@ -85,7 +89,18 @@ class AnswerReader {
   std::string text(const char* key, const Json& value) const {
     if (!value.is_string())
       refuse(key, value, "a text");
-    return value.get<std::string>();
+    return shortened(value.get<std::string>());
+  }
+
+  /// Cut between two characters: it is kept with every loop.
+  static std::string shortened(std::string text) {
+    if (text.size() <= kLongestMethodText)
+      return text;
+    std::size_t end = kLongestMethodText;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
+      --end;
+    text.resize(end);
+    return text + "...";
   }
 
   /// JSON has no word for what is not finite: infinities are texts.
@@ -210,7 +225,7 @@ class AnswerReader {
       const auto info = std::find_if(method_.numbers.begin(), method_.numbers.end(),
                                      [&](const auto& each) { return each.name == item.key(); });
       if (info == method_.numbers.end())
-        throw InputError(place_, fmt::format("the number '{}'", item.key()),
+        throw InputError(place_, fmt::format("the number '{}'", foreign_text(item.key(), kShownOfKey)),
                          "numbers that the description of the method has");
       add_number(*info, item.value(), assessment.numbers);
     }

@@ -15,6 +15,10 @@
 
 namespace mpm {
 
+/// What somebody else's method may claim: numbers of its own, and bytes of a text about it.
+inline constexpr std::size_t kMostMethodNumbers = 1000;
+inline constexpr std::size_t kLongestMethodText = 1000;
+
 /// One signal of a loop as methods see it: its name in messages and files, the dimension of its rows.
 struct LoopSignal {
   const char* name;

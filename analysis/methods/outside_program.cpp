@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 
 #include "analysis/methods/method_messages.hpp"
 #include "plants/error.hpp"
+#include "plants/foreign_text.hpp"
 #include "plants/program_talk.hpp"
 
 namespace mpm {
@@ -21,6 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kProtocol = 1;
+constexpr std::size_t kShownOfUnknown = 100;  // bytes, in a message
 
 std::unique_ptr<ProgramTalk> talk_with(const MethodProgram& program) {
   return std::make_unique<ProgramTalk>(fmt::format("method '{}'", program.name), program.command,
@@ -44,8 +47,8 @@ class DescriptionReader {
 
   void read(const Json& answer, MethodDescription& method) const {
     refuse_others(answer, {"title", "verdict", "needs", "answers", "numbers", "stated_false_alarms"});
-    method.title = answer.value("title", method.title);
-    method.verdict = answer.value("verdict", method.verdict);
+    method.title = text(answer, "title", method.title);
+    method.verdict = text(answer, "verdict", method.verdict);
     for (const std::string& need : words(answer, "needs"))
       set(need, {{{"setpoints", &method.requirements.setpoints},
                   {"moving_setpoints", &method.requirements.moving_setpoints},
@@ -62,12 +65,31 @@ class DescriptionReader {
     if (const auto stated = answer.find("stated_false_alarms"); stated != answer.end() && !stated->is_null())
       method.stated_false_alarms = stated->get<double>();
     if (const auto numbers = answer.find("numbers"); numbers != answer.end())
-      for (const Json& number : *numbers)
-        method.numbers.push_back(number_info(number));
+      read_numbers(*numbers, method);
   }
 
  private:
   using Flags = std::vector<std::pair<std::string, bool*>>;
+
+  std::string text(const Json& object, const char* key, const std::string& standard) const {
+    std::string found = object.value(key, standard);
+    if (found.size() > kLongestMethodText)
+      throw InputError(place_, fmt::format("{} of {} bytes", key, found.size()),
+                       fmt::format("at most {}", kLongestMethodText));
+    return found;
+  }
+
+  void read_numbers(const Json& numbers, MethodDescription& method) const {
+    if (numbers.size() > kMostMethodNumbers)
+      throw InputError(place_, fmt::format("{} numbers", numbers.size()),
+                       fmt::format("at most {}", kMostMethodNumbers));
+    std::set<std::string> names;
+    for (const Json& number : numbers) {
+      method.numbers.push_back(number_info(number));
+      if (const std::string& name = method.numbers.back().name; !names.insert(name).second)
+        throw InputError(place_, fmt::format("the number '{}' a second time", name), "every name once");
+    }
+  }
 
   static std::vector<std::string> words(const Json& answer, const char* key) {
     return answer.value(key, std::vector<std::string>{});
@@ -87,17 +109,20 @@ class DescriptionReader {
 
   void refuse_others(const Json& object, const std::vector<std::string>& known) const {
     if (!object.is_object())
-      throw InputError(place_, object.dump(), "a JSON object");
+      throw InputError(
+          place_, object.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, kLongestMethodText),
+          "a JSON object");
     for (const auto& item : object.items())
       if (std::find(known.begin(), known.end(), item.key()) == known.end())
-        throw InputError(place_, fmt::format("the unknown key '{}'", item.key()),
+        throw InputError(place_, fmt::format("the unknown key '{}'", foreign_text(item.key(), kShownOfUnknown)),
                          fmt::format("{}", fmt::join(known, ", ")));
   }
 
   AssessmentNumberInfo number_info(const Json& json) const {
     refuse_others(json, {"name", "scope", "meaning", "unit"});
-    AssessmentNumberInfo info{
-        .name = json.at("name"), .meaning = json.value("meaning", ""), .unit = json.value("unit", "1")};
+    AssessmentNumberInfo info{.name = text(json, "name", ""),
+                              .meaning = text(json, "meaning", ""),
+                              .unit = text(json, "unit", "1")};
     const std::string scope = json.value("scope", "loop");
     const std::array<std::pair<const char*, NumberScope>, 3> scopes{
         {{"loop", NumberScope::loop}, {"cv", NumberScope::cv}, {"channel", NumberScope::channel}}};
@@ -107,7 +132,8 @@ class DescriptionReader {
         !info.name.empty() &&
         info.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") == std::string::npos;
     if (found == scopes.end() || !is_name)
-      throw InputError(place_, json.dump(),
+      throw InputError(place_,
+                       json.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, kLongestMethodText),
                        "a number with a name of a-z, 0-9 and _, and a scope loop, cv or channel");
     info.scope = found->second;
     return info;

@@ -17,6 +17,7 @@
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
+#include "plants/program_trust.hpp"
 #include "scenarios/calibration.hpp"
 #include "solvers/qp_solver.hpp"
 
@@ -59,13 +60,14 @@ std::vector<std::size_t> places_of_others(const Campaign& campaign, const Assess
 }
 
 /// Where somebody else simulates the plant, its processes have to be prepared before threads are at work. Its
-/// file may be gone: that matters to the loops that are run again, which then say so.
+/// file may be gone, or not be trusted: that matters to the loops that are run again, which then say so.
 void prepare_plant(const Study& study) {
   if (!study.nonlinear || !study.nonlinear->model.foreign)
     return;
   try {
     study.nonlinear->model.foreign->load();
   } catch (const InputError&) {
+  } catch (const UntrustedProgram&) {
   }
 }
 

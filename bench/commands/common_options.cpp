@@ -14,6 +14,7 @@
 #include "analysis/methods/outside_program.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/files/outside_files.hpp"
+#include "plants/program_trust.hpp"
 #include "scenarios/method_file.hpp"
 #include "solvers/qp_solver.hpp"
 
@@ -53,6 +54,12 @@ void add_changes(CLI::App& app, std::vector<std::string>& changes, const std::st
 
 void add_archive(CLI::App& app, std::string& archive) {
   add_path(app, "ARCHIVE", archive, "Archive")->required();
+}
+
+void add_trust(CLI::App& app) {
+  app.add_flag_callback(
+      "--trust-programs", [] { trust_every_program(); },
+      "Start the programs and load the FMU that the study of an archive or of a part names");
 }
 
 void add_index(CLI::App& app, std::int64_t& index) {
@@ -106,6 +113,7 @@ std::vector<std::string> take_method_files(const std::vector<std::string>& files
   std::vector<std::string> names;
   for (const std::string& file : files)
     for (const MethodProgram& program : load_method_file(file)) {
+      trust_program(program.command);
       AssessmentMethodInfo method = program_method(program);
       method.fingerprint = fmt::format("{}, options {}", command_identity(program.command), program.options);
       add_assessment_method(std::move(method));

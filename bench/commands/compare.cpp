@@ -346,6 +346,7 @@ void add_compare(CommandSet& commands) {
       commands.add("compare", "Assess the loops of an archive by several methods: how often is each right?",
                    [options, &commands] { return compare(*options, commands.command_line()); });
   add_archive(app, options->archive);
+  add_trust(app);
   add_methods_option(app, options->methods, "Methods, separated by commas, or all");
   add_method_files(app, options->method_files);
   app.add_option(

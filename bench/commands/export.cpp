@@ -116,6 +116,7 @@ void add_export(CommandSet& commands) {
   CLI::App& app = commands.add("export", "Write a table of an archive as CSV, for Octave and spreadsheets",
                                [options] { return export_table(*options); });
   add_archive(app, options->archive);
+  add_trust(app);
   app.add_option("--table", options->table,
                  "experiments, findings, loops (those that were kept), or a method")
       ->capture_default_str();

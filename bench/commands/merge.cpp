@@ -115,6 +115,7 @@ void add_merge(CommandSet& commands) {
                "Write nothing, and say what no part has: exit code 0 when nothing is missing, else 3");
   add_overwrite(app, options->overwrite);
   add_method_files(app, options->method_files);
+  add_trust(app);
   add_json(app, options->json);
   add_quiet(app, options->quiet, "No summary");
 }

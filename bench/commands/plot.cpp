@@ -51,6 +51,7 @@ void add_plot(CommandSet& commands) {
   CLI::App& app =
       commands.add("plot", "Draw the closed loop of one experiment", [options] { return plot(*options); });
   add_archive(app, options->archive);
+  add_trust(app);
   add_index(app, options->index);
   add_path(app, "-o,--output", options->output, "Figure to write: NAME.svg, NAME.pdf or NAME.png")
       ->required();

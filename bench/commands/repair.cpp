@@ -298,6 +298,7 @@ void add_repair(CommandSet& commands) {
       "repair", "Identify the channel that a method names again, and say what the repaired controller brings",
       [options] { return repair(*options); });
   add_archive(app, options->archive);
+  add_trust(app);
   app.add_option("--index", options->index,
                  "One experiment in full; without it all in which a channel is named")
       ->check(whole_number(0, 1000000000));

@@ -70,6 +70,7 @@ void add_replay(CommandSet& commands) {
       commands.add("replay", "Run one experiment of an archive again and say whether it is bit-identical",
                    [options] { return replay(*options); });
   add_archive(app, options->archive);
+  add_trust(app);
   add_index(app, options->index);
 }
 

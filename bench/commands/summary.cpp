@@ -100,6 +100,7 @@ void add_summary(CommandSet& commands) {
            "Archive, written or not; or a folder with the shards or parts of a run")
       ->required();
   add_method_files(app, options->method_files);
+  add_trust(app);
   add_json(app, options->json);
 }
 

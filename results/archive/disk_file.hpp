@@ -10,21 +10,25 @@ namespace mpm {
 /// The number of the first error of the system, 0 before.
 using DiskError = std::shared_ptr<int>;
 
-/// A file that is made on the disk for somebody who must hear of no error: what cannot be written is lost,
-/// and the number of the first error is kept where the maker of the file looks for it.
+/// A file on the disk for somebody who must hear of no error of what is written, nor of closing it: what
+/// cannot be written is lost, and the number of the first error is kept where the maker of the file looks for
+/// it.
 class DiskFile {
  public:
-  /// Empties the file at `path`, which must be there. `error` outlives the file.
-  DiskFile(const char* path, int* error);
+  /// The file at `path`, which must be there: to be written, it is emptied. `error` outlives the file.
+  DiskFile(const char* path, bool is_written, int* error);
   DiskFile(const DiskFile&) = delete;
   DiskFile& operator=(const DiskFile&) = delete;
   ~DiskFile();
 
   /// Nothing but this may be asked of a file that could not be opened.
   bool is_open() const { return descriptor_ >= 0; }
+  bool is_written() const { return is_written_; }
+  /// Bytes; 0 of a file that cannot be looked at.
+  std::uint64_t size() const;
 
-  /// Fills `bytes` from the place `begin` on; zeros beyond the end, and where an error was.
-  void read(std::uint64_t begin, std::span<char> bytes);
+  /// Fills `bytes` from the place `begin` on; zeros beyond the end, and where an error was: then it is false.
+  bool read(std::uint64_t begin, std::span<char> bytes);
   /// Does nothing once there was an error.
   void write(std::uint64_t begin, std::span<const char> bytes);
   void truncate(std::uint64_t size);
@@ -32,6 +36,7 @@ class DiskFile {
  private:
   void note_error();
 
+  bool is_written_;
   int descriptor_;
   int* error_;
 };

@@ -20,11 +20,12 @@ struct OpenDiskFile {
   static OpenDiskFile& of(H5FD_t* file) { return *reinterpret_cast<OpenDiskFile*>(file); }
   static const OpenDiskFile& of(const H5FD_t* file) { return *reinterpret_cast<const OpenDiskFile*>(file); }
 
-  OpenDiskFile(const char* path, int* error) : disk(path, error) {}
+  OpenDiskFile(const char* path, bool is_written, int* error)
+      : disk(path, is_written, error), end_of_file(is_written || !disk.is_open() ? 0 : disk.size()) {}
 
-  static H5FD_t* open(const char* name, unsigned, hid_t access, haddr_t) {
+  static H5FD_t* open(const char* name, unsigned flags, hid_t access, haddr_t) {
     auto* const error = *static_cast<int* const*>(H5Pget_driver_info(access));
-    auto file = std::make_unique<OpenDiskFile>(name, error);
+    auto file = std::make_unique<OpenDiskFile>(name, (flags & H5F_ACC_RDWR) != 0, error);
     return file->disk.is_open() ? &file.release()->base : nullptr;
   }
   static herr_t close(H5FD_t* file) {
@@ -44,8 +45,8 @@ struct OpenDiskFile {
   static haddr_t get_eof(const H5FD_t* file, H5FD_mem_t) { return of(file).end_of_file; }
 
   static herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t begin, std::size_t size, void* buffer) {
-    of(file).disk.read(begin, {static_cast<char*>(buffer), size});
-    return 0;
+    OpenDiskFile& from = of(file);
+    return from.disk.read(begin, {static_cast<char*>(buffer), size}) || from.disk.is_written() ? 0 : -1;
   }
   static herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t begin, std::size_t size, const void* buffer) {
     OpenDiskFile& to = of(file);

@@ -32,6 +32,15 @@ hdf5::Handle memory_access(const hdf5::Place& place) {
   return access;
 }
 
+/// Through the driver of ours: the library crashes at the end of the process when a file could not be written
+/// or closed. The first error is kept in `error`, which outlives the file.
+hdf5::Handle disk_access(const hdf5::Place& place, int& error) {
+  hdf5::Handle access = file_access(place);
+  int* const kept = &error;
+  place.check(H5Pset_driver(access.get(), hdf5::disk_driver(), &kept), "make properties");
+  return access;
+}
+
 /// A new file at `path`, which is a name only when `access` says that it is in memory.
 hdf5::Handle create_file(const hdf5::Place& place, const std::string& path, const hdf5::Handle& access) {
   const hdf5::Handle creation = place.own(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make properties");
@@ -52,9 +61,7 @@ Hdf5File Hdf5File::create_at(const std::filesystem::path& path, const std::strin
   hdf5::silence_library();
   const hdf5::Place place{name, "group", "/", ""};
   auto disk = std::make_shared<int>(0);
-  const hdf5::Handle access = file_access(place);
-  int* const error = disk.get();
-  place.check(H5Pset_driver(access.get(), hdf5::disk_driver(), &error), "make properties");
+  const hdf5::Handle access = disk_access(place, *disk);
   return Hdf5File(
       Hdf5Group::State::root_of(create_file(place, path.string(), access), place, std::move(disk)));
 }
@@ -63,11 +70,12 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
   require_seal(path);
   hdf5::silence_library();
   const hdf5::Place place{path.string(), "group", "/", ""};
-  const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access(place).get()), H5Fclose);
+  auto disk = std::make_shared<int>(0);
+  const hdf5::Handle access = disk_access(place, *disk);  // until the error is read: its end would clear it
+  const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (file.get() < 0)
-    throw ArchiveError(
-        fmt::format("{}: no HDF5 file, or not a whole one ({})", place.file, hdf5::last_error()));
-  return Hdf5File(Hdf5Group::State::root_of(file, place));
+    throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one{}", place.file, hdf5::last_error()));
+  return Hdf5File(Hdf5Group::State::root_of(file, place, std::move(disk)));
 }
 
 Hdf5File Hdf5File::open_unsealed(std::vector<std::byte> content, const std::string& name) {
@@ -76,7 +84,7 @@ Hdf5File Hdf5File::open_unsealed(std::vector<std::byte> content, const std::stri
   constexpr unsigned kReadOnlyCopy = 0;
   const hdf5::Handle file(H5LTopen_file_image(content.data(), content.size(), kReadOnlyCopy), H5Fclose);
   if (file.get() < 0)
-    throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one ({})", name, hdf5::last_error()));
+    throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one{}", name, hdf5::last_error()));
   return Hdf5File(Hdf5Group::State::root_of(file, place));
 }
 

@@ -15,7 +15,7 @@ std::string last_error() {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep, &text);
-  return text.empty() ? "no reason given" : text;
+  return text.empty() ? "" : fmt::format(" ({})", text);
 }
 
 void silence_library() {
@@ -28,12 +28,12 @@ void Place::fail(const std::string& problem) const {
 
 void Place::check(herr_t result, const char* action) const {
   if (result < 0)
-    fail(fmt::format("cannot {} ({})", action, last_error()));
+    fail(fmt::format("cannot {}{}", action, last_error()));
 }
 
 Handle Place::own(hid_t id, Handle::Close close, const char* action) const {
   if (id < 0)
-    fail(fmt::format("cannot {} ({})", action, last_error()));
+    fail(fmt::format("cannot {}{}", action, last_error()));
   return {id, close};
 }
 

@@ -9,7 +9,8 @@
 
 namespace mpm::hdf5 {
 
-/// The library's own account of its last failure, from the place nearest to the cause.
+/// The library's own account of its last failure, from the place nearest to the cause, as " (TEXT)"; nothing
+/// where it gives none.
 std::string last_error();
 
 /// Our messages take the place of the library's.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/methods/method_messages.hpp"
 #include "results/files/archive_error.hpp"
 
 namespace mpm {
@@ -124,6 +125,8 @@ MethodDescription method_description(const std::string& text, const std::string&
                              .numbers = {},
                              .origin = origin_in(json),
                              .fingerprint = json.value("fingerprint", "")};
+    if (const std::size_t count = json.at("numbers").size(); count > kMostMethodNumbers)
+      throw std::invalid_argument(fmt::format("{} numbers, more than {}", count, kMostMethodNumbers));
     for (const Json& number : json.at("numbers"))
       method.numbers.push_back(number_of(number));
     return method;

@@ -28,9 +28,10 @@ namespace {
 
 constexpr std::array kUsualTimes{"time", "timestamp", "datetime", "date", "t"};
 constexpr double kMillisecondsOfSecond = 1000.0;
-constexpr double kTimeLimit = 120.0;          // s for a file
-constexpr double kEarliest = -12212553600.0;  // 1583-01-01 in s since 1970
-constexpr double kLatest = 253402300800.0;    // 10000-01-01
+constexpr double kTimeLimit = 120.0;                        // s for a file
+constexpr double kEarliest = -12212553600.0;                // 1583-01-01 in s since 1970
+constexpr double kLatest = 253402300800.0;                  // 10000-01-01
+constexpr std::size_t kMostNumbers = std::size_t{1} << 28;  // of 8 bytes, that it becomes
 constexpr const char* kAllowed = "a netCDF-4 file of records, or a CSV file (docs/own_records.md)";
 
 /// Seconds in a unit of CF; none of another one. Months and years have no fixed length.
@@ -289,7 +290,7 @@ RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& 
   // The library frees and reads what is not its own when a file is damaged in the right place.
   ForkedService reader(
       [&](const auto&) { return as_numbers(nlohmann::json::to_cbor(read_file(content, file, time))); },
-      kTimeLimit);
+      kTimeLimit, kMostNumbers);
   try {
     return columns_of(nlohmann::json::from_cbor(as_bytes(reader.ask({}))), file);
   } catch (const ForeignFailure& failure) {

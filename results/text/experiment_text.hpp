@@ -45,7 +45,7 @@ std::string verdict_text(const Study& study, const ExperimentRecord& record);
 /// estimate at the end of its search. What differs from 0 by rounding is 0.
 std::string estimate_text(double value, double lower, double upper, SizeBound bound);
 
-/// "longer by 1.5 min (1.2 to 1.8)", "shorter by at most 0.4 min (0.1 to 0.7)": a dead time.
+/// "longer by 1.5 (1.2 to 1.8) min", "shorter by at least 3 (2 to 3) min": a dead time.
 std::string dead_time_text(double shift, double lower, double upper, SizeBound bound,
                            const std::string& unit);
 

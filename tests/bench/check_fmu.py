@@ -8,9 +8,11 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 import h5py
 import numpy
@@ -46,6 +48,69 @@ name = "A1"
 affected = ["h1"]
 parameter = [{name = "A1", factor = 0.3}]
 """
+
+
+# What it does (tests/plants/fmu/tank.c), and what becomes of it.
+HOSTILE = {8: "bytes; allowed", 9: "", 10: None, 11: "closed the connection", 12: "no answer within 2 s",
+           13: "no answer within 2 s"}
+
+
+def marked(mark):
+    """The processes that have this mark in their environment."""
+    found = []
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if mark.encode() in (process / "environ").read_bytes():
+                found.append((process / "comm").read_text().strip())
+        except OSError:
+            pass
+    return found
+
+
+def await_end(mark):
+    until = time.monotonic() + 10
+    while marked(mark) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not marked(mark), marked(mark)
+
+
+def check_hostile(program, folder, temporary, study):
+    """An FMU that writes into what it inherited, forks, closes its connection or stops its guardian: its loop ends in
+    time, and none of its processes lives on."""
+    text = study[:study.index("[[scenario]]")].replace("settle = 3000", "settle = 3000\ntime_limit = 2")
+    for how in HOSTILE:
+        text += f"""[[scenario]]
+name = "hostile{how}"
+affected = ["h1"]
+parameter = [{{name = "failure", value = {how}}}]
+"""
+    (folder / "hostile.toml").write_text(text)
+    for parallel in "processes", "threads":
+        mark = f"MPMBENCH_HOSTILE={os.getpid()}-{parallel}"
+        environment = {**os.environ, "TMPDIR": str(temporary), "MPMBENCH_HOSTILE": mark.partition("=")[2]}
+        archive = folder / f"hostile-{parallel}.h5"
+        words = [program, "run", "hostile.toml", "-o", archive, "--parallel", parallel, "--jobs", "2", "--quiet"]
+        subprocess.run(words, cwd=folder, env=environment, timeout=120, check=True)
+        await_end(mark)
+        with h5py.File(archive) as file:
+            status, messages = list(file["status"][:]), list(file["message"].asstr())
+        for how, one, message in zip(HOSTILE, status, messages):
+            assert one == (0 if HOSTILE[how] is None else 2), (how, one, message)
+            assert HOSTILE[how] is None or HOSTILE[how] in message, (how, message)
+
+    # Ended from outside while it does not answer: it ends with the command, long before its time limit.
+    (folder / "slow.toml").write_text(text.replace("time_limit = 2", "time_limit = 600"))
+    for by in signal.SIGTERM, signal.SIGKILL:
+        mark = f"MPMBENCH_HOSTILE={os.getpid()}-{by}"
+        words = [program, "run", "slow.toml", "-o", folder / "slow.h5", "--discard", "--jobs", "6", "--quiet"]
+        process = subprocess.Popen(words, cwd=folder, stderr=subprocess.DEVNULL,
+                                   env={**os.environ, "TMPDIR": str(temporary), "MPMBENCH_HOSTILE": mark.partition("=")[2]})
+        time.sleep(4)
+        process.send_signal(by)
+        process.wait(timeout=20)
+        await_end(mark)
+    for left in temporary.iterdir():
+        shutil.rmtree(left)
 
 
 def main(program, fmu, base):
@@ -86,18 +151,20 @@ def main(program, fmu, base):
         threads = folder / "threads.h5"
         run("run", "study.toml", "-o", threads, "--parallel", "threads", "--jobs", 3, "--store", "all", "--quiet")
         check_same(threads, archive)
-        assert "bit-identical" in run("replay", archive, 3).stdout
+        assert "bit-identical" in run("replay", archive, 3, "--trust-programs").stdout
         run("summary", archive, cwd=elsewhere)
 
         # Methods that are asked later run loops in threads, each FMU in a process of its own.
         bare, later = folder / "bare.h5", folder / "later.h5"
         run("run", "study.toml", "-o", bare, "--jobs", 2, "--store", "none", "--methods", "sse", "--quiet")
-        run("compare", bare, "--methods", "botelho", "-o", later, "--jobs", 4, "--quiet")
+        run("compare", bare, "--methods", "botelho", "-o", later, "--jobs", 4, "--quiet", "--trust-programs")
         with h5py.File(archive) as a, h5py.File(later) as b:
             ivar = a["methods/botelho/ivar"][:], b["methods/botelho/ivar"][:]
             assert numpy.array_equal(*ivar, equal_nan=True) and numpy.isfinite(ivar[0][[0, 3]]).all(), ivar
-        message = run("replay", archive, 3, cwd=elsewhere, code=2).stderr
+        message = run("replay", archive, 3, "--trust-programs", cwd=elsewhere, code=2).stderr
         assert "plant.fmu.file: found 'tank.fmu', which is no file" in message, message
+
+        check_hostile(program, folder, temporary, (folder / "study.toml").read_text())
 
         # A plant that fails without a fault is no plant, and wrong names are told at once.
         study = folder / "study.toml"

@@ -48,6 +48,26 @@ TEST_CASE("what no FMU for co-simulation by FMI 2.0 is, is refused", "[fmu]") {
       "m.fmu: modelDescription.xml: modelIdentifier of CoSimulation: found nothing; allowed: a text");
 }
 
+TEST_CASE("references and the name of the library are what FMI allows, and no path", "[fmu]") {
+  const auto with_reference = [](const std::string& reference) {
+    std::string xml = description("2.0", kCoSimulation);
+    const std::string before = "valueReference=\"3\"";
+    xml.replace(xml.find(before), before.size(), "valueReference='" + reference + "'");
+    return parse_fmu_description(xml, "m.fmu");
+  };
+  CHECK(with_reference("4294967295").variable("u", FmuRole::input, "p").reference == 4294967295U);
+  for (const char* wrong : {"three", "-1", "3.5", "4294967296", "3 ", "0x3"})
+    CHECK_THROWS_WITH(with_reference(wrong),
+                      std::string("m.fmu: modelDescription.xml: valueReference of 'u': found '") + wrong +
+                          "'; allowed: a whole number from 0 to 4294967295");
+  CHECK_THROWS_WITH(with_reference(""), Contains("found nothing; allowed: a whole number"));
+  for (const char* wrong : {"../../m", "/usr/lib/m", "a.b", "9m", "m m"})
+    CHECK_THROWS_WITH(
+        parse_fmu_description(
+            description("2.0", std::string("<CoSimulation modelIdentifier=\"") + wrong + "\"/>"), "m.fmu"),
+        Contains(std::string("modelIdentifier: found '") + wrong + "'; allowed: a name of C"));
+}
+
 TEST_CASE("variables that are not there or not what the study takes them for are refused", "[fmu]") {
   const FmuDescription fmu = parse_fmu_description(description("2.0", kCoSimulation), "m.fmu");
   CHECK_THROWS_WITH(fmu.variable("w", FmuRole::input, "s.toml:3: plant.fmu.input[0].name"),

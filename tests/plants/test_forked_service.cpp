@@ -75,6 +75,38 @@ TEST_CASE("an answer that does not come is given up") {
   CHECK_THROWS_AS(service.ask({}), ForeignFailure);
 }
 
+TEST_CASE("what a service sends is not trusted, and a closed connection is not waited for") {
+  constexpr int kItsSocket = 3;
+  const auto sends = [](std::int64_t failed, std::int64_t size) {
+    return [=](const std::vector<double>&) -> std::vector<double> {
+      const std::array<std::int64_t, 2> header{failed, size};
+      static_cast<void>(::write(kItsSocket, header.data(), sizeof header));
+      for (;;)
+        ::pause();
+    };
+  };
+  for (const std::int64_t size : {std::int64_t{-8}, std::int64_t{1} << 60, std::int64_t{3}}) {
+    ForkedService service(sends(0, size), kPatience);
+    CHECK_THROWS_WITH(service.ask({}), Contains(" bytes; allowed: 0 to "));
+  }
+  ForkedService boasts(sends(1, 5'000'000), kPatience);
+  CHECK_THROWS_WITH(boasts.ask({}), Contains("a message of 5000000 bytes"));
+  ForkedService closes(
+      [](const std::vector<double>&) -> std::vector<double> {
+        ::close(kItsSocket);
+        for (;;)
+          ::pause();
+      },
+      kPatience);
+  CHECK_THROWS_WITH(closes.ask({}), "its process closed the connection to this one");
+  ForkedService wordy(
+      [](const std::vector<double>&) -> std::vector<double> {
+        throw std::runtime_error(std::string(5'000'000, 'x') + "\n");
+      },
+      kPatience);
+  CHECK_THROWS_WITH(wordy.ask({}), std::string(1000, 'x') + "...");
+}
+
 TEST_CASE("a forked service keeps what it prints and what it does to memory to itself") {
   int mine = 1;
   ForkedService service(

@@ -2,7 +2,9 @@
  * modelling tool exports. Levels stay above 0.001 cm here, where the two have the same equations. It integrates by the
  * classical Runge-Kutta method in steps of kStep at most, and allows one instance a process, as many exports do. */
 
+#define _GNU_SOURCE
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -123,6 +125,7 @@ int fmi2GetReal(void* component, const unsigned int* references, size_t count, d
 
 /* What goes wrong in other people's programs, by the parameter `failure`. */
 static int fail(const Tank* tank) {
+  static char noise[4096];
   switch ((int)tank->p[kFailure]) {
     case 1: {
       volatile int* nowhere = NULL;
@@ -139,6 +142,27 @@ static int fail(const Tank* tank) {
       exit(3);
     case 7:
       return kDiscard;
+    case 8: /* into whatever was inherited, for ever: more than anybody reads, and then as if it were an answer */
+      for (;;)
+        for (int file = 3; file < 100; ++file) write(file, memset(noise, 0x7f, sizeof noise), sizeof noise);
+    case 9: /* answers that nobody asked for, without numbers, for ever */
+      for (;;)
+        for (int file = 3; file < 100; ++file) write(file, memset(noise, 0, sizeof noise), sizeof noise);
+    case 10: /* a process that leaves its session and outlives everything */
+    case 12: /* and then no answer */
+      if (fork() == 0) {
+        setsid();
+        for (;;) pause();
+      }
+      if (tank->p[kFailure] == 12)
+        for (;;) pause();
+      return kOk;
+    case 11: /* no connection, and no end */
+      for (int file = 0; file < 100; ++file) close(file);
+      for (;;) pause();
+    case 13: /* nobody is to notice */
+      kill(getppid(), SIGSTOP);
+      for (;;) pause();
     default:
       return kOk;
   }
