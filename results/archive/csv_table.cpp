@@ -9,7 +9,7 @@
 #include "plants/error.hpp"
 #include "plants/row_major.hpp"
 #include "results/archive/record_tables.hpp"
-#include "results/text/csv_text.hpp"
+#include "results/files/csv_text.hpp"
 #include "scenarios/historian.hpp"
 
 namespace mpm {

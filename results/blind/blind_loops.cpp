@@ -16,9 +16,9 @@
 #include "results/archive/dimensions.hpp"
 #include "results/archive/matrix_io.hpp"
 #include "results/files/atomic_file.hpp"
+#include "results/files/csv_text.hpp"
 #include "results/files/file_seal.hpp"
 #include "results/files/sha256.hpp"
-#include "results/text/csv_text.hpp"
 #include "scenarios/random_stream.hpp"
 
 namespace mpm {

@@ -22,9 +22,9 @@
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
 #include "results/blind/blind_loops.hpp"
+#include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
-#include "results/text/csv_text.hpp"
 
 namespace mpm {
 namespace {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
-#include "results/text/csv_text.hpp"
+#include "results/files/csv_text.hpp"
 
 namespace mpm {
 namespace {

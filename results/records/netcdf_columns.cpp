@@ -18,17 +18,16 @@
 #include "plants/forked_service.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/files/archive_error.hpp"
+#include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 #include "results/records/time_stamps.hpp"
-#include "results/text/csv_text.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr std::array kUsualTimes{"time", "timestamp", "datetime", "date", "t"};
 constexpr double kMillisecondsOfSecond = 1000.0;
-constexpr double kTimeLimit = 120.0;                        // s for a file
 constexpr double kEarliest = -12212553600.0;                // 1583-01-01 in s since 1970
 constexpr double kLatest = 253402300800.0;                  // 10000-01-01
 constexpr std::size_t kMostNumbers = std::size_t{1} << 28;  // of 8 bytes, that it becomes
@@ -98,6 +97,9 @@ class NetcdfReader {
     dimension_ = root_.dimensions(along).front();
     samples_ = root_.shape(along).front();
     along_ = along;
+    if (samples_ > kMostForeignCells)
+      throw InputError(fmt::format("{}: variable '{}'", columns_.file, along),
+                       fmt::format("{} samples", samples_), fmt::format("at most {}", kMostForeignCells));
   }
 
   std::vector<std::string> time_cells() const {
@@ -173,8 +175,8 @@ class NetcdfReader {
 
   void add(const std::string& name, std::vector<std::string> cells) {
     cells_ += cells.size();
-    if (cells_ > kMostCells)
-      throw InputError(columns_.file, fmt::format("more than {} values along the time", kMostCells),
+    if (cells_ > kMostForeignCells)
+      throw InputError(columns_.file, fmt::format("more than {} values along the time", kMostForeignCells),
                        "so many: a shorter period, or fewer variables");
     columns_.names.push_back(name);
     columns_.columns.push_back(std::move(cells));
@@ -285,12 +287,12 @@ bool is_netcdf4(std::string_view content) {
   return content.starts_with("\x89HDF\r\n\x1a\n");
 }
 
-RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file,
-                             const std::string& time) {
+RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file, const std::string& time,
+                             double time_limit) {
   // The library frees and reads what is not its own when a file is damaged in the right place.
   ForkedService reader(
       [&](const auto&) { return as_numbers(nlohmann::json::to_cbor(read_file(content, file, time))); },
-      kTimeLimit, kMostNumbers);
+      time_limit, kMostNumbers);
   try {
     return columns_of(nlohmann::json::from_cbor(as_bytes(reader.ask({}))), file);
   } catch (const ForeignFailure& failure) {

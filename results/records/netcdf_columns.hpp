@@ -26,12 +26,13 @@ bool is_netcdf4(std::string_view content);
 /// missing_value and NaN are empty cells, scale_factor and add_offset are applied. Groups are not looked
 /// into.
 ///
-/// The file is read in a process that is forked off, since HDF5 crashes on some damaged files: to be called
-/// where there are no other threads.
+/// The file is read in a process that is forked off, since HDF5 crashes on some damaged files and comes to no
+/// end with others: to be called where there are no other threads. It has `time_limit` seconds.
 ///
 /// Errors: InputError that names the file, the variable and what to do: no HDF5 file, no time, another
-/// calendar than the usual one, several loops, no variable along the time; HDF5 crashed or took 2 minutes.
-RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file,
-                             const std::string& time);
+/// calendar than the usual one, several loops, no variable along the time, one that is not as long as it, an
+/// attribute of another kind, values in another file, too many values; HDF5 crashed or took too long.
+RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file, const std::string& time,
+                             double time_limit = 120.0);
 
 }  // namespace mpm

@@ -16,6 +16,7 @@
 #include "analysis/findings/monitored_loop.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
+#include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 #include "results/records/csv_columns.hpp"
@@ -23,7 +24,6 @@
 #include "results/records/netcdf_columns.hpp"
 #include "results/records/record_columns.hpp"
 #include "results/records/time_stamps.hpp"
-#include "results/text/csv_text.hpp"
 
 namespace mpm {
 namespace {

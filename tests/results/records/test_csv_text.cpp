@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
-#include "results/text/csv_text.hpp"
+#include "results/files/csv_text.hpp"
 
 // The one rule by which the CSV of others is read, and what this program writes for spreadsheets.
 
@@ -51,7 +51,7 @@ TEST_CASE("names and cells of others have bounds", "[csv]") {
   CHECK_THROWS_WITH(rows_in(longest + "n,b\n1,2\n"),
                     Catch::StartsWith("f:1: found a column with a name of 1001 bytes, 'nnn") &&
                         Catch::EndsWith("allowed: at most 1000"));
-  // More than kMostCells in fewer lines than that: a heading of 50,000 columns and 1001 rows.
+  // More than kMostForeignCells in fewer lines than that: a heading of 50,000 columns and 1001 rows.
   const std::string line = std::string(49'999, ',') + "\n";
   std::string text = line;
   for (int row = 0; row < 1001; ++row)

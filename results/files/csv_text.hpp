@@ -23,7 +23,7 @@ struct CsvForm {
 ///
 /// Errors: InputError "FILE:LINE: found ...; allowed: ..." for bytes that are no text, a quote that breaks
 /// the rule, a row with another number of fields than the heading, a name of more than kLongestCsvName
-/// bytes, and more than kMostCells cells.
+/// bytes, and more than kMostForeignCells cells.
 class CsvReader {
  public:
   /// Reads up to the heading; `text` must outlive the reader. Without a heading heading() is empty.
@@ -54,8 +54,9 @@ class CsvReader {
   std::size_t at_ = 0, line_ = 0, cells_ = 0;
 };
 
-inline constexpr std::size_t kLongestCsvName = 1000;   ///< bytes of the name of a column
-inline constexpr std::size_t kMostCells = 50'000'000;  ///< of a file of somebody else: rows times columns
+inline constexpr std::size_t kLongestCsvName = 1000;  ///< bytes of the name of a column
+inline constexpr std::size_t kMostForeignCells =
+    50'000'000;  ///< of a file of somebody else: rows times columns
 
 /// A text as a field of CSV, in quotes where it must be. One that a spreadsheet would take for a formula (it
 /// begins with = + - @, a tab or a return) has ' in front.

@@ -1,4 +1,4 @@
-#include "results/text/csv_text.hpp"
+#include "results/files/csv_text.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -132,8 +132,8 @@ bool CsvReader::next(std::vector<std::string>& fields) {
                                    : ""));
   }
   cells_ += fields.size();
-  if (cells_ > kMostCells)
-    throw InputError(place(), fmt::format("more than {} cells", kMostCells),
+  if (cells_ > kMostForeignCells)
+    throw InputError(place(), fmt::format("more than {} cells", kMostForeignCells),
                      "so many (rows times columns): a shorter period, fewer columns, or fewer rows a sample");
   return true;
 }
