@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import zipfile
 
 import h5py
 import numpy
@@ -165,6 +166,16 @@ def main(program, fmu, base):
         assert "plant.fmu.file: found 'tank.fmu', which is no file" in message, message
 
         check_hostile(program, folder, temporary, (folder / "study.toml").read_text())
+
+        # What a file claims is held against a bound before it is unpacked, and a path leads nowhere.
+        refused = {"modelDescription.xml": ("found 300000000 bytes; allowed: at most 268435456", 300_000_000),
+                   "resources/../../x": ("found a path out of the file", 1)}
+        for entry, (said, size) in refused.items():
+            with zipfile.ZipFile(folder / "bomb.fmu", "w", zipfile.ZIP_DEFLATED, compresslevel=1) as bomb:
+                bomb.writestr(entry, b" " * size)
+            (folder / "bomb.toml").write_text((folder / "study.toml").read_text().replace("tank.fmu", "bomb.fmu"))
+            message = run("validate", "bomb.toml", code=2).stderr
+            assert said in message and f"entry '{entry}'" in message, message
 
         # A plant that fails without a fault is no plant, and wrong names are told at once.
         study = folder / "study.toml"

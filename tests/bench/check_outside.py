@@ -363,6 +363,12 @@ def check_odd_programs(outside):
         assert numpy.array_equal(after[2], score, equal_nan=True), mode
 
 
+def boasting(description):
+    """A file of a method whose program says this of itself, a Python expression."""
+    script = f"import json\ninput()\nprint(json.dumps({{'number': 1, **{description}}}))\n"
+    return f"[method.x]\ncommand = ['{sys.executable}', '-c', {json.dumps(script)}]\n"
+
+
 def check_program_refusals(outside):
     out, path = outside.folder / "refused.h5", outside.folder / "refused.toml"
     for text, message in (
@@ -379,10 +385,14 @@ def check_program_refusals(outside):
             ("[method.x]\ncommand = ['cat']\n", "the unknown key 'ask'"),
             ("[method.x]\ncommand = ['sleep', '100']\ntime_limit = 0.1\n", "did not answer in time"),
             ("[method.x]\ncommand = ['sh', '-c', 'echo \"{\\\"number\\\": 1, \\\"answers\\\": [\\\"tea\\\"]}\"; cat']\n",
-             "found 'tea'; allowed: cv, channel, source, mismatch, candidate")):
+             "found 'tea'; allowed: cv, channel, source, mismatch, candidate"),
+            (boasting("{'numbers': [{'name': f'n{i}'} for i in range(100000)]}"), "found 100000 numbers; allowed: at most 1000"),
+            (boasting("{'numbers': [{'name': 'n'}, {'name': 'n'}]}"), "the number 'n' a second time; allowed: every name once"),
+            (boasting("{'title': 'x' * 5000000}"), "found title of 5000000 bytes; allowed: at most 1000"),
+            (boasting("{'x' * 5000000: 1}"), "x...'; allowed: title, verdict, needs")):
         path.write_text(text, encoding="utf-8")
         said = outside.run("compare", outside.archive, "--method-file", path, "-o", out, "--quiet", code=2)
-        assert message in said, (text, message, said)
+        assert message in said and len(said) < 5000, (text, message, said[:2000])
     path.write_text(f"[method.sse]\ncommand = ['{sys.executable}', 'examples/mine.py']\n", encoding="utf-8")
     assert "'sse' from outside; allowed: a name that is not one of" in outside.run(
         "compare", outside.archive, "--method-file", path, "-o", out, code=2)

@@ -1,6 +1,7 @@
 """Lets calls of the file system fail under commands, one at a time, and checks what they say and leave (trials.py).
 
-usage: faults.py MPMBENCH SOURCE_FOLDER [--count N] [--seed N] [--fmu TANK_FMU] [--only PREFIX] [--log FILE]
+usage: faults.py MPMBENCH SOURCE_FOLDER [--count N] [--seed N] [--fmu TANK_FMU] [--only PREFIX] [--call CALL]
+                 [--log FILE]
 
 Each trial draws a command, a call (faults.c), an error and which of these calls it meets. A command that meets one must
 end with exit code 0 and its whole output, or with 3 (2 for an input that cannot be read), a message that names a file,
@@ -67,7 +68,7 @@ def main():
         while faults < options.count and number < 5 * options.count + 20:
             case = bench.cases[number % len(bench.cases)]
             number += 1
-            call = draws.choices(calls, WEIGHTS.values())[0]
+            call = options.call or draws.choices(calls, WEIGHTS.values())[0]
             kind = draws.choice(KINDS[call])
             nth = 1 + int(draws.expovariate(0.3))
             environment = {"FAULT_TIMES": draws.choice(["1", "1", "3" if kind in GOT_OVER else "1000000"])}

@@ -86,6 +86,7 @@ def arguments(description, count):
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--fmu")
     parser.add_argument("--only", default="")
+    parser.add_argument("--call", help="faults of this call alone")
     parser.add_argument("--log", help="a line of JSON for each trial is added here")
     return parser.parse_args()
 
@@ -210,10 +211,12 @@ class Bench:
                                 env={**os.environ, MARK: self.mark, "TMPDIR": str(self.temporary), **environment})
 
     def start_with_fault(self, case, call, kind, nth, **environment):
-        """The command, with the nth of these calls failing or ending it (faults.c); none for 0."""
+        """The command, with the nth of these calls failing or ending it (faults.c); none for 0. A close may be that of
+        an input as well."""
+        root = self.root if call == "close" else self.work
         (self.root / "counter").write_bytes(bytes(16))
         return self.start(case, LD_PRELOAD=str(self.library), FAULT_CALL=call, FAULT_KIND=kind, FAULT_NTH=str(nth),
-                          FAULT_ROOT=str(self.work), FAULT_COUNT=str(self.root / "counter"), **environment)
+                          FAULT_ROOT=str(root), FAULT_COUNT=str(self.root / "counter"), **environment)
 
     def counted(self):
         """Calls of the last command that counted, and faults that struck."""
