@@ -50,6 +50,13 @@ class Setting {
   std::optional<AssessedLoop> benchmark_;
 };
 
+/// The same where variances are taken about the setpoints, which that study does about the means.
+Setting about_setpoints(const AssessedLoop& benchmark) {
+  Setting setting(benchmark);
+  setting.study.diagnosis.variance_centre = mpm::VarianceCentre::setpoint;
+  return setting;
+}
+
 }  // namespace
 
 TEST_CASE("yu-qin: the CV that varies more is named, the one that varies less is not") {
@@ -82,7 +89,7 @@ TEST_CASE(
   loop.y.row(1) = loop.y_set.row(1) + 2.0 * (loop.y - loop.y_set).row(1);
   loop.y.row(2) = loop.y_set.row(2) + 0.95 * (loop.y - loop.y_set).row(2);
   loop.y_sim.setZero();  // it knows no model
-  const Assessment found = Setting(benchmark).assess("variance-ratio", loop);
+  const Assessment found = about_setpoints(benchmark).assess("variance-ratio", loop);
   REQUIRE(found.status == AssessmentStatus::ok);
   CHECK(found.flagged);
   CHECK(found.number("ratio", 0) == 1.0);
@@ -97,18 +104,18 @@ TEST_CASE(
   AssessedLoop moved = benchmark;
   moved.y.array() += 7.0;
   moved.y_set.array() += 7.0;
-  CHECK_FALSE(Setting(benchmark).assess("variance-ratio", moved).flagged);
+  CHECK_FALSE(about_setpoints(benchmark).assess("variance-ratio", moved).flagged);
   AssessedLoop calm = benchmark;
   calm.y.row(0) = calm.y_set.row(0) + 0.8 * (calm.y - calm.y_set).row(0);
-  CHECK(Setting(benchmark).assess("variance-ratio", calm).flagged);
+  CHECK(about_setpoints(benchmark).assess("variance-ratio", calm).flagged);
 
   // A gap is closed along a straight line; a CV that stands still in both is passed over.
   AssessedLoop gaps = benchmark;
   gaps.y(0, 17) = kNone;
-  CHECK_FALSE(Setting(benchmark).assess("variance-ratio", gaps).flagged);
+  CHECK_FALSE(about_setpoints(benchmark).assess("variance-ratio", gaps).flagged);
   AssessedLoop still = benchmark;
   still.y.row(0) = still.y_set.row(0);
-  const Assessment passed_over = Setting(still).assess("variance-ratio", still);
+  const Assessment passed_over = about_setpoints(still).assess("variance-ratio", still);
   CHECK_FALSE(passed_over.flagged);
   CHECK_FALSE(passed_over.cvs[0].flagged.has_value());
   CHECK(passed_over.score == 0.0);
