@@ -17,7 +17,7 @@ import check_program_plant
 
 CONTROLLER = """
 import json, pathlib, sys
-pathlib.Path(sys.argv[1]).touch()
+pathlib.Path('started').touch()
 for line in sys.stdin:
     if line.strip():
         told = json.loads(line)
@@ -45,24 +45,24 @@ OF_A_STUDY = {"run", "sweep", "suite", "assess", "validate", "identify", "init",
 
 def studies(folder, fmu, chapter5):
     """Name, what starts its program, text, and a channel of its plant."""
-    marker = folder / "started"
-    plant = check_program_plant.PLANT.replace("for line in", "open(sys.argv[1], 'w').close()\nfor line in", 1)
+    plant = check_program_plant.PLANT.replace("for line in", "open('started', 'w').close()\nfor line in", 1)
     (folder / "plant.py").write_text(plant)
     (folder / "mpc.py").write_text(CONTROLLER)
     common = check_program_plant.STUDY.replace("samples = 150", "samples = 120")
-    command = f'"{sys.executable}", "-B", "plant.py", "{marker}"'
-    yield "plant", "plant.py", common.replace("COMMAND", command) + check_program_plant.SCENARIOS, "y/u"
+    command = f'"{sys.executable}", "-B", "plant.py"'
+    yield "plant", "plant.py", common.replace("COMMAND", command) + check_program_plant.RANDOM, "y/u"
     begin, end = common.index("[plant.program]"), common.index("[controller]")
     text = common[:begin] + common[end:] + f"""
 [controller.program]
-command = ["{sys.executable}", "-B", "mpc.py", "{marker}"]
+command = ["{sys.executable}", "-B", "mpc.py"]
 
 [diagnosis]
 self_check = "none"
 
 [[scenario]]
 name = "gain"
-mpm = [{{cv = "y", mv = "u", parameter = "gain", factor = 1.3}}]
+mismatch = [{{cv = "y", input = "u", gain_factor = 1.3}}]
+affected = ["y"]
 """
     yield "controller", "mpc.py", text, "y/u"
     shutil.copy(fmu, folder / "tank.fmu")
@@ -84,14 +84,14 @@ def main(program, fmu, chapter5):
         archive_words = re.compile(r"^  (ARCHIVE|PARTS)\b", re.MULTILINE)
         takes = {each for each in listed if archive_words.search(run(each, "--help").stdout)}
         assert len(listed) > 12 and takes and takes <= set(COMMANDS), (listed, takes)
-        assert listed - set(COMMANDS) <= OF_A_STUDY | {"list", "manual", "version"}, listed
+        assert listed - set(COMMANDS) <= OF_A_STUDY | {"list", "manual", "completion"}, listed
 
         (folder / "gates.toml").write_text('[[gate]]\nfinding = "experiments"\nmin = 0\n')
         for kind, shown, text, channel in studies(folder, fmu, chapter5):
             study = folder / f"{kind}.toml"
             study.write_text(text)
             archive, parts = folder / f"{kind}.h5", folder / f"{kind}-parts.h5"
-            common = ["--store", "none", "--quiet", "--methods", "sse", "--allow-unhealthy-basis", "--jobs", 1]
+            common = ["--store", "none", "--quiet", "--methods", "botelho", "--allow-unhealthy-basis", "--jobs", 1]
             for words in ["-o", archive], ["-o", parts, "--shard", "1/1"]:
                 result = run("run", study, *words, *common)  # the user's own study: without asking
                 assert result.returncode == 0, (kind, result.stderr)
@@ -107,7 +107,7 @@ def main(program, fmu, chapter5):
                     assert result.returncode in (0, 1) or command == "check", (kind, command, result.stderr)
                 else:
                     assert result.returncode == 2, (kind, command, result.returncode, result.stdout, result.stderr)
-                if outcome == REFUSES or command == "report":
+                if outcome == REFUSES or (command == "report" and kind == "plant"):  # whose page draws loops
                     assert shown in result.stderr and "--trust-programs" in result.stderr, (kind, command, result.stderr)
                 if command == "check":
                     continue
