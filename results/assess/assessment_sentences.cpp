@@ -207,7 +207,8 @@ std::string mismatch_sentence(const Study& study, const NamedMismatch& named) {
       fmt::format("{}/{}", cv_name(study, named.channel.cv), mv_name(study, named.channel.mv));
   const bool has_size = !std::isnan(named.size);
   const std::string size = estimate_text(named.size, named.lower, named.upper, named.bound);
-  const std::string times = has_size ? fmt::format("{} times that of the model", size) : "another one";
+  const std::string times =
+      has_size ? fmt::format("{} times that of the model", size) : "not that of the model";
   const std::string& unit = study.plant.time_unit;
   switch (named.parameter) {
     case MismatchParameter::gain:
@@ -215,9 +216,9 @@ std::string mismatch_sentence(const Study& study, const NamedMismatch& named) {
     case MismatchParameter::time_constant:
       return fmt::format("the time constant of {} in the plant is {}", channel, times);
     case MismatchParameter::dead_time:
-      return fmt::format(
-          "the dead time of {} in the plant is {}", channel,
-          has_size ? dead_time_text(named.size, named.lower, named.upper, named.bound, unit) : "another one");
+      return fmt::format("the dead time of {} in the plant is {}", channel,
+                         has_size ? dead_time_text(named.size, named.lower, named.upper, named.bound, unit)
+                                  : "not that of the model");
     case MismatchParameter::second_order:
       return fmt::format("{} has a further lag of {} {}", channel, size, unit);
     case MismatchParameter::inverse_response:

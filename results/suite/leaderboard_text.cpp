@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -28,29 +27,15 @@ std::string score_text(const PooledScores& scores, const LeaderboardScore& score
                      100 * rate->interval.upper, marks_of(scores));
 }
 
-/// A sentence in lines of at most kTextWidth characters where a word allows it, all but the first set in.
-std::string wrapped(const std::string& sentence, const std::string& set_in) {
-  std::string text, line;
-  std::istringstream words(sentence);
-  for (std::string word; words >> word;) {
-    if (line.size() + 1 + word.size() > kTextWidth) {
-      text += fmt::format("{}\n", line);
-      line = set_in;
-    }
-    line += fmt::format("{}{}", line.empty() || line == set_in ? "" : " ", word);
-  }
-  return fmt::format("{}{}\n", text, line);
-}
-
 /// A sentence under a name.
 std::string item_text(const std::string& name, const std::string& sentence) {
-  return wrapped(fmt::format("- {}: {}", name, sentence), "  ");
+  return wrapped(fmt::format("- {}: {}", name, sentence), kTextWidth, "  ");
 }
 
 std::string legend_text(const Leaderboard& board) {
   std::string text;
   for (const std::string& sentence : legend_sentences(board))
-    text += wrapped(sentence, "");
+    text += wrapped(sentence, kTextWidth);
   return text;
 }
 

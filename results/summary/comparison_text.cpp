@@ -15,6 +15,7 @@ namespace {
 
 /// Methods side by side that fit into a hundred columns of a terminal.
 constexpr std::size_t kMethodsAbreast = 3;
+constexpr std::size_t kLineWidth = 100;
 
 std::string rate_text(const Rate& rate) {
   if (rate.total == 0)
@@ -160,7 +161,7 @@ std::string comparison_text(const Campaign& campaign, const StudyFindings& findi
   for (std::size_t first = 0; first < findings.methods.size(); first += kMethodsAbreast)
     text += fmt::format("\n{}", rates_text(campaign.study, findings.methods, first,
                                            std::min(first + kMethodsAbreast, findings.methods.size())));
-  return fmt::format("{}\n{}\n{}{}{}{}{}", text, kOfOneBenchmark, marks_text(findings),
+  return fmt::format("{}\n{}{}{}{}{}{}", text, wrapped(kOfOneBenchmark, kLineWidth), marks_text(findings),
                      calibration_text(campaign, findings), unanswered_text(campaign.study, findings.methods),
                      reasons_text(findings.methods), pairs_text(findings));
 }

@@ -1,6 +1,7 @@
 #include "results/text/text_table.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -28,6 +29,19 @@ std::string TextTable::text(LastColumn last) const {
     text += '\n';
   }
   return text;
+}
+
+std::string wrapped(const std::string& sentence, std::size_t width, const std::string& set_in) {
+  std::string text, line;
+  std::istringstream words(sentence);
+  for (std::string word; words >> word;) {
+    if (line.size() + 1 + word.size() > width) {
+      text += fmt::format("{}\n", line);
+      line = set_in;
+    }
+    line += fmt::format("{}{}", line.empty() || line == set_in ? "" : " ", word);
+  }
+  return fmt::format("{}{}\n", text, line);
 }
 
 }  // namespace mpm

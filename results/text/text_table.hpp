@@ -21,4 +21,7 @@ class TextTable {
   std::vector<std::size_t> widths_;
 };
 
+/// A sentence in lines of at most `width` characters where a word allows it, all but the first set in.
+std::string wrapped(const std::string& sentence, std::size_t width, const std::string& set_in = "");
+
 }  // namespace mpm

@@ -118,6 +118,10 @@ TEST_CASE("calibration: in each family of the suite its loops have the scores of
         if (!std::isnan(loop.scores[method]))
           calibration.push_back(loop.scores[method]);
       INFO(family << ", " << options.methods[method]);
+      if (family == "quiet" && options.methods[method] == "excitation") {
+        CHECK(calibration.empty());  // nothing moves
+        continue;
+      }
       REQUIRE(experiments.size() >= 30);
       REQUIRE(calibration.size() >= 30);
       CHECK(std::abs(rank_z(experiments, calibration)) < limit);
