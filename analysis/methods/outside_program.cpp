@@ -114,7 +114,8 @@ class DescriptionReader {
           "a JSON object");
     for (const auto& item : object.items())
       if (std::find(known.begin(), known.end(), item.key()) == known.end())
-        throw InputError(place_, fmt::format("the unknown key '{}'", foreign_text(item.key(), kShownOfUnknown)),
+        throw InputError(place_,
+                         fmt::format("the unknown key '{}'", foreign_text(item.key(), kShownOfUnknown)),
                          fmt::format("{}", fmt::join(known, ", ")));
   }
 
