@@ -18,7 +18,7 @@ namespace {
 using testing::kFactory;
 
 /// A setpoint MPC without limits: one law at every sample.
-Study linear_study() {
+Study stable_study() {
   Study study = find_study("chapter4-shell");
   study.controller.mv_hard = Limits::none(study.mv_count());
   study.simulation.noise_standard_deviation.setZero();
@@ -51,7 +51,7 @@ double radius_of(const Study& study, const ExperimentDraw& draw) {
 }
 
 TEST_CASE("stability: a loop that rings grows by its spectral radius in a sample", "[loop_stability]") {
-  Study study = linear_study();
+  Study study = stable_study();
   study.simulation.samples = 600;
   for (const auto& [cv, mv, factor] :
        {std::tuple{2, 2, 2.6}, std::tuple{2, 2, 3.5}, std::tuple{0, 0, -1.0}}) {
@@ -65,7 +65,7 @@ TEST_CASE("stability: a loop that rings grows by its spectral radius in a sample
 }
 
 TEST_CASE("stability: a loop that decays does so by its spectral radius", "[loop_stability]") {
-  Study study = linear_study();
+  Study study = stable_study();
   study.simulation.samples = 600;
   const ExperimentDraw draw = with_mismatch({1, 1, MismatchParameter::gain, 0.8});
   const double radius = radius_of(study, draw);
@@ -74,7 +74,7 @@ TEST_CASE("stability: a loop that decays does so by its spectral radius", "[loop
 }
 
 TEST_CASE("stability: dead times of part of a sample, and longer ones than the model's", "[loop_stability]") {
-  Study study = linear_study();
+  Study study = stable_study();
   study.simulation.samples = 600;
   for (const auto& [cv, mv, shift] : {std::tuple{2, 2, 6.5}, std::tuple{0, 0, 5.3}}) {
     const ExperimentDraw draw = with_mismatch({cv, mv, MismatchParameter::dead_time, shift});
