@@ -70,7 +70,7 @@ def main(program):
         assert ranges["controller"]["sample_time"] == 2 and ranges["controller"]["cv"]["y2"]["soft"] == [0, 4]
         assert ranges["plant"]["channel"][0]["denominator"] == [100, 25, 1]
         # Nothing limits its MVs: a loop that runs away while a fault is scaled is no case for Ipopt.
-        said = run("run", folder / "ranges.toml", "-o", archive, "--experiments", 2).stdout
+        said = run("run", folder / "ranges.toml", "-o", archive, "--experiments", 2, "--overwrite").stdout
         assert "passed" in said and "no problem fell back to Ipopt" in said, said
 
         # Nothing is overwritten, and what is wrong is said by option.

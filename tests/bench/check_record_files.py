@@ -190,7 +190,7 @@ def check_candidates(files):
         end = files.text.index("[mismatch]")
         study.write_text(files.text[:start] + "[experiments]\nmpm = 0\nud = 1\nmpm_ud = 0\n" + files.text[end:]
                          + "\n[record.candidates]\ncount = 5\nshare = 1.0\n")
-        files.run("run", study, "--seed", seed, "--methods", "sse", "-o", "cause.h5",
+        files.run("run", study, "--seed", seed, "--methods", "sse", "-o", "cause.h5", "--overwrite",
                   "--allow-unhealthy-basis", "--quiet")
         with h5py.File(files.folder / "cause.h5") as archive:
             true = int(archive["true_candidate"][0])

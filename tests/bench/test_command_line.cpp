@@ -62,7 +62,7 @@ TEST_CASE("command line: each option of run arrives where it is used") {
     CHECK(method.command == campaign.info.command);
 
   const Words run{"run", "wood-berry", "-o", output, "--experiments", "1", "--quiet"};
-  REQUIRE(typed(run + Words{"--methods", "sse,botelho"}).code == ExitCode::done);
+  REQUIRE(typed(run + Words{"--methods", "sse,botelho", "--overwrite"}).code == ExitCode::done);
   CHECK(method_names(read_archive(output)) == std::vector<std::string>{"sse", "botelho"});
   CHECK(read_archive(output).study.methods == std::vector<std::string>{"sse", "botelho"});
   CHECK_THAT(complaint(run + Words{"--methods", "sse,ssf"}), Contains("--methods: found 'ssf'"));

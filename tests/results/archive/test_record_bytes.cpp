@@ -316,8 +316,8 @@ TEST_CASE("record bytes: a flag that is none of its values is refused by name") 
       return error.what();
     }
   };
-  CHECK(refusal([](ExperimentRecord& r) { r.status = static_cast<ExperimentStatus>(3); }) ==
-        "status is 3, which is none of its values");
+  CHECK(refusal([](ExperimentRecord& r) { r.status = static_cast<ExperimentStatus>(4); }) ==
+        "status is 4, which is none of its values");
   CHECK(refusal([](ExperimentRecord& r) { r.assessments[1].status = static_cast<AssessmentStatus>(-1); }) ==
         "assessment_status is -1, which is none of its values");
   CHECK(refusal([](ExperimentRecord& r) { r.assessments[0].predicted_cv = 2; }) ==
