@@ -56,7 +56,7 @@ fmi2::ValueReference reference_of(const pugi::xml_node& node, const std::string&
 /// The name of the library: a name of C, so that it is no path either.
 std::string identifier_of(const pugi::xml_node& co_simulation, const std::string& file) {
   constexpr std::size_t kLongest = 200;
-  const std::string identifier = attribute_of(co_simulation, "modelIdentifier", file);
+  std::string identifier = attribute_of(co_simulation, "modelIdentifier", file);
   if (identifier.size() > kLongest || std::isdigit(static_cast<unsigned char>(identifier.front())) != 0 ||
       identifier.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
           std::string::npos)

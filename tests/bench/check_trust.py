@@ -36,7 +36,7 @@ COMMANDS = {
     "export": (["export", "ARCHIVE", "--blind", "-o", "blind", "--quiet"], REFUSES),
     "compare": (["compare", "ARCHIVE", "--methods", "mqi-channels", "--quiet"], REFUSES),
     "repair": (["repair", "ARCHIVE", "--index", "0", "--channel", "CHANNEL"], REFUSES),
-    "merge": (["merge", "merged.h5", "PARTS", "--quiet"], REFUSES),
+    "merge": (["merge", "merged.h5", "PARTS", "--quiet", "--overwrite"], REFUSES),
     "summary of parts": (["summary", "PARTS"], REFUSES),
 }
 # They take a study file of the user, and an archive only to write it or to find in it what that study has made.
