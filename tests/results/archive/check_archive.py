@@ -213,7 +213,7 @@ def is_faultless(name):
 
 def is_further(name):
     """A variable that only studies with faults beyond those of the thesis have."""
-    return re.fullmatch(r"mismatches|disturbances|ud_signal|ud_mv|onset\w*|other_\w+|\w+_scale", name) is not None
+    return re.fullmatch(r"mismatches|disturbances|ud_signal|ud_mv|onset\w*|other_(?!cv_active)\w+|\w+_scale", name) is not None
 
 
 def is_of_candidates(name):
