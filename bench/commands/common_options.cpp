@@ -122,11 +122,12 @@ std::vector<std::string> take_method_files(const std::vector<std::string>& files
   return names;
 }
 
-std::vector<std::string> with_programs(const std::vector<std::string>& named, std::vector<std::string> own,
+std::vector<std::string> with_programs(const std::vector<std::string>& named,
+                                       const std::vector<std::string>& own,
                                        const std::vector<std::string>& programs) {
   if (programs.empty())
     return named;
-  std::vector<std::string> methods = named.empty() ? std::move(own) : named;
+  std::vector<std::string> methods = named.empty() ? own : named;
   if (methods == std::vector<std::string>{"all"})  // the programs among them
     return methods;
   for (const std::string& program : programs)

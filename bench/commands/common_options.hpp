@@ -45,7 +45,8 @@ void add_method_files(CLI::App& app, std::vector<std::string>& files);
 std::vector<std::string> take_method_files(const std::vector<std::string>& files);
 /// The methods that assess when programs were given: those that the user names, or those of the study or
 /// suite, and the programs. Empty, as `named`, without programs.
-std::vector<std::string> with_programs(const std::vector<std::string>& named, std::vector<std::string> own,
+std::vector<std::string> with_programs(const std::vector<std::string>& named,
+                                       const std::vector<std::string>& own,
                                        const std::vector<std::string>& programs);
 /// --shard of a command that runs several studies, `what`: which of them it runs.
 void add_shard_of(CLI::App& app, std::string& shard, const std::string& what);
