@@ -24,6 +24,18 @@ std::vector<std::string> mismatch_parameters() {
   return words;
 }
 
+constexpr const char* kMismatchBound = "mismatch_bound";
+
+/// A number of each method that names mismatches, and none that follows from that: archives that were written
+/// before there was one have none.
+AssessmentNumberInfo mismatch_bound_info() {
+  return {kMismatchBound,
+          NumberScope::channel,
+          "the size lies at an end of the range that was searched, and is no more than a bound",
+          "1",
+          {"none", "at_most", "at_least"}};
+}
+
 /// None in an answer that has no such number.
 SizeBound bound_of(double number) {
   for (const SizeBound bound : {SizeBound::at_most, SizeBound::at_least})
@@ -55,11 +67,6 @@ std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& metho
         {"mismatch_size", NumberScope::channel, "its size, as `mismatch_value` of an experiment is one"});
     numbers.push_back({"mismatch_lower", NumberScope::channel, "lower end of the interval of the size"});
     numbers.push_back({"mismatch_upper", NumberScope::channel, "upper end of the interval of the size"});
-    numbers.push_back({"mismatch_bound",
-                       NumberScope::channel,
-                       "the size lies at an end of the range that was searched, and is no more than a bound",
-                       "1",
-                       {"none", "at_most", "at_least"}});
   }
   if (method.names_candidates)
     numbers.push_back({"named_candidate", NumberScope::loop,
@@ -110,6 +117,8 @@ AssessmentForms assessment_forms(const Study& study, const std::vector<std::stri
     if (study.names_scenarios() && info.scenario_numbers)
       for (AssessmentNumberInfo& number : info.scenario_numbers())
         description.numbers.push_back(std::move(number));
+    if (info.names_mismatches)
+      description.numbers.push_back(mismatch_bound_info());
     if (info.states_false_alarms)
       description.stated_false_alarms = info.states_false_alarms(study.assessment);
     forms.push_back(std::make_shared<const AssessmentForm>(std::move(description), study));
@@ -160,7 +169,7 @@ std::optional<NamedMismatch> AssessmentRecord::named_mismatch() const {
                              number("mismatch_size", cv, mv),
                              number("mismatch_lower", cv, mv),
                              number("mismatch_upper", cv, mv),
-                             bound_of(number("mismatch_bound", cv, mv))};
+                             bound_of(number(kMismatchBound, cv, mv))};
   return std::nullopt;
 }
 
@@ -205,7 +214,8 @@ AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessme
     const auto [cv, mv] = named->channel;
     record.set_number("mismatch_parameter", static_cast<double>(named->parameter), cv, mv);
     record.set_number("mismatch_size", named->size, cv, mv);
-    record.set_number("mismatch_bound", static_cast<double>(named->bound), cv, mv);
+    if (record.form->find(kMismatchBound) != nullptr)
+      record.set_number(kMismatchBound, static_cast<double>(named->bound), cv, mv);
     record.set_number("mismatch_lower", named->lower, cv, mv);
     record.set_number("mismatch_upper", named->upper, cv, mv);
   }

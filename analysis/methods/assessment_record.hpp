@@ -45,7 +45,7 @@ struct NumberPlace {
 /// | cv_source       | cv      | tell sources: FaultSource of a flagged CV or the worst one |
 /// | channel_flagged | channel | name channels: 1 for a channel that is named, 0 for others |
 /// | mismatch_parameter | channel | name mismatches: Assessment::named_mismatch in the place of its channel |
-/// | mismatch_size, mismatch_lower, mismatch_upper, mismatch_bound | channel | the same, NaN elsewhere |
+/// | mismatch_size, mismatch_lower, mismatch_upper | channel | the same, NaN elsewhere           |
 /// | named_candidate | loop    | name candidates: Assessment::named_candidate; NaN: none           |
 class AssessmentForm {
  public:
@@ -73,7 +73,8 @@ Eigen::Index lag_count(const Study& study);
 /// Of several methods, in their order.
 using AssessmentForms = std::vector<std::shared_ptr<const AssessmentForm>>;
 
-/// The forms of these methods on the loops of a study. Throws InputError for an unknown method.
+/// The forms of these methods on the loops of a study. Those that name mismatches have a number
+/// `mismatch_bound` besides, NamedMismatch::bound. Throws InputError for an unknown method.
 AssessmentForms assessment_forms(const Study& study, const std::vector<std::string>& methods);
 
 /// What a method said of one loop, as it is kept. The form is that of its method.

@@ -19,7 +19,7 @@ import seal
 
 TYPES = {"int8": "int8", "int32": "int32", "int64": "int64", "uint64": "uint64", "float64": "double", "object": "string"}
 COMMON_OF_METHODS = {"experiment", "reason", "cv", "mv", "cv_flagged", "cv_score", "cv_source", "channel_flagged",
-                     "mismatch_parameter", "mismatch_size", "mismatch_lower", "mismatch_upper", "mismatch_bound", "named_candidate"}
+                     "mismatch_parameter", "mismatch_size", "mismatch_lower", "mismatch_upper", "named_candidate"}
 BELONGS_TO_HDF5 = {"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}
 
 
