@@ -126,6 +126,7 @@ int fmi2GetReal(void* component, const unsigned int* references, size_t count, d
 /* What goes wrong in other people's programs, by the parameter `failure`. */
 static int fail(const Tank* tank) {
   static char noise[4096];
+  static int forked;
   switch ((int)tank->p[kFailure]) {
     case 1: {
       volatile int* nowhere = NULL;
@@ -150,7 +151,7 @@ static int fail(const Tank* tank) {
         for (int file = 3; file < 100; ++file) write(file, memset(noise, 0, sizeof noise), sizeof noise);
     case 10: /* a process that leaves its session and outlives everything */
     case 12: /* and then no answer */
-      if (fork() == 0) {
+      if (!forked++ && fork() == 0) {
         setsid();
         for (;;) pause();
       }
