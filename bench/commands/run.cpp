@@ -133,11 +133,11 @@ void warn_of_other_parts(const RunArguments& options, const Study& study, const 
                          Progress& progress) {
   const std::filesystem::path folder = parts_folder_of(options.output);
   std::error_code no_status;
-  if (!std::filesystem::is_directory(folder, no_status) || std::filesystem::is_empty(folder, no_status))
+  if (!std::filesystem::is_directory(folder, no_status))
     return;
   const ShardIdentity identity = shard_identity(study, run_options);
   try {
-    for (const std::filesystem::path& path : find_parts({folder.string()})) {
+    for (const std::filesystem::path& path : parts_in(folder)) {
       const PartFolder part = read_part(path);
       require_same(shard_identity(part.study, part.options), identity, path.string());
     }

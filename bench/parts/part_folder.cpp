@@ -106,27 +106,29 @@ PartFolder read_part(const fs::path& folder) {
   }
 }
 
+std::set<fs::path> parts_in(const fs::path& folder) {
+  std::set<fs::path> found;
+  std::error_code error;
+  if (fs::exists(folder / kCampaignDescription, error))
+    found.insert(folder.lexically_normal());
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    if (entry->path().filename() == kCampaignDescription)
+      found.insert(entry->path().parent_path().lexically_normal());
+  if (error)
+    throw InputError(folder.string(), error.message(), "a folder with parts of a campaign");
+  return found;
+}
+
 std::vector<fs::path> find_parts(const std::vector<std::string>& folders) {
   std::set<fs::path> found;
   for (const std::string& folder : folders) {
-    bool has_part = false;  // which another of the folders may have as well
-    const auto take = [&](const fs::path& part) {
-      found.insert(part.lexically_normal());
-      has_part = true;
-    };
-    std::error_code error;
-    if (fs::exists(fs::path(folder) / kCampaignDescription, error))
-      take(folder);
-    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error))
-      if (entry->path().filename() == kCampaignDescription)
-        take(entry->path().parent_path());
-    if (error)
-      throw InputError(folder, error.message(), "a folder with parts of a campaign");
-    if (!has_part)
+    std::set<fs::path> parts = parts_in(folder);
+    if (parts.empty())
       throw InputError(
           folder, "no part of a campaign",
           fmt::format("folders with {}, which `mpmbench run --shard` makes", kCampaignDescription));
+    found.merge(parts);
   }
   return {found.begin(), found.end()};
 }

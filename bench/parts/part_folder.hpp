@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ void write_part_description(const PartFolder& part);
 /// Reads it. Throws InputError, which names the file, for one that is missing or not what this program
 /// writes.
 PartFolder read_part(const std::filesystem::path& folder);
+
+/// The parts that lie in a folder, which may be none. Throws InputError for a folder that cannot be read.
+std::set<std::filesystem::path> parts_in(const std::filesystem::path& folder);
 
 /// The folders of parts among these folders and everything in them, sorted, each once. Throws InputError for
 /// a folder that is not there or without a part.

@@ -183,7 +183,8 @@ class Bench:
             tank = (self.source / "scenarios/studies/chapter5-tank.toml").read_text()
             tank = tank[:tank.index("[[scenario]]")].replace('simulated = "nonlinear"', FMU_PLANT, 1)
             (inputs / "tank.toml").write_text(tank + FMU_SCENARIO)
-            cases.append(Case("run, plant an FMU", ["run", inputs / "tank.toml", "--quiet", "--jobs", 1, "--audit", 0],
+            cases.append(Case("run, plant an FMU", ["run", inputs / "tank.toml", "--quiet", "--jobs", 1, "--audit", 0,
+                                                    "--overwrite"],  # the older archive there is of another study
                               "out.h5", ["--resume"]))
         return cases
 
