@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/statistics/roc.hpp"
 #include "scenarios/random_stream.hpp"
 
 namespace mpm {
@@ -230,6 +231,36 @@ class DominanceCounts {
   std::array<std::vector<double>, kDominanceEdges.size() - 1> i_mpm_;
 };
 
+/// I_MPM of the experiments with one fault, by its source.
+class SourceScores {
+ public:
+  SourceScores(const Study& study, std::size_t method) : study_(study), method_(method) {}
+
+  void add(const ExperimentRecord& record) {
+    const AssessmentRecord& said = record.assessments[method_];
+    if (!in_source_population(study_, said))
+      return;
+    if (record.draw.kind == ExperimentKind::mpm)
+      mpm_.push_back(said.number("i_mpm"));
+    else if (record.draw.kind == ExperimentKind::ud)
+      ud_.push_back(said.number("i_mpm"));
+  }
+
+  SourceArea result() const {
+    const RocCurve curve = roc_curve(mpm_, ud_);
+    if (!curve.defined())
+      return {};
+    return {curve.area,
+            area_interval(curve.area, curve.positives, curve.negatives, study_.aggregate.confidence),
+            curve.positives + curve.negatives};
+  }
+
+ private:
+  const Study& study_;
+  std::size_t method_;
+  std::vector<double> mpm_, ud_;
+};
+
 void append_regression(const LinearFitIntervals& fit, const Finding& like, const std::string& prefix,
                        const std::string& over, std::vector<Finding>& rows) {
   const auto row = [&](const char* name, const char* word, double value, const Interval& interval) {
@@ -376,6 +407,19 @@ std::vector<Finding> rows_of(const std::vector<DominanceBin>& bins) {
     rows.push_back(above.with(bin.above_threshold));
   }
   return rows;
+}
+
+Collector<SourceArea> source_area_collector(const Study& study, std::size_t method) {
+  return collector_of(SourceScores(study, method));
+}
+
+Finding row_of(const SourceArea& source) {
+  const Finding finding{.name = "i_mpm_auc",
+                        .label = "area under the ROC curve of I_{MPM}",
+                        .meaning = "area under the ROC curve of I_MPM, mismatches against disturbances",
+                        .group = FindingGroup::study,
+                        .prominence = Prominence::headline};
+  return finding.with(source.area, source.interval, source.experiments);
 }
 
 }  // namespace mpm

@@ -12,6 +12,7 @@
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/regression.hpp"
 #include "analysis/statistics/sample_summary.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
 
@@ -68,5 +69,18 @@ struct DominanceBin {
 Collector<std::vector<DominanceBin>> dominance_collector(const Study& study, std::size_t method);
 
 std::vector<Finding> rows_of(const std::vector<DominanceBin>& bins);
+
+/// How well I_MPM tells a mismatch from a disturbance, whatever its threshold: the area under its ROC curve
+/// over the experiments with one fault of in_source_population(). NaN without experiments of either kind.
+struct SourceArea {
+  double area = kNaN;
+  Interval interval{kNaN, kNaN};
+  std::int64_t experiments = 0;
+};
+
+/// `method` is the place of the chain. `study` must outlive the collector.
+Collector<SourceArea> source_area_collector(const Study& study, std::size_t method);
+
+Finding row_of(const SourceArea& source);
 
 }  // namespace mpm

@@ -58,6 +58,8 @@ std::vector<Finding> all_rows(const Study& study, const StudyFindings& findings)
   if (const MethodFindings* const chain = findings.chain()) {
     for (const KindFindings& kind : chain->kinds)
       append(rows_of(kind, study, *chain->form, ""), rows);
+    if (findings.source_area)
+      rows.push_back(row_of(*findings.source_area));
     append(rows_of(findings.dominance), rows);
     if (findings.s0_changes) {
       append(rows_of("s0_time_constant", "time constant", findings.s0_changes->time_constant), rows);
@@ -112,6 +114,7 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
   std::vector<MethodCollector> methods;
   const auto pairs = pair_collector(study, forms.size());
   std::optional<Collector<std::vector<DominanceBin>>> dominance;
+  std::optional<Collector<SourceArea>> source_area;
   std::optional<Collector<S0Changes>> s0_changes;
   for (std::size_t method = 0; method < forms.size(); ++method) {
     methods.push_back({kind_collector(study, *forms[method], method), false_alarm_collector(study, method),
@@ -119,6 +122,8 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
     if (forms[method]->method().name != kChainMethod)
       continue;
     dominance = dominance_collector(study, method);
+    if (study.experiments.mpm > 0 && study.experiments.ud > 0)
+      source_area = source_area_collector(study, method);
     if (!study.s0_perturbation.multipliers.empty())
       s0_changes = s0_change_collector(study);
   }
@@ -131,6 +136,8 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
     pairs.add(record);
     if (dominance)
       dominance->add(record);
+    if (source_area)
+      source_area->add(record);
     if (s0_changes)
       s0_changes->add(record);
   });
@@ -141,6 +148,8 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
   findings.pairs = pairs.result();
   if (dominance)
     findings.dominance = dominance->result();
+  if (source_area)
+    findings.source_area = source_area->result();
   if (s0_changes)
     findings.s0_changes = s0_changes->result();
   findings.rows = all_rows(study, findings);

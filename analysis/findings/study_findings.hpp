@@ -30,11 +30,12 @@ struct MethodFindings {
 
 /// All that a study reports, computed once, each number with its uncertainty.
 struct StudyFindings : Endings {
-  std::int64_t assessed = 0;            ///< loops that some method has looked at
-  std::vector<MethodFindings> methods;  ///< in the order of the study
-  std::vector<MethodPair> pairs;        ///< of all methods
-  std::vector<DominanceBin> dominance;  ///< of the chain; empty without experiments of both faults
-  std::optional<S0Changes> s0_changes;  ///< of the chain; none in a study that does not perturb S0
+  std::int64_t assessed = 0;              ///< loops that some method has looked at
+  std::vector<MethodFindings> methods;    ///< in the order of the study
+  std::vector<MethodPair> pairs;          ///< of all methods
+  std::vector<DominanceBin> dominance;    ///< of the chain; empty without experiments of both faults
+  std::optional<SourceArea> source_area;  ///< of the chain; none without experiments of both kinds
+  std::optional<S0Changes> s0_changes;    ///< of the chain; none in a study that does not perturb S0
   /// The table of all of the above: first those of the study, of the chain by kind and where model and plant
   /// agree, then those of the other methods by kind, then every method as they are compared.
   std::vector<Finding> rows;

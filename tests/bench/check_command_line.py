@@ -38,6 +38,7 @@ def main(program, chapter6):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         assert "chapter6" in run("list").stdout
+        assert run("show", "chapter6").stdout == pathlib.Path(chapter6).read_text()
 
         archive = folder / "a.h5"
         text = run("run", "chapter6", "-o", archive, "--experiments", 6).stdout

@@ -73,6 +73,21 @@ TEST_CASE("command line: each option of run arrives where it is used") {
   CHECK_FALSE(read_archive(output).records.front().loop.has_value());
 }
 
+TEST_CASE("command line: run takes changes of its study, which its archive has") {
+  const TemporaryFolder folder;
+  const std::string output = folder / "a.h5";
+  const Words run{"run", "wood-berry", "-o", output, "--experiments", "1", "--quiet"};
+  REQUIRE(typed(run + Words{"--set", "simulation.samples=150", "--set", "disturbance.sequence=\"shared\""})
+              .code == ExitCode::done);
+  const Study study = read_archive(output).study;
+  CHECK(study.simulation.samples == 150);
+  CHECK(study.disturbance.sequence == SignalSequence::shared);
+  CHECK_THAT(complaint(run), Contains("with another study text"));
+  CHECK_THAT(complaint(run + Words{"--set", "simulation.sample=150"}), Contains("nearest: 'samples'"));
+  CHECK_THAT(complaint(run + Words{"--set", "simulation.samples"}), Contains("--set"));
+  CHECK_THAT(complaint({"show", "wood-bery"}), Contains("nearest: 'wood-berry'"));
+}
+
 TEST_CASE("command line: what is to become of an interrupted run") {
   const TemporaryFolder folder;
   const fs::path output = folder / "a.h5";
