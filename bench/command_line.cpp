@@ -14,8 +14,8 @@
 #include "bench/files/archive_input.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
-#include "plants/program_trust.hpp"
-#include "scenarios/toml_table.hpp"
+#include "plants/system/program_trust.hpp"
+#include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "plants/linear_plant.hpp"
-#include "plants/transfer_matrix.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/linear/transfer_matrix.hpp"
 #include "solvers/controller.hpp"
 #include "solvers/mpc_options.hpp"
 #include "solvers/mpc_qp.hpp"

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "plants/transfer_matrix.hpp"
+#include "plants/linear/transfer_matrix.hpp"
 #include "solvers/mpc_objective.hpp"
 #include "solvers/mpc_options.hpp"
 #include "solvers/qp.hpp"

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "plants/linear_plant.hpp"
-#include "plants/transfer_matrix.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/linear/transfer_matrix.hpp"
 #include "solvers/qp.hpp"
 
 namespace mpm {

@@ -8,8 +8,8 @@
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "plants/error.hpp"
-#include "scenarios/draw.hpp"
-#include "scenarios/study_controller.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/study/study_controller.hpp"
 
 namespace mpm {
 namespace {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "plants/non_finite.hpp"
-#include "scenarios/draw.hpp"
+#include "scenarios/loop/draw.hpp"
 
 namespace mpm {
 namespace {

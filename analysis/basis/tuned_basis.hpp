@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "analysis/basis/basis_case.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/draw.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

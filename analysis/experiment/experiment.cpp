@@ -7,8 +7,8 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
-#include "scenarios/candidates.hpp"
-#include "scenarios/historian.hpp"
+#include "scenarios/loop/candidates.hpp"
+#include "scenarios/loop/historian.hpp"
 
 namespace mpm {
 namespace {

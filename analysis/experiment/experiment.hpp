@@ -16,8 +16,8 @@
 #include "analysis/methods/method_panel.hpp"
 #include "analysis/sensitivity/loop_stability.hpp"
 #include "analysis/sensitivity/s0_perturbation.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/draw.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 
 namespace mpm {
 
@@ -91,9 +91,9 @@ struct ExperimentRecord {
 class ExperimentRunner {
  public:
   /// Experiments of `study`, assessed by what the methods have learnt in `context`: that of the study, or of
-  /// a calibration study that of its experiments (scenarios/calibration.hpp). `study`, and study and basis
-  /// case of the context, must outlive the runner; the basis case must have status ok. Throws InputError for
-  /// an unknown method.
+  /// a calibration study that of its experiments (scenarios/loop/calibration.hpp). `study`, and study and
+  /// basis case of the context, must outlive the runner; the basis case must have status ok. Throws
+  /// InputError for an unknown method.
   ExperimentRunner(const Study& study, AssessmentContext context, const std::vector<std::string>& methods);
   /// With the context of the study itself.
   ExperimentRunner(const Study& study, const BasisCase& basis, const std::vector<std::string>& methods,

@@ -7,8 +7,8 @@
 
 #include "analysis/indicators/diagnosis.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/fault_draw.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/loop/fault_draw.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/draw.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 
 // Fault sizes that mean the same on every plant: by what they do to the variance of the affected CVs.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "scenarios/candidates.hpp"
+#include "scenarios/loop/candidates.hpp"
 
 namespace mpm {
 namespace {

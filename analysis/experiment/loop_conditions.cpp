@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/sensitivity/active_limit.hpp"
-#include "scenarios/signals.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 namespace {

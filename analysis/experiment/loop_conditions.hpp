@@ -8,8 +8,8 @@
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

@@ -2,7 +2,7 @@
 
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"
-#include "scenarios/signals.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 namespace {

@@ -20,7 +20,7 @@ struct CalibrationLoop {
   std::vector<double> scores;
 };
 
-/// The calibration loops of a study, in the order of their index (scenarios/calibration.hpp).
+/// The calibration loops of a study, in the order of their index (scenarios/loop/calibration.hpp).
 struct Calibration {
   std::uint64_t seed = 0;
   std::vector<CalibrationLoop> loops;

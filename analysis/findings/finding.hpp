@@ -9,7 +9,7 @@
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/sample_summary.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/fault.hpp"
+#include "scenarios/faults/fault.hpp"
 
 namespace mpm {
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/roc.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 namespace {

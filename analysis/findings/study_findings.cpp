@@ -10,7 +10,7 @@
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/toml_table.hpp"
+#include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {
 namespace {

@@ -8,7 +8,7 @@
 namespace mpm {
 
 /// How far an answer on a record is to be trusted: what the same method made of simulated loops like it
-/// (scenarios/recorded_study.hpp), of which the truth is known.
+/// (scenarios/files/recorded_study.hpp), of which the truth is known.
 struct TrialFindings {
   MethodRates rates;  ///< over all of these loops
   Rate as_high;       ///< loops without a fault whose score is as high as that of the record

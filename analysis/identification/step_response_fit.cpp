@@ -12,8 +12,8 @@
 #include <unsupported/Eigen/NumericalDiff>
 
 #include "plants/error.hpp"
-#include "plants/linear_plant.hpp"
-#include "plants/transfer_matrix.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/linear/transfer_matrix.hpp"
 
 namespace mpm {
 namespace {

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
-#include "plants/linear_plant.hpp"
-#include "plants/nonlinear_model.hpp"
-#include "scenarios/signals.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/nonlinear/nonlinear_model.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

@@ -9,7 +9,7 @@
 #include "analysis/indicators/simulation_error.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/signals.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 namespace {

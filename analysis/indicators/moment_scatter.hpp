@@ -4,7 +4,7 @@
 
 #include "analysis/statistics/correlation.hpp"
 #include "analysis/statistics/moving_moments.hpp"
-#include "scenarios/window_scan.hpp"
+#include "scenarios/study/window_scan.hpp"
 
 namespace mpm {
 

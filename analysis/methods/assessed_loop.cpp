@@ -6,11 +6,11 @@
 
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "plants/linear/settling_time.hpp"
 #include "plants/non_finite.hpp"
-#include "plants/settling_time.hpp"
-#include "scenarios/draw.hpp"
-#include "scenarios/historian.hpp"
-#include "scenarios/signals.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/historian.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 namespace {

@@ -6,9 +6,9 @@
 #include <Eigen/Core>
 
 #include "analysis/basis/basis_case.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/plant_record.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/plant_record.hpp"
+#include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

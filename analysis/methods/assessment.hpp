@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "plants/non_finite.hpp"
-#include "scenarios/fault.hpp"
+#include "scenarios/faults/fault.hpp"
 
 namespace mpm {
 

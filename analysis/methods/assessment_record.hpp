@@ -11,7 +11,7 @@
 #include "analysis/methods/assessment.hpp"
 #include "analysis/methods/assessment_method.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 // The answers of methods as they are kept for all loops of a study: a vector of numbers for each loop, and a
 // form for each method that says where in it each number stands.

@@ -16,7 +16,7 @@
 #include "analysis/methods/loop_autocovariance.hpp"
 #include "analysis/methods/mismatch_search.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/signals.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 namespace {

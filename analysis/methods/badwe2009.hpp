@@ -7,7 +7,7 @@
 
 #include "analysis/methods/mv_exclusion.hpp"
 #include "analysis/methods/partial_correlation.hpp"
-#include "scenarios/badwe2009_options.hpp"
+#include "scenarios/study/badwe2009_options.hpp"
 
 namespace mpm {
 

@@ -14,8 +14,8 @@
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
+#include "plants/linear/transfer_matrix.hpp"
 #include "plants/non_finite.hpp"
-#include "plants/transfer_matrix.hpp"
 
 namespace mpm {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "analysis/statistics/discrete_filter.hpp"
-#include "plants/linear_plant.hpp"
-#include "plants/transfer_matrix.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/linear/transfer_matrix.hpp"
 
 namespace mpm {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/assessed_loop.hpp"
-#include "plants/transfer_function.hpp"
+#include "plants/linear/transfer_function.hpp"
 
 namespace mpm {
 

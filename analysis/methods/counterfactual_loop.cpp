@@ -6,7 +6,7 @@
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/signals.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 namespace {

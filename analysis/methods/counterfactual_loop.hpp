@@ -7,7 +7,7 @@
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment.hpp"
-#include "scenarios/closed_loop.hpp"
+#include "scenarios/loop/closed_loop.hpp"
 
 namespace mpm {
 

@@ -8,7 +8,7 @@
 
 #include "analysis/identification/polynomial_model.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/assessment_options.hpp"
+#include "scenarios/study/assessment_options.hpp"
 
 namespace mpm {
 

@@ -7,7 +7,7 @@
 
 #include "analysis/identification/prewhitened_test.hpp"
 #include "analysis/methods/assessed_loop.hpp"
-#include "scenarios/assessment_options.hpp"
+#include "scenarios/study/assessment_options.hpp"
 
 // What the methods have in common that ask whether other signals help to predict the simulation errors of
 // the nominal model.

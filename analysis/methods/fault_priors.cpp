@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "plants/non_finite.hpp"
-#include "scenarios/fault_ranges.hpp"
+#include "scenarios/faults/fault_ranges.hpp"
 
 namespace mpm {
 namespace {

@@ -6,9 +6,9 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/assessment.hpp"
-#include "scenarios/assessment_options.hpp"
-#include "scenarios/distribution.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/random/distribution.hpp"
+#include "scenarios/study/assessment_options.hpp"
+#include "scenarios/study/study.hpp"
 
 // What may be wrong in a loop, and how probable it is before the record is seen.
 

@@ -10,7 +10,7 @@
 #include "analysis/methods/prewhitened_groups.hpp"
 #include "analysis/statistics/discrete_filter.hpp"
 #include "plants/error.hpp"
-#include "scenarios/closed_loop.hpp"
+#include "scenarios/loop/closed_loop.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 #include "solvers/lanes/lane_vector.hpp"
 

@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 
 #include "plants/error.hpp"
-#include "plants/foreign_text.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/model_json.hpp"
+#include "plants/system/foreign_text.hpp"
+#include "scenarios/controller/model_json.hpp"
 
 namespace mpm {
 namespace {

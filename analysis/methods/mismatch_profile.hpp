@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/assessment.hpp"
-#include "plants/transfer_function.hpp"
-#include "scenarios/fault.hpp"
+#include "plants/linear/transfer_function.hpp"
+#include "scenarios/faults/fault.hpp"
 
 namespace mpm {
 

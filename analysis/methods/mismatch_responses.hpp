@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/fault_priors.hpp"
-#include "plants/zero_order_hold.hpp"
+#include "plants/linear/zero_order_hold.hpp"
 
 namespace mpm {
 

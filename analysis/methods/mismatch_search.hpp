@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "plants/transfer_function.hpp"
-#include "scenarios/fault.hpp"
+#include "plants/linear/transfer_function.hpp"
+#include "scenarios/faults/fault.hpp"
 
 // How methods look for the one parameter of a channel that is wrong.
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/decorrelation.hpp"
-#include "scenarios/badwe2009_options.hpp"
+#include "scenarios/study/badwe2009_options.hpp"
 
 namespace mpm {
 

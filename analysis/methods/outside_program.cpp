@@ -14,8 +14,8 @@
 
 #include "analysis/methods/method_messages.hpp"
 #include "plants/error.hpp"
-#include "plants/foreign_text.hpp"
-#include "plants/program_talk.hpp"
+#include "plants/system/foreign_text.hpp"
+#include "plants/system/program_talk.hpp"
 
 namespace mpm {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "analysis/methods/noise_filter.hpp"
-#include "scenarios/signals.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 namespace {

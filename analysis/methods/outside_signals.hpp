@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/assessed_loop.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

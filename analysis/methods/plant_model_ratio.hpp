@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "plants/transfer_function.hpp"
+#include "plants/linear/transfer_function.hpp"
 
 namespace mpm {
 

@@ -8,7 +8,7 @@
 
 #include "analysis/sensitivity/identified_sensitivity.hpp"
 #include "plants/error.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 namespace {

@@ -1,7 +1,7 @@
 #include "analysis/sensitivity/control_structure.hpp"
 
 #include "analysis/sensitivity/active_limit.hpp"
-#include "scenarios/signals.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
-#include "scenarios/closed_loop.hpp"
+#include "scenarios/loop/closed_loop.hpp"
 
 namespace mpm {
 

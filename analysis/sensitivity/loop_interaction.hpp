@@ -6,7 +6,7 @@
 
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

@@ -9,9 +9,9 @@
 #include <Eigen/LU>
 
 #include "plants/error.hpp"
+#include "plants/linear/zero_order_hold.hpp"
 #include "plants/non_finite.hpp"
-#include "plants/zero_order_hold.hpp"
-#include "scenarios/other_fault.hpp"
+#include "scenarios/faults/other_fault.hpp"
 #include "solvers/mpc_qp.hpp"
 
 namespace mpm {

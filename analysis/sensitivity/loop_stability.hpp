@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
-#include "plants/transfer_matrix.hpp"
-#include "scenarios/draw.hpp"
-#include "scenarios/study.hpp"
+#include "plants/linear/transfer_matrix.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

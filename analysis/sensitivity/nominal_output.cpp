@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
-#include "plants/linear_plant.hpp"
+#include "plants/linear/linear_plant.hpp"
 #include "plants/non_finite.hpp"
 #include "plants/row_major.hpp"
 

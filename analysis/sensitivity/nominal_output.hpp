@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
-#include "plants/transfer_matrix.hpp"
+#include "plants/linear/transfer_matrix.hpp"
 
 namespace mpm {
 

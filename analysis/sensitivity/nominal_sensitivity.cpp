@@ -9,8 +9,8 @@
 
 #include "analysis/sensitivity/active_limit.hpp"
 #include "plants/error.hpp"
-#include "plants/linear_plant.hpp"
-#include "scenarios/study_controller.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "scenarios/study/study_controller.hpp"
 #include "solvers/mpc.hpp"
 
 namespace mpm {

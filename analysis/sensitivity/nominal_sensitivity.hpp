@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

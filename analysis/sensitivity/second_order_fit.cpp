@@ -9,7 +9,7 @@
 #include <unsupported/Eigen/NumericalDiff>
 
 #include "plants/error.hpp"
-#include "plants/linear_plant.hpp"
+#include "plants/linear/linear_plant.hpp"
 #include "plants/non_finite.hpp"
 
 namespace mpm {

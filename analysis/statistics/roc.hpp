@@ -9,7 +9,7 @@
 
 #include "analysis/statistics/interval.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 

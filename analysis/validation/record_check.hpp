@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/plant_record.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/plant_record.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

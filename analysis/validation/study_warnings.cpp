@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "analysis/sensitivity/active_limit.hpp"
+#include "plants/linear/settling_time.hpp"
 #include "plants/non_finite.hpp"
-#include "plants/settling_time.hpp"
 
 namespace mpm {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/basis/basis_case.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 // What is allowed in a study and still implausible: most such numbers are slips of a unit or of a sign.
 

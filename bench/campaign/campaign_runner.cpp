@@ -12,7 +12,7 @@
 #include "bench/campaign/experiment_series.hpp"
 #include "bench/campaign/streamed_records.hpp"
 #include "bench/shards/shard_folder.hpp"
-#include "scenarios/calibration.hpp"
+#include "scenarios/loop/calibration.hpp"
 
 namespace mpm {
 namespace {

@@ -17,8 +17,8 @@
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
-#include "plants/program_trust.hpp"
-#include "scenarios/calibration.hpp"
+#include "plants/system/program_trust.hpp"
+#include "scenarios/loop/calibration.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

@@ -16,7 +16,7 @@
 #include "results/files/atomic_file.hpp"
 #include "results/files/byte_stream.hpp"
 #include "results/files/file_seal.hpp"
-#include "scenarios/resolved_study.hpp"
+#include "scenarios/files/resolved_study.hpp"
 
 namespace mpm {
 namespace {

@@ -13,7 +13,7 @@
 #include "bench/campaign/streamed_records.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_identity.hpp"
-#include "scenarios/calibration.hpp"
+#include "scenarios/loop/calibration.hpp"
 
 namespace mpm {
 namespace {

@@ -7,7 +7,7 @@
 #include "bench/campaign/calibration_runs.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/execution/experiment_work.hpp"
-#include "scenarios/calibration.hpp"
+#include "scenarios/loop/calibration.hpp"
 
 namespace mpm {
 

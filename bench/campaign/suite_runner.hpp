@@ -8,7 +8,7 @@
 
 #include "analysis/findings/leaderboard.hpp"
 #include "bench/campaign/campaign_runner.hpp"
-#include "scenarios/suite_file.hpp"
+#include "scenarios/files/suite_file.hpp"
 
 namespace mpm {
 

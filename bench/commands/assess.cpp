@@ -28,11 +28,11 @@
 #include "plants/error.hpp"
 #include "results/assess/record_assessment.hpp"
 #include "results/records/plant_record_file.hpp"
-#include "scenarios/historian.hpp"
-#include "scenarios/recorded_study.hpp"
-#include "scenarios/signals.hpp"
-#include "scenarios/study_library.hpp"
-#include "scenarios/window_scan.hpp"
+#include "scenarios/files/recorded_study.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/historian.hpp"
+#include "scenarios/loop/signals.hpp"
+#include "scenarios/study/window_scan.hpp"
 
 namespace mpm {
 namespace {

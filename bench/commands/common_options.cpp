@@ -14,8 +14,8 @@
 #include "analysis/methods/outside_program.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/files/outside_files.hpp"
-#include "plants/program_trust.hpp"
-#include "scenarios/method_file.hpp"
+#include "plants/system/program_trust.hpp"
+#include "scenarios/files/method_file.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

@@ -31,7 +31,7 @@
 #include "bench/shards/shard_identity.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
-#include "plants/temporary_folder.hpp"
+#include "plants/system/temporary_folder.hpp"
 #include "results/archive/archive.hpp"
 #include "results/blind/verdict_file.hpp"
 #include "results/summary/comparison.hpp"

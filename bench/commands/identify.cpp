@@ -18,8 +18,8 @@
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study_library.hpp"
-#include "scenarios/toml_literal.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/toml/toml_literal.hpp"
 
 namespace mpm {
 namespace {

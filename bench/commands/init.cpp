@@ -22,8 +22,8 @@
 #include "bench/commands/sketch_words.hpp"
 #include "bench/console/output.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study_file.hpp"
-#include "scenarios/study_template.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/files/study_template.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

@@ -5,7 +5,7 @@
 
 #include "bench/commands/commands.hpp"
 #include "bench/console/output.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

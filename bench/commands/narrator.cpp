@@ -7,7 +7,7 @@
 
 #include "bench/commands/dry_run.hpp"
 #include "bench/files/outside_files.hpp"
-#include "scenarios/resolved_study.hpp"
+#include "scenarios/files/resolved_study.hpp"
 
 namespace mpm {
 

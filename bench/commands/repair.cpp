@@ -20,7 +20,7 @@
 #include "results/text/experiment_text.hpp"
 #include "results/text/number_json.hpp"
 #include "results/text/text_table.hpp"
-#include "scenarios/historian.hpp"
+#include "scenarios/loop/historian.hpp"
 
 namespace mpm {
 namespace {

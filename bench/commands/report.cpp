@@ -16,7 +16,7 @@
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 #include "plants/error.hpp"
-#include "plants/program_trust.hpp"
+#include "plants/system/program_trust.hpp"
 #include "results/report/change_report.hpp"
 
 namespace mpm {

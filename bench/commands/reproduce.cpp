@@ -26,7 +26,7 @@
 #include "results/files/atomic_file.hpp"
 #include "results/reproduction/reproduction.hpp"
 #include "results/reproduction/seeded_reproduction.hpp"
-#include "scenarios/study_change.hpp"
+#include "scenarios/files/study_change.hpp"
 
 namespace mpm {
 namespace {

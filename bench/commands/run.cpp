@@ -33,8 +33,8 @@
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/study_change.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_change.hpp"
+#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

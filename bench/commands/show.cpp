@@ -6,7 +6,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

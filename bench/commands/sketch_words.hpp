@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/study_template.hpp"
+#include "scenarios/files/study_template.hpp"
 
 namespace mpm {
 

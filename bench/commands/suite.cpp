@@ -24,7 +24,7 @@
 #include "results/plot/figure_format.hpp"
 #include "results/plot/gnuplot.hpp"
 #include "results/suite/leaderboard_output.hpp"
-#include "scenarios/suite_file.hpp"
+#include "scenarios/files/suite_file.hpp"
 
 namespace mpm {
 namespace {

@@ -22,7 +22,7 @@
 #include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
 #include "results/summary/sweep_table.hpp"
-#include "scenarios/sweep_file.hpp"
+#include "scenarios/files/sweep_file.hpp"
 
 namespace mpm {
 namespace {

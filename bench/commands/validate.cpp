@@ -15,7 +15,7 @@
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "results/text/number_json.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

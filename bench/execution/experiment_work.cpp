@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "analysis/methods/method_table.hpp"
-#include "plants/thread_clock.hpp"
+#include "plants/system/thread_clock.hpp"
 
 namespace mpm {
 ExperimentWork::ExperimentWork(const Study& study, const Study& basis_study, const BasisCase& basis,

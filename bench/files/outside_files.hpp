@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 // What decides on a result and stands in no study file: programs and FMUs of somebody else, by the content of
 // their files. A digest is the first 16 digits of the SHA-256.

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "analysis/experiment/experiment.hpp"
-#include "scenarios/audit.hpp"
+#include "scenarios/loop/audit.hpp"
 
 namespace mpm {
 

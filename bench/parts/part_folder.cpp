@@ -13,9 +13,9 @@
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
-#include "plants/input_file.hpp"
+#include "plants/system/input_file.hpp"
 #include "results/files/atomic_file.hpp"
-#include "scenarios/study_file.hpp"
+#include "scenarios/files/study_file.hpp"
 
 namespace mpm {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "bench/perf/benchmarks.hpp"
 #include "bench/perf/timed_plant.hpp"
-#include "plants/linear_plant.hpp"
-#include "plants/thread_clock.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/signals.hpp"
-#include "scenarios/study_library.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/system/thread_clock.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/signals.hpp"
 
 namespace mpm {
 namespace {

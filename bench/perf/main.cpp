@@ -11,7 +11,7 @@
 #include "bench/perf/benchmarks.hpp"
 #include "bench/perf/octave_file.hpp"
 #include "bench/version.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 
 #include "analysis/experiment/experiment.hpp"
 #include "plants/error.hpp"
-#include "scenarios/closed_loop.hpp"
+#include "scenarios/loop/closed_loop.hpp"
 
 namespace mpm {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/draw.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

@@ -12,7 +12,7 @@
 
 #include "bench/perf/daqp_rival.hpp"
 #include "bench/perf/qp_timing.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {

@@ -16,7 +16,7 @@
 #include "bench/perf/daqp_rival.hpp"
 #include "bench/perf/hpipm_rival.hpp"
 #include "bench/perf/sparse_loop.hpp"
-#include "plants/thread_clock.hpp"
+#include "plants/system/thread_clock.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "plants/linear_plant.hpp"
-#include "plants/thread_clock.hpp"
-#include "scenarios/random_stream.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/system/thread_clock.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 namespace {

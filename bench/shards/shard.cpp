@@ -11,7 +11,7 @@
 
 #include "bench/outcome/outcome_bytes.hpp"
 #include "plants/error.hpp"
-#include "plants/input_file.hpp"
+#include "plants/system/input_file.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/byte_stream.hpp"
 #include "results/files/file_seal.hpp"

@@ -7,7 +7,7 @@
 
 #include "bench/execution/run_options.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

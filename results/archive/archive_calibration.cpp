@@ -9,7 +9,7 @@
 #include "results/archive/columns.hpp"
 #include "results/archive/variable_text.hpp"
 #include "results/files/archive_error.hpp"
-#include "scenarios/calibration.hpp"
+#include "scenarios/loop/calibration.hpp"
 
 namespace mpm {
 namespace {

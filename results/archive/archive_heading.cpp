@@ -8,8 +8,8 @@
 #include "results/archive/archive.hpp"
 #include "results/archive/archive_groups.hpp"
 #include "results/files/archive_error.hpp"
-#include "scenarios/resolved_study.hpp"
-#include "scenarios/study_file.hpp"
+#include "scenarios/files/resolved_study.hpp"
+#include "scenarios/files/study_file.hpp"
 
 namespace mpm {
 namespace {

@@ -11,8 +11,8 @@
 #include "analysis/experiment/record_range.hpp"
 #include "analysis/findings/calibration.hpp"
 #include "analysis/findings/study_findings.hpp"
-#include "scenarios/audit.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/audit.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

@@ -16,7 +16,7 @@
 #include "results/archive/hdf5_file.hpp"
 #include "results/archive/variable_text.hpp"
 #include "results/files/archive_error.hpp"
-#include "scenarios/audit.hpp"
+#include "scenarios/loop/audit.hpp"
 
 namespace mpm {
 

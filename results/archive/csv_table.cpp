@@ -10,7 +10,7 @@
 #include "plants/row_major.hpp"
 #include "results/archive/record_tables.hpp"
 #include "results/files/csv_text.hpp"
-#include "scenarios/historian.hpp"
+#include "scenarios/loop/historian.hpp"
 
 namespace mpm {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "results/archive/hdf5_file.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

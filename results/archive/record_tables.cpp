@@ -12,7 +12,7 @@
 #include "plants/non_finite.hpp"
 #include "plants/row_major.hpp"
 #include "results/archive/columns.hpp"
-#include "scenarios/candidates.hpp"
+#include "scenarios/loop/candidates.hpp"
 
 namespace mpm {
 namespace {

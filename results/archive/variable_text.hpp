@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "plants/plant_model.hpp"
+#include "plants/linear/plant_model.hpp"
 #include "results/archive/hdf5_file.hpp"
 
 namespace mpm {

@@ -10,8 +10,8 @@
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_record.hpp"
-#include "scenarios/plant_record.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/plant_record.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

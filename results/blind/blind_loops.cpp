@@ -19,7 +19,7 @@
 #include "results/files/csv_text.hpp"
 #include "results/files/file_seal.hpp"
 #include "results/files/sha256.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_messages.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

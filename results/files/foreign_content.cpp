@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
-#include "plants/input_file.hpp"
+#include "plants/system/input_file.hpp"
 
 namespace mpm {
 namespace {

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/toml_file.hpp"
-#include "scenarios/toml_text.hpp"
-#include "scenarios/toml_values.hpp"
+#include "scenarios/toml/toml_file.hpp"
+#include "scenarios/toml/toml_text.hpp"
+#include "scenarios/toml/toml_values.hpp"
 
 namespace mpm {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/findings/gate.hpp"
-#include "scenarios/study_file_keys.hpp"
+#include "scenarios/files/study_file_keys.hpp"
 
 namespace mpm {
 

@@ -4,8 +4,8 @@
 
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "results/plot/figure.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

@@ -15,7 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plants/error.hpp"
-#include "plants/forked_service.hpp"
+#include "plants/system/forked_service.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/csv_text.hpp"

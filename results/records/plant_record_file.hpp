@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "scenarios/plant_record.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/loop/plant_record.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

@@ -13,7 +13,7 @@
 #include "plants/error.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
-#include "scenarios/nearest_name.hpp"
+#include "scenarios/toml/nearest_name.hpp"
 
 namespace mpm {
 namespace {

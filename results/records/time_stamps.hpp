@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/data_options.hpp"
+#include "scenarios/study/data_options.hpp"
 
 namespace mpm {
 

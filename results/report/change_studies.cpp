@@ -5,7 +5,7 @@
 #include "results/plot/plot_text.hpp"
 #include "results/report/change_sections.hpp"
 #include "results/report/html_table.hpp"
-#include "scenarios/study_differences.hpp"
+#include "scenarios/files/study_differences.hpp"
 
 namespace mpm {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "analysis/findings/study_findings.hpp"
 #include "results/plot/figure.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

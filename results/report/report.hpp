@@ -8,7 +8,7 @@
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "results/archive/campaign.hpp"
 #include "results/plot/figure_format.hpp"
-#include "scenarios/closed_loop.hpp"
+#include "scenarios/loop/closed_loop.hpp"
 
 namespace mpm {
 

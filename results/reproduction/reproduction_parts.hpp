@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenarios/table_file.hpp"
+#include "scenarios/files/table_file.hpp"
 
 // What the tables of one run and of several seeds have in common as text and as HTML.
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/experiment/experiment.hpp"
-#include "scenarios/study.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 

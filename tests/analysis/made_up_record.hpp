@@ -10,7 +10,7 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 namespace mpm::testing {
 

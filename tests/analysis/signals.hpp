@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm::testing {
 

@@ -20,9 +20,9 @@
 #include "results/archive/archive.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/summary/comparison.hpp"
-#include "scenarios/study_file.hpp"
-#include "scenarios/study_library.hpp"
-#include "scenarios/suite_file.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/files/suite_file.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

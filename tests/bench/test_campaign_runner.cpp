@@ -16,8 +16,8 @@
 #include "bench/shards/shard_folder.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
-#include "scenarios/study_change.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_change.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include "bench/command_line.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/csv_table.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

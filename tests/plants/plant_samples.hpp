@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "plants/transfer_matrix.hpp"
+#include "plants/linear/transfer_matrix.hpp"
 
 namespace mpm::samples {
 

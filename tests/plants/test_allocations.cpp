@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/catalogue.hpp"
-#include "plants/linear_plant.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/models/catalogue.hpp"
 #include "tests/plants/allocation_counter.hpp"
 #include "tests/plants/plant_samples.hpp"
 

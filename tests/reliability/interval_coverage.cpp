@@ -19,8 +19,8 @@
 #include "analysis/findings/kind_findings.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
-#include "scenarios/fault.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/faults/fault.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace {
 

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "analysis/methods/chain_numbers.hpp"
-#include "scenarios/calibration.hpp"
-#include "scenarios/draw.hpp"
-#include "scenarios/study_file.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/calibration.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 using namespace mpm;

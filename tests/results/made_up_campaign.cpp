@@ -12,8 +12,8 @@
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/random_stream.hpp"
-#include "scenarios/study_file.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm::testing {
 namespace {

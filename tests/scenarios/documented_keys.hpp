@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/study_file_keys.hpp"
+#include "scenarios/files/study_file_keys.hpp"
 
 namespace mpm::testing {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm::testing {
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
-#include "scenarios/study_file.hpp"
+#include "scenarios/files/study_file.hpp"
 
 namespace mpm::testing {
 

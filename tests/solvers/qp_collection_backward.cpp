@@ -2,7 +2,7 @@
 #include <cmath>
 #include <string>
 
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "tests/solvers/qp_collection.hpp"
 
 // How a problem is made backwards from its answer. Drawn: x, s, rows and a set of multipliers that are

@@ -1,7 +1,7 @@
 #include <string>
 
-#include "plants/catalogue.hpp"
-#include "scenarios/random_stream.hpp"
+#include "plants/models/catalogue.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "tests/solvers/p1_controller.hpp"
 #include "tests/solvers/qp_collection.hpp"
 

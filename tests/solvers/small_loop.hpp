@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "plants/transfer_matrix.hpp"
+#include "plants/linear/transfer_matrix.hpp"
 #include "solvers/mpc.hpp"
 
 namespace mpm::samples {

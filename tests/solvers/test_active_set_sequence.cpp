@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/catalogue.hpp"
+#include "plants/models/catalogue.hpp"
 #include "plants/non_finite.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/ipopt_solver.hpp"

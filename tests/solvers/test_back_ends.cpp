@@ -5,7 +5,7 @@
 
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "solvers/qp_solver.hpp"
 #include "tests/solvers/qp_builder.hpp"
 #include "tests/solvers/qp_collection.hpp"

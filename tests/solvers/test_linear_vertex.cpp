@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "plants/non_finite.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/linear_vertex.hpp"
 #include "tests/plants/allocation_counter.hpp"

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/catalogue.hpp"
-#include "scenarios/random_stream.hpp"
+#include "plants/models/catalogue.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "solvers/mpc.hpp"
 #include "tests/solvers/p1_controller.hpp"
 

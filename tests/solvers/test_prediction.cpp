@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/catalogue.hpp"
+#include "plants/models/catalogue.hpp"
 #include "solvers/prediction.hpp"
 #include "tests/plants/plant_samples.hpp"
 

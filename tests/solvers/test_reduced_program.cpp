@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "solvers/reduced_program.hpp"
 #include "tests/solvers/qp_builder.hpp"
 #include "tests/solvers/qp_collection.hpp"

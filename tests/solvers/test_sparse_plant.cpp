@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/catalogue.hpp"
-#include "plants/linear_plant.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/models/catalogue.hpp"
 #include "solvers/lanes/row_band.hpp"
 #include "solvers/mpc.hpp"
 #include "tests/plants/allocation_counter.hpp"

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/catalogue.hpp"
-#include "plants/linear_plant.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/models/catalogue.hpp"
 #include "solvers/mpc.hpp"
 #include "tests/plants/allocation_counter.hpp"
 #include "tests/solvers/p1_controller.hpp"

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "plants/catalogue.hpp"
-#include "scenarios/random_stream.hpp"
+#include "plants/models/catalogue.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "solvers/target_optimizer.hpp"
 #include "tests/solvers/p1_controller.hpp"
 #include "tests/solvers/vertex_search.hpp"

@@ -6,8 +6,8 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/same_members.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/closed_loop.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // One pass: the loop is run once, and each method of the study says what it sees in it.

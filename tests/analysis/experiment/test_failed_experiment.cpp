@@ -7,8 +7,8 @@
 #include "analysis/experiment/judgement.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
-#include "plants/quadruple_tank.hpp"
-#include "scenarios/study_library.hpp"
+#include "plants/nonlinear/quadruple_tank.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // What a plant cannot do is the outcome of an experiment, unless it is the study's plant.

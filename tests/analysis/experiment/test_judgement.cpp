@@ -4,8 +4,8 @@
 #include "analysis/findings/judgement_changes.hpp"
 #include "analysis/findings/kind_findings.hpp"
 #include "plants/error.hpp"
-#include "scenarios/random_stream.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
 // The answer of a method against the truth, question by question.

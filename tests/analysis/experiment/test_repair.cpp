@@ -2,8 +2,8 @@
 
 #include "analysis/experiment/repair.hpp"
 #include "analysis/findings/repair_findings.hpp"
-#include "scenarios/historian.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/historian.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

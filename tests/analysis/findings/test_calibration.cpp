@@ -11,8 +11,8 @@
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/calibration.hpp"
-#include "scenarios/study_file.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/loop/calibration.hpp"
 #include "solvers/qp_solver.hpp"
 #include "tests/analysis/made_up_record.hpp"
 

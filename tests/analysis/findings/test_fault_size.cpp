@@ -5,7 +5,7 @@
 
 #include "analysis/findings/fault_size.hpp"
 #include "plants/error.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 
 #include "analysis/findings/gate.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace {
 

@@ -8,8 +8,8 @@
 
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/random_stream.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
 namespace mpm {

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "analysis/identification/polynomial_model.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "tests/analysis/signals.hpp"
 
 namespace mpm::testing {

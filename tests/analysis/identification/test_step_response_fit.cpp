@@ -5,10 +5,10 @@
 #include "analysis/identification/step_response_fit.hpp"
 #include "analysis/identification/step_test.hpp"
 #include "plants/error.hpp"
-#include "plants/linear_plant.hpp"
-#include "plants/transfer_matrix.hpp"
-#include "scenarios/random_stream.hpp"
-#include "scenarios/study_library.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/linear/transfer_matrix.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "analysis/methods/channel_regressors.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

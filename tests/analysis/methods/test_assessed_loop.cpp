@@ -10,8 +10,8 @@
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/plant_record.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/plant_record.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // What a method of assessment gets to see of a loop, and when it is asked at all.

@@ -6,7 +6,7 @@
 
 #include "analysis/methods/assessment_record.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 // An answer as it is kept: every number in its place, and back again by its name.
 

@@ -8,9 +8,9 @@
 
 #include "analysis/methods/loop_autocovariance.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/signals.hpp"
-#include "scenarios/study_file.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/signals.hpp"
 #include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/study_file.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "solvers/qp_solver.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -7,7 +7,7 @@
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/analysis/signals.hpp"
 
 // The methods that compare a loop with a benchmark period, through the interface that all methods share.

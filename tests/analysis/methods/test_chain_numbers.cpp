@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/chain_numbers.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
 // A diagnosis is kept as numbers, and comes back out of them. The members are visited by structured bindings,

@@ -5,8 +5,8 @@
 #include "analysis/methods/channel_fit.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/error.hpp"
-#include "plants/transfer_matrix.hpp"
-#include "scenarios/random_stream.hpp"
+#include "plants/linear/transfer_matrix.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 namespace {

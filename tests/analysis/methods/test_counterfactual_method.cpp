@@ -7,9 +7,9 @@
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/signals.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

@@ -13,9 +13,9 @@
 #include "analysis/methods/error_regression.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/signals.hpp"
-#include "scenarios/study_file.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

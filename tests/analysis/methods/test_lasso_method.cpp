@@ -4,8 +4,8 @@
 
 #include "analysis/methods/channel_regressors.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/draw.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "analysis/methods/method_messages.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 // What methods from outside are told and what they answer: docs/bring_your_own.md.
 

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/closed_loop.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

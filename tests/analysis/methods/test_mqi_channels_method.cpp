@@ -3,7 +3,7 @@
 #include "analysis/methods/channel_regressors.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/noise_model.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -7,9 +7,9 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/historian.hpp"
-#include "scenarios/study_file.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/historian.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // What methods make of records as a historian keeps them, and of loops that nothing excites.

@@ -5,8 +5,8 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/model_quality.hpp"
-#include "scenarios/study_file.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "solvers/qp_solver.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "analysis/reproduction/seeded_reproduction.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

@@ -11,7 +11,7 @@
 #include "analysis/reproduction/scenario_quantities.hpp"
 #include "analysis/reproduction/table_reproduction.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

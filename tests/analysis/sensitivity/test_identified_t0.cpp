@@ -8,8 +8,8 @@
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/statistics/quantile.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study_file.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/files/study_library.hpp"
 
 using namespace mpm;
 

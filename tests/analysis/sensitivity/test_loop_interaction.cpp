@@ -7,7 +7,7 @@
 #include "analysis/sensitivity/loop_interaction.hpp"
 #include "analysis/sensitivity/relative_gain.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 using mpm::active_frequency_response;
 using mpm::ConstraintKind;

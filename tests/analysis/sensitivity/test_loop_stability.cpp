@@ -7,9 +7,9 @@
 
 #include "analysis/sensitivity/loop_stability.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/closed_loop.hpp"
-#include "scenarios/controller_program.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/controller/controller_program.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/closed_loop.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

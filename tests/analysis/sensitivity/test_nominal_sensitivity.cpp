@@ -7,7 +7,7 @@
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
 #include "plants/error.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/analysis/sensitivity/unsettled.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -11,8 +11,8 @@
 #include "analysis/statistics/variance.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/random_stream.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "tests/analysis/made_up_record.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -7,8 +7,8 @@
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/signals.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/signals.hpp"
 #include "tests/analysis/sensitivity/unsettled.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

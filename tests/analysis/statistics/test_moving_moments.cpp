@@ -6,7 +6,7 @@
 #include "analysis/statistics/moving_moments.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/window_scan.hpp"
+#include "scenarios/study/window_scan.hpp"
 #include "tests/analysis/signals.hpp"
 
 namespace {

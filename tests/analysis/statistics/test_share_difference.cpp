@@ -5,7 +5,7 @@
 
 #include "analysis/statistics/share_difference.hpp"
 #include "plants/error.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace {
 

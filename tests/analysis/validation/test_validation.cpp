@@ -8,8 +8,8 @@
 #include "analysis/validation/study_forecast.hpp"
 #include "analysis/validation/study_warnings.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/random_stream.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 // What is implausible in a study, one slip at a time, and what its first experiments say of the others.
 

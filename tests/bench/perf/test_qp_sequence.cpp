@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "bench/perf/qp_sequence.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 

@@ -1,4 +1,4 @@
-/* The quadruple tank of plants/quadruple_tank.hpp as an FMU (FMI 2.0, co-simulation), written from the standard: what a
+/* The quadruple tank of plants/nonlinear/quadruple_tank.hpp as an FMU (FMI 2.0, co-simulation), written from the standard: what a
  * modelling tool exports. Levels stay above 0.001 cm here, where the two have the same equations. It integrates by the
  * classical Runge-Kutta method in steps of kStep at most, and allows one instance a process, as many exports do. */
 

@@ -8,9 +8,9 @@
 #include "results/archive/archive.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/files/archive_error.hpp"
-#include "scenarios/calibration.hpp"
-#include "scenarios/draw.hpp"
-#include "scenarios/study_file.hpp"
+#include "scenarios/files/study_file.hpp"
+#include "scenarios/loop/calibration.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

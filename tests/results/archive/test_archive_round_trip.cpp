@@ -13,7 +13,7 @@
 #include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/study_file.hpp"
+#include "scenarios/files/study_file.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

@@ -10,7 +10,7 @@
 #include "results/blind/blind_loops.hpp"
 #include "results/blind/loop_store.hpp"
 #include "results/blind/verdict_file.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 // Files of verdicts: every line comes to the loop or the window that it is of, and what is no verdict is

@@ -3,7 +3,7 @@
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/file_seal.hpp"
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include "plants/non_finite.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_file.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 #include "tests/scenarios/documented_keys.hpp"
 #include "tests/scenarios/study_texts.hpp"

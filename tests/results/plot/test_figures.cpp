@@ -13,7 +13,7 @@
 #include "results/plot/plot_text.hpp"
 #include "results/plot/svg_text.hpp"
 #include "results/plot/trajectory_figure.hpp"
-#include "scenarios/study_library.hpp"
+#include "scenarios/files/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

@@ -10,7 +10,7 @@
 #include "results/records/csv_columns.hpp"
 #include "results/records/plant_record_file.hpp"
 #include "results/records/time_stamps.hpp"
-#include "scenarios/study_file.hpp"
+#include "scenarios/files/study_file.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
 // Files of records: their text, their time stamps, and the samples that come of them.

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 
-#include "scenarios/random_stream.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 #include "solvers/lanes/lane_kernels.hpp"
 #include "solvers/lanes/lane_program.hpp"

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plants/linear/linear_plant.hpp"
+#include "plants/linear/transfer_matrix.hpp"
+#include "plants/plant.hpp"
+
+namespace mpm {
+
+/// A linear plant that goes over from one transfer matrix to another while it runs: the part a(k) of the way,
+/// from 0 to 1. A channel that changes from G to H, with H = f H1 and H1 of the static gain of G, is
+///
+///   y(k) = (1 - a(k)) G w + a(k) H1 w,   w(k) = (1 + (f - 1) a(k)) u(k).
+///
+/// The gain goes over at the input and the dynamics at the output, so that a plant at rest stays where it is
+/// when its time constant or its dead time changes, and answers through its own lag when its gain does. Where
+/// one of the two has no static gain or the gain 0, f = 1.
+class ChangingPlant final : public Plant {
+ public:
+  /// `share` is a(k), one number a sample; after the last one it stays. Errors: InputError for matrices of
+  /// different size, no share, a share outside [0, 1], or as LinearPlant.
+  ChangingPlant(const TransferMatrix& before, const TransferMatrix& after, double sample_time,
+                Eigen::VectorXd share);
+
+  Eigen::Index output_count() const override { return output_.size(); }
+  Eigen::Index input_count() const override { return unchanged_.input_count(); }
+  double sample_time() const override { return unchanged_.sample_time(); }
+  void reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) override;
+  const Eigen::VectorXd& output() const override { return output_; }
+  PlantStatus advance(const Eigen::Ref<const Eigen::VectorXd>& input) override;
+
+ private:
+  struct Channel {
+    Eigen::Index row, col;
+    double gain_factor;  ///< f
+  };
+
+  double share() const { return share_(std::min(sample_, share_.size() - 1)); }
+  void weigh(const Eigen::Ref<const Eigen::VectorXd>& input);
+  void measure();
+
+  Eigen::VectorXd share_;
+  std::vector<Channel> channels_;  ///< that change
+  LinearPlant unchanged_;          ///< the other channels
+  LinearPlant changing_;           ///< outputs 2i and 2i + 1: G and H1 of channel i under its w
+  Eigen::VectorXd w_, output_;
+  Eigen::Index sample_ = 0;
+};
+
+}  // namespace mpm

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plants/linear/transfer_matrix.hpp"
+
+namespace mpm {
+
+/// A benchmark plant: its nominal model with the names and units of its variables.
+///
+/// | symbol | meaning                                              | shape                            |
+/// |--------|------------------------------------------------------|----------------------------------|
+/// | G      | rows: CVs; columns: MVs, then MDs; times in time_unit | cvs x (mvs + mds)                |
+struct PlantModel {
+  /// A controlled, manipulated or measured disturbance variable.
+  struct Variable {
+    std::string name;
+    std::string unit;
+    std::string description;
+
+    bool operator==(const Variable&) const = default;
+  };
+
+  std::string name;   ///< the name in the catalogue
+  std::string title;  ///< one line for people
+  std::string time_unit;
+  std::vector<Variable> cvs;
+  std::vector<Variable> mvs;
+  std::vector<Variable> mds;
+  TransferMatrix G;
+
+  /// Errors: InputError if the plant, its time unit or a variable has an empty name, two variables have the
+  /// same one, there is no CV or no MV, or G is not cvs x (mvs + mds).
+  void validate() const;
+
+  bool operator==(const PlantModel&) const = default;
+};
+
+}  // namespace mpm

@@ -1,0 +1,14 @@
+#include "plants/linear/settling_time.hpp"
+
+namespace mpm {
+
+double sum_of_time_constants(const TransferFunction& channel) {
+  const Eigen::VectorXd& a = channel.denominator();  // (a_n + a_(n-1) s + ...)/a_n begins 1 + T s
+  return channel.order() == 0 ? 0.0 : a(a.size() - 2) / a(a.size() - 1);
+}
+
+double settling_time(const TransferFunction& channel) {
+  return channel.is_zero() ? 0.0 : channel.dead_time() + 3.0 * sum_of_time_constants(channel);
+}
+
+}  // namespace mpm

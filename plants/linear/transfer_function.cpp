@@ -1,0 +1,162 @@
+#include "plants/linear/transfer_function.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "plants/same_members.hpp"
+
+namespace mpm {
+namespace {
+
+void require_finite_polynomial(const char* quantity, const Eigen::VectorXd& coefficients) {
+  if (coefficients.size() == 0) {
+    throw InputError(quantity, "no coefficients", "one or more");
+  }
+  for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
+    if (!std::isfinite(coefficients(i))) {
+      throw InputError(fmt::format("{} coefficient {}", quantity, i), fmt::format("{}", coefficients(i)),
+                       "finite numbers");
+    }
+  }
+}
+
+/// The zero polynomial keeps one coefficient.
+Eigen::VectorXd without_leading_zeros(const Eigen::VectorXd& coefficients) {
+  Eigen::Index first = 0;
+  while (first + 1 < coefficients.size() && coefficients(first) == 0) {
+    ++first;
+  }
+  return coefficients.tail(coefficients.size() - first);
+}
+
+/// Cancels the factors s that both polynomials have, so that "integrating" is decided by the denominator.
+void cancel_common_factors_s(Eigen::VectorXd& numerator, Eigen::VectorXd& denominator) {
+  Eigen::Index common = 0;
+  while (common + 1 < numerator.size() && numerator(numerator.size() - 1 - common) == 0 &&
+         denominator(denominator.size() - 1 - common) == 0) {
+    ++common;
+  }
+  numerator = Eigen::VectorXd(numerator.head(numerator.size() - common));
+  denominator = Eigen::VectorXd(denominator.head(denominator.size() - common));
+}
+
+std::complex<double> evaluate(const Eigen::VectorXd& coefficients, std::complex<double> s) {
+  std::complex<double> value = 0;
+  for (const double coefficient : coefficients) {
+    value = value * s + coefficient;
+  }
+  return value;
+}
+
+/// p(s) q(s).
+Eigen::VectorXd product(const Eigen::VectorXd& p, const Eigen::VectorXd& q) {
+  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(p.size() + q.size() - 1);
+  for (Eigen::Index i = 0; i < p.size(); ++i)
+    coefficients.segment(i, q.size()) += p(i) * q;
+  return coefficients;
+}
+
+/// p'(0) / p(0).
+double relative_slope(const Eigen::VectorXd& p) {
+  return p.size() > 1 ? p(p.size() - 2) / p(p.size() - 1) : 0.0;
+}
+
+/// p(s) -> p(factor * s).
+Eigen::VectorXd with_argument_scaled(Eigen::VectorXd coefficients, double factor) {
+  double power = 1;
+  for (Eigen::Index i = coefficients.size() - 1; i >= 0; --i) {
+    coefficients(i) *= power;
+    power *= factor;
+  }
+  return coefficients;
+}
+
+}  // namespace
+
+TransferFunction::TransferFunction(Eigen::VectorXd numerator, Eigen::VectorXd denominator, double dead_time)
+    : numerator_(std::move(numerator)), denominator_(std::move(denominator)), dead_time_(dead_time) {
+  require_finite_polynomial("transfer function numerator", numerator_);
+  require_finite_polynomial("transfer function denominator", denominator_);
+  if (denominator_(0) == 0) {
+    throw InputError("leading denominator coefficient of a transfer function", "0", "any other number");
+  }
+  numerator_ = without_leading_zeros(numerator_);
+  if (numerator_.size() > denominator_.size()) {
+    throw InputError("numerator degree of a transfer function", fmt::format("{}", numerator_.size() - 1),
+                     fmt::format("at most the denominator degree {}", denominator_.size() - 1));
+  }
+  if (!std::isfinite(dead_time_) || dead_time_ < 0) {
+    throw InputError("dead time of a transfer function", fmt::format("{}", dead_time_),
+                     "a finite number >= 0");
+  }
+  cancel_common_factors_s(numerator_, denominator_);
+}
+
+TransferFunction TransferFunction::first_order(double gain, double time_constant, double dead_time) {
+  if (!std::isfinite(time_constant) || time_constant <= 0) {
+    throw InputError("time constant of a first-order transfer function", fmt::format("{}", time_constant),
+                     "a finite number > 0");
+  }
+  return {Eigen::VectorXd::Constant(1, gain), Eigen::Vector2d(time_constant, 1), dead_time};
+}
+
+TransferFunction TransferFunction::zero() {
+  return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
+}
+
+double TransferFunction::static_gain() const {
+  if (is_integrating()) {
+    throw InputError("static gain of a transfer function", "a pole at s = 0 (integrating channel)",
+                     "channels without a pole at s = 0");
+  }
+  return is_zero() ? 0.0 : numerator_(numerator_.size() - 1) / denominator_(order());
+}
+
+std::complex<double> TransferFunction::operator()(std::complex<double> s) const {
+  return evaluate(numerator_, s) / evaluate(denominator_, s) * std::exp(-s * dead_time_);
+}
+
+TransferFunction TransferFunction::with_gain_scaled(double factor) const {
+  if (!std::isfinite(factor)) {
+    throw InputError("gain factor", fmt::format("{}", factor), "a finite number");
+  }
+  return {numerator_ * factor, denominator_, dead_time_};
+}
+
+TransferFunction TransferFunction::with_time_scaled(double factor) const {
+  if (!std::isfinite(factor) || factor <= 0) {
+    throw InputError("time factor", fmt::format("{}", factor), "a finite number > 0");
+  }
+  return {with_argument_scaled(numerator_, factor), with_argument_scaled(denominator_, factor), dead_time_};
+}
+
+TransferFunction TransferFunction::with_dead_time_shifted(double delta) const {
+  const double shifted = dead_time_ + delta;
+  if (!std::isfinite(shifted) || shifted < 0) {
+    throw InputError("dead time after a shift", fmt::format("{} + {} = {}", dead_time_, delta, shifted),
+                     "a finite number >= 0");
+  }
+  return {numerator_, denominator_, shifted};
+}
+
+double TransferFunction::residence_time() const {
+  if (is_integrating())
+    throw InputError("residence time of a transfer function", "a pole at s = 0 (integrating channel)",
+                     "channels without a pole at s = 0");
+  return is_zero() ? 0.0 : relative_slope(denominator_) - relative_slope(numerator_);
+}
+
+TransferFunction in_series(const TransferFunction& first, const TransferFunction& second) {
+  return {product(first.numerator(), second.numerator()), product(first.denominator(), second.denominator()),
+          first.dead_time() + second.dead_time()};
+}
+
+bool operator==(const TransferFunction& a, const TransferFunction& b) {
+  return same(a.numerator_, b.numerator_) && same(a.denominator_, b.denominator_) &&
+         same(a.dead_time_, b.dead_time_);
+}
+
+}  // namespace mpm

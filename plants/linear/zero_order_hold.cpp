@@ -1,0 +1,121 @@
+#include "plants/linear/zero_order_hold.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "plants/error.hpp"
+
+namespace mpm {
+namespace {
+
+/// x' = A x + B u, y = C x + D u: the rational part of a channel.
+struct Realisation {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd B;
+  Eigen::RowVectorXd C;
+  double D;
+};
+
+/// The geometric mean of the poles other than 0, as a power of two (scaling by it is exact); `a` is monic.
+double typical_rate(const Eigen::VectorXd& a) {
+  Eigen::Index last = a.size() - 1;
+  while (a(last) == 0) {
+    --last;
+  }
+  if (last == 0) {
+    return 1;  // no such pole
+  }
+  return std::exp2(std::round(std::log2(std::abs(a(last))) / static_cast<double>(last)));
+}
+
+/// The controllable companion form of G(w p) with time counted in 1/w, where w is the typical rate. In s
+/// itself the entries of A would range over powers of the poles, and the exponential would lose most digits
+/// for several poles of 1e-4 or 1e4.
+Realisation companion_form(const TransferFunction& channel) {
+  const Eigen::Index n = channel.order();
+  Eigen::VectorXd a = channel.denominator() / channel.denominator()(0);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(n + 1);
+  b.tail(channel.numerator().size()) = channel.numerator() / channel.denominator()(0);
+  const double rate = typical_rate(a);
+  for (Eigen::Index i = 1; i <= n; ++i) {
+    a.tail(n + 1 - i) /= rate;
+    b.tail(n + 1 - i) /= rate;
+  }
+
+  Realisation form{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::RowVectorXd::Zero(n), b(0)};
+  if (n > 0) {
+    form.A.row(0) = -rate * a.tail(n).transpose();
+    form.A.diagonal(-1).setConstant(rate);
+    form.B(0) = rate;
+    form.C = (b - b(0) * a).tail(n).transpose();
+  }
+  return form;
+}
+
+/// e^{A t} and int_0^t e^{A s} ds B.
+struct Hold {
+  Eigen::MatrixXd transition;
+  Eigen::VectorXd input;
+};
+
+Hold hold(const Realisation& form, double duration) {
+  const Eigen::Index n = form.A.rows();
+  Eigen::MatrixXd augmented = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  augmented.topLeftCorner(n, n) = form.A * duration;
+  augmented.topRightCorner(n, 1) = form.B * duration;
+  const Eigen::MatrixXd exponential = augmented.exp();
+  return {exponential.topLeftCorner(n, n), exponential.topRightCorner(n, 1)};
+}
+
+/// theta = delay Ts + eps, 0 <= eps < Ts.
+struct Delay {
+  int samples;
+  double remainder;
+};
+
+Delay split_dead_time(double dead_time, double sample_time) {
+  constexpr double kRelativeRounding = 1e-9;
+  const double ratio = dead_time / sample_time;
+  if (!(ratio <= kMaxDelay)) {
+    throw InputError("dead time in samples", fmt::format("{}", ratio), fmt::format("at most {}", kMaxDelay));
+  }
+  const double nearest = std::round(ratio);
+  if (std::abs(ratio - nearest) <= kRelativeRounding * std::max(1.0, ratio)) {
+    return {static_cast<int>(nearest), 0};
+  }
+  const double whole = std::floor(ratio);
+  return {static_cast<int>(whole), (ratio - whole) * sample_time};
+}
+
+}  // namespace
+
+void require_sample_time(double sample_time) {
+  if (!std::isfinite(sample_time) || sample_time <= 0) {
+    throw InputError("sample time", fmt::format("{}", sample_time), "a finite number > 0");
+  }
+}
+
+DiscreteChannel discretise(const TransferFunction& channel, double sample_time) {
+  require_sample_time(sample_time);
+  const Delay delay = split_dead_time(channel.dead_time(), sample_time);
+  const Realisation form = companion_form(channel);
+
+  const Hold newer = hold(form, sample_time - delay.remainder);
+  DiscreteChannel result{newer.transition, newer.input, Eigen::VectorXd::Zero(channel.order()),
+                         form.C,           form.D,      delay.samples};
+  if (delay.remainder > 0) {
+    const Hold older = hold(form, delay.remainder);
+    result.b_previous = newer.transition * older.input;
+    result.A = newer.transition * older.transition;
+  }
+  if (!result.A.allFinite() || !result.b_now.allFinite() || !result.b_previous.allFinite()) {
+    throw InputError("zero-order-hold equivalent", fmt::format("overflow at sample time {}", sample_time),
+                     "poles and sample times whose exponential is finite");
+  }
+  return result;
+}
+
+}  // namespace mpm

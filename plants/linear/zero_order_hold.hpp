@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plants/linear/transfer_function.hpp"
+
+namespace mpm {
+
+/// Largest dead time, in samples, that a discrete channel can have.
+inline constexpr int kMaxDelay = 1'000'000;
+
+/// One channel between samples at which the input is held constant.
+///
+///   x(k+1) = A x(k) + b_now u(k - delay) + b_previous u(k - delay - 1)
+///   y(k)   = c x(k) + d u(k - delay - 1)
+///
+/// u(k) acts on [k Ts, (k+1) Ts), and y(k) is sampled just before the input changes to u(k). Hence y(k)
+/// depends on inputs before sample k only, also for d != 0 and no dead time.
+///
+/// | symbol     | meaning                                      | shape | unit              |
+/// |------------|----------------------------------------------|-------|-------------------|
+/// | A          | transition over one sample                   | n x n | 1                 |
+/// | b_now      | effect of the newer of the two inputs        | n     | 1 / unit of u     |
+/// | b_previous | effect of the older one; 0 for whole delays  | n     | 1 / unit of u     |
+/// | c, d       | output row, direct effect                    | n, 1  | unit of y         |
+/// | delay      | whole samples of dead time                   | 1     | samples           |
+struct DiscreteChannel {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd b_now;
+  Eigen::VectorXd b_previous;
+  Eigen::RowVectorXd c;
+  double d = 0;
+  int delay = 0;
+};
+
+/// Errors: InputError unless `sample_time` is finite and > 0.
+void require_sample_time(double sample_time);
+
+/// The exact zero-order-hold equivalent of a channel at a sample time Ts. With x' = A_c x + B u a realisation
+/// of the rational part and theta = delay Ts + eps, 0 <= eps < Ts,
+///
+///   A = e^{A_c Ts},  b_now = int_0^{Ts - eps} e^{A_c s} ds B,  b_previous = int_{Ts - eps}^{Ts} e^{A_c s} ds
+///   B.
+///
+/// The integrals come from the exponential of the augmented matrix [A_c B; 0 0] (Van Loan 1978), so that
+/// integrators and repeated poles need no special case. A dead time within a relative 1e-9 of a whole number
+/// of samples counts as whole (27 / 0.1 is not 270 in floating point).
+///
+/// Errors: InputError unless `sample_time` (same unit as the time constants) is finite and > 0, the dead time
+/// is at most kMaxDelay samples, and the result is finite (a fast unstable pole overflows).
+DiscreteChannel discretise(const TransferFunction& channel, double sample_time);
+
+}  // namespace mpm

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "plants/linear/plant_model.hpp"
+
+// The benchmark plants that are given by a table of transfer functions.
+
+namespace mpm {
+
+/// The Shell heavy oil fractionator, 7 CVs x 3 MVs x 2 MDs ("shell-7x3"): thesis, eq. 6.18 and table 6.1,
+/// after Prett and Morari (1987) and Maciejowski (2002).
+///
+/// Every channel is gain e^{-dead_time s} / (time_constant s + 1), times in minutes. The variables are
+/// deviations without a stated unit. The dead time of channel (y4, u2), printed without its s in eq. 6.18, is
+/// 12 min.
+PlantModel shell_fractionator_7x3();
+
+/// P2, the 3 x 3 part that chapters 2, 4 and 5 control by setpoints: eq. 2.25 and 4.18, times in minutes. Its
+/// y3 is the y7 of eq. 6.18, with a dead time of 19 min from u3 in the place of none.
+PlantModel shell_fractionator_3x3();
+
+/// P8, a high-purity binary distillation column in LV configuration (Skogestad & Postlethwaite), eq. 4.15:
+///
+///                1      [  87.8   -86.4 ]
+///   [yD; xB] = -------- [ 108.2  -109.6 ] [L; V],   time in minutes.
+///              75 s + 1
+///
+/// Its condition number is 142 at every frequency and its relative gain 35: hardly two outputs.
+PlantModel distillation_column();
+
+/// P9, the model of the SISO case study (5.3.1, table 5.1), with an inverse response; time in seconds:
+///
+///           -100 s + 3.04
+///   G0 = --------------------.
+///        305 s^2 + 40 s + 1
+///
+/// The plant with mismatch of table 5.2 has 18.25 in the place of 3.04.
+PlantModel siso_plant();
+
+/// The pilot column of Ogunnaike and Ray for ethanol and water, with a side stream, 3 CVs x 3 MVs x 2 MDs
+/// ("ogunnaike-ray"): B. A. Ogunnaike, J. P. Lemaire, M. Morari and W. H. Ray, "Advanced multivariable
+/// control of a pilot-plant distillation column", AIChE Journal 29 (1983), 632-640; times in minutes.
+///
+/// Mole fractions and a temperature in deg C, flows in gal/min and a pressure in psi, so that gains go from
+/// 0.0011 to 46. The channel from the steam pressure to the tray temperature and two of those of the feed
+/// temperature are of second order with a zero.
+PlantModel ogunnaike_ray_column();
+
+/// A made-up unit as large as industrial ones, 20 CVs x 8 MVs x 2 MDs ("banded-20x8"); times in minutes. CV i
+/// = 1 ... 20 stands at p = 1 + 7 (i - 1)/19 along a train of eight places, and MV j at the place j. With
+/// delta = |p - j|, CV i answers the MVs with delta < 2.2 only:
+///
+///   G_ij(s) = g_ij e^{-theta_ij s} / (tau_ij s + 1),
+///   g_ij     = +-(2 + ((3 i + 2 j) mod 5)/4) e^{-0.8 delta},   minus where i + j is a multiple of 3,
+///   tau_ij   = 8 + 3 ((2 i + 5 j) mod 8) min,
+///   theta_ij = 1 + ((i + 3 j) mod 4) + round(2 delta) min.
+///
+/// MD k = 1, 2 enters at the place 2.5 + 4 (k - 1) and is felt within 4 of it, by the same formulas with
+/// j = 8 + k, half the gain, and e^{-0.4 delta}. Nothing was chosen for any method: remainders stand for
+/// chance, and every number can be computed by hand.
+PlantModel banded_unit_20x8();
+
+}  // namespace mpm

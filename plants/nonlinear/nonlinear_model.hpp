@@ -1,0 +1,64 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plants/nonlinear/foreign_model.hpp"
+#include "plants/nonlinear/ode_plant.hpp"
+#include "plants/nonlinear/ode_system.hpp"
+
+namespace mpm {
+
+/// A parameter of a nonlinear plant that has another value than in the model of the controller.
+struct ParameterChange {
+  std::string name;
+  double value;  ///< in the unit of the parameter
+
+  bool operator==(const ParameterChange&) const = default;
+};
+
+/// The nonlinear plant behind a linear model: equations of ours, or the simulation of somebody else.
+///
+/// Its inputs are the MVs and the MDs of the linear model, in their order, and then the inner inputs, where
+/// only disturbances act. Its outputs are the CVs. Its states mean the same whatever its parameters are.
+struct NonlinearModel {
+  /// A parameter with the value that the linear model rests on.
+  struct Parameter {
+    std::string name;
+    double nominal;
+
+    bool operator==(const Parameter&) const = default;
+  };
+
+  std::vector<Parameter> parameters;
+  std::vector<std::string> inner_inputs;  ///< names
+  Eigen::VectorXd operating_input;        ///< where it was linearised; all inputs
+  /// The equations with these parameters changed. Errors: InputError for a name that is not among
+  /// `parameters`, or a value out of range.
+  std::function<std::shared_ptr<const OdeSystem>(const std::vector<ParameterChange>&)> make_system;
+  std::shared_ptr<const ForeignModel> foreign = {};  ///< in place of make_system
+
+  /// Does nothing when the plant can have these parameters. Errors: InputError as make_system; what somebody
+  /// else's simulation refuses shows only when it runs.
+  void check(const std::vector<ParameterChange>& changes) const;
+
+  /// Without the equations, which cannot be compared.
+  friend bool operator==(const NonlinearModel& a, const NonlinearModel& b);
+};
+
+/// The plant of a closed loop, in deviations from the operating point of the nominal plant, with some
+/// parameters changed.
+///
+/// reset() puts it where the nominal plant rests: the parameters change at `onset`, the first sample unless
+/// it is said. A plant that had always been different might have no steady state worth the name there: with
+/// exp3 = 0.1 (table 3.9) the third tank would stand at 2370 cm. The options are those of our equations.
+/// Errors: InputError as OdePlant and `make_system`, or as ForeignPlant.
+std::unique_ptr<Plant> nonlinear_plant(const NonlinearModel& model, double sample_time,
+                                       const OdeOptions& options, const std::vector<ParameterChange>& changes,
+                                       Eigen::Index onset = 0);
+
+}  // namespace mpm

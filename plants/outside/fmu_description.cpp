@@ -1,0 +1,148 @@
+#include "plants/outside/fmu_description.hpp"
+
+#include <cctype>
+#include <charconv>
+#include <cstddef>
+#include <limits>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pugixml.hpp>
+
+#include "plants/error.hpp"
+#include "plants/system/foreign_text.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* kDescriptionFile = "modelDescription.xml";
+constexpr std::size_t kMostNames = 20;    // in a message
+constexpr std::size_t kShownOfXml = 100;  // bytes of a text, in a message
+
+std::string attribute_of(const pugi::xml_node& node, const char* name, const std::string& file) {
+  const pugi::xml_attribute attribute = node.attribute(name);
+  if (!attribute || *attribute.value() == '\0')
+    throw InputError(fmt::format("{}: {}: {} of {}", file, kDescriptionFile, name, node.name()), "nothing",
+                     "a text");
+  return attribute.value();
+}
+
+/// The element that says which type a variable has; the standard puts it among the children.
+std::string type_of(const pugi::xml_node& variable) {
+  for (const char* type : {"Real", "Integer", "Boolean", "String", "Enumeration"})
+    if (variable.child(type))
+      return type;
+  return "no type";
+}
+
+/// All digits, of a number that fits.
+fmi2::ValueReference reference_of(const pugi::xml_node& node, const std::string& file) {
+  const std::string text = node.attribute("valueReference").value();
+  fmi2::ValueReference reference = 0;
+  const char* const end = text.data() + text.size();
+  if (const auto read = std::from_chars(text.data(), end, reference);
+      text.empty() || read.ec != std::errc() || read.ptr != end)
+    throw InputError(
+        fmt::format("{}: {}: valueReference of '{}'", file, kDescriptionFile,
+                    foreign_text(node.attribute("name").value(), kShownOfXml)),
+        text.empty() ? "nothing" : fmt::format("'{}'", foreign_text(text, kShownOfXml)),
+        fmt::format("a whole number from 0 to {}", std::numeric_limits<fmi2::ValueReference>::max()));
+  return reference;
+}
+
+/// The name of the library: a name of C, so that it is no path either.
+std::string identifier_of(const pugi::xml_node& co_simulation, const std::string& file) {
+  constexpr std::size_t kLongest = 200;
+  std::string identifier = attribute_of(co_simulation, "modelIdentifier", file);
+  if (identifier.size() > kLongest || std::isdigit(static_cast<unsigned char>(identifier.front())) != 0 ||
+      identifier.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
+          std::string::npos)
+    throw InputError(fmt::format("{}: {}: modelIdentifier", file, kDescriptionFile),
+                     fmt::format("'{}'", foreign_text(identifier, kShownOfXml)),
+                     fmt::format("a name of C with at most {} characters", kLongest));
+  return identifier;
+}
+
+FmuVariable read_variable(const pugi::xml_node& node, const std::string& file) {
+  return {.reference = reference_of(node, file),
+          .type = type_of(node),
+          .causality = node.attribute("causality").as_string("local"),
+          .variability = node.attribute("variability").as_string("continuous")};
+}
+
+bool fits(const FmuVariable& variable, FmuRole role) {
+  switch (role) {
+    case FmuRole::input:
+      return variable.causality == "input";
+    case FmuRole::output:
+      return variable.causality == "output" || variable.causality == "local";
+    case FmuRole::parameter:
+      return variable.causality == "parameter";
+  }
+  return false;
+}
+
+std::string_view causality_of(FmuRole role) {
+  return role == FmuRole::input ? "input" : role == FmuRole::output ? "output" : "parameter";
+}
+
+/// Some names that the study could have meant; of outputs those that are declared as such.
+std::string names_of(const FmuDescription& description, FmuRole role) {
+  std::vector<std::string> names;
+  for (const auto& [name, variable] : description.variables)
+    if (variable.causality == causality_of(role) && variable.type == "Real")
+      names.push_back(name);
+  const bool all = names.size() <= kMostNames;
+  if (!all)
+    names.resize(kMostNames);
+  return names.empty() ? fmt::format("a Real {}; {} has none", causality_of(role), description.file)
+                       : fmt::format("{}{}", fmt::join(names, ", "), all ? "" : ", ...");
+}
+
+}  // namespace
+
+const FmuVariable& FmuDescription::variable(std::string_view name, FmuRole role,
+                                            const std::string& place) const {
+  const auto found = variables.find(name);
+  if (found == variables.end())
+    throw InputError(place, fmt::format("'{}', which {} has not", name, file), names_of(*this, role));
+  const FmuVariable& variable = found->second;
+  if (!fits(variable, role))
+    throw InputError(place, fmt::format("'{}' of causality {}", name, variable.causality),
+                     names_of(*this, role));
+  if (variable.type != "Real")
+    throw InputError(place, fmt::format("'{}' of type {}", name, variable.type), names_of(*this, role));
+  return variable;
+}
+
+FmuDescription parse_fmu_description(const std::string& xml, const std::string& file) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = document.load_buffer(xml.data(), xml.size());
+  if (!parsed)
+    throw InputError(fmt::format("{}: {}", file, kDescriptionFile),
+                     fmt::format("{} at byte {}", parsed.description(), parsed.offset), "XML");
+  const pugi::xml_node root = document.child("fmiModelDescription");
+  if (!root)
+    throw InputError(fmt::format("{}: {}", file, kDescriptionFile), "no element fmiModelDescription",
+                     "the description of an FMU");
+  if (const std::string version = attribute_of(root, "fmiVersion", file); version != fmi2::kVersion)
+    throw InputError(fmt::format("{}: fmiVersion", file), fmt::format("'{}'", version),
+                     fmt::format("'{}'", fmi2::kVersion));
+  const pugi::xml_node co_simulation = root.child("CoSimulation");
+  if (!co_simulation)
+    throw InputError(fmt::format("{}: kind of the FMU", file),
+                     root.child("ModelExchange") ? "model exchange alone" : "neither",
+                     "co-simulation, which brings its own solver; export it as such");
+  FmuDescription description{.file = file,
+                             .guid = attribute_of(root, "guid", file),
+                             .identifier = identifier_of(co_simulation, file),
+                             .variables = {}};
+  for (const pugi::xml_node& node : root.child("ModelVariables").children("ScalarVariable"))
+    description.variables.emplace(attribute_of(node, "name", file), read_variable(node, file));
+  return description;
+}
+
+}  // namespace mpm

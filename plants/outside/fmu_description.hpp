@@ -1,0 +1,42 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "plants/outside/fmi2.hpp"
+
+namespace mpm {
+
+/// A variable as modelDescription.xml declares it.
+struct FmuVariable {
+  fmi2::ValueReference reference = 0;
+  std::string type;         ///< "Real", "Integer", ...
+  std::string causality;    ///< "input", "output", "parameter", "local", ...
+  std::string variability;  ///< "fixed", "tunable", "continuous", ...
+};
+
+/// What a study does with a variable.
+enum class FmuRole {
+  input,      ///< of causality input
+  output,     ///< of causality output or local: any result may be a measurement
+  parameter,  ///< of causality parameter
+};
+
+/// modelDescription.xml of an FMU for co-simulation (FMI 2.0, 2.2 and 4.3).
+struct FmuDescription {
+  std::string file;        ///< of the FMU, for messages
+  std::string guid;        ///< which the library compares with its own
+  std::string identifier;  ///< name of the library
+  std::map<std::string, FmuVariable, std::less<>> variables;
+
+  /// The variable of this name. Errors: InputError at `place`, which lists names of that role, for one that
+  /// is not there, has another causality or is no Real.
+  const FmuVariable& variable(std::string_view name, FmuRole role, const std::string& place) const;
+};
+
+/// Reads the text of modelDescription.xml. Errors: InputError that begins with `file` for what is no XML, has
+/// another FMI version, no co-simulation, or lacks an attribute.
+FmuDescription parse_fmu_description(const std::string& xml, const std::string& file);
+
+}  // namespace mpm

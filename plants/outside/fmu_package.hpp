@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+
+#include "plants/outside/fmu_description.hpp"
+#include "plants/system/temporary_folder.hpp"
+
+namespace mpm {
+
+/// An FMU, unpacked into a folder of its own that is removed with this object: its library for this platform
+/// and its resources.
+class FmuPackage {
+ public:
+  /// Errors: InputError for a file that cannot be read, is no ZIP or holds a path out of it, as
+  /// parse_fmu_description(), and without a library for linux64.
+  explicit FmuPackage(const std::filesystem::path& file);
+
+  const FmuDescription& description() const { return description_; }
+  /// binaries/linux64/IDENTIFIER.so
+  std::filesystem::path library() const;
+  /// The URI of the folder resources, as fmi2Instantiate takes it.
+  std::string resources() const;
+
+ private:
+  TemporaryFolder folder_;
+  FmuDescription description_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plants/linear/plant_model.hpp"
+#include "solvers/controller.hpp"
+
+namespace mpm {
+
+class ControllerTalks;
+
+/// A program as the controller of a study: it answers lines of JSON (docs/own_controller.md).
+///
+///   {"call": "describe"}                                        ->  {"on_model": true}
+///   {"call": "context", ...}                                    ->  {}
+///   {"call": "reset", "u": [...], "d": [...], "y": [...]}       ->  {}
+///   {"call": "step", "y", "d", "u", "y_set", "cv_soft"}         ->  {"u": [...], "u_target": [...]}
+///
+/// each with the number of the message (ProgramTalk). Copies share their programs: as many run as controllers
+/// are at work at the same time in one process, and those that have nothing to do wait for the next loop.
+class ControllerProgram {
+ public:
+  ControllerProgram(std::vector<std::string> command, double time_limit);
+
+  const std::vector<std::string>& command() const;
+
+  /// Does it run on the nominal model too, with the limits and setpoints from which S0 follows, or on the
+  /// plant of the study only? Starts the program when that is not known yet. Errors: InputError when it gives
+  /// no description.
+  bool runs_on_model() const;
+
+  /// A controller of `plant` with this tuning, told of unit step responses of `samples` samples. What goes
+  /// wrong with the program shows as ControlStatus::failed. `factory` makes the solver of nominal_target(),
+  /// which is that of Mpc; what the program answers is held within the hard limits of the MVs.
+  std::unique_ptr<Controller> controller(const PlantModel& plant, const MpcOptions& options,
+                                         Eigen::Index samples, const QpSolverFactory& factory) const;
+
+  /// The same program: the same command, with the same time to answer.
+  friend bool operator==(const ControllerProgram& a, const ControllerProgram& b);
+
+ private:
+  std::shared_ptr<ControllerTalks> talks_;
+};
+
+}  // namespace mpm

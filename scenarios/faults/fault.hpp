@@ -1,0 +1,190 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plants/linear/transfer_matrix.hpp"
+#include "plants/nonlinear/nonlinear_model.hpp"
+
+// What can be wrong in an experiment: mismatches of the plant, and disturbances that nobody measures.
+
+namespace mpm {
+
+/// What is wrong in an experiment. Nothing is in a `healthy` one, the basis case among them: there is only
+/// noise. In one of the kind `tuning` model and plant agree, and a weight of the controller is changed. In
+/// one of the kind `other` something is wrong around the model: see OtherFault.
+enum class ExperimentKind : std::int8_t { healthy = 0, mpm = 1, ud = 2, mpm_ud = 3, tuning = 4, other = 5 };
+
+/// "healthy", "mpm", "ud", "mpm_ud", "tuning", "other"
+std::string_view to_string(ExperimentKind kind);
+
+/// Is there neither mismatch nor disturbance, so that every verdict of a modelling error is a false alarm?
+inline bool is_faultless(ExperimentKind kind) {
+  return kind == ExperimentKind::healthy || kind == ExperimentKind::tuning;
+}
+
+/// What a method sees as the cause of a fault, and what affects a CV: a mismatch, a disturbance, or both.
+enum class FaultSource : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3, other = 4 };
+
+/// The source of the faults of an experiment of this kind; none where model and plant agree, and for `other`.
+FaultSource source_of(ExperimentKind kind);
+
+/// "none", "mpm", "ud", "mpm_ud"
+std::string_view to_string(FaultSource source);
+
+/// Which parameter of a channel a model-plant mismatch changes, as in table 6.4, or what it adds to it.
+enum class MismatchParameter : std::int8_t {
+  gain = 0,
+  time_constant = 1,
+  dead_time = 2,
+  channel = 3,           ///< the plant has another transfer function in this place, as in (4.19) to (4.21)
+  second_order = 4,      ///< the plant has a further lag: G / (value s + 1)
+  inverse_response = 5,  ///< the plant begins in the wrong direction: G (1 - value s) / (1 + value s)
+  sign = 6,              ///< the gain of the plant has the other sign: value = -1
+};
+
+/// "gain", "time_constant", "dead_time", "channel", "second_order", "inverse_response", "sign"
+std::string_view to_string(MismatchParameter parameter);
+
+/// A model-plant mismatch: the channel (cv, input) of the plant differs from the model.
+struct Mismatch {
+  Eigen::Index cv;
+  Eigen::Index input;  ///< column of G: an MV, or after them an MD (a mismatch of the feed-forward)
+  MismatchParameter parameter;
+  double value;  ///< factor of gain or time constant; shift of the dead time, or time constant of what is
+                 ///< added, in the plant's time unit
+  std::optional<TransferFunction> channel = {};  ///< of the plant, when the parameter is `channel`
+
+  friend bool operator==(const Mismatch& a, const Mismatch& b);
+};
+
+/// The plant that has these mismatches, one after the other, where the model is `model`. Errors: InputError
+/// for a channel outside of the matrix, or as the `with_` functions of TransferFunction.
+TransferMatrix with_mismatches(TransferMatrix model, const std::vector<Mismatch>& mismatches);
+
+/// White normal numbers, each held for `hold` samples, of the standard deviation factor *
+/// disturbance.v_standard_deviation of the study.
+struct WhiteNoise {
+  double factor = 1.0;
+  int hold = 1;
+
+  bool operator==(const WhiteNoise&) const = default;
+};
+
+/// amplitude sin(2 pi t / period).
+struct Sine {
+  double amplitude;
+  double period;  ///< time unit of the plant
+
+  bool operator==(const Sine&) const = default;
+};
+
+/// slope (t - start) from t = start on, 0 before it.
+struct Ramp {
+  double slope;  ///< per time unit of the plant
+  double start;  ///< time unit of the plant
+
+  bool operator==(const Ramp&) const = default;
+};
+
+/// 0 at first, and `level` from `sample` on.
+struct StepSequence {
+  struct Step {
+    int sample;
+    double level;
+
+    bool operator==(const Step&) const = default;
+  };
+  std::vector<Step> steps;  ///< in the order of their samples
+
+  bool operator==(const StepSequence&) const = default;
+};
+
+/// v(k) = v(k - 1) + white normal numbers of the standard deviation factor *
+/// disturbance.v_standard_deviation, from v = 0.
+struct RandomWalk {
+  double factor = 1.0;
+
+  bool operator==(const RandomWalk&) const = default;
+};
+
+/// White noise as WhiteNoise has it, but in bursts with silence between them: after each sample a burst ends
+/// with the probability 1 / length, and after a silent one a burst begins with 1 / pause.
+struct Bursts {
+  double factor = 1.0;
+  double length = 20.0;  ///< mean of a burst, samples
+  double pause = 80.0;   ///< mean between bursts, samples
+
+  bool operator==(const Bursts&) const = default;
+};
+
+using DisturbanceSignal = std::variant<WhiteNoise, Sine, Ramp, StepSequence, RandomWalk, Bursts>;
+
+/// The signal times a factor.
+DisturbanceSignal scaled(DisturbanceSignal signal, double factor);
+
+/// What stands between the signal v of a disturbance and the CV.
+enum class DisturbanceModel : std::int8_t {
+  first_order = 0,        ///< G_d = gain / (time_constant s + 1)
+  transfer_function = 1,  ///< any G_d; it may integrate
+  direct = 2,             ///< nothing: y_d = v, without the hold of a sample
+};
+
+/// An unmeasured disturbance y_d = G_d v added to one CV, to an MV between controller and plant, or to an
+/// inner input of a nonlinear plant.
+struct Disturbance {
+  Eigen::Index cv;       ///< -1 for one that is not on a CV
+  double gain;           ///< CV unit per unit of v; of a first-order G_d
+  double time_constant;  ///< time unit of the plant; of a first-order G_d
+  DisturbanceModel model = DisturbanceModel::first_order;
+  std::optional<TransferFunction> Gd = {};  ///< when the model is `transfer_function`
+  DisturbanceSignal signal = WhiteNoise{};
+  std::optional<Eigen::Index> inner_input = {};  ///< place in NonlinearModel::inner_inputs
+  std::optional<Eigen::Index> mv = {};           ///< added to this MV on its way to the plant
+  bool shares_signal = false;  ///< has the v of the first disturbance of the experiment, not one of its own
+
+  /// Is it added to the output of the plant?
+  bool is_on_cv() const { return !inner_input && !mv; }
+
+  friend bool operator==(const Disturbance& a, const Disturbance& b);
+};
+
+/// When the faults of an experiment begin: their share grows from 0 before `sample` to 1 from
+/// `sample + growth` on, along a line between.
+struct Onset {
+  int sample = 0;
+  int growth = 0;  ///< samples; 0: a step
+
+  double share(Eigen::Index k) const {
+    return k < sample ? 0.0 : k >= sample + growth ? 1.0 : static_cast<double>(k - sample) / growth;
+  }
+  bool from_the_start() const { return sample == 0 && growth == 0; }
+
+  bool operator==(const Onset&) const = default;
+};
+
+/// The kind of an experiment with these faults; changed parameters are a mismatch.
+ExperimentKind kind_of(const std::vector<Mismatch>& mismatches,
+                       const std::vector<ParameterChange>& parameters,
+                       const std::vector<Disturbance>& disturbances);
+
+/// An experiment that a study spells out, such as those of table 6.3.
+struct Scenario {
+  std::string name;
+  std::string description;  ///< for people; may be empty
+  std::vector<Mismatch> mismatches;
+  std::vector<Disturbance> disturbances;
+  /// The CVs that a diagnosis should find; none given: those with a fault.
+  std::optional<std::vector<Eigen::Index>> affected_cvs;
+  std::vector<ParameterChange> parameters = {};  ///< mismatches of a nonlinear plant
+
+  bool operator==(const Scenario&) const = default;
+};
+
+}  // namespace mpm

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenarios/faults/fault.hpp"
+#include "scenarios/faults/signal_sequence.hpp"
+#include "scenarios/random/distribution.hpp"
+
+// What the random mismatches and disturbances of a study are drawn from.
+
+namespace mpm {
+
+/// How far a random mismatch reaches.
+enum class MismatchExtent : std::int8_t {
+  parameter = 0,  ///< one parameter of one channel
+  channel = 1,    ///< gain, time constant and dead time of one channel
+  cv = 2,         ///< one parameter of every channel of a CV, each by its own amount
+  mv = 3,         ///< the gain of every channel of an MV, all by the same factor: its actuator
+};
+
+inline constexpr std::array kMismatchExtents{MismatchExtent::parameter, MismatchExtent::channel,
+                                             MismatchExtent::cv, MismatchExtent::mv};
+
+/// "parameter", "channel", "cv", "mv"
+std::string_view to_string(MismatchExtent extent);
+
+/// The parameters that random mismatches change.
+inline constexpr std::array kRandomMismatchParameters{
+    MismatchParameter::gain,         MismatchParameter::time_constant,    MismatchParameter::dead_time,
+    MismatchParameter::second_order, MismatchParameter::inverse_response, MismatchParameter::sign};
+
+/// A parameter of a nonlinear plant that random mismatches change.
+struct PlantParameterRange {
+  std::string name;
+  Distribution factor;                     ///< of the nominal value
+  std::vector<Eigen::Index> affected_cvs;  ///< that a diagnosis should find
+
+  bool operator==(const PlantParameterRange&) const = default;
+};
+
+/// Ranges of the random mismatches (table 6.4). Channels are pairs of a CV and an MV with non-zero gain.
+struct MismatchRanges {
+  /// Relative frequency of each of kRandomMismatchParameters; they need not sum to one.
+  std::array<double, kRandomMismatchParameters.size()> parameter_weight{1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
+  /// Relative frequency of each of kMismatchExtents.
+  std::array<double, kMismatchExtents.size()> extent_weight{1.0, 0.0, 0.0, 0.0};
+  Distribution gain_factor = Distribution::uniform(0.3, 1.5);
+  Distribution time_constant_factor = Distribution::uniform(0.3, 3.0);
+  /// Added to the dead time, in the time unit of the plant. Where the sum would be negative the draw is
+  /// confined to shifts of at least minus the dead time (docs/methods.md).
+  Distribution dead_time_shift = Distribution::uniform(-2.0, 2.0);
+  /// Time constant of a further lag, and of an inverse response, over the residence time of the channel.
+  Distribution second_order = Distribution::uniform(0.2, 1.0);
+  Distribution inverse_response = Distribution::uniform(0.2, 1.0);
+  /// Sizes are scaled until the loop has this effect (FaultScales); none: they are as drawn.
+  std::optional<Distribution> impact = {};
+  std::vector<PlantParameterRange> plant_parameters = {};  ///< of a nonlinear plant, in place of channels
+
+  bool operator==(const MismatchRanges&) const = default;
+};
+
+/// The signal v of a random disturbance.
+enum class DisturbanceShape : std::int8_t {
+  white = 0,
+  step = 1,
+  ramp = 2,
+  random_walk = 3,
+  sine = 4,
+  burst = 5
+};
+
+inline constexpr std::array kDisturbanceShapes{DisturbanceShape::white, DisturbanceShape::step,
+                                               DisturbanceShape::ramp,  DisturbanceShape::random_walk,
+                                               DisturbanceShape::sine,  DisturbanceShape::burst};
+
+/// "white", "step", "ramp", "random_walk", "sine", "burst"
+std::string_view to_string(DisturbanceShape shape);
+
+/// Where a random disturbance is added.
+enum class DisturbancePlace : std::int8_t {
+  cv = 0,       ///< one CV
+  mv = 1,       ///< an MV between controller and plant
+  several = 2,  ///< two or three CVs, each through its own G_d from the same v
+};
+
+inline constexpr std::array kDisturbancePlaces{DisturbancePlace::cv, DisturbancePlace::mv,
+                                               DisturbancePlace::several};
+
+/// "cv", "mv", "several"
+std::string_view to_string(DisturbancePlace place);
+
+/// Ranges of the random unmeasured disturbances: G_d = gain / (time_constant s + 1) driven by v. White v is
+/// normal with v_standard_deviation; a signal of another shape has the size at which y_d has the variance
+/// that white v gives it, so that the shape alone differs (docs/methods.md).
+struct DisturbanceRanges {
+  Distribution gain = Distribution::uniform(0.1, 3.0);
+  Distribution time_constant = Distribution::uniform(30.0, 300.0);
+  double v_standard_deviation = 1.0;               ///< of the white normal sequence, held over a sample
+  SignalSequence sequence = SignalSequence::each;  ///< of the random numbers of v
+  /// Relative frequency of each of kDisturbanceShapes and of kDisturbancePlaces.
+  std::array<double, kDisturbanceShapes.size()> signal_weight{1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  std::array<double, kDisturbancePlaces.size()> place_weight{1.0, 0.0, 0.0};
+  /// Gains are scaled until the loop has this effect (FaultScales); none: they are as drawn.
+  std::optional<Distribution> impact = {};
+
+  bool operator==(const DisturbanceRanges&) const = default;
+};
+
+/// When the faults of an experiment begin, in samples. Both are rounded down to whole numbers.
+struct OnsetRanges {
+  Distribution sample = Distribution::constant(0.0);
+  Distribution growth = Distribution::constant(0.0);
+
+  bool operator==(const OnsetRanges&) const = default;
+};
+
+}  // namespace mpm

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/loop/plant_record.hpp"
+#include "scenarios/study/study.hpp"
+
+// A record of the plant as a study: the same controller under what moved the plant while it was recorded.
+
+namespace mpm {
+
+/// The study whose loops are as long as the record, under its measured disturbances, and with the setpoints
+/// and soft limits as they were at the time (those of the study where they were not recorded). Its basis case
+/// is the nominal loop of the record, and its experiments are loops of this very controller, excitation and
+/// length. Samples are missing in them as often as in the record, in gaps of the same mean length, filled as
+/// the [data] says, and they have as many candidates, up to 9, one of which drives every second disturbance;
+/// what else a historian does to them stands in the [record] of the study. It is the text of `study` with
+/// other values, as parse_study() reads it: what is not known of a plant (a test signal, named scenarios,
+/// thresholds, reported numbers) is left out, and so is the self-check, since nobody can choose another
+/// excitation.
+///
+/// Moves of MDs are steps of the text: with more than 10000 of them moves below a growing part of the
+/// standard deviation are left out of the simulated loops.
+///
+/// Errors: InputError as parse_study(), for limits outside of the hard ones, and for a record that is too
+/// short for the windows of the study.
+Study recorded_study(const Study& study, const PlantRecord& record, const std::vector<std::string>& methods,
+                     const std::optional<MonitoringOptions>& monitoring);
+
+/// The study of a calibration run: `healthy` loops of recorded_study() without a fault, and `faulty` ones
+/// with the faults of the study, its kinds as often as there, under the seed of the study with the bits of
+/// kCalibrationBits flipped. Errors: as parse_study().
+Study trial_study(const Study& recorded, int healthy, int faulty);
+
+/// Is this the study of a calibration run? Its title says so.
+bool is_trial_study(const Study& study);
+
+}  // namespace mpm

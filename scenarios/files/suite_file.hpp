@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/study/study.hpp"
+
+namespace mpm {
+
+/// A plant or a family of a suite.
+struct SuiteAxis {
+  std::string name;   ///< part of the name of a file
+  std::string title;  ///< one line for people
+  /// Of a family: it draws exactly what the method `ceiling` knows of, which is a reference there.
+  bool has_reference = false;
+};
+
+/// A plant under the experiments of a family: a study of its own.
+struct SuiteCell {
+  std::size_t plant = 0;   ///< place in Suite::plants
+  std::size_t family = 0;  ///< place in Suite::families
+  Study study;             ///< `source` is its whole text, so that its archive stands alone
+};
+
+/// The same experiments for everybody who makes methods of assessment: every plant under every family of
+/// experiments, as far as it can have them.
+struct Suite {
+  std::string name;
+  std::string version;  ///< another one whenever a number of a leaderboard can change
+  std::string title;
+  std::uint64_t seed = 0;
+  std::vector<std::string> methods;
+  std::vector<SuiteAxis> plants;
+  std::vector<SuiteAxis> families;
+  std::vector<SuiteCell> cells;  ///< plant by plant, each in the order of the families
+
+  std::string name_of(const SuiteCell& cell) const;  ///< "PLANT.FAMILY"
+};
+
+/// What of a suite is run; what is left out changes nothing in the rest.
+struct SuiteChoice {
+  std::optional<std::uint64_t> seed = {};  ///< instead of that of the file
+  std::vector<std::string> plants = {};    ///< by name; empty: all
+  std::vector<std::string> families = {};  ///< by name; empty: all
+};
+
+/// Reads a suite file (docs/suite.md). The text of a cell is that of the study of its plant, with the changes
+/// under `common`, those of the family and those for this cell alone laid over it in this order. Its seed is
+/// drawn from that of the suite by its place among plants and families, below 2^53 so that JSON can have it.
+///
+/// Errors: InputError "FILE:LINE: KEY: ..." for the file itself; for a cell that is no study the same with
+/// "FILE (PLANT.FAMILY)" as the file, where LINE counts in the text of that cell; for a name in `choice` that
+/// the suite does not have.
+Suite load_suite(const std::filesystem::path& path, const SuiteChoice& choice = {});
+
+/// The suite in a file, or the shipped suite of that name in the folder `suites` beside the shipped studies.
+/// Errors: as load_suite(); InputError that lists the shipped ones when there is neither.
+Suite find_suite(const std::string& path_or_name, const SuiteChoice& choice = {});
+
+}  // namespace mpm

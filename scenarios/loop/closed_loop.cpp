@@ -1,0 +1,299 @@
+#include "scenarios/loop/closed_loop.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "plants/linear/changing_plant.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/faults/other_fault.hpp"
+#include "scenarios/loop/signals.hpp"
+#include "scenarios/study/study_controller.hpp"
+
+namespace mpm {
+namespace {
+
+void require_shape(const char* name, const Eigen::MatrixXd& signal, Eigen::Index rows, Eigen::Index cols) {
+  if (signal.rows() != rows || signal.cols() != cols)
+    throw InputError(name, fmt::format("{} x {}", signal.rows(), signal.cols()),
+                     fmt::format("{} x {}", rows, cols));
+}
+
+void require_fit(const Study& study, const Plant& plant) {
+  if (plant.sample_time() != study.controller.sample_time)
+    throw InputError("sample time of the plant", fmt::to_string(plant.sample_time()),
+                     fmt::format("{}, that of the controller", study.controller.sample_time));
+  if (plant.output_count() != study.cv_count())
+    throw InputError("outputs of the plant", fmt::to_string(plant.output_count()),
+                     fmt::to_string(study.cv_count()));
+  if (plant.input_count() < study.mv_count() + study.md_count())
+    throw InputError("inputs of the plant", fmt::to_string(plant.input_count()),
+                     fmt::format("{} or more", study.mv_count() + study.md_count()));
+}
+
+Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
+  Trajectory trajectory;
+  const Eigen::Index samples = study.simulation.samples;
+  trajectory.y.setZero(study.cv_count(), samples);
+  trajectory.u.setZero(study.mv_count(), samples);
+  trajectory.u_target.setZero(study.mv_count(), samples);
+  trajectory.d = signals.d_measured.size() > 0 ? signals.d_measured : signals.d;
+  trajectory.y_set = signals.y_set;
+  return trajectory;
+}
+
+/// Do the soft limits have other values from this sample on?
+bool some_limit_moves(const Study& study, Eigen::Index k) {
+  const std::vector<LimitStep>& steps = study.simulation.limit_steps;
+  return std::any_of(steps.begin(), steps.end(), [k](const LimitStep& step) { return step.sample == k; });
+}
+
+void fail(Trajectory& trajectory, LoopFailure failure, std::string message) {
+  trajectory.status = ControlStatus::failed;
+  trajectory.failure = failure;
+  trajectory.message = std::move(message);
+}
+
+/// Puts the plant at rest. Whether it can rest there depends on what differs from the model in this loop:
+/// that is an outcome of the loop.
+void begin(Plant& plant, const Eigen::VectorXd& input, Trajectory& trajectory) {
+  try {
+    plant.reset(input);
+  } catch (const NoSteadyState& error) {
+    fail(trajectory, LoopFailure::no_steady_state,
+         fmt::format("the plant has no steady state to begin at: {}", error.what()));
+  }
+}
+
+/// What stands between the controller and the plant: a valve, an operator, a changed limit.
+class Surroundings {
+ public:
+  Surroundings(const Study& study, const LoopSignals& signals)
+      : study_(study), faults_(signals.faults), u_d_(signals.u_d) {}
+
+  /// Before the controller decides on sample k: its soft limits, where they move.
+  void prepare(Eigen::Index k, Controller& controller) const {
+    if (!some_limit_moves(study_, k) && !(faults_.limit && k == faults_.limit->sample))
+      return;
+    Limits limits = soft_limits(study_, k);
+    if (faults_.limit && k >= faults_.limit->sample) {
+      limits.lower(faults_.limit->cv) += faults_.limit->shift;
+      limits.upper(faults_.limit->cv) += faults_.limit->shift;
+    }
+    controller.set_cv_soft(limits);
+  }
+
+  /// `u` is what the controller asks for at sample k; it becomes what the record has, and `acting` what the
+  /// plant gets.
+  void pass(Eigen::Index k, const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::Ref<Eigen::VectorXd> u,
+            Eigen::Ref<Eigen::VectorXd> acting) {
+    if (faults_.hold && k >= faults_.hold->sample)
+      u(faults_.hold->mv) = before(faults_.hold->mv);
+    acting = u;
+    if (faults_.valve && k >= faults_.valve->sample) {
+      const LoopFaults::Valve& fault = *faults_.valve;
+      if (!valve_)
+        valve_.emplace(fault.stickband, fault.jump, before(fault.mv));
+      acting(fault.mv) = valve_->follow(u(fault.mv));
+    }
+    if (u_d_.size() > 0)
+      acting += u_d_.col(k);
+  }
+
+ private:
+  const Study& study_;
+  const LoopFaults& faults_;
+  const Eigen::MatrixXd& u_d_;
+  std::optional<StickyValve> valve_;
+};
+
+/// The faults of the loop, at the sample of the onset.
+LoopFaults loop_faults(const ExperimentDraw& draw) {
+  LoopFaults faults;
+  if (!draw.other)
+    return faults;
+  const OtherFault& fault = *draw.other;
+  switch (fault.kind) {
+    case OtherFaultKind::stiction:
+    case OtherFaultKind::deadband:
+      faults.valve = {fault.variable, fault.size, fault.jump, draw.onset.sample};
+      break;
+    case OtherFaultKind::held_mv:
+      faults.hold = {fault.variable, draw.onset.sample};
+      break;
+    case OtherFaultKind::limit:
+      faults.limit = {fault.variable, fault.size, draw.onset.sample};
+      break;
+    case OtherFaultKind::sensor_bias:
+    case OtherFaultKind::sensor_drift:
+    case OtherFaultKind::md_gain:
+    case OtherFaultKind::md_noise:
+      break;  // signals
+  }
+  return faults;
+}
+
+/// a(k) of the onset over the record.
+Eigen::VectorXd shares(const Onset& onset, Eigen::Index samples) {
+  Eigen::VectorXd a(samples);
+  for (Eigen::Index k = 0; k < samples; ++k)
+    a(k) = onset.share(k);
+  return a;
+}
+
+/// The plant of the experiment.
+std::unique_ptr<Plant> plant_of(const Study& study, const ExperimentDraw& draw) {
+  const double Ts = study.controller.sample_time;
+  if (study.nonlinear)
+    return nonlinear_plant(study.nonlinear->model, Ts, study.nonlinear->integration, draw.parameters,
+                           draw.onset.sample);
+  TransferMatrix plant = with_mismatches(study.plant.G, draw.mismatches);
+  if (draw.onset.from_the_start() || draw.mismatches.empty())
+    return std::make_unique<LinearPlant>(plant, Ts);
+  return std::make_unique<ChangingPlant>(study.plant.G, plant, Ts,
+                                         shares(draw.onset, study.simulation.samples));
+}
+
+}  // namespace
+
+std::string_view to_string(LoopFailure failure) {
+  switch (failure) {
+    case LoopFailure::none:
+      return "none";
+    case LoopFailure::solver:
+      return "solver";
+    case LoopFailure::plant:
+      return "plant";
+    case LoopFailure::no_steady_state:
+      return "no_steady_state";
+    case LoopFailure::controller:
+      return "controller";
+  }
+  return "unknown";
+}
+
+void SolverStatistics::add(const SolverStatistics& other) {
+  steps += other.steps;
+  iterations += other.iterations;
+  fallbacks += other.fallbacks;
+  uncertified += other.uncertified;
+  largest_kkt_residual = std::max(other.largest_kkt_residual, largest_kkt_residual);  // keeps a NaN
+}
+
+Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
+                           const QpSolverFactory& factory, const StepObserver& observer) {
+  require_fit(study, plant);
+  const Eigen::Index samples = study.simulation.samples;
+  require_shape("measured disturbances", signals.d, study.md_count(), samples);
+  require_shape("measurement noise", signals.noise, study.cv_count(), samples);
+  require_shape("unmeasured disturbances", signals.y_d, study.cv_count(), samples);
+  if (signals.y_set.size() > 0)
+    require_shape("setpoints", signals.y_set, study.cv_count(), samples);
+  if (signals.dither.size() > 0)
+    require_shape("dither", signals.dither, study.mv_count(), samples);
+
+  if (signals.u_d.size() > 0)
+    require_shape("disturbances of the MVs", signals.u_d, study.mv_count(), samples);
+  if (signals.d_measured.size() > 0)
+    require_shape("measurements of the MDs", signals.d_measured, study.md_count(), samples);
+
+  const Eigen::Index inner =
+      signals.within_plant.size() > 0 ? plant.input_count() - study.mv_count() - study.md_count() : 0;
+  if (signals.within_plant.size() > 0)
+    require_shape("disturbances within the plant", signals.within_plant, inner, samples);
+
+  const std::unique_ptr<Controller> own = controller_of(study, study.controller, factory);
+  Controller& controller = *own;
+  const Eigen::VectorXd d_rest = Eigen::VectorXd::Zero(study.md_count());
+  controller.set_setpoints(study.simulation.initial_setpoint);
+  Eigen::VectorXd input = Eigen::VectorXd::Zero(plant.input_count());
+  input.head(study.mv_count()) = controller.nominal_target(d_rest);
+  controller.reset(input.head(study.mv_count()), d_rest);
+
+  Trajectory trajectory = empty_trajectory(study, signals);
+  Surroundings surroundings(study, signals);
+  Eigen::VectorXd u = input.head(study.mv_count());
+  Eigen::VectorXd u_before = u;
+  begin(plant, input, trajectory);
+  if (study.controller_program)
+    trajectory.solver.largest_kkt_residual = kNaN;
+  for (Eigen::Index k = 0; k < samples && trajectory.failure == LoopFailure::none; ++k) {
+    trajectory.y.col(k) = plant.output() + signals.y_d.col(k) + signals.noise.col(k);
+    if (signals.y_set.size() > 0)
+      controller.set_setpoints(signals.y_set.col(k));
+    surroundings.prepare(k, controller);
+    const ControlMove& move = controller.step(trajectory.y.col(k), trajectory.d.col(k));
+    trajectory.solver.steps += 1;
+    trajectory.solver.iterations += move.iterations;
+    trajectory.solver.fallbacks += move.fallbacks;
+    trajectory.solver.uncertified += move.uncertified;
+    if (observer)
+      observer(controller);
+    trajectory.status = move.status;
+    if (move.status == ControlStatus::failed)
+      fail(trajectory, study.controller_program ? LoopFailure::controller : LoopFailure::solver,
+           controller.failure());
+    if (move.status != ControlStatus::ok)
+      break;
+    trajectory.solver.largest_kkt_residual =
+        std::max(trajectory.solver.largest_kkt_residual, move.kkt_residual);  // keeps a NaN
+    u = move.u;
+    if (signals.dither.size() > 0) {
+      const Limits& hard = study.controller.mv_hard;
+      u = (move.u + signals.dither.col(k)).cwiseMax(hard.lower).cwiseMin(hard.upper);
+      controller.set_acting(u);
+    }
+    surroundings.pass(k, u_before, u, input.head(study.mv_count()));
+    u_before = u;
+    input.segment(study.mv_count(), study.md_count()) = signals.d.col(k);
+    if (inner > 0)
+      input.tail(inner) = signals.within_plant.col(k);
+    if (plant.advance(input) != PlantStatus::ok) {
+      fail(trajectory, LoopFailure::plant, plant.failure());
+      break;
+    }
+    trajectory.u.col(k) = u;
+    trajectory.u_target.col(k) = move.u_target;
+    trajectory.samples_done = k + 1;
+  }
+  return trajectory;
+}
+
+Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model, const LoopSignals& signals,
+                           const QpSolverFactory& factory, const StepObserver& observer) {
+  LinearPlant plant(plant_model, study.controller.sample_time);
+  return run_closed_loop(study, plant, signals, factory, observer);
+}
+
+LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw) {
+  LoopSignals signals{
+      measured_disturbances(study),           draw.noise_factor * measurement_noise(study, draw.index),
+      unmeasured_disturbances(study, draw),   setpoints(study),
+      disturbances_within_plant(study, draw), dither(study)};
+  signals.u_d = disturbances_of_mvs(study, draw);
+  signals.d_measured = measurements_of_mds(study, draw);
+  signals.faults = loop_faults(draw);
+  if (const Eigen::MatrixXd errors = sensor_errors(study, draw); errors.size() > 0)
+    signals.y_d += errors;
+  return signals;
+}
+
+Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
+                               const StepObserver& observer) {
+  if (draw.tuning) {
+    ExperimentDraw rest = draw;
+    rest.tuning.reset();
+    return simulate_experiment(with_tuning(study, draw), rest, factory, observer);
+  }
+  const std::unique_ptr<Plant> plant = plant_of(study, draw);
+  return run_closed_loop(study, *plant, experiment_signals(study, draw), factory, observer);
+}
+
+}  // namespace mpm

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "plants/linear/transfer_matrix.hpp"
+#include "plants/plant.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/study/study.hpp"
+#include "solvers/controller.hpp"
+
+namespace mpm {
+
+/// How hard the optimisation problems of a closed loop were, and how well they were solved.
+struct SolverStatistics {
+  std::int64_t steps = 0;
+  std::int64_t iterations = 0;
+  std::int64_t fallbacks = 0;         ///< problems whose answer is Ipopt's (CertifiedSolver)
+  std::int64_t uncertified = 0;       ///< solved, but not certified (QpSolver); kept in no archive
+  double largest_kkt_residual = 0.0;  ///< NaN: of answers that nobody can certify
+
+  void add(const SolverStatistics& other);
+};
+
+/// What made a closed loop fail.
+enum class LoopFailure {
+  none,
+  solver,           ///< it gave no answer
+  plant,            ///< it could not be integrated
+  no_steady_state,  ///< the plant cannot rest where the loop begins
+  controller,       ///< the program that is the controller gave no move
+};
+
+/// "none", "solver", "plant", "no_steady_state", "controller"
+std::string_view to_string(LoopFailure failure);
+
+/// The data of one closed loop; one row a variable, one column a sample.
+///
+/// | symbol   | member   | shape  | meaning                                      |
+/// |----------|----------|--------|----------------------------------------------|
+/// | y        | y        | ny x N | measured CVs, noise included                 |
+/// | u        | u        | nu x N | MVs, u(k) acts from sample k on              |
+/// | u_target | u_target | nu x N | targets of the optimizer                     |
+/// | d        | d        | nd x N | measured disturbances, d(k) acts from k on   |
+/// | y_set    | y_set    | ny x N | setpoints; empty when no CV has one          |
+///
+/// They are what a historian of the loop has: of a valve that sticks and of a disturbance on an MV it sees
+/// what the controller asked for, of an MV that is held the value at which it is held, and of the MDs the
+/// measurements.
+struct Trajectory {
+  ControlStatus status = ControlStatus::ok;
+  Eigen::Index samples_done = 0;  ///< columns after these are zero when the status is not `ok`
+  Eigen::MatrixXd y, u, u_target, d, y_set;
+  SolverStatistics solver;
+  LoopFailure failure = LoopFailure::none;  ///< another one if and only if the status is `failed`
+  std::string message = {};                 ///< what failed, for people; empty when nothing did
+};
+
+/// What differs in a loop from what the controller takes for granted, besides the signals: at most one of
+/// each, from a sample on.
+struct LoopFaults {
+  struct Valve {
+    Eigen::Index mv;
+    double stickband, jump;  ///< of a StickyValve
+    int sample;
+  };
+  struct Hold {
+    Eigen::Index mv;
+    int sample;
+  };
+  struct LimitShift {
+    Eigen::Index cv;
+    double shift;  ///< of both soft limits, CV unit
+    int sample;
+  };
+
+  std::optional<Valve> valve = {};
+  std::optional<Hold> hold = {};  ///< the MV stays where it is, and the record says so
+  std::optional<LimitShift> limit = {};
+};
+
+/// The signals that act on a loop from outside.
+struct LoopSignals {
+  Eigen::MatrixXd d;        ///< measured disturbances, nd x N
+  Eigen::MatrixXd noise;    ///< added to the measurements, ny x N
+  Eigen::MatrixXd y_d;      ///< unmeasured disturbances, added to the outputs, ny x N
+  Eigen::MatrixXd y_set{};  ///< setpoints, ny x N; empty: they stay as they are at the start
+  /// Unmeasured disturbances that act within the plant: its inputs after MVs and MDs, from sample k on, one
+  /// column a sample. Empty: they stay zero.
+  Eigen::MatrixXd within_plant{};
+  /// Test signals that are added to the moves of the controller, nu x N; empty: none.
+  Eigen::MatrixXd dither{};
+  Eigen::MatrixXd u_d{};         ///< added to the MVs on their way to the plant, nu x N; empty: nothing
+  Eigen::MatrixXd d_measured{};  ///< MDs as controller and record have them, nd x N; empty: d
+  LoopFaults faults{};
+};
+
+/// Called after each step with the controller, whose two problems and answers it may look at.
+using StepObserver = std::function<void(const Controller& controller)>;
+
+/// Runs the controller of the study on `plant`, whose inputs are the MVs and then the MDs of the study, from
+/// the steady state of the nominal model at zero disturbances that Controller::nominal_target() gives for the
+/// first setpoints. The soft limits are those of soft_limits() at each sample.
+///
+/// What acts, and what the record shows, is the move of the controller and the dither, within the hard limits
+/// of the MV. The controller knows it, as one does that is told of a plant test: its model has the MVs that
+/// act, and it plans without the dither.
+///
+/// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant
+/// cannot be integrated (status `failed`), and does not begin when the plant has no steady state there
+/// (`failed` as well). Throws InputError when a signal has not the shape that the study
+/// asks for, or the plant another sample time, other outputs or fewer inputs.
+///
+/// A controller on a linear model thinks in deviations: a nonlinear plant goes in as a DeviationPlant.
+Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
+                           const QpSolverFactory& factory, const StepObserver& observer = {});
+
+/// The same on the linear plant with these transfer functions.
+Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
+                           const QpSolverFactory& factory, const StepObserver& observer = {});
+
+/// The signals that act on the loop of one experiment, from (study, draw) alone; `y_d` with the errors of its
+/// sensors.
+LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw);
+
+/// The closed loop of one experiment: its controller, its plant and its signals, from (study, draw) alone.
+Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
+                               const StepObserver& observer = {});
+
+}  // namespace mpm

@@ -1,0 +1,207 @@
+#include "scenarios/loop/draw.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "scenarios/loop/fault_draw.hpp"
+#include "scenarios/random/random_stream.hpp"
+
+namespace mpm {
+namespace {
+
+double scaled(const Mismatch& mismatch, double scale) {
+  switch (mismatch.parameter) {
+    case MismatchParameter::gain:
+    case MismatchParameter::time_constant:
+      return std::pow(mismatch.value, scale);
+    case MismatchParameter::dead_time:
+    case MismatchParameter::second_order:
+    case MismatchParameter::inverse_response:
+      return scale * mismatch.value;
+    case MismatchParameter::sign:
+    case MismatchParameter::channel:
+      break;
+  }
+  return mismatch.value;
+}
+
+TuningChange draw_tuning(const Study& study, std::int64_t index) {
+  RandomStream stream(study.seed, static_cast<std::uint64_t>(index), StreamId::tuning);
+  const std::array<double, 4> weights = study.tuning.weights_for(study.controller);
+  if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; }))
+    throw InputError("tuning.parameter_weights", "a weight of 0 for everything that the controller has",
+                     "at least one > 0");
+  const TuningParameter parameter = kTuningParameters[draw_place(weights, stream)];
+  const std::vector<Eigen::Index> variables = variables_with(study.controller, parameter);
+  const Eigen::Index variable = variables[stream.below(variables.size())];
+  return {parameter, variable, study.tuning.factor.sample(stream)};
+}
+
+double draw_noise_factor(const Study& study, std::int64_t index) {
+  RandomStream stream(study.seed, static_cast<std::uint64_t>(index), StreamId::noise_factor);
+  return study.simulation.noise.factor.sample(stream);
+}
+
+ExperimentDraw named_experiment(const Study& study, std::int64_t index) {
+  if (index >= study.experiment_count())
+    throw InputError("experiment index", fmt::format("{}", index),
+                     fmt::format("0 to {}, the named scenarios of the study", study.experiment_count() - 1));
+  const Scenario& scenario = study.scenarios[static_cast<std::size_t>(index)];
+  ExperimentDraw draw{index,
+                      kind_of(scenario.mismatches, scenario.parameters, scenario.disturbances),
+                      scenario.mismatches,
+                      scenario.disturbances,
+                      true,
+                      scenario.affected_cvs,
+                      scenario.parameters};
+  draw.noise_factor = draw_noise_factor(study, index);
+  return draw;
+}
+
+}  // namespace
+
+std::vector<AffectedCv> ExperimentDraw::affected() const {
+  std::map<Eigen::Index, std::pair<bool, bool>> faults;  // CV -> mismatch, disturbance
+  for (const Mismatch& mismatch : mismatches)
+    faults[mismatch.cv].first = true;
+  for (const Disturbance& disturbance : disturbances)
+    if (disturbance.is_on_cv())
+      faults[disturbance.cv].second = true;
+  if (affected_cvs) {
+    const auto own = std::exchange(faults, {});
+    for (const Eigen::Index cv : *affected_cvs)
+      faults[cv] = own.contains(cv)
+                       ? own.at(cv)
+                       : std::pair(!mismatches.empty() || !parameters.empty(), !disturbances.empty());
+  }
+  std::vector<AffectedCv> list;
+  for (const auto& [cv, fault] : faults)
+    list.push_back({cv, fault.first && fault.second ? FaultSource::mpm_ud
+                        : fault.first               ? FaultSource::mpm
+                        : fault.second              ? FaultSource::ud
+                                                    : FaultSource::none});
+  return list;
+}
+
+Eigen::Index ExperimentDraw::true_cv() const {
+  const std::vector<AffectedCv> list = affected();
+  return list.size() == 1 ? list.front().cv : -1;
+}
+
+ExperimentDraw ExperimentDraw::mismatch_alone() const {
+  ExperimentDraw alone = *this;
+  alone.disturbances.clear();
+  alone.kind = kind_of(alone.mismatches, alone.parameters, alone.disturbances);
+  return alone;
+}
+
+ExperimentDraw ExperimentDraw::disturbance_alone() const {
+  ExperimentDraw alone = *this;
+  alone.mismatches.clear();
+  alone.parameters.clear();
+  alone.kind = kind_of(alone.mismatches, alone.parameters, alone.disturbances);
+  return alone;
+}
+
+KindSequence::KindSequence(const ExperimentCounts& counts) {
+  // A kind without experiments is never behind, so that adding one to the list changes no other study.
+  constexpr std::array kinds{ExperimentKind::mpm,     ExperimentKind::ud,     ExperimentKind::mpm_ud,
+                             ExperimentKind::healthy, ExperimentKind::tuning, ExperimentKind::other};
+  std::array<std::pair<ExperimentKind, int>, kinds.size()> wanted;
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    wanted[k] = {kinds[k], counts.of(kinds[k])};
+  for (const auto& [kind, count] : wanted)
+    if (count < 0)
+      throw InputError("experiments", fmt::format("{}", count), "counts >= 0");
+  if (counts.total() == 0)
+    throw InputError("experiments", "no experiment at all", "at least one");
+
+  int divisor = 0;
+  for (const auto& [kind, count] : wanted)
+    divisor = std::gcd(divisor, count);
+  const int length = counts.total() / divisor;
+  std::array<int, kinds.size()> placed{};
+  for (int i = 0; i < length; ++i) {
+    // The kind that is furthest behind its share of the first i + 1 experiments; ties go in order of kind.
+    std::size_t next = 0;
+    std::array<std::int64_t, kinds.size()> behind{};
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      behind[k] = std::int64_t{wanted[k].second / divisor} * (i + 1) - std::int64_t{placed[k]} * length;
+      if (behind[k] > behind[next])
+        next = k;
+    }
+    ++placed[next];
+    period_.push_back(wanted[next].first);
+  }
+}
+
+ExperimentKind KindSequence::operator[](std::int64_t index) const {
+  return period_[static_cast<std::size_t>(index) % period_.size()];
+}
+
+ExperimentDraw draw_experiment(const Study& study, std::int64_t index) {
+  if (index < 0)
+    throw InputError("experiment index", fmt::format("{}", index), ">= 0");
+  if (study.names_scenarios())
+    return named_experiment(study, index);
+  ExperimentDraw draw;
+  draw.index = index;
+  draw.noise_factor = draw_noise_factor(study, index);
+  draw.kind = KindSequence(study.experiments)[index];
+  const bool both = draw.kind == ExperimentKind::mpm_ud;
+  if (draw.kind == ExperimentKind::mpm || both)
+    draw_mismatch(study, draw);
+  if (draw.kind == ExperimentKind::ud || both)
+    draw_disturbance(study, draw);
+  if (draw.kind == ExperimentKind::tuning)
+    draw.tuning = draw_tuning(study, index);
+  if (draw.kind == ExperimentKind::other)
+    draw_other_fault(study, draw);
+  if (!is_faultless(draw.kind))
+    draw.onset = draw_onset(study, index);
+  return draw;
+}
+
+ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultScales& scales) {
+  if (scales == FaultScales{})
+    return draw;
+  for (Mismatch& mismatch : draw.mismatches)
+    mismatch.value = scaled(mismatch, scales.mismatch);
+  for (ParameterChange& parameter : draw.parameters) {
+    const double nominal = nominal_value(study, parameter.name);
+    parameter.value = nominal * std::pow(parameter.value / nominal, scales.mismatch);
+  }
+  for (Disturbance& disturbance : draw.disturbances)
+    disturbance.gain *= scales.disturbance;
+  if (draw.other) {
+    OtherFault& fault = *draw.other;
+    fault.size = fault.kind == OtherFaultKind::md_gain ? std::pow(fault.size, scales.other)
+                                                       : scales.other * fault.size;
+    fault.jump *= scales.other;
+  }
+  draw.scales = scales;
+  return draw;
+}
+
+ExperimentDraw basis_draw() {
+  ExperimentDraw draw;
+  draw.index = kBasisIndex;
+  return draw;
+}
+
+Study with_tuning(const Study& study, const ExperimentDraw& draw) {
+  Study changed = study;
+  if (draw.tuning)
+    changed.controller = with_tuning(std::move(changed.controller), *draw.tuning);
+  return changed;
+}
+
+}  // namespace mpm

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/random/random_stream.hpp"
+#include "scenarios/study/study.hpp"
+
+// The parts of draw_experiment(): each fills in its fault. `draw` has its index and its kind.
+
+namespace mpm {
+
+/// A place drawn with these relative frequencies, one value of the stream.
+std::size_t draw_place(std::span<const double> weights, RandomStream& stream);
+
+/// The mismatches, or the changed parameters of a nonlinear plant with the CVs that they affect.
+void draw_mismatch(const Study& study, ExperimentDraw& draw);
+
+/// The disturbances, the first one on the CV of the mismatch where there is one.
+void draw_disturbance(const Study& study, ExperimentDraw& draw);
+
+/// The other fault, with the CVs that it affects.
+void draw_other_fault(const Study& study, ExperimentDraw& draw);
+
+/// The value of a parameter of the nonlinear plant of the study that its model rests on.
+double nominal_value(const Study& study, std::string_view parameter);
+
+Onset draw_onset(const Study& study, std::int64_t index);
+
+/// Relative frequencies of the other faults, 0 for those that the loops of the study cannot have: without MDs
+/// that move there is no wrong measurement of one, without soft limits none that is changed.
+std::array<double, kOtherFaultKinds.size()> other_weights(const Study& study);
+
+}  // namespace mpm

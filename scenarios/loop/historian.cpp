@@ -1,0 +1,128 @@
+#include "scenarios/loop/historian.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "plants/non_finite.hpp"
+#include "scenarios/loop/signals.hpp"
+#include "scenarios/random/random_stream.hpp"
+
+namespace mpm {
+namespace {
+
+/// Three draws for each sample, an outlier or not: another share changes no other outlier.
+void add_outliers(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
+  RandomStream stream = experiment_stream(study, index, StreamId::outliers);
+  for (Eigen::Index k = 0; k < y.cols(); ++k)
+    for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+      const bool outlier = stream.uniform() < study.record.outlier_share;
+      const double size = study.record.outlier_size.sample(stream);
+      const double sign = stream.uniform() < 0.5 ? -1.0 : 1.0;
+      if (outlier)
+        y(cv, k) += sign * size * study.simulation.noise_standard_deviation(cv);
+    }
+}
+
+void quantise(const Study& study, Eigen::MatrixXd& y) {
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+    const double step = study.record.quantisation * study.simulation.noise_standard_deviation(cv);
+    y.row(cv) = (step * (y.row(cv).array() / step).round()).matrix();
+  }
+}
+
+/// The share of the chain in the long run is also the probability that the record begins within a gap.
+void make_gaps(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
+  const double share = study.record.missing_share;
+  const double ends = 1.0 / study.record.missing_length;
+  const double begins = share * ends / (1.0 - share);
+  RandomStream stream = experiment_stream(study, index, StreamId::missing);
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv)
+    for (Eigen::Index k = 0; k < y.cols(); ++k) {
+      const bool after_gap = k > 0 && std::isnan(y(cv, k - 1));
+      const double probability = k == 0 ? share : after_gap ? 1.0 - ends : begins;
+      if (stream.uniform() < probability)
+        y(cv, k) = kNaN;
+    }
+}
+
+/// Each run of samples between two gaps, the longest there is, through the door.
+void compress(const Study& study, Eigen::MatrixXd& y) {
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+    const double deviation = study.record.compression * study.simulation.noise_standard_deviation(cv);
+    for (Eigen::Index from = 0; from < y.cols();) {
+      Eigen::Index to = from;
+      while (to < y.cols() && !std::isnan(y(cv, to)))
+        ++to;
+      if (to > from)
+        y.row(cv).segment(from, to - from) = compressed(y.row(cv).segment(from, to - from), deviation);
+      from = to + 1;
+    }
+  }
+}
+
+/// The straight line from sample `a` to sample `b`, in between.
+void draw_line(Eigen::RowVectorXd& signal, Eigen::Index a, Eigen::Index b) {
+  for (Eigen::Index k = a + 1; k < b; ++k)
+    signal(k) = signal(a) + (signal(b) - signal(a)) * static_cast<double>(k - a) / static_cast<double>(b - a);
+}
+
+}  // namespace
+
+Eigen::RowVectorXd compressed(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double deviation) {
+  Eigen::RowVectorXd read = signal;
+  Eigen::Index archived = 0;
+  double lowest = -kInfinity;  // slopes of the lines from the archived point that pass all samples since
+  double highest = kInfinity;
+  for (Eigen::Index k = 1; k < signal.size(); ++k) {
+    double distance = static_cast<double>(k - archived);
+    const double slope = (signal(k) - signal(archived)) / distance;
+    if (slope < lowest || slope > highest) {
+      draw_line(read, archived, k - 1);
+      archived = k - 1;
+      lowest = -kInfinity;
+      highest = kInfinity;
+      distance = 1.0;
+    }
+    lowest = std::max(lowest, (signal(k) - deviation - signal(archived)) / distance);
+    highest = std::min(highest, (signal(k) + deviation - signal(archived)) / distance);
+  }
+  draw_line(read, archived, signal.size() - 1);
+  return read;
+}
+
+Eigen::RowVectorXd filled(Eigen::RowVectorXd signal, GapFill fill) {
+  Eigen::Index before = -1;  // the last sample that is there
+  for (Eigen::Index k = 0; k < signal.size() && fill != GapFill::none; ++k) {
+    if (std::isnan(signal(k)))
+      continue;
+    if (before < 0)
+      signal.head(k).setConstant(signal(k));
+    else if (fill == GapFill::linear)
+      draw_line(signal, before, k);
+    else
+      signal.segment(before + 1, k - before - 1).setConstant(signal(before));
+    before = k;
+  }
+  if (before >= 0)
+    signal.tail(signal.size() - before - 1).setConstant(signal(before));
+  return signal;
+}
+
+Trajectory recorded(const Study& study, std::int64_t index, Trajectory loop) {
+  const RecordOptions& record = study.record;
+  if (record.outlier_share > 0.0)
+    add_outliers(study, index, loop.y);
+  if (record.quantisation > 0.0)
+    quantise(study, loop.y);
+  if (record.missing_share > 0.0)
+    make_gaps(study, index, loop.y);
+  if (record.compression > 0.0)
+    compress(study, loop.y);
+  if (record.missing_share > 0.0)
+    for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
+      loop.y.row(cv) = filled(loop.y.row(cv), record.fill);
+  return loop;
+}
+
+}  // namespace mpm

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/study/record_options.hpp"
+#include "scenarios/study/study.hpp"
+
+// What a historian of the plant makes of the measured CVs, and what its reader makes of what it kept. It is
+// what the methods of assessment see of a loop; the controller and the truth have the measurements
+// themselves.
+
+namespace mpm {
+
+/// The loop of experiment `index` as its record shows it: y in place of the measurements, one thing after the
+/// other, each only where `study.record` asks for it:
+///
+/// 1. outliers: a sample of a CV is one with the probability outlier_share; outlier_size is added, up or
+/// down.
+/// 2. quantisation: the nearest multiple of the step.
+/// 3. gaps: a Markov chain of two states (Gilbert 1960), whose gaps have missing_length samples in the mean
+/// and
+///    take missing_share of the record; each CV has its own. A gap is NaN.
+/// 4. compression by the swinging door, compressed(), from gap to gap.
+/// 5. gaps are filled by GapFill; at the ends of the record with the nearest value. A CV without any sample
+///    stays NaN.
+///
+/// A pure function of its arguments, with streams of its own; the basis case has kBasisIndex. MVs and
+/// measured disturbances are numbers that the controller computes or is told, and stay as they are.
+Trajectory recorded(const Study& study, std::int64_t index, Trajectory loop);
+
+/// What a reader gets back of `signal` from a historian with a swinging door (Bristol 1990): an archived
+/// point, and the next one where the straight line between them would leave out a sample in between by more
+/// than `deviation`; samples in between are read on the line. So no sample is off by more than `deviation`,
+/// and the first and the last one are exact. Bristol, E.H. (1990), "Swinging door trending: adaptive trend
+/// recording?", ISA National Conference Proceedings, 749-754.
+Eigen::RowVectorXd compressed(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double deviation);
+
+/// The signal with its gaps (NaN) filled.
+Eigen::RowVectorXd filled(Eigen::RowVectorXd signal, GapFill fill);
+
+}  // namespace mpm

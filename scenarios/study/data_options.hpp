@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/study/record_options.hpp"
+
+namespace mpm {
+
+/// The order of day, month and year in the time stamps of a file.
+enum class DateOrder { automatic, year_month_day, day_month_year, month_day_year };
+
+/// What the value of a CV at a sample is when the file has more of them.
+enum class CvResampling { mean, nearest };
+
+/// Where the record begins: at rest at the operating point, or anywhere, in which case the model is taken to
+/// rest at the first values, and CVs are not judged before the slowest channel has settled.
+enum class RecordStart { automatic, rest, anywhere };
+
+/// How the columns of a file of records are those of the study: [data] of a study file. Groups of names by
+/// variable are empty where the study says nothing; a value of the study is scale (recorded -
+/// operating_point).
+struct DataOptions {
+  using Names = std::map<std::string, std::string>;
+  using Numbers = std::map<std::string, double>;
+
+  std::string time;       ///< column; empty: one with a usual name, or none
+  std::string time_unit;  ///< of stamps that are numbers; empty: that of the plant
+  DateOrder date_order = DateOrder::automatic;
+  std::string separator;    ///< one character; empty: found
+  std::string decimal;      ///< "." or ","; empty: found
+  Names tags;               ///< columns of CVs, MVs and MDs; without one: that of the variable's name
+  Numbers operating_point;  ///< in the unit of the file; without one: 0
+  Numbers scale;            ///< unit of the study over that of the file; without one: 1
+  Names setpoint;           ///< of CVs with a setpoint, as the CV is recorded
+  Names lower, upper;       ///< soft limits of CVs, as the CV is recorded
+  Names y_sim;              ///< output of the model, as the CV is recorded; without one: computed
+  Names target;             ///< of MVs, as the MV is recorded
+  Names quality;            ///< of any variable
+  std::vector<std::string> good_quality{"good", "192"};
+  std::string controller_on;  ///< column; empty: the controller is always on
+  std::vector<std::string> on_values{"1", "on", "true", "auto"};
+  CvResampling cv_resampling = CvResampling::mean;
+  RecordStart start = RecordStart::automatic;
+  double most_missing = 0.3;            ///< share of the samples of a CV; beyond it the record is refused
+  std::vector<std::string> candidates;  ///< columns of signals that the model does not know
+  GapFill fill = GapFill::none;         ///< what methods find where a CV is missing
+  std::vector<std::string> period;      ///< two time stamps; empty: the whole file
+  std::vector<std::string> benchmark;   ///< two time stamps, or "found"; empty: the simulated loop
+
+  bool operator==(const DataOptions&) const = default;
+};
+
+}  // namespace mpm

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "scenarios/toml/toml_literal.hpp"
+
+namespace mpm {
+
+/// One table of a TOML text that is being written, with its tables below it. Keys come out in the order given
+/// when the table is made, whatever the order in which they are set.
+class TomlDraft {
+ public:
+  explicit TomlDraft(std::vector<std::string> key_order) : key_order_(std::move(key_order)) {}
+
+  /// Writes the value under a key of the order; the last one counts, also in place of tables under this key.
+  template <class Value>
+  void set(std::string_view key, const Value& value) {
+    entry(key).line = toml_key(key) + " = " + toml_literal(value);
+  }
+  /// Notes what the key would have without a value of its own, for changes().
+  template <class Value>
+  void set_default(std::string_view key, const Value& value) {
+    entry(key).fallback = toml_key(key) + " = " + toml_literal(value);
+  }
+  /// The values that are not their defaults: "table.key = value (default: value)", in the order of text().
+  std::vector<std::string> changes() const;
+  /// "# KEY: TEXT" in place of a value that TOML cannot have. The text has no line break.
+  void comment(std::string_view key, std::string_view text);
+  /// The table under `key`, made when it is not there.
+  TomlDraft& table(std::string_view key, const std::vector<std::string>& key_order);
+  /// Entry `place` of the list of tables under `key`; entries are made one after the other.
+  TomlDraft& table_in_list(std::string_view key, std::size_t place,
+                           const std::vector<std::string>& key_order);
+
+  /// The text of the whole document, when this is its outermost table: the values, one a line, then the
+  /// tables under their headings. A table without values has no heading.
+  std::string text() const;
+
+ private:
+  struct Entry {
+    std::string line;      // "key = value"; empty: tables
+    std::string fallback;  // "key = default"; empty: nothing was noted
+    bool is_list = false;
+    std::vector<std::unique_ptr<TomlDraft>> tables;
+  };
+
+  Entry& entry(std::string_view key);
+  void write(std::string& text, const std::string& path) const;
+  void add_changes(std::vector<std::string>& changes, const std::string& path) const;
+  bool has_values() const;
+
+  std::vector<std::string> key_order_;
+  std::map<std::string, Entry, std::less<>> entries_;
+};
+
+}  // namespace mpm

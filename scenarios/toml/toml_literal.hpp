@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenarios/random/distribution.hpp"
+
+// Values as they stand in a TOML text. Each one comes back as it was, a number to the last bit.
+
+namespace mpm {
+
+/// "0.1", "2.0", "1e-09", "-inf": never a whole number.
+std::string toml_literal(double value);
+std::string toml_literal(std::int64_t value);
+std::string toml_literal(int value);
+std::string toml_literal(bool value);
+/// In double quotes, on one line.
+std::string toml_literal(std::string_view text);
+std::string toml_literal(const std::string& text);
+std::string toml_literal(const char* text);
+/// A list; of many numbers on several lines.
+std::string toml_literal(const Eigen::VectorXd& numbers);
+std::string toml_literal(const std::vector<int>& numbers);
+std::string toml_literal(const std::vector<std::string>& texts);
+/// [first, second]
+std::string toml_literal(const std::pair<double, double>& pair);
+/// An inline table with one key, such as {uniform = [0.3, 1.5]}.
+std::string toml_literal(const Distribution& distribution);
+
+/// A key: bare, or in quotes when it has to be.
+std::string toml_key(std::string_view key);
+
+}  // namespace mpm

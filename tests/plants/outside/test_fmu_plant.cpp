@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "plants/error.hpp"
+#include "plants/nonlinear/foreign_plant.hpp"
+#include "plants/nonlinear/quadruple_tank.hpp"
+#include "plants/outside/fmu_model.hpp"
+
+// The tank of tests/plants/fmu/tank.c against the one that the program has.
+
+namespace mpm {
+namespace {
+
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+constexpr double kSampleTime = 10.0;
+constexpr double kSettle = 5000.0;  // both tanks then rest to the last bits
+// Of our integration in these tests, relative; by default it errs by some 1e-9 cm (docs/plants.md).
+constexpr double kLocalError = 1e-12;
+// Errors of thousands of steps of ours add up to some 1e-10 cm; those of the FMU are below 1e-10 cm.
+constexpr double kTolerance = 1e-8;
+
+FmuSettings tank_settings() {
+  FmuSettings settings{
+      .file = MPMBENCH_TANK_FMU, .place = "file", .inputs = {}, .outputs = {}, .parameters = {}};
+  for (const char* name : {"v1", "v2", "x1", "x2", "F1", "F2", "F3", "F4", "D1", "D2", "D3", "D4"})
+    settings.inputs.push_back({name, "input"});
+  for (int i = 1; i <= 4; ++i)
+    settings.outputs.push_back({fmt::format("level[{}]", i), "output"});
+  return settings;
+}
+
+/// The nonlinear tank of the catalogue with another simulation, whose parameters are those of ours and two
+/// more.
+NonlinearModel fmu_tank(FmuSettings settings = tank_settings(),
+                        ForeignOptions options = {.settle = kSettle}) {
+  NonlinearModel model = quadruple_tank_nonlinear("table-2.6", 0);
+  model.make_system = nullptr;
+  model.parameters.push_back({"offset", 0.0});
+  model.parameters.push_back({"failure", 0.0});
+  for (const NonlinearModel::Parameter& parameter : model.parameters)
+    settings.parameters.push_back({parameter.name, "parameter"});
+  model.foreign = fmu_model(std::move(settings), options);
+  return model;
+}
+
+std::unique_ptr<Plant> plant_of(const NonlinearModel& model, const std::vector<ParameterChange>& changes = {},
+                                Eigen::Index onset = 0) {
+  return nonlinear_plant(model, kSampleTime,
+                         {.relative_tolerance = kLocalError, .absolute_tolerance = kLocalError}, changes,
+                         onset);
+}
+
+/// Largest difference of two plants over steps of all inputs.
+double difference(Plant& one, Plant& other, const Eigen::VectorXd& rest) {
+  one.reset(rest);
+  other.reset(rest);
+  double largest = (one.output() - other.output()).cwiseAbs().maxCoeff();
+  Eigen::VectorXd input = rest;
+  for (Eigen::Index k = 0; k < 60; ++k) {
+    if (k % 5 == 0) {
+      const Eigen::Index i = (k / 5) % 12;
+      input(i) += i < 4 ? 0.05 : 0.2;
+    }
+    REQUIRE(one.advance(input) == PlantStatus::ok);
+    REQUIRE(other.advance(input) == PlantStatus::ok);
+    largest = std::max(largest, (one.output() - other.output()).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+TEST_CASE("the FMU of the tank is the tank, at rest and under inputs", "[fmu]") {
+  const NonlinearModel ours = quadruple_tank_nonlinear("table-2.6", 0), theirs = fmu_tank();
+  Eigen::VectorXd rest = Eigen::VectorXd::Zero(12);
+  CHECK(difference(*plant_of(ours), *plant_of(theirs), rest) < kTolerance);
+  rest(0) = 0.3;
+  rest(3) = -0.05;
+  CHECK(difference(*plant_of(ours), *plant_of(theirs), rest) < kTolerance);
+}
+
+TEST_CASE("tunable parameters of an FMU change at the onset, as those of the tank do", "[fmu]") {
+  const NonlinearModel ours = quadruple_tank_nonlinear("table-2.6", 0), theirs = fmu_tank();
+  const std::vector<ParameterChange> changes{{"cd1", 3.9}, {"k2", 3.0}};
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(12);
+  for (const Eigen::Index onset : {0, 17}) {
+    const auto one = plant_of(ours, changes, onset), other = plant_of(theirs, changes, onset);
+    CHECK(difference(*one, *other, rest) < kTolerance);
+    CHECK(difference(*plant_of(ours), *other, rest) > 0.1);
+  }
+}
+
+TEST_CASE("a fixed parameter of an FMU has its changed value from the start", "[fmu]") {
+  const auto plant = plant_of(fmu_tank(), {{"A1", 40.0}});
+  plant->reset(Eigen::VectorXd::Zero(12));
+  CHECK(plant->output().cwiseAbs().maxCoeff() < kTolerance);  // the area moves no steady state
+  CHECK(difference(*plant, *plant_of(fmu_tank()), Eigen::VectorXd::Zero(12)) > 0.05);
+  CHECK_THROWS_WITH(plant_of(fmu_tank(), {{"A1", 40.0}}, 3),
+                    Contains("found sample 3 for 'A1', which is fixed; allowed: 0"));
+}
+
+TEST_CASE("outputs are deviations from the operating point of the nominal parameters", "[fmu]") {
+  const auto plant = plant_of(fmu_tank(), {{"offset", 2.0}});
+  plant->reset(Eigen::VectorXd::Zero(12));
+  CHECK(plant->output().cwiseAbs().maxCoeff() < kTolerance);
+  REQUIRE(plant->advance(Eigen::VectorXd::Zero(12)) == PlantStatus::ok);
+  CHECK((plant->output().array() - 2.0).abs().maxCoeff() < kTolerance);
+}
+
+TEST_CASE("what an FMU did before leaves no trace", "[fmu]") {
+  const NonlinearModel model = fmu_tank();
+  const auto plant = plant_of(model);
+  const auto run = [&] {
+    plant->reset(Eigen::VectorXd::Zero(12));
+    REQUIRE(plant->advance(Eigen::VectorXd::Constant(12, 0.1)) == PlantStatus::ok);
+    return plant->output();
+  };
+  const Eigen::VectorXd first = run();
+  const auto crashing = plant_of(model, {{"failure", 1.0}});
+  crashing->reset(Eigen::VectorXd::Zero(12));
+  CHECK(crashing->advance(Eigen::VectorXd::Zero(12)) == PlantStatus::failed);
+  CHECK(run() == first);  // to the bit; the FMU allows one instance a process
+}
+
+TEST_CASE("an FMU that fails fails its loop, and says how", "[fmu]") {
+  ForeignOptions options{.settle = kSettle};
+  const auto failure = [&](double way) {
+    const auto plant = plant_of(fmu_tank(tank_settings(), options), {{"failure", way}});
+    plant->reset(Eigen::VectorXd::Zero(12));
+    CHECK(plant->advance(Eigen::VectorXd::Zero(12)) == PlantStatus::failed);
+    return plant->failure();
+  };
+  CHECK_THAT(failure(1), Contains("its process ended by signal 11 (Segmentation fault)"));
+  CHECK(failure(2) ==
+        "the simulation of the plant failed: fmi2DoStep at its time 5000: error (it says: tank 3 is empty)");
+  CHECK_THAT(failure(3), Contains("fatal error"));
+  CHECK_THAT(failure(5), Contains("ended with code 3"));
+  CHECK_THAT(failure(6), Contains("an output that is not finite at its time 5010"));
+  CHECK_THAT(failure(7), Contains("discard"));
+  options.time_limit = 0.5;
+  CHECK_THAT(failure(4), Contains("no answer within 0.5 s"));
+}
+
+TEST_CASE("an FMU that does not come to rest has no steady state", "[fmu]") {
+  const auto short_of = plant_of(fmu_tank(tank_settings(), {.settle = 200.0}));
+  CHECK_THROWS_AS(short_of->reset(Eigen::VectorXd::Zero(12)), NoSteadyState);
+  CHECK_THROWS_WITH(short_of->reset(Eigen::VectorXd::Zero(12)),
+                    Contains("in the last tenth of plant settle"));
+  NonlinearModel broken = fmu_tank();
+  broken.parameters.back().nominal = 1.0;  // fails from the start
+  const auto plant = plant_of(broken);
+  CHECK_THROWS_AS(plant->reset(Eigen::VectorXd::Zero(12)), NoSteadyState);
+}
+
+TEST_CASE("files that are no FMU are refused, and nothing is left of them", "[fmu]") {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("mpmbench-test-fmu-{}", ::getpid());
+  fs::create_directories(folder);
+  ::setenv("TMPDIR", folder.c_str(), 1);
+  const auto refusal = [&](const fs::path& file) -> std::string {
+    FmuSettings settings = tank_settings();
+    settings.file = file;
+    try {
+      fmu_tank(settings).foreign->load();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK_THAT(refusal(folder / "none.fmu"), Contains("none.fmu', which is no file"));
+  std::ofstream(folder / "text.fmu") << "no ZIP at all";
+  CHECK_THAT(refusal(folder / "text.fmu"), Contains("text.fmu' (Not a zip archive); allowed: an FMU"));
+  FmuSettings settings = tank_settings();
+  settings.inputs[1] = {"pump2", "s.toml:9: plant.fmu.input[1].variable"};
+  CHECK_THROWS_WITH(fmu_tank(settings).foreign->load(),
+                    Contains("s.toml:9: plant.fmu.input[1].variable: found 'pump2', which ") &&
+                        Contains("allowed: D1, D2, D3, D4, F1"));
+  {
+    const NonlinearModel model = fmu_tank();
+    const auto plant = plant_of(model);
+    CHECK(std::distance(fs::directory_iterator(folder), {}) == 2);  // text.fmu, and the unpacked FMU
+  }
+  CHECK(std::distance(fs::directory_iterator(folder), {}) == 1);
+  ::unsetenv("TMPDIR");
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace mpm
