@@ -12,6 +12,7 @@ import check_hygiene
 import check_includes
 import check_links
 import check_paths
+import check_tidy
 import check_used_names
 
 HEADER = "#pragma once\n"
@@ -49,6 +50,44 @@ class CheckerTest(unittest.TestCase):
         self.assertEqual(len(complaints), 1, complaints)
         self.assertTrue(complaints[0].startswith(where), complaints)
         self.assertIn(text, complaints[0])
+
+
+class Tidy(unittest.TestCase):
+    FILES = {"plants/a.hpp": HEADER, "plants/a.cpp": '#include "plants/a.hpp"\n', "plants/only.hpp": HEADER,
+             "plants/b.cpp": '#include "plants/only.hpp"\n', "bench/c.cpp": '#include "plants/only.hpp"\n'}
+
+    def sources(self, root, changed):
+        flags = {str(root / name): ["-O2"] for name in self.FILES if name.endswith(".cpp")}
+        return check_tidy.sources_of(root, changed, flags)
+
+    def test_a_changed_header_is_read_through_one_source(self):
+        with Tree(self.FILES) as root:
+            self.assertEqual(self.sources(root, {"plants/a.hpp", "docs/page.md"}), ["plants/a.cpp"])
+            self.assertEqual(self.sources(root, {"plants/only.hpp"}), ["bench/c.cpp"])
+            self.assertEqual(self.sources(root, {"bench/c.cpp", "plants/gone.cpp"}), ["bench/c.cpp"])
+            self.assertEqual(self.sources(root, set()), [])
+
+    def test_every_source_is_read_when_what_has_changed_is_not_known(self):
+        with Tree(self.FILES) as root:
+            self.assertIsNone(check_tidy.changed_files(root))
+            self.assertEqual(len(self.sources(root, None)), 3)
+
+    def test_files_of_the_work_tree_differ_from_the_commit_that_was_clean(self):
+        with Tree({"plants/a.cpp": "\n", ".ci/tidied": "", ".clang-tidy": "\n"}) as root:
+            def git(*words):
+                return subprocess.run(["git", "-C", str(root), "-c", "user.name=a", "-c", "user.email=a@b", *words],
+                                      check=True, capture_output=True, text=True).stdout
+            git("init", "-q")
+            git("add", "-A")
+            git("commit", "-qm", "clean")
+            (root / ".ci/tidied").write_text(git("rev-parse", "HEAD"), encoding="utf-8")
+            (root / "plants/a.cpp").write_text("int a;\n", encoding="utf-8")
+            (root / "plants/new.cpp").write_text("int b;\n", encoding="utf-8")
+            self.assertEqual(check_tidy.changed_files(root), {".ci/tidied", "plants/a.cpp", "plants/new.cpp"})
+            (root / ".clang-tidy").write_text("Checks: -*\n", encoding="utf-8")
+            self.assertIsNone(check_tidy.changed_files(root))
+            (root / ".ci/tidied").write_text("0" * 40, encoding="utf-8")
+            self.assertIsNone(check_tidy.changed_files(root))
 
 
 class Paths(CheckerTest):
