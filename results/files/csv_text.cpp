@@ -132,8 +132,8 @@ bool CsvReader::next(std::vector<std::string>& fields) {
                                    : ""));
   }
   cells_ += fields.size();
-  if (cells_ > kMostForeignCells)
-    throw InputError(place(), fmt::format("more than {} cells", kMostForeignCells),
+  if (cells_ > form_.most_cells)
+    throw InputError(place(), fmt::format("more than {} cells", form_.most_cells),
                      "so many (rows times columns): a shorter period, fewer columns, or fewer rows a sample");
   return true;
 }

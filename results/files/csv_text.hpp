@@ -7,11 +7,16 @@
 
 namespace mpm {
 
+inline constexpr std::size_t kLongestCsvName = 1000;  ///< bytes of the name of a column
+/// Of a file of somebody else: rows times columns.
+inline constexpr std::size_t kMostForeignCells = 50'000'000;
+
 /// How a CSV text may differ from the usual one.
 struct CsvForm {
   std::string separator = {};  ///< one character; empty: the one of , ; tab | that the heading has most
   bool comments_everywhere =
       false;  ///< otherwise lines that begin with '#' are comments before the heading only
+  std::size_t most_cells = kMostForeignCells;
 };
 
 /// A CSV text of somebody else, line by line: the one reader of records and of verdicts.
@@ -23,7 +28,7 @@ struct CsvForm {
 ///
 /// Errors: InputError "FILE:LINE: found ...; allowed: ..." for bytes that are no text, a quote that breaks
 /// the rule, a row with another number of fields than the heading, a name of more than kLongestCsvName
-/// bytes, and more than kMostForeignCells cells.
+/// bytes, and more than CsvForm::most_cells cells.
 class CsvReader {
  public:
   /// Reads up to the heading; `text` must outlive the reader. Without a heading heading() is empty.
@@ -53,10 +58,6 @@ class CsvReader {
   std::vector<std::string> heading_, comments_;
   std::size_t at_ = 0, line_ = 0, cells_ = 0;
 };
-
-inline constexpr std::size_t kLongestCsvName = 1000;  ///< bytes of the name of a column
-inline constexpr std::size_t kMostForeignCells =
-    50'000'000;  ///< of a file of somebody else: rows times columns
 
 /// A text as a field of CSV, in quotes where it must be. One that a spreadsheet would take for a formula (it
 /// begins with = + - @, a tab or a return) has ' in front.
