@@ -1,6 +1,6 @@
 """A controller in Python: dynamic matrix control to setpoints, whose moves are clipped at the hard limits of the MVs.
 
-A template for a controller of your own (docs/own_controller.md): change Dmc. It needs numpy only.
+A template for a controller of your own (docs/own_plant.md): change Dmc. It needs numpy only.
 
     mpmbench run examples/dmc.toml -o dmc.h5
 """
