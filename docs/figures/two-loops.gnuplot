@@ -1,7 +1,7 @@
 # The figure of README.md. In a folder with mpmbench in PATH:
 #   mpmbench run wood-berry --experiments 40 --methods mpmbench --store all -o loops.h5
 #   for i in 22 31; do mpmbench export loops.h5 --table loops --index $i -o loop-$i.csv; done
-#   gnuplot two-loops.gnuplot > two-loops.svg
+#   gnuplot two-loops.gnuplot | tr "\n" " " > two-loops.svg
 # What is said below the panels stands in `mpmbench export loops.h5 --table mpmbench`.
 set terminal svg size 900,330 font 'Helvetica,13' background '#ffffff' linewidth 1
 set datafile separator ','
