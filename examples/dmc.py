@@ -12,7 +12,7 @@ import numpy
 
 
 def numbers(values, missing):
-    """A list of numbers; null stands for a limit or a setpoint that is not there."""
+    """A list of numbers; null stands for a missing limit or setpoint."""
     return numpy.array([missing if value is None else value for value in values], float)
 
 
