@@ -75,7 +75,7 @@ CommandResult execute(int argc, const char* const* argv) {
   program.require_subcommand(0, 1);
   program.get_formatter()->label("SUBCOMMAND", "COMMAND");
   program.footer(
-      "mpmbench COMMAND --help says what a command takes.\n"
+      "mpmbench COMMAND --help lists the options of a command.\n"
       "Exit codes: 0 done, 1 a replay differs or a gate fails, 2 wrong input, 3 not finished, or output "
       "lost");
   CommandSet commands(program, joined(argc, argv));

@@ -1,11 +1,11 @@
-"""The records of chapter 7 as the historian of the unit would export them: what is wrong in the plant, and nothing of it
-in the files.
+"""Records of chapter 7 in the form in which the unit's historian would export them. The plant has faults; the files do
+not name them.
 
     python3 examples/coker.py MPMBENCH SOURCES FOLDER [--seed N] [--healthy]
 
 Runs the hidden studies coker-period1 and coker-period2 and writes FOLDER/period1.csv and period2.csv: absolute values in
 the units of the plant, time stamps 40 days apart, compressed and with gaps, bad qualities in words, and the upper limits
-that were in force. `mpmbench assess coker FOLDER/period1.csv` reads them.
+of the time. `mpmbench assess coker FOLDER/period1.csv` reads them.
 """
 
 import argparse

@@ -1,6 +1,6 @@
 """A controller in Python: dynamic matrix control to setpoints, whose moves are clipped at the hard limits of the MVs.
 
-A template for a controller of your own (docs/own_controller.md): change Dmc. It needs numpy only.
+A template for a controller of your own (docs/own_plant.md): change Dmc. It needs numpy only.
 
     mpmbench run examples/dmc.toml -o dmc.h5
 """
@@ -12,7 +12,7 @@ import numpy
 
 
 def numbers(values, missing):
-    """A list of numbers; null stands for a limit or a setpoint that is not there."""
+    """A list of numbers; null stands for a missing limit or setpoint."""
     return numpy.array([missing if value is None else value for value in values], float)
 
 

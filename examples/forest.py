@@ -4,10 +4,9 @@
     python3 examples/forest.py train forest.pickle mpmbench train/*.h5
     mpmbench suite standard --method-file examples/forest.toml     # command = [..., "forest.py", "forest.pickle"]
 
-What it learns is whether a fault has an impact (`impact` of the archive), which
-source a fault has, and which CV it affects. It flags loops above the score that 5 % of the healthy loops of its training
-exceed, as trees say of which those loops were no part (out of bag). It needs python3-sklearn and python3-h5py (Debian).
-Load only files that you have made yourself: pickle runs what is in them.
+It learns whether a fault has an impact (`impact` of the archive), which source it has, and which CV it affects. It flags
+loops above the out-of-bag score that 5 % of its healthy training loops exceed. It needs python3-sklearn and python3-h5py
+(Debian). Load only files that you have made yourself: pickle runs what is in them.
 """
 
 import csv

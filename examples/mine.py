@@ -21,7 +21,7 @@ def describe(options):
 
 
 def mean_squares(loop):
-    """Mean squares of y - y_sim by CV, over the samples that are there."""
+    """Mean squares of y - y_sim by CV, over the existing samples."""
     errors = numpy.array(loop["y"], float) - numpy.array(loop["y_sim"], float)  # null is NaN
     return numpy.nanmean(errors ** 2, axis=1)
 

@@ -13,8 +13,8 @@
 
 namespace mpm {
 
-/// The records of one closed loop, as a method of assessment sees them: what a historian of the plant keeps,
-/// and what follows from it and the nominal model.
+/// The records of one closed loop as a method sees them: what the plant's historian keeps, and what the
+/// nominal model makes of it.
 ///
 /// | symbol | member | shape  | meaning                                                       |
 /// |--------|--------|--------|---------------------------------------------------------------|
@@ -25,18 +25,18 @@ namespace mpm {
 /// | y_sim  | y_sim  | ny x N | G0 (u, d)                                              (6.4)  |
 /// | y_set  | y_set  | ny x N | setpoints; NaN for a CV without one, see AssessmentSetpoints  |
 ///
-/// Of a window that moves over a record these are its samples, and `whole` is the record. A method that
-/// filters or simulates the loop does so from the start of the record, from_start(), where the loop was at
-/// its operating point, and judges the samples of the window.
+/// For a moving window these are the samples of the window, and `whole` is the record. A method that filters
+/// or simulates the loop starts at the beginning of the record (from_start()), where the loop was at its
+/// operating point, and judges the samples of the window only.
 struct AssessedLoop {
   Eigen::MatrixXd y, u, u_target, d, y_sim, y_set;
-  /// Further signals that the historian keeps and the model does not know, a row each; 0 x 0 without any.
+  /// Further signals of the historian that are not in the model, one row each; 0 x 0 without any.
   Eigen::MatrixXd candidates = {};
   const AssessedLoop* whole = nullptr;  ///< the record that this is a window of; null: it is whole
   Eigen::Index first = 0;               ///< sample of it at which the window begins
 
   const AssessedLoop& from_start() const { return whole ? *whole : *this; }
-  /// The columns of the window out of a signal of the record, one column a sample.
+  /// The window's columns of a signal of the record, one column for each sample.
   auto in_window(const Eigen::MatrixXd& signal) const { return signal.middleCols(first, samples()); }
 
   Eigen::Index samples() const { return y.cols(); }
@@ -50,41 +50,39 @@ struct AssessedLoop {
 /// optimizer, optimizer_steady_state(); NaN when it does not, or when the controller has no targets.
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop);
 
-/// The samples of a record of the plant that only fill the memory of the model: none of one that begins at
-/// rest at the operating point, otherwise the settling time of the slowest channel. With
-/// RecordStart::automatic the record begins at rest when each MV and MD does within half of its standard
-/// deviation.
+/// The number of first samples of a plant record that only initialise the model: 0 for a record that begins
+/// at rest at the operating point, otherwise the settling time of the slowest channel. With
+/// RecordStart::automatic a record begins at rest when each MV and MD begins within half of its standard
+/// deviation of the operating point.
 Eigen::Index samples_to_settle(const Study& study, const OperatingPoint& point, const PlantRecord& record,
                                RecordStart start);
 
-/// A record of the plant, of recorded_study(), as the methods see it. The first `unjudged` samples of the CVs
-/// are missing; with some, the model rests at the first values of MVs and MDs before the record, without any
-/// at the operating point. y_sim and targets are those of the record where it has them.
+/// A plant record, of recorded_study(), as the methods see it. The first `unjudged` samples of the CVs are
+/// missing. Before the record the model rests at the first values of the MVs and MDs if `unjudged` is above
+/// 0, otherwise at the operating point. y_sim and targets are those of the record if it has them.
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const PlantRecord& record,
                            Eigen::Index unjudged);
 
 /// The window of `samples` samples of a record from sample `first` on. `record` must outlive it.
 AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::Index samples);
 
-/// Each row of `signals` with its gaps (NaN) closed along straight lines, held where it begins or ends with
-/// one; a row without any value stays as it is.
+/// Each row of `signals` with its gaps (NaN) filled by linear interpolation, and by the nearest value at both
+/// ends; a row without values is unchanged.
 Eigen::MatrixXd gaps_closed(Eigen::MatrixXd signals);
 
-/// What a method may know besides the records of the loop that it assesses. `study` and `basis` must outlive
-/// it.
+/// What a method may know besides the records of the loop. `study` and `basis` must outlive it.
 struct AssessmentContext {
   const Study& study;      ///< the nominal model, the controller and the options of the methods
   const BasisCase& basis;  ///< the operating point and T0
   QpSolverFactory factory;
-  /// A period in which the controller did what it was designed for; none known: no such period.
+  /// A period in which the controller worked as designed; none if no such period is known.
   std::optional<AssessedLoop> benchmark = {};
 };
 
-/// The CVs of the basis case as the historian keeps them, ny x N: what a method may know of them.
+/// The CVs of the basis case as the historian keeps them, ny x N; a method knows no others.
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context);
 
-/// The context of the loops of `study`, whose benchmark is the record of the basis case: nothing is wrong in
-/// it.
+/// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault.
 AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory);
 
 }  // namespace mpm

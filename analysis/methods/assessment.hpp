@@ -16,22 +16,22 @@ namespace mpm {
 /// How the assessment of a loop ended.
 enum class AssessmentStatus : std::int8_t {
   ok = 0,
-  not_applicable = 1,  ///< the method needs what this loop does not have (Assessment::reason)
+  not_applicable = 1,  ///< the loop lacks what the method needs (Assessment::reason)
   failed = 2,          ///< the data gave no answer: a singular covariance, no usable model, ...
-  not_assessed = 3,    ///< nobody asked the method: the loop did not run to its end, or was left out
+  not_assessed = 3,    ///< the method was not asked: the loop did not run to its end, or was left out
 };
 
 /// "ok", "not applicable", "failed", "not assessed"
 std::string_view to_string(AssessmentStatus status);
 
-/// What a method says of one CV.
+/// The verdict of a method on one CV.
 struct CvAssessment {
-  /// The model of this CV, or its performance, is not as it should be; none: the method says nothing of it.
+  /// Whether the model or the performance of this CV is faulty; none if the method has no verdict on it.
   std::optional<bool> flagged = {};
   /// How far the CV is from being flagged: larger is worse, comparable between CVs and loops of one method;
   /// NaN where `flagged` is none.
   double score = kNaN;
-  /// By methods that tell sources apart, of a flagged CV or the worst one: mpm or ud; otherwise none.
+  /// From methods that tell sources apart, for a flagged CV or the worst one: mpm or ud; otherwise none.
   FaultSource source = FaultSource::none;
 };
 
@@ -43,18 +43,17 @@ struct Channel {
   friend bool operator==(const Channel&, const Channel&) = default;
 };
 
-/// Where an estimate lies in the range in which it was looked for. At an end of it the estimate is no more
-/// than a bound: what is looked for may lie beyond.
+/// Where an estimate lies in the range of its search. At an end of the range it is only a bound: the true
+/// value may lie beyond.
 enum class SizeBound : std::int8_t { none = 0, at_most = 1, at_least = 2 };
 
 /// "none", "at most", "at least"
 std::string_view to_string(SizeBound bound);
 
-/// The bound that an estimate is in a range whose ends are ends of the search only: it is one within `share`
-/// of the range.
+/// Classifies an estimate: a bound if it lies within `share` of the range from one of its ends.
 SizeBound bound_within(double estimate, double first, double last, double share = 1e-6);
 
-/// The mismatch that a method is surest of: which parameter of which channel, and how large.
+/// The mismatch of which a method is most certain: parameter, channel and size.
 struct NamedMismatch {
   Channel channel;
   MismatchParameter parameter;
@@ -72,20 +71,20 @@ struct AssessmentNumber {
   Eigen::Index column = -1;
 };
 
-/// What a method of assessment says of one loop.
+/// The verdict of a method on one loop.
 struct Assessment {
   AssessmentStatus status = AssessmentStatus::ok;
   std::string reason;  ///< one sentence for people when the status is not ok
 
-  bool flagged = false;  ///< something is wrong with the loop: the verdict that is counted as a detection
-  /// How far the loop is from being flagged, larger is worse: what a ROC curve is drawn over. It need not be
-  /// that of a CV.
+  bool flagged = false;  ///< the loop has a fault: the verdict that counts as a detection
+  /// How far the loop is from being flagged; larger is worse. ROC curves are drawn over it. It need not be
+  /// the score of a CV.
   double score = kNaN;
   std::vector<CvAssessment> cvs;                     ///< ny; empty when the method does not look at CVs alone
   std::vector<Channel> flagged_channels;             ///< of methods that name channels
   std::optional<NamedMismatch> named_mismatch = {};  ///< of methods that name mismatches; none: none is named
-  /// Of methods that name candidates: position of the logged signal that drives the disturbance; none: none
-  /// is named.
+  /// From methods that name candidates: position of the logged signal that drives the disturbance; none if
+  /// none is named.
   std::optional<Eigen::Index> named_candidate = {};
   std::vector<AssessmentNumber> numbers;
 

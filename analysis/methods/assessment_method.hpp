@@ -15,21 +15,21 @@
 
 namespace mpm {
 
-/// What a method needs of a loop. Where something is missing it does not apply, and says so.
+/// What a method needs from a loop. If something is missing, the method reports that it does not apply.
 struct AssessmentRequirements {
   bool setpoints = false;         ///< some CV has a setpoint
   bool moving_setpoints = false;  ///< some setpoint changes during the record
-  bool benchmark = false;         ///< a period in which the controller did what it was designed for
+  bool benchmark = false;         ///< a period in which the controller worked as designed
   bool moving_mvs = false;        ///< some MV moves during the record
   bool nominal_loop = false;      ///< the controller runs on its own model: S0, or the nominal loop
   bool complete_record = true;    ///< no sample of a CV is missing, in the record and in the benchmark
 };
 
-/// What a method gives a number for: the whole loop, each CV, each channel, each CV at each lag, or each
-/// window of a study that monitors.
+/// The scope of a number: the whole loop, each CV, each channel, each CV at each lag, or each window of a
+/// study with monitoring.
 enum class NumberScope { loop, cv, channel, cv_lag, window };
 
-/// A number that a method gives besides its verdicts. Archive, findings, report and gates take it from here.
+/// A number that a method gives besides its verdicts, as archive, findings, report and gates use it.
 struct AssessmentNumberInfo {
   std::string
       name;  ///< in the form of a variable name; in table files after the name of the method and a dot
@@ -46,8 +46,8 @@ struct AssessmentNumberInfo {
   bool estimates_ivar_basis = false;
 };
 
-/// A method that has learnt what it may know and now assesses loops, one after the other. Keeps workspaces
-/// between them: each thread needs its own. An answer depends on the loop alone, not on those before.
+/// A method that has learnt its context and assesses one loop after another. It keeps workspaces between
+/// them, so each thread needs its own. An answer depends on its loop only, not on earlier ones.
 class AssessmentMethod {
  public:
   AssessmentMethod() = default;
@@ -60,8 +60,8 @@ class AssessmentMethod {
   virtual Assessment assess(const AssessedLoop& loop) = 0;
 };
 
-/// All that others need to know of a method without knowing it: an archive describes by it methods that the
-/// reader does not have.
+/// All that other code needs to know about a method. An archive holds it too, for readers that do not have
+/// the method.
 struct MethodDescription {
   std::string name;     ///< on the command line and in table files: "sun"
   std::string title;    ///< "Sun et al. (2013)"
@@ -72,13 +72,13 @@ struct MethodDescription {
   bool tells_sources = false;     ///< CvAssessment::source
   bool names_mismatches = false;  ///< Assessment::named_mismatch
   bool names_candidates = false;  ///< Assessment::named_candidate
-  /// The share of loops without a fault that the method says it flags; none: it says nothing of it.
+  /// The share of healthy loops that the method states it flags; none if it states no share.
   std::optional<double> stated_false_alarms = {};
   std::vector<AssessmentNumberInfo> numbers;
-  /// Where the answers come from when it is no method of this program, in a few words; empty otherwise.
+  /// Where the answers come from if the method is not part of this program; empty otherwise.
   std::string origin = {};
-  /// What decides on the answers of a method from outside besides its name: its command with the content of
-  /// its files, and its options. Whoever has it knows it; empty for others.
+  /// What determines the answers of an outside method besides its name: its command with the content of its
+  /// files, and its options. Empty for methods of this program.
   std::string fingerprint = {};
 };
 
@@ -93,20 +93,19 @@ struct AssessmentMethodInfo : MethodDescription {
   std::function<std::optional<double>(const AssessmentOptions& options)> states_false_alarms = {};
 };
 
-/// Which requirement the loop or what is known of it does not meet, in one sentence; none: all are met.
+/// The first requirement that the loop or its context does not meet, in one sentence; none if all are met.
 std::optional<std::string> unmet_requirement(const AssessmentRequirements& requirements,
                                              const AssessmentContext& context, const AssessedLoop& loop);
 
-/// A method with its context: asks first whether it applies.
+/// A method with its context. It checks first whether the method applies.
 class Assessor {
  public:
   /// `context` must outlive the assessor.
   Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context);
 
-  /// The verdict on a loop of the study of the context: `failed` with what the method refuses of this loop,
-  /// so that one odd loop does not cost the verdicts on the others, and where a method that locates CVs flags
-  /// the loop and has a score of none. Throws InputError as
-  /// AssessmentMethodInfo::make.
+  /// The verdict on a loop of the context's study. It is `failed`, with the reason, if the method refuses the
+  /// records of this loop, so that one odd loop does not cost the verdicts on the others, or if a method that
+  /// locates CVs flags the loop without the score of any CV. Throws InputError as AssessmentMethodInfo::make.
   Assessment assess(const AssessedLoop& loop);
 
  private:

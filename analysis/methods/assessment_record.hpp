@@ -51,7 +51,7 @@ class AssessmentForm {
  public:
   AssessmentForm(MethodDescription method, const Study& study);
 
-  /// Without the numbers that follow from what it tells.
+  /// Without the numbers that follow from its verdicts.
   const MethodDescription& method() const { return method_; }
   const std::vector<NumberPlace>& places() const { return places_; }
   /// Numbers in all.
@@ -77,11 +77,11 @@ using AssessmentForms = std::vector<std::shared_ptr<const AssessmentForm>>;
 /// `mismatch_bound` besides, NamedMismatch::bound. Throws InputError for an unknown method.
 AssessmentForms assessment_forms(const Study& study, const std::vector<std::string>& methods);
 
-/// What a method said of one loop, as it is kept. The form is that of its method.
+/// The answer of a method on one loop, as it is kept. Its form is that of the method.
 struct AssessmentRecord {
   std::shared_ptr<const AssessmentForm> form;
   AssessmentStatus status = AssessmentStatus::not_assessed;
-  std::string reason;  ///< why there is no verdict; empty when there is one, or when nobody asked
+  std::string reason;  ///< why there is no verdict; empty if there is one, or if the method was not asked
   bool flagged = false;
   double score = kNaN;
   Eigen::Index predicted_cv = -1;                    ///< Assessment::worst_cv(), -1 for none
@@ -102,13 +102,13 @@ struct AssessmentRecord {
   std::optional<NamedMismatch> named_mismatch() const;
 };
 
-/// The records of a loop that no method has assessed.
+/// The answers on a loop that no method has assessed.
 std::vector<AssessmentRecord> unassessed(const AssessmentForms& forms);
 
 /// The answer in the form in which it is kept.
 AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessment& assessment);
 
-/// Puts what the method says of a window into the record of the whole loop, on which it must have a verdict.
+/// Adds the verdict on a window to the record of the whole loop, on which the method must have a verdict.
 void add_window(AssessmentRecord& record, Eigen::Index window, const Assessment& said);
 
 }  // namespace mpm

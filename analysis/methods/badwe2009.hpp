@@ -34,7 +34,7 @@ struct ChannelAssessment {
   bool mismatch = false;           ///< the correlation is strong
 };
 
-/// What came out of the method.
+/// The result of the method.
 enum class Badwe2009Status : std::int8_t {
   ok = 0,
   no_mv = 1,  ///< no MV is left that could be evaluated: the record says nothing

@@ -16,8 +16,7 @@ struct FittedNumber {
   SizeBound bound = SizeBound::none;  ///< the value lies at an end of its search
 };
 
-/// A channel of the model that was identified again from the record of a loop, all other channels as they
-/// are.
+/// A channel of the model, identified again from the record of a loop with all other channels unchanged.
 struct ChannelFit {
   FittedNumber gain_factor;      ///< of the gain of the model
   FittedNumber time_factor;      ///< of its time constants
@@ -27,7 +26,8 @@ struct ChannelFit {
   TransferFunction channel;      ///< with the values above
 };
 
-/// Can this parameter be fitted with the others as in the model: gain, time constant, dead time?
+/// Whether this parameter can be fitted alone, with the others as in the model: gain, time constant, dead
+/// time.
 bool is_fitted_alone(MismatchParameter parameter);
 
 /// Identifies the channel G of one CV again. With G0 its model, e the simulation error of the CV and u the
@@ -51,9 +51,9 @@ bool is_fitted_alone(MismatchParameter parameter);
 /// f is looked for in 1/8 ... 8, and s from -dead time to the dead time and residence time of G0 together, or
 /// a quarter of the record; an interval ends there, and a value there is a bound, but for a dead time of 0.
 ///
-/// Where it is known which parameter is wrong, `only` (is_fitted_alone()), the others are those
-/// of the model: one that a record does not tell from it cannot take its place. Throws InputError for a
-/// channel that is zero, an MV that does not move, and a record with too few samples for the fit.
+/// If it is known which parameter is wrong, `only` (is_fitted_alone()), the others stay those of the model,
+/// so that none that the record cannot distinguish from it takes its place. Throws InputError for a channel
+/// that is zero, an MV that does not move, and a record with too few samples for the fit.
 ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
                        const Eigen::Ref<const Eigen::VectorXd>& e, const Eigen::Ref<const Eigen::VectorXd>& u,
                        double u_start, double confidence, const std::optional<MismatchParameter>& only = {});

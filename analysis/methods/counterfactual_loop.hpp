@@ -11,33 +11,34 @@
 
 namespace mpm {
 
-/// Who can simulate the controller to find S0 can simulate the nominal loop itself. With G0 the model and
-/// e = y - y_sim the simulation errors of the record,
+/// Simulates the nominal loop itself, in place of filtering by S0. With the model G0 and the simulation
+/// errors e = y - y_sim of the record,
 ///
 ///   y0      = output of the controller on G0, under the recorded measured disturbances, without noise
 ///   y0_diag = the same for CV i when the recorded errors e_j of all other CVs are added to the outputs of G0
 ///   Ivar = var y / (var y0 + v),   Ivar_diag = var y_i / (var y0_diag,i + v_i),   v = var y_b - var y0_b
 ///
-/// as (3.24) and (4.14) have them, but exact where limits are left and reached again, where no linear S0 is:
-/// with the errors of all CVs added the loop gives y back. y holds noise and y0 none; v, what noise adds to
-/// the variance, is that of the basis case y_b of the same controller, so that only the variance of the
-/// benchmark is known of it (NoiseVariance has other choices). Gaps of e are closed along straight lines. Of
-/// a window the record is simulated from its start, once for all windows.
+/// as in (3.24) and (4.14), but exact also where the loop leaves limits and reaches them again, for which no
+/// linear S0 exists: with the errors of all CVs added, the loop returns y. y contains noise and y0 does not;
+/// v is what noise adds to the variance, taken from the basis case y_b of the same controller (NoiseVariance
+/// has other choices). Gaps of e are filled by linear interpolation. For windows, the record is simulated
+/// once from its start.
 class CounterfactualLoop {
  public:
   /// `context` must outlive it.
   explicit CounterfactualLoop(const AssessmentContext& context);
 
-  /// Flagged when some Ivar lies outside the band of impact, with the number `ivar` of each CV and no verdict
-  /// on single CVs; failed when the controller does not run on its own model. Costs a closed loop, or none
-  /// when the disturbances are those of the record before.
+  /// Flagged if some Ivar lies outside the band of impact, with the number `ivar` of each CV and no verdict
+  /// on single CVs; failed if the controller does not run on its own model. Simulates one closed loop, or
+  /// none if the disturbances are those of the previous record.
   Assessment impact(const AssessedLoop& loop);
 
-  /// Ivar_diag of each CV, ny; NaN when its loop does not run to its end. Costs a closed loop a CV.
+  /// Ivar_diag of each CV, ny; NaN if its loop does not run to its end. Simulates one closed loop for each
+  /// CV.
   Eigen::VectorXd ivar_diag(const AssessedLoop& loop);
 
-  /// What Ivar_diag says of each CV of a flagged loop; nothing of one where it is NaN. Where all are, no loop
-  /// runs to its end under the errors of the others: then Ivar of `impact` says it.
+  /// The verdict of Ivar_diag on each CV of a flagged loop; none where it is NaN. If all are NaN, no loop
+  /// runs to its end under the errors of the others, and Ivar of `impact` decides.
   std::vector<CvAssessment> located(const Eigen::VectorXd& ivar_diag, const Assessment& impact) const;
 
  private:

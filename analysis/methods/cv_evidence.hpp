@@ -19,7 +19,7 @@ struct MismatchEvidence {
   std::vector<TruncatedNormal> sizes;  ///< the posterior of the size, with log_evidence as its mass in all
 };
 
-/// Logarithms of the probability of the simulation errors of one CV under what may be wrong with it.
+/// Logarithms of the probability of one CV's simulation errors under each hypothesis about its fault.
 struct CvEvidence {
   double healthy, mpm, ud, both;
   std::vector<MismatchEvidence> mismatch_alone, mismatch_with_disturbance;

@@ -25,7 +25,7 @@ struct DecorrelationOptions {
   void validate() const;
 };
 
-/// What signals have left when the effect of others is taken away.
+/// What remains of signals when the effect of others is removed.
 struct Decorrelation {
   Eigen::MatrixXd residuals;    ///< m x N, about their means
   Eigen::Index parameters = 0;  ///< fitted coefficients a signal

@@ -31,7 +31,7 @@ struct DesignedOutputOptions {
   void validate() const;
 };
 
-/// What there was to identify.
+/// Whether there was a model to identify.
 enum class ClosedLoopModelStatus : std::int8_t {
   identified = 0,
   zero = 1,      ///< the output is 0 to rounding, and so is the model

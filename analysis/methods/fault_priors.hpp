@@ -57,7 +57,7 @@ struct FaultPriorSet {
   /// nu of the scaled inverse chi-square distribution of the variance of the noise about the known one;
   /// infinity: it is known.
   double noise_freedom;
-  /// Is x(0) = 0, as in every loop of a study? Otherwise the disturbance has been there for long.
+  /// Whether x(0) = 0, as in every loop of a study. Otherwise the disturbance is stationary.
   bool starts_from_rest;
 };
 

@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// Whose past outputs explain a CV in a high-order ARX model.
+/// The CVs whose past outputs explain a CV in a high-order ARX model.
 enum class ArxOutputs : std::int8_t {
   all = 0,  ///< AO_i is a full matrix, as (2.1) has it: what other CVs tell of the next sample counts as
             ///< predictable
@@ -43,7 +43,7 @@ struct HighOrderArxOptions {
 /// coefficients.
 Eigen::Index fewest_samples(const HighOrderArxOptions& options, Eigen::Index ny, Eigen::Index nr);
 
-/// What a high-order ARX model leaves of a record of `ny` CVs and `N` samples.
+/// The residuals of a high-order ARX model on a record of `ny` CVs and `N` samples.
 ///
 /// | symbol | member      | shape  | meaning                                             |
 /// |--------|-------------|--------|-----------------------------------------------------|
@@ -63,8 +63,8 @@ struct HighOrderArx {
 ///
 ///   y(k) = sum_{i=1}^{MO1} AO_i y(k-i) + sum_{i=1}^{MO2} BO_i r(k-i) + e^d(k)
 ///
-/// by least squares, CV by CV. That the innovations do not depend on the controller (feedback invariance) is
-/// why they can be had from references and outputs alone.
+/// by least squares, CV by CV. References and outputs suffice because the innovations do not depend on the
+/// controller (feedback invariance).
 ///
 /// | symbol | meaning                                              | shape  |
 /// |--------|------------------------------------------------------|--------|

@@ -49,8 +49,8 @@ struct LinearLoop {
 /// @throws InputError when the controller has no solution, or the benchmark is too short
 LinearLoop linear_loop(const AssessmentContext& context, const AssessedLoop& benchmark, Eigen::Index samples);
 
-/// A channel of the plant that is another than in the model: D, the difference of the impulse responses
-/// G - G0 from a move of the MV on, L values of which the first is 0.
+/// A channel of the plant that differs from the model: D, the difference of the impulse responses G - G0 from
+/// a move of the MV on, L values of which the first is 0.
 struct ChannelDifference {
   Eigen::Index cv, mv;
   Eigen::VectorXd D;

@@ -15,7 +15,7 @@
 
 namespace mpm {
 
-/// What somebody else's method may claim: numbers of its own, and bytes of a text about it.
+/// Limits for an outside method: how many numbers of its own, and how many bytes of text about it.
 inline constexpr std::size_t kMostMethodNumbers = 1000;
 inline constexpr std::size_t kLongestMethodText = 1000;
 

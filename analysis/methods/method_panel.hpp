@@ -13,8 +13,8 @@
 
 namespace mpm {
 
-/// The methods of a study, each with what it has learnt of the controller. Each thread has its
-/// own; an answer depends on the loop only.
+/// The methods of a study, each with what it has learnt about the controller. Each thread has its own panel;
+/// an answer depends on the loop only.
 class MethodPanel {
  public:
   /// Methods that assess loops of `study` by what they have learnt in `context`, whose basis case must have
@@ -23,8 +23,8 @@ class MethodPanel {
   MethodPanel(const MethodPanel&) = delete;
   MethodPanel& operator=(const MethodPanel&) = delete;
 
-  /// What each method says of a loop that ran to its end under the controller of the study, or under another
-  /// one with the basis case `own`, whose status must be ok. `y_sim` is that of assessed_loop().
+  /// The answer of each method on a loop that ran to its end under the controller of the study, or under
+  /// another one with the basis case `own`, whose status must be ok. `y_sim` is that of assessed_loop().
   std::vector<AssessmentRecord> assess(const AssessedLoop& loop, const TunedBasis* own = nullptr);
 
   /// The same by one method: null when it is not one of the panel.
@@ -35,7 +35,7 @@ class MethodPanel {
 
  private:
   AssessmentRecord assessed(std::size_t method, const AssessedLoop& loop, const TunedBasis* own);
-  /// The answer of a method, the time that it took for the whole record, and its windows.
+  /// The answer of a method, its time for the whole record, and its windows.
   AssessmentRecord timed(std::size_t method, Assessor& assessor, const AssessedLoop& loop) const;
 
   const Study& study_;

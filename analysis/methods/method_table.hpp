@@ -8,11 +8,11 @@
 
 namespace mpm {
 
-/// Every method of assessment, the chain of the thesis first, and at the end those that were added.
+/// Every method, the chain of the thesis first, added methods last.
 const std::vector<AssessmentMethodInfo>& assessment_methods();
 
-/// Adds a method to those of this program: one from outside, by the command line and before anything is run.
-/// Throws InputError for a name that there is.
+/// Adds an outside method, from the command line and before any run. Throws InputError for a name that
+/// exists.
 void add_assessment_method(AssessmentMethodInfo method);
 
 /// The method of this name. Throws InputError, with the known names, when there is none.

@@ -6,11 +6,11 @@
 
 namespace mpm {
 
-/// What a method needs of a loop in words: "setpoints that move, a benchmark period"; "nothing else" of one
-/// that can do with records of any loop.
+/// What a method needs from a loop, in words: "setpoints that move, a benchmark period"; "nothing else" if
+/// records of any loop suffice.
 std::string needs_text(const MethodDescription& method);
 
-/// What a method tells of a loop besides its verdict, in words: "the CV, the source"; "nothing else".
+/// What a method tells about a loop besides its verdict, in words: "the CV, the source"; "nothing else".
 std::string answers_text(const MethodDescription& method);
 
 }  // namespace mpm

@@ -18,15 +18,16 @@ Eigen::RowVectorXd channel_response(const DiscreteChannel& channel,
 ///
 ///   m(theta) = (G(theta) - G0) u,
 ///
-/// on a grid of sizes theta, and exactly at any one. What is needed for it of the study is made once.
+/// on a grid of sizes theta, and exactly at any one size. The parts that depend on the study only are
+/// computed once.
 class MismatchResponses {
  public:
   MismatchResponses(const Study& study, const SizePrior& prior);
 
   const SizePrior& prior() const { return prior_; }
-  /// Ascending, from one end of what is possible to the other.
+  /// Ascending, over the whole range of possible sizes.
   const std::vector<double>& sizes() const { return sizes_; }
-  /// Is m(theta) = (theta - 1) G0 u, so that one series says all?
+  /// Whether m(theta) = (theta - 1) G0 u, so that one series suffices.
   bool is_linear() const {
     return prior_.parameter == MismatchParameter::gain || prior_.parameter == MismatchParameter::sign;
   }

@@ -11,7 +11,7 @@ struct PlantAndNoise {
   Eigen::MatrixXd X;
 };
 
-/// What is known of a CV from a period in which nothing was wrong: e = X b_0 + v.
+/// What a healthy period tells about a CV: e = X b_0 + v.
 ///
 /// | symbol    | member      | shape | meaning                                    |
 /// |-----------|-------------|-------|--------------------------------------------|
@@ -47,8 +47,8 @@ struct ModelComparison {
   double plant = 0.0, noise_model = 0.0, noise_variance = 0.0;
 };
 
-/// Holds a period against a healthy model. The plant is tested at b_0, with the noise model of e - X b_0,
-/// rather than by the distance of two estimates: with noise that wanders the covariance of an estimate is too
+/// Compares a period with a healthy model. The plant is tested at b_0, with the noise model of e - X b_0, and
+/// not by the distance of two estimates, because drifting noise makes the covariance of an estimate too
 /// small. v is e - X b_0 as long as the plant is the same, and e - X b of `refined_groups` when it is not. A
 /// v of less than 1 % of the variance of X b then says nothing of the noise, for it may be what the filters
 /// do not follow of the mismatch. The limits are quantiles of F(rank, freedom), F(p, least freedom of the

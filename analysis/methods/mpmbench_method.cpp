@@ -29,7 +29,7 @@ constexpr double kMostlyMismatch = 0.2;
 ///
 /// Which channel, which parameter, how large? `likelihood`, where the source is a mismatch.
 ///
-/// docs/choosing_a_method.md has the figures from which the choice was made.
+/// docs/methods.md has the figures from which the choice was made.
 class Mpmbench final : public AssessmentMethod {
  public:
   explicit Mpmbench(const AssessmentContext& context)

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// Whether an MV says anything about its channels.
+/// Whether an MV carries information about its channels.
 enum class MvUse : std::int8_t {
   evaluated = 0,
   saturated = 1,       ///< at a limit for too large a share of the record

@@ -18,10 +18,10 @@ Eigen::MatrixXd noise_filtered(const Eigen::Ref<const Eigen::MatrixXd>& signals,
 /// The rows of signals that move.
 Eigen::MatrixXd moving_rows(const Eigen::Ref<const Eigen::MatrixXd>& signals);
 
-/// The part of each MV that signals from outside of the loop make it do, u - eps with eps = u - V r
-/// (`decorrelate`, without delay). What the MVs do in answer to unmeasured disturbances is left out with
-/// their noise: r does not depend on the disturbances, so neither does V r, whereas u is correlated with the
-/// prediction error by the feedback alone, mismatch or not.
+/// The part of each MV that follows from signals outside the loop, u - eps with eps = u - V r (`decorrelate`,
+/// without delay). It excludes noise and the answers of the MVs to unmeasured disturbances: r does not depend
+/// on the disturbances, so neither does V r, whereas feedback alone correlates u with the prediction error,
+/// mismatch or not.
 ///
 /// | symbol | name     | shape  | meaning                            |
 /// |--------|----------|--------|------------------------------------|

@@ -5,11 +5,10 @@
 
 namespace mpm {
 
-/// A method that is a program: each thread or worker process that assesses has one child of its own, which is
-/// told what the method may know (`context`) and then one loop after the other, as lines of JSON
-/// (docs/bring_your_own.md). A child that ends, does not answer in time or answers what cannot be read costs
-/// the verdict on its loop, which has failed, and the next loop has another child. An answer with the number
-/// of an earlier message is passed over: the first one counts.
+/// A method that is a program. Each thread or worker process has one child process of its own, which receives
+/// the context and then one loop after another as lines of JSON (docs/bring_your_own.md). If a child ends,
+/// does not answer in time, or answers what cannot be read, the verdict on its loop is `failed`, and the next
+/// loop has a new child. An answer with the number of an earlier message is skipped: the first one counts.
 ///
 /// The program is started once, for its description. Throws InputError when that is none.
 AssessmentMethodInfo program_method(const MethodProgram& program);

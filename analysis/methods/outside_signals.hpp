@@ -7,9 +7,9 @@
 
 namespace mpm {
 
-/// Signals that act on a loop and upon which nothing in the loop acts: measured disturbances, setpoints of
-/// the controller, soft limits that an operator moves, and test signals. Setpoints of an optimizer follow
-/// from the measurements: they come from within the loop.
+/// Signals that act on a loop and on which the loop does not act: measured disturbances, setpoints of the
+/// controller, soft limits that an operator moves, and test signals. Setpoints of an optimizer follow from
+/// the measurements, so they belong to the loop.
 class OutsideSignals {
  public:
   /// `study` must outlive the object.

@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// The correlation of what is left of a prediction error with what is left of an MV, at the lags at which the
+/// The correlation of the residual of a prediction error with the residual of an MV, at the lags at which the
 /// MV can act.
 ///
 /// | member     | shape                 | meaning                                                          |

@@ -30,7 +30,7 @@ Eigen::VectorXcd plant_model_ratio(const TransferFunction& channel, double sampl
                                    const Eigen::Ref<const Eigen::VectorXd>& coefficients,
                                    const Eigen::Ref<const Eigen::VectorXd>& frequencies);
 
-/// What people read in a plant-model ratio.
+/// The three numbers that people read from a plant-model ratio.
 struct RatioSignature {
   double magnitude;  ///< |P| at `kLowFrequency` over the residence time of the channel
   double bend;       ///< |P| at `kHighFrequency` over the residence time, over `magnitude`

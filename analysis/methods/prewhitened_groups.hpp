@@ -9,20 +9,19 @@
 
 namespace mpm {
 
-/// How the simulation error of a CV is explained by groups of signals, in a form in which its noise is white.
+/// A regression of a CV's simulation error on groups of signals, prewhitened.
 ///
 /// A simulation error of a mismatch Delta G and noise v is e = Delta G u + v. With A v = w white and X_j the
 /// responses of some filters to input j, w = A (e - sum_j X_j b_j) is linearised about A and a first v,
 ///
 ///   A e(k) = c + sum_(l=1)^p da_l v(k-l) + sum_j A X_j(k) b_j + w(k)
 ///
-/// and the past of v and the constant are taken out of both sides, so that nothing is left in them of what
-/// the noise says of itself. In closed loop the MVs know the past of the noise; X_j(k) holds u(k-1) and what
-/// was before, and the past of v has been taken out, so that what is left of it is not correlated with w(k),
-/// errors of the noise model apart.
+/// and the past of v and the constant are projected out of both sides, which removes what the noise predicts
+/// of itself. In closed loop the MVs depend on past noise; X_j(k) contains u(k-1) and earlier moves, and with
+/// the past of v projected out, the rest is uncorrelated with w(k) but for errors of the noise model.
 ///
-/// prewhitened_test() (analysis/identification) only asks whether groups help to predict e; it leaves the
-/// past of v in, which costs power but no false alarm, and does with gaps.
+/// prewhitened_test() (analysis/identification) tests only whether groups help to predict e. It leaves the
+/// past of v in, which costs power but no false alarms, and accepts gaps.
 ///
 /// | symbol  | member   | shape         | meaning                                                      |
 /// |---------|----------|---------------|--------------------------------------------------------------|
@@ -44,8 +43,8 @@ struct PrewhitenedGroups {
   /// |Q_j'r|^2 / (m_j' sigma^2), which is F(m_j', freedom) when no group explains anything; 0 for a group
   /// without columns and for an error that is 0.
   double ratio(std::size_t group) const;
-  /// By how much the squares grow when the group is left out of the regression with all the others, over
-  /// m_j' sigma^2.
+  /// The increase of the sum of squares when the group is left out of the regression with all the others,
+  /// over m_j' sigma^2.
   double partial_ratio(std::size_t group) const;
   /// The quantile of F(m_j', freedom) that is exceeded with this probability; infinite without columns.
   double critical_ratio(std::size_t group, double probability) const;

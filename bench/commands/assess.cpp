@@ -265,23 +265,23 @@ ExitCode assess(AssessArguments options, const std::string& command) {
 
 void add_assess(CommandSet& commands) {
   const auto options = std::make_shared<AssessArguments>();
-  CLI::App& app =
-      commands.add("assess", "Assess records of a plant: which CVs lose how much, why, and how sure that is",
-                   [options, &commands] { return assess(*options, commands.command_line()); });
+  CLI::App& app = commands.add(
+      "assess", "Assess records of a plant: which CVs lose how much, why, and how certain that is",
+      [options, &commands] { return assess(*options, commands.command_line()); });
   add_path(app, "STUDY", options->study, "Study file, or name of a shipped study")->required();
   add_path(app, "DATA", options->data, "Records of the loop (CSV or netCDF-4)")->required();
   add_methods_option(app, options->methods, "Methods, separated by commas; the first one gives the verdict");
   add_path(app, "-o,--output", options->page, "Page to write (HTML)");
-  app.add_option("--window", options->window, "Samples of a window that moves over the record")
+  app.add_option("--window", options->window, "Length of a window that moves over the record, in samples")
       ->check(whole_number(1, 1000000000));
   app.add_option("--stride", options->stride, "Samples from one window to the next")
       ->check(whole_number(1, 1000000000));
   app.add_option("--trials", options->trials,
-                 "Simulated loops like the record that show how far to trust the verdict; 0: none")
+                 "Number of simulated loops like the record that show how far to trust the verdict; 0: none")
       ->check(whole_number(0, 1000000))
       ->capture_default_str();
   add_path(app, "--calibration", options->calibration,
-           "Archive of these loops, made when it is not there; by default DATA.calibration.h5");
+           "Archive of these loops, made if it does not exist (default: DATA.calibration.h5)");
   add_jobs(app, options->run.jobs, "How many loops run at once");
   add_solver(app, options->run.solver);
   add_json(app, options->json);

@@ -41,9 +41,10 @@ struct Task {
 inline std::vector<Task> tasks() {
   return {{"Test methods on simulated loops",
            {add_init, add_validate, add_run, add_merge, add_sweep, add_suite, add_compare}},
-          {"See what was found", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
+          {"Look at the results", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
           {"Assess the records of a plant", {add_assess, add_identify, add_repair}},
-          {"What there is", {add_list, add_show, add_reproduce, add_manual, add_completion}}};
+          {"Shipped studies and the program itself",
+           {add_list, add_show, add_reproduce, add_manual, add_completion}}};
 }
 
 }  // namespace mpm

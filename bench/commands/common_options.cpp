@@ -59,7 +59,7 @@ void add_archive(CLI::App& app, std::string& archive) {
 void add_trust(CLI::App& app) {
   app.add_flag_callback(
       "--trust-programs", [] { trust_every_program(); },
-      "Start the programs and load the FMU that the study of an archive or of a part names");
+      "Run the programs and load the FMU named by the study of an archive or part");
 }
 
 void add_index(CLI::App& app, std::int64_t& index) {
@@ -99,14 +99,14 @@ void add_solver(CLI::App& app, std::string& solver) {
 
 void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description) {
   app.add_option("--methods", methods,
-                 fmt::format("{}. There are {}", description, fmt::join(assessment_method_names(), ", ")))
+                 fmt::format("{}. Available: {}", description, fmt::join(assessment_method_names(), ", ")))
       ->delimiter(',');
 }
 
 void add_method_files(CLI::App& app, std::vector<std::string>& files) {
   app.add_option(
       "--method-file", files,
-      "File of methods that are programs, [method.NAME] command = [...]. May be given several times");
+      "File of methods that are programs, [method.NAME] command = [...]; may be given several times");
 }
 
 std::vector<std::string> take_method_files(const std::vector<std::string>& files) {
@@ -139,15 +139,15 @@ std::vector<std::string> with_programs(const std::vector<std::string>& named,
 void add_shard_of(CLI::App& app, std::string& shard, const std::string& what) {
   add_part_option(
       app, "--shard", shard, "I/N, auto or auto/N",
-      fmt::format("Do every Nth of the {} only, from the Ith on, given as I/N, or as auto or auto/N "
-                  "as `run` takes it; without it the same command does what is missing and shows all",
-                  what));
+      fmt::format(
+          "Do part I/N of the {}: every Nth, from the Ith on; auto and auto/N as for `run`. Without it, "
+          "the command does what the parts have left and shows everything",
+          what));
 }
 
 void add_shard_interval(CLI::App& app, double& interval) {
-  app.add_option(
-         "--shard-interval", interval,
-         "Seconds between two shards, which keep what is finished: as much is lost when a run is killed")
+  app.add_option("--shard-interval", interval,
+                 "Seconds between two saves of finished experiments: what a killed run can lose")
       ->check(number_between(0.0, 1e9))
       ->capture_default_str();
 }
@@ -158,12 +158,12 @@ std::optional<ShardNumber> shard_of(const std::string& text) {
 
 void add_overwrite(CLI::App& app, bool& overwrite) {
   app.add_flag("--overwrite", overwrite,
-               "Replace a file that is there whatever it is; without it the archive of another study or seed "
-               "is kept, and the command refused");
+               "Replace any existing file; without it, the command refuses to replace the archive of another "
+               "study or seed");
 }
 
 void add_json(CLI::App& app, bool& json) {
-  app.add_flag("--json", json, "As JSON");
+  app.add_flag("--json", json, "Print JSON");
 }
 
 CLI::Option* add_quiet(CLI::App& app, bool& quiet, const std::string& description) {

@@ -342,24 +342,23 @@ ExitCode compare(const CompareArguments& options, const std::string& command_lin
 
 void add_compare(CommandSet& commands) {
   const auto options = std::make_shared<CompareArguments>();
-  CLI::App& app =
-      commands.add("compare", "Assess the loops of an archive by several methods: how often is each right?",
-                   [options, &commands] { return compare(*options, commands.command_line()); });
+  CLI::App& app = commands.add(
+      "compare", "Assess the loops of an archive by several methods, and compare how often each is right",
+      [options, &commands] { return compare(*options, commands.command_line()); });
   add_archive(app, options->archive);
   add_trust(app);
   add_methods_option(app, options->methods, "Methods, separated by commas, or all");
   add_method_files(app, options->method_files);
-  app.add_option(
-      "--verdicts", options->verdicts,
-      "CSV file with verdicts on the loops of `export --blind`, FILE or NAME=FILE; a method like any "
-      "other. May be given several times");
+  app.add_option("--verdicts", options->verdicts,
+                 "CSV file of verdicts on the loops of `export --blind`, FILE or NAME=FILE; compared like a "
+                 "method. May be given several times");
   add_path(app, "-o,--output", options->output,
-           "Archive to write with the comparison in it (HDF5); may be ARCHIVE itself. What is done of it is "
-           "kept beside it until then, and the same command goes on");
-  add_experiments(app, options->experiments, "Compare on the first N experiments only");
+           "Archive to write, with the comparison in it (HDF5); may be ARCHIVE itself. Until then finished "
+           "work waits beside it, and the same command resumes it");
+  add_experiments(app, options->experiments, "Compare only the first N experiments");
   add_shard_of(app, options->shard, "loops");
   app.add_flag("--discard", options->discard,
-               "Delete what an interrupted comparison of this output has done, and start anew");
+               "Delete what an interrupted comparison of this output has finished, and start again");
   add_overwrite(app, options->overwrite);
   add_shard_interval(app, options->shard_interval);
   add_jobs(app, options->jobs, "How many loops are assessed at once");

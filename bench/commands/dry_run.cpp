@@ -92,11 +92,11 @@ std::string together_time(const std::vector<const IntendedStudy*>& studies, cons
 
 void add_dry_run(CLI::App& app, bool& dry_run) {
   app.add_flag("--dry-run", dry_run,
-               "Say what would be run and written, and how long it takes; write nothing");
+               "List what would be run and written, and how long it takes; write nothing");
 }
 
 void add_untimed_dry_run(CLI::App& app, bool& dry_run) {
-  app.add_flag("--dry-run", dry_run, "Say what would be run and written; run and write nothing");
+  app.add_flag("--dry-run", dry_run, "List what would be run and written; run and write nothing");
 }
 
 std::string solver_text(const Study& study, const RunOptions& options) {

@@ -118,25 +118,24 @@ void add_export(CommandSet& commands) {
   add_archive(app, options->archive);
   add_trust(app);
   app.add_option("--table", options->table,
-                 "experiments, findings, loops (those that were kept), or a method")
+                 "experiments, findings, loops (the stored ones), or the name of a method")
       ->capture_default_str();
-  app.add_option("--index", options->index, "One experiment only; not of the findings")
+  app.add_option("--index", options->index, "Only this experiment; not for the findings")
       ->check(whole_number(0, 1000000000));
-  CLI::Option* const blind = app.add_flag(
-      "--blind", options->blind,
-      "Write the loops without the truth into the folder OUTPUT, for somebody who is to assess them");
+  CLI::Option* const blind =
+      app.add_flag("--blind", options->blind,
+                   "Write the loops without the truth into the folder OUTPUT, for a blind assessment");
   app.add_flag("--calibration", options->parts.calibration,
-               "With --blind: the calibration loops as well, among the others")
+               "With --blind: mix the calibration loops with the others")
       ->needs(blind);
   app.add_flag("--windows", options->parts.windows,
-               "With --blind: ask for verdicts on the moving windows of each loop as well")
+               "With --blind: ask for verdicts on the moving windows of each loop too")
       ->needs(blind);
-  add_path(
-      app, "--key", options->key,
-      "With --blind: CSV file to write with the experiment that each loop is, for whoever trains a method")
+  add_path(app, "--key", options->key,
+           "With --blind: CSV file to write that maps each loop to its experiment, to train a method")
       ->needs(blind);
-  add_path(app, "-o,--output", options->output, "File to write, with --blind a folder; stdout without one");
-  add_jobs(app, options->jobs, "With --blind: how many loops are run at once, those that were not kept");
+  add_path(app, "-o,--output", options->output, "File to write, with --blind a folder (default: stdout)");
+  add_jobs(app, options->jobs, "With --blind: how many of the loops that were not kept run at once");
   add_quiet(app, options->quiet);
 }
 

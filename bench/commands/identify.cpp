@@ -283,17 +283,16 @@ ExitCode identify(const IdentifyArguments& arguments) {
 void add_identify(CommandSet& commands) {
   const auto options = std::make_shared<IdentifyArguments>();
   CLI::App& app =
-      commands.add("identify", "Identify a model for the controller by steps of the plant of a study",
+      commands.add("identify", "Identify a model for the controller from steps of a study's plant",
                    [options] { return identify(*options); });
   app.add_option("STUDY", options->study, "Study file, or name of a shipped study")->required();
-  app.add_option(
-      "--step", options->steps,
-      "NAME=SIZE: the step of an input, up and down; by default 2 % of the range of an MV, and the "
-      "largest step of an MD in the study");
+  app.add_option("--step", options->steps,
+                 "Size of the step of an input, up and down, NAME=SIZE (default: 2 % of the range of an MV, "
+                 "the largest step of an MD in the study)");
   app.add_option("--samples", options->samples,
-                 "Samples of a step response; by default sensitivity.samples of the study")
+                 "Samples of a step response (default: sensitivity.samples of the study)")
       ->check(whole_number(8, 1000000));
-  app.add_flag("--noise", options->noise, "With the measurement noise of the study");
+  app.add_flag("--noise", options->noise, "Add the measurement noise of the study");
   add_json(app, options->json);
   add_quiet(app, options->quiet, "No warnings");
 }

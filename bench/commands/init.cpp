@@ -153,29 +153,31 @@ void add_init(CommandSet& commands) {
   const auto options = std::make_shared<InitArguments>();
   CLI::App& app = commands.add("init", "Write a study of your own plant, with a comment on every key",
                                [options] { return init(*options); });
-  add_path(app, "STUDY", options->output, "Study file to write, which must not be there; - for stdout")
+  add_path(app, "STUDY", options->output, "Study file to write; it must not exist yet; - for stdout")
       ->required();
   app.add_option("--cvs", options->words.cvs, "Controlled variables: names separated by commas, or how many");
-  app.add_option("--mvs", options->words.mvs, "Manipulated variables, likewise");
-  app.add_option("--mds", options->words.mds, "Measured disturbances, likewise");
+  app.add_option("--mvs", options->words.mvs,
+                 "Manipulated variables: names separated by commas, or how many");
+  app.add_option("--mds", options->words.mds,
+                 "Measured disturbances: names separated by commas, or how many");
   app.add_option("--unit", options->words.units, "Unit of a variable, NAME=UNIT")->allow_extra_args(false);
   app.add_option("--time-unit", options->words.time_unit, "Unit of time")->capture_default_str();
   app.add_option("--gains", options->words.gains,
-                 "Gains, a row a CV, a column an MV or MD: '1 2; 3 4'; 0 for no channel");
-  app.add_option("--time-constants", options->words.time_constants, "Time constants, likewise");
-  app.add_option("--dead-times", options->words.dead_times, "Dead times, likewise; none without it");
-  app.add_option(
-         "--channel", options->words.channels,
-         "A channel CV,INPUT=NUMERATOR/DENOMINATOR[@DEAD_TIME], coefficients in descending powers of s: "
-         "y1,u1='4.05 / 50 1 @ 27'")
+                 "Gains, one row for each CV, one column for each MV and MD: '1 2; 3 4'; 0 for no channel");
+  app.add_option("--time-constants", options->words.time_constants, "Time constants, in the form of --gains");
+  app.add_option("--dead-times", options->words.dead_times,
+                 "Dead times, in the form of --gains (default: 0)");
+  app.add_option("--channel", options->words.channels,
+                 "Transfer function of a channel, CV,INPUT=NUMERATOR/DENOMINATOR[@DEAD_TIME], coefficients "
+                 "in descending powers of s: y1,u1='4.05 / 50 1 @ 27'")
       ->allow_extra_args(false);
   app.add_option("--sample-time", options->words.sample_time,
-                 "Sample time; from the time constants without it")
+                 "Sample time (default: from the time constants)")
       ->check(positive_number());
-  app.add_option("--range", options->words.ranges, "Range in which a CV is held, NAME=LOW:HIGH")
+  app.add_option("--range", options->words.ranges, "Range in which the controller holds a CV, NAME=LOW:HIGH")
       ->allow_extra_args(false);
   app.add_option("--setpoint", options->words.setpoints,
-                 "By how much the setpoint of a CV without a range moves, NAME=SIZE; 1 without it")
+                 "How far the setpoint of a CV without a range moves, NAME=SIZE (default: 1)")
       ->allow_extra_args(false);
   app.add_option("--limits", options->words.limits, "Hard limits of an MV, NAME=LOW:HIGH")
       ->allow_extra_args(false);

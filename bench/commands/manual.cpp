@@ -14,7 +14,7 @@ void add_manual(CommandSet& commands) {
 
 void add_completion(CommandSet& commands) {
   commands.add("completion",
-               "Print what completes commands and options in bash: source <(mpmbench completion)",
+               "Print the completion of commands and options for bash: source <(mpmbench completion)",
                [&commands] {
                  print_result(bash_completion(commands.program()));
                  return ExitCode::done;

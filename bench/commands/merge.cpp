@@ -106,13 +106,12 @@ ExitCode merge(const MergeArguments& options, const std::string& command_line) {
 
 void add_merge(CommandSet& commands) {
   const auto options = std::make_shared<MergeArguments>();
-  CLI::App& app =
-      commands.add("merge", "Make the archive of parts that `run --shard` and `run --range` have left",
-                   [options, &commands] { return merge(*options, commands.command_line()); });
+  CLI::App& app = commands.add("merge", "Make one archive from the parts of `run --shard` and `run --range`",
+                               [options, &commands] { return merge(*options, commands.command_line()); });
   add_path(app, "OUTPUT", options->output, "Archive to write (HDF5)")->required();
-  app.add_option("PARTS", options->parts, "Folders with parts, at any depth; OUTPUT.parts without any");
+  app.add_option("PARTS", options->parts, "Folders that hold parts, at any depth (default: OUTPUT.parts)");
   app.add_flag("--missing", options->missing,
-               "Write nothing, and say what no part has: exit code 0 when nothing is missing, else 3");
+               "Write nothing and list the loops that no part has: exit code 0 when none is missing, else 3");
   add_overwrite(app, options->overwrite);
   add_method_files(app, options->method_files);
   add_trust(app);

@@ -295,17 +295,18 @@ ExitCode repair(const RepairArguments& options) {
 void add_repair(CommandSet& commands) {
   const auto options = std::make_shared<RepairArguments>();
   CLI::App& app = commands.add(
-      "repair", "Identify the channel that a method names again, and say what the repaired controller brings",
+      "repair",
+      "Identify the channel that a method names again, and predict what the repaired controller brings",
       [options] { return repair(*options); });
   add_archive(app, options->archive);
   add_trust(app);
   app.add_option("--index", options->index,
-                 "One experiment in full; without it all in which a channel is named")
+                 "Show one experiment in full (default: all in which a channel is named)")
       ->check(whole_number(0, 1000000000));
   app.add_option("--method", options->method,
-                 "Whose word is taken for the channel; by default the first method "
-                 "of the archive that names mismatches, or else channels");
-  app.add_option("--channel", options->channel, "The channel instead, as CV/MV; with --index");
+                 "Method that names the channel (default: the first of the archive that names mismatches, or "
+                 "else channels)");
+  app.add_option("--channel", options->channel, "Identify this channel instead, CV/MV; with --index");
   add_json(app, options->json);
   add_quiet(app, options->quiet);
 }

@@ -93,7 +93,7 @@ void add_report(CommandSet& commands) {
       commands.add("report", "Write what a study found as one HTML page, and its figures as files",
                    [options] { return report(*options); });
   app.add_option("ARCHIVE", options->archives,
-                 "Archive; two for a page of what changed from the first to the second")
+                 "Archive; with two, the page shows what changed from the first to the second")
       ->required()
       ->expected(1, -1);
   add_trust(app);
@@ -102,7 +102,7 @@ void add_report(CommandSet& commands) {
   CLI::Option* const figures =
       add_path(*outputs, "--figures", options->figures, "Folder to write the figures into, one file each");
   outputs->require_option(1, 2);
-  app.add_option("--format", options->format, "Format of these files")
+  app.add_option("--format", options->format, "Format of the figures")
       ->check(CLI::IsMember(figure_format_names()))
       ->needs(figures)
       ->capture_default_str();

@@ -159,11 +159,10 @@ void add_reproduce(CommandSet& commands) {
   app.add_option("TABLES", options->tables, "all, chapter2 to chapter7, or the number of a table such as 4.5")
       ->capture_default_str();
   add_path(app, "-o,--output", options->output,
-           "Page to write (HTML). What is done is kept beside it until then, and the same command goes on");
+           "Page to write (HTML). Until then finished tables wait beside it, and the same command resumes");
   add_solver(app, options->run.solver);
   add_json(app, options->json);
-  add_changes(app, options->changes,
-              "A key of the study of every table with another value, KEY=VALUE; may be repeated");
+  add_changes(app, options->changes, "Change a key in the study of every table, KEY=VALUE; may be repeated");
   app.add_option("--seeds", options->seeds,
                  "Run each table with N seeds, and report medians and the share of seeds that agree")
       ->check(whole_number(1, 100000));

@@ -201,13 +201,12 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
 }
 
 void add_part(CLI::App& app, RunArguments& options) {
+  add_part_option(app, "--shard", options.shard, "I/N, auto or auto/N",
+                  "Run part I/N into the folder OUTPUT.parts, for `merge`. auto: the part that srun, a Slurm "
+                  "array or mpirun names; auto/N: also that of an indexed Kubernetes job");
   add_part_option(
-      app, "--shard", options.shard, "I/N, auto or auto/N",
-      "Run part I of N, given as I/N, into the folder OUTPUT.parts, for `merge`; auto: as srun, a "
-      "Slurm array, mpirun or an indexed Kubernetes job says, the last with auto/N");
-  add_part_option(app, "--range", options.range, "A:B",
-                  "Run the loops A to B-1 as a part, given as A:B, or several, A:B,C:D; with --shard a part "
-                  "of these");
+      app, "--range", options.range, "A:B",
+      "Run the loops A to B-1 as a part, A:B, or several ranges, A:B,C:D; with --shard a part of these");
 }
 
 void add_parallel(CLI::App& app, Parallel& parallel) {
@@ -221,7 +220,7 @@ void add_parallel(CLI::App& app, Parallel& parallel) {
 
 void add_audit(CLI::App& app, double& share) {
   app.add_option("--audit", share,
-                 "Share of the steps whose problems Ipopt solves once more, with the solver auto")
+                 "Share of the controller's steps that Ipopt solves again as a check, with the solver auto")
       ->check(number_between(0.0, 1.0))
       ->capture_default_str();
 }
@@ -229,18 +228,18 @@ void add_audit(CLI::App& app, double& share) {
 void add_store(CLI::App& app, StorePolicy& store) {
   add_choice<StorePolicy>(
       app, "--store", store, store_policies(),
-      "Keep the loop data of no experiment, of those with a wrong verdict, of all, or of all with what "
-      "only a simulation knows: noise, disturbances, loops with one of two faults alone");
+      "Loop data to keep: of no experiment, of those with a wrong verdict, of all, or of all with what only "
+      "a simulation knows (noise, disturbances, loops with one of two faults alone)");
 }
 
 /// `run` must live until the command line is read.
 void add_interruption(CLI::App& app, RunOptions& run) {
   CLI::Option* const resume = app.add_flag_callback(
       "--resume", [&run] { run.leftovers = Leftovers::resume; },
-      "Go on with an interrupted run of this output: run only what is missing");
+      "Resume an interrupted run of this output: run only what is missing");
   app.add_flag_callback(
          "--discard", [&run] { run.leftovers = Leftovers::discard; },
-         "Delete what an interrupted run of this output has done, and start anew")
+         "Delete what an interrupted run of this output has finished, and start again")
       ->excludes(resume);
   add_shard_interval(app, run.shard_interval);
 }
@@ -253,13 +252,14 @@ void add_run(CommandSet& commands) {
                                [options, &commands] { return run(*options, commands.command_line()); });
   add_path(app, "STUDY", options->study, "Study file, name of a shipped study, or - for stdin")->required();
   add_path(app, "-o,--output", options->output, "Archive to write (HDF5)")->required();
-  add_changes(app, options->changes,
-              "A key of the study with another value, KEY=VALUE; may be repeated. The archive has the study "
-              "that comes out");
+  add_changes(
+      app, options->changes,
+      "Change a key of the study, KEY=VALUE; may be repeated. The archive contains the changed study");
   add_experiments(app, options->run.experiments, "Run the first N experiments; any N keeps the proportions");
   add_seed(app, options->run.seed, "Master seed instead of the study's");
-  add_methods_option(app, options->run.methods,
-                     "Methods that assess the loops, separated by commas, or all; in place of the study's");
+  add_methods_option(
+      app, options->run.methods,
+      "Methods that assess the loops, separated by commas, or all (default: those of the study)");
   add_method_files(app, options->method_files);
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
@@ -267,13 +267,13 @@ void add_run(CommandSet& commands) {
   add_audit(app, options->run.audit_share);
   add_store(app, options->run.store);
   app.add_flag("--allow-unhealthy-basis", options->run.allow_unhealthy_basis,
-               "Run although the basis case fails its self-check");
+               "Run even if the basis case fails its self-check");
   add_part(app, *options);
   add_overwrite(app, options->overwrite);
   add_interruption(app, options->run);
   add_dry_run(app, options->dry_run);
   CLI::Option* const verbose = app.add_flag(
-      "--verbose", options->verbose, "Say what is read, decided and done, and how long each stage takes");
+      "--verbose", options->verbose, "Report what is read, decided and done, and how long each stage takes");
   add_quiet(app, options->quiet, "No progress and no summary")->excludes(verbose);
 }
 

@@ -129,17 +129,18 @@ void add_suite(CommandSet& commands) {
   add_path(app, "SUITE", options->suite, "Suite file, or name of a shipped suite: standard, quick")
       ->required();
   add_path(app, "-o,--output", options->output,
-           "Folder for the archives and the leaderboard; what it has of this suite is kept")
+           "Folder for the archives and the leaderboard; finished cells in it are kept")
       ->required();
-  add_seed(app, options->choice.seed, "Seed of the suite instead of its own: a private suite");
-  app.add_option("--plants", options->choice.plants, "These plants only, separated by commas")
+  add_seed(app, options->choice.seed, "Another seed for the suite: a private suite");
+  app.add_option("--plants", options->choice.plants, "Only these plants, separated by commas")
       ->delimiter(',');
-  app.add_option("--families", options->choice.families, "These families only, separated by commas")
+  app.add_option("--families", options->choice.families, "Only these families, separated by commas")
       ->delimiter(',');
   add_shard_of(app, options->shard, "cells");
   add_experiments(app, options->run.experiments, "Run the first N experiments of each cell");
-  add_methods_option(app, options->run.methods,
-                     "Methods that assess the loops, separated by commas, or all; in place of the suite's");
+  add_methods_option(
+      app, options->run.methods,
+      "Methods that assess the loops, separated by commas, or all (default: those of the suite)");
   add_method_files(app, options->method_files);
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_overwrite(app, options->overwrite);

@@ -92,12 +92,12 @@ ExitCode summary(const SummaryArguments& options) {
 
 void add_summary(CommandSet& commands) {
   const auto options = std::make_shared<SummaryArguments>();
-  CLI::App& app = commands.add("summary",
-                               "Print what a study found, beside what was reported; of a run that is not "
-                               "finished, what it has found so far",
-                               [options] { return summary(*options); });
+  CLI::App& app = commands.add(
+      "summary",
+      "Print what a study found beside reported values; also the results so far of an unfinished run",
+      [options] { return summary(*options); });
   add_path(app, "ARCHIVE", options->archive,
-           "Archive, written or not; or a folder with the shards or parts of a run")
+           "Archive, also one that is not written yet, or a folder with the shards or parts of a run")
       ->required();
   add_method_files(app, options->method_files);
   add_trust(app);

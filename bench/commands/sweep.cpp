@@ -129,11 +129,12 @@ void add_sweep(CommandSet& commands) {
   options->run.store = StorePolicy::none;
   options->run.allow_unhealthy_basis =
       true;  // marked in the table: how much a choice matters is the question
-  CLI::App& app = commands.add("sweep", "Run a study once for each value of its open choices, and tabulate",
-                               [options, &commands] { return run_sweep(*options, commands.command_line()); });
+  CLI::App& app =
+      commands.add("sweep", "Run a study once for each value of its open choices, and make a table",
+                   [options, &commands] { return run_sweep(*options, commands.command_line()); });
   add_path(app, "SWEEP", options->sweep, "Sweep file, or name of a shipped sweep")->required();
   add_path(app, "-o,--output", options->output,
-           "Folder for the archives and the table; what it has of this sweep is kept")
+           "Folder for the archives and the table; finished studies in it are kept")
       ->required();
   add_experiments(app, options->run.experiments, "Run the first N experiments of each study");
   add_shard_of(app, options->shard, "studies");

@@ -141,14 +141,15 @@ ExitCode validate(const ValidateArguments& arguments) {
 
 void add_validate(CommandSet& commands) {
   const auto options = std::make_shared<ValidateArguments>();
-  CLI::App& app =
-      commands.add("validate", "What is implausible in a study, what it will show, and what it will cost",
-                   [options] { return validate(*options); });
+  CLI::App& app = commands.add(
+      "validate", "Check a study: what is implausible in it, what it will show, and what it will cost",
+      [options] { return validate(*options); });
   app.add_option("STUDY", options->study, "Study file, or name of a shipped study")->required();
-  add_experiments(app, options->run.experiments, "Experiments of the pilot; 20 without it");
+  add_experiments(app, options->run.experiments, "Experiments of the pilot (default: 20)");
   add_seed(app, options->run.seed, "Master seed instead of the study's");
-  add_methods_option(app, options->run.methods,
-                     "Methods that assess the loops, separated by commas, or all; in place of the study's");
+  add_methods_option(
+      app, options->run.methods,
+      "Methods that assess the loops, separated by commas, or all (default: those of the study)");
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
   add_json(app, options->json);

@@ -22,14 +22,14 @@ Done.
 A replay differs from its archive, or a gate is not kept.
 .TP
 2
-Wrong usage, or a file that is not what it should be; the message names file, key, what was found, what is allowed.
+Wrong usage or wrong input; the message names the file, the key, what was found and what is allowed.
 .TP
 3
-Not finished: interrupted, something went wrong, or output on stdout was lost. What was done is kept, and \-\-resume goes on.
+Not finished: the command was interrupted, something failed, or output on stdout was lost. Finished work is kept, and \-\-resume continues.
 .SH ENVIRONMENT
 .TP
 MPMBENCH_STUDIES
-Folder of the shipped studies, in place of the one beside the program.
+Folder of the shipped studies (default: the one beside the program).
 )";
 
 Commands commands_of(const CLI::App& program) {

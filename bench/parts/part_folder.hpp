@@ -20,7 +20,7 @@ struct CampaignPart {
 };
 
 /// The folder of a part: its shards, and `campaign.json`, which says of what it is a part, so that parts
-/// alone make an archive (docs/scale.md).
+/// alone make an archive (docs/running.md).
 struct PartFolder {
   std::filesystem::path path;
   Study study;             ///< as study_to_run() gave it

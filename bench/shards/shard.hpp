@@ -16,7 +16,7 @@ namespace mpm {
 /// Version of the format of a shard; a reader knows its own only.
 inline constexpr std::int32_t kShardVersion = 2;
 
-/// Collects the bytes of a shard, finished experiments of a run that is not (docs/resume.md). The format:
+/// Collects the bytes of a shard, finished experiments of a run that is not (docs/running.md). The format:
 /// "mpmbench shard" and a line end, version, identity, seconds, the outcomes to the end, all as
 /// results/files/byte_stream writes them, and the seal of results/files/file_seal. Bytes and not HDF5,
 /// because the reader is the program that wrote them: every number keeps its bits, and there is no second

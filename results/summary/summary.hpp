@@ -20,7 +20,7 @@ struct Unfinished {
 std::string summary_text(const Campaign& campaign, const StudyFindings& findings, const std::string& file,
                          const std::optional<Unfinished>& unfinished = {});
 
-/// The same as JSON for programs, with all experiments instead of the first ones; docs/summary.md lists the
+/// The same as JSON for programs, with all experiments instead of the first ones; docs/report.md lists the
 /// keys. A number that does not exist is null.
 std::string summary_json(const Campaign& campaign, const StudyFindings& findings,
                          const std::optional<Unfinished>& unfinished = {});

@@ -11,7 +11,7 @@ namespace mpm {
 
 class ControllerTalks;
 
-/// A program as the controller of a study: it answers lines of JSON (docs/own_controller.md).
+/// A program as the controller of a study: it answers lines of JSON (docs/own_plant.md).
 ///
 ///   {"call": "describe"}                                        ->  {"on_model": true}
 ///   {"call": "context", ...}                                    ->  {}

@@ -22,7 +22,7 @@ struct Sweep {
   std::vector<SweepVariant> variants;  ///< the base study first
 };
 
-/// Reads a sweep file (docs/sweeps.md). The tables under `set` are laid over those of the base study key by
+/// Reads a sweep file (docs/suite.md). The tables under `set` are laid over those of the base study key by
 /// key; the keys in `remove` are taken out of it first.
 ///
 /// Errors: InputError "FILE:LINE: KEY: ..." for the sweep file itself; for a variant that is no study the

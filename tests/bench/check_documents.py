@@ -1,5 +1,6 @@
-"""Runs every command of README.md, docs/tutorial.md and docs/ci.md, page by page, each in an empty folder, and the
-Python of all other pages, page by page, beside a small archive.
+"""Runs every command of README.md, docs/tutorial.md and docs/gates.md, page by page, each in an empty folder, and the
+Python of all other pages, page by page, beside a small archive. The leaderboard of README.md must be that of
+docs/leaderboard.json.
 
 usage: check_documents.py MPMBENCH SOURCES
 
@@ -9,6 +10,7 @@ must be one that the command has. Studies and suites are made small: SHIM adds t
 said in the source of the page, "<!-- not run in a test: COMMAND: REASON -->".
 """
 
+import json
 import os
 import pathlib
 import re
@@ -16,8 +18,8 @@ import subprocess
 import sys
 import tempfile
 
-PAGES = ["README.md", "docs/tutorial.md", "docs/ci.md"]
-RUN_ELSEWHERE = {"docs/reading_archives.md"}  # by tests/results/archive/check_reading_page.py, which checks its numbers
+PAGES = ["README.md", "docs/tutorial.md", "docs/gates.md"]
+RUN_ELSEWHERE = {"docs/file_format.md"}  # by tests/results/archive/check_reading_page.py, which checks its numbers
 # What a program of docs/own_plant.md is asked.
 REQUESTS = """{"call": "reset", "parameters": {"area": 2.0}, "sample_time": 1.0}
 {"call": "step", "u": [1.0], "d": [], "inner": [0.0]}
@@ -110,10 +112,28 @@ def check_python(program, sources):
                                     text=True, timeout=600)
             assert result.returncode == 0, (page, content, result.stdout[-2000:], result.stderr[-2000:])
             ran.append(page)
-    assert {"docs/methods_thesis.md", "docs/file_format.md", "docs/own_plant.md"} <= set(ran), ran
+    assert {"docs/methods_thesis.md", "docs/own_plant.md"} <= set(ran), ran
+
+
+def check_board(sources):
+    """Each row of the table in README.md has the shares of its method over all families."""
+    methods = {method["name"]: method["all"]["rates"] for method in
+               json.loads((sources / "docs/leaderboard.json").read_text())["methods"] if "rates" in method["all"]}
+    rows = re.findall(r"^\| `[\w-]+`, .*", (sources / "README.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    assert len(rows) > 5, rows
+    for line in rows:
+        cells = [cell.strip() for cell in line.strip("|").split("|")][1:]
+        rates = ("answered", "false_alarm_healthy", "power_05_impact", "located", "source_all")
+        for cell, name in zip(cells, rates):
+            rate = methods[line.split("`")[1]].get(name)
+            percent = {key: round(100 * value) for key, value in rate.items()} if rate else None
+            shown = "names none" if rate is None else "{value} ({lower} to {upper})".format(**percent)
+            expected = shown if name != "answered" else str(percent["value"])
+            assert cell.removesuffix(", by construction") == expected, (line, name, expected)
 
 
 def main(program, sources):
+    check_board(pathlib.Path(sources))
     check_python(program, pathlib.Path(sources))
     with tempfile.TemporaryDirectory() as name:
         shims = pathlib.Path(name)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A long campaign as docs/scale.md has it, under a real Slurm (one_node.sh): an array of four tasks with `mpirun -n 2`
+# A long campaign as docs/running.md has it, under a real Slurm (one_node.sh): an array of four tasks with `mpirun -n 2`
 # each, so eight parts, and `merge`; the memory and the processor time of each. With COMPARE=yes the same in one go,
 # whose data sets must be equal. Loops are shorter than the shipped ones unless LENGTH=shipped.
 #

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs a command under a real Slurm of one node, this machine: munged, slurmctld and slurmd are configured and started
 # for it in a folder that goes away, and ended after it. Needs root and the Debian packages slurmctld, slurmd,
-# slurm-client and munge; no other Slurm may be at work on the machine. docs/scale.md shows what comes out.
+# slurm-client and munge; no other Slurm may be at work on the machine. docs/running.md shows what comes out.
 #
 # usage: one_node.sh [COMMAND [ARGUMENT ...]]   without a command: tests/slurm/trial.sh
 set -euo pipefail

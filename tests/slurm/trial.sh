@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What docs/scale.md says of Slurm, tried under a real one (one_node.sh): an array, a task of it run again, srun, and a
+# What docs/running.md says of Slurm, tried under a real one (one_node.sh): an array, a task of it run again, srun, and a
 # job whose time is over. Every archive must have the data sets of a run in one go.
 #
 # usage: trial.sh   in the environment: MPMBENCH, the program (build/release/bench/mpmbench)

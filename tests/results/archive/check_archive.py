@@ -18,13 +18,13 @@ import xarray
 import seal
 
 TYPES = {"int8": "int8", "int32": "int32", "int64": "int64", "uint64": "uint64", "float64": "double", "object": "string"}
-COMMON_OF_METHODS = {"experiment", "reason", "cv", "mv", "cv_flagged", "cv_score", "cv_source", "channel_flagged",
-                     "mismatch_parameter", "mismatch_size", "mismatch_lower", "mismatch_upper", "named_candidate"}
+OF_EVERY_METHOD = "/methods/NAME"  # the heading under which the page has what any group of a method may have
 BELONGS_TO_HDF5 = {"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}
 
 
 def documented(text):
-    """{group: {name: (type, dimensions)}}, {group: {attribute: type}} of the tables under each heading."""
+    """{group: {name: (type, dimensions)}}, {group: {attribute: type}} of the tables under each heading. A table with the
+    column "method" has the variables of single methods."""
     group, variables, attributes = None, {}, {}
     for line in text.splitlines():
         heading = re.match(r"## `(/[\w/-]*)`", line)
@@ -32,15 +32,28 @@ def documented(text):
             group = heading[1]
             variables[group], attributes[group] = {}, {}
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-        if group is None or not re.fullmatch(r"`\w+`", cells[0]):
+        if group is None or not re.fullmatch(r"`[\w-]+`", cells[0]):
             continue
         name = cells[0].strip("`")
-        if len(cells) == 5:
+        if len(cells) == 6:
+            variables.setdefault(f"/methods/{cells[0].strip('`')}", {})[cells[1].strip("`")] = (cells[2], cells[3])
+        elif len(cells) == 5 and group == OF_EVERY_METHOD and is_of_scenarios(name):
+            variables["/methods/botelho"][name] = (cells[1], cells[2])
+        elif len(cells) == 5:
             variables[group][name] = (cells[1], cells[2])
         else:
             assert len(cells) == 3, line
             attributes[group][name] = cells[1]
     return variables, attributes
+
+
+def completed(path, variables):
+    """With the variables of every method in those groups of this archive that have them."""
+    common = variables[OF_EVERY_METHOD]
+    with h5py.File(path) as file:
+        return {group: {**names, **{name: common[name] for name in common.keys() & file[group].keys()}}
+                if group.startswith("/methods/") else names
+                for group, names in variables.items() if group != OF_EVERY_METHOD}
 
 
 def variable_form(data):
@@ -99,7 +112,8 @@ def check_h5py(path, variables, attributes):
             found = variables_of(group)
             assert found == variables[name], (name, found.items() ^ variables[name].items())
             found = {key: attribute_form(value) for key, value in group.attrs.items()}
-            assert found == attributes[name], (name, found.items() ^ attributes[name].items())
+            expected = attributes[OF_EVERY_METHOD if name.startswith("/methods/") else name]
+            assert found == expected, (name, found.items() ^ expected.items())
             for key in variables[name]:
                 check_variable(group[key])
         assert file.attrs["filetype"] == "mpmbench archive"
@@ -118,7 +132,7 @@ def datasets(path, groups):
             yield group, xarray.open_dataset(store).load()  # to close it would close the file
 
 
-def check_xarray(path, variables):
+def check_xarray(path, variables, common):
     """The engine that xarray chooses by itself is netCDF4; no variable may be lost on the way."""
     for group, dataset in datasets(path, variables):
         names = variables[group]
@@ -141,7 +155,7 @@ def check_xarray(path, variables):
     for method, (_, said) in zip(methods, datasets(path, [f"methods/{method}" for method in methods])):
         assert said.attrs["title"] and said.attrs["mpmbench_version"]
         numbers = [number["name"] for number in json.loads(said.attrs["description"])["numbers"]]
-        assert set(numbers) == variables[f"/methods/{method}"].keys() - COMMON_OF_METHODS, (method, numbers)
+        assert set(numbers) - common == variables[f"/methods/{method}"].keys() - common, (method, numbers)
         silent = ~answered.sel({"method": method})
         assert (said.cv_flagged.where(silent, -1) == -1).all() and said.cv_score.where(silent).isnull().all(), method
     with xarray.open_dataset(path, group="methods/botelho") as chain:
@@ -189,7 +203,8 @@ def check_scenarios(path, variables, attributes):
         for name in group, "/nominal_direct", "/methods/botelho":
             found = variables_of(file[name])
             assert found == variables[name], (name, found.items() ^ variables[name].items())
-            assert {key: attribute_form(value) for key, value in file[name].attrs.items()} == attributes[name]
+            expected = attributes[OF_EVERY_METHOD if name.startswith("/methods/") else name]
+            assert {key: attribute_form(value) for key, value in file[name].attrs.items()} == expected
             for item in file[name].values():
                 check_variable(item)
         more = {name for name in variables["/methods/botelho"] if is_of_scenarios(name)}
@@ -278,11 +293,12 @@ def main(writer, docs):
             for group, names in variables.items()
             if group not in ("/scenarios", "/nominal_direct")
         }
+        random = completed(path, random)
         check_h5py(path, random, attributes)
-        check_xarray(path, random)
+        check_xarray(path, random, variables[OF_EVERY_METHOD].keys())
         check_ncdump(path, random)
         subprocess.run([writer, path, "scenarios"], check=True)
-        check_scenarios(path, variables, attributes)
+        check_scenarios(path, completed(path, variables), attributes)
         subprocess.run([writer, path, "faultless"], check=True)
         check_faultless(path, variables)
         subprocess.run([writer, path, "further"], check=True)

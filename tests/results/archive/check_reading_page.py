@@ -1,4 +1,4 @@
-"""Runs the Python of docs/reading_archives.md, in its order, on an archive, and checks what it computes.
+"""Runs the Python of docs/file_format.md, in its order, on an archive, and checks what it computes.
 
 usage: check_reading_page.py WRITER READING_ARCHIVES.md
 """
