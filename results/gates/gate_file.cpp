@@ -8,24 +8,17 @@
 #include "analysis/methods/method_table.hpp"
 #include "scenarios/toml/toml_file.hpp"
 #include "scenarios/toml/toml_text.hpp"
-#include "scenarios/toml/toml_values.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
-
-const std::vector<std::string>& gate_file_keys(std::string_view table) {
-  const auto& tables = gate_file_tables();
-  return std::find_if(tables.begin(), tables.end(), [&](const auto& entry) { return entry.name == table; })
-      ->keys;
-}
+constexpr std::size_t kMaxGates = kMaxCount;
 
 /// Limits of a share are shares: a limit of 95 on it was meant as a percentage, and no result would ever show
 /// that it is wrong.
 NumberRule limit_rule(const Finding& finding) {
-  return finding.is_share() ? NumberRule{.low = 0, .high = 1, .low_included = true, .high_included = true}
-                            : NumberRule::finite();
+  return finding.is_share() ? NumberRule::share() : NumberRule::finite();
 }
 
 /// A gate on a method that has not assessed the loops gets its own message: a list of other numbers would not
@@ -47,69 +40,124 @@ void require_assessed(const TomlTable& table, const std::vector<Finding>& findin
                       method.name));
 }
 
-Gate read_gate(const TomlTable& table, const std::vector<Finding>& findings) {
-  require_assessed(table, findings);
+const Finding& finding_of(const TomlTable& table, const std::vector<Finding>& findings) {
   std::vector<std::string> names;
   for (const Finding& finding : findings)
     names.push_back(finding.name);
-  const Finding& finding = findings[read_one_of(table, "aggregate", names)];
-  Gate gate;
-  gate.name = finding.name;
-  const NumberRule rule = limit_rule(finding);
-  gate.minimum = read_number_or(table, "minimum", rule, gate.minimum);
-  gate.maximum = read_number_or(table, "maximum", rule, gate.maximum);
-  if (!table.has("minimum") && !table.has("maximum"))
-    table.refuse("", "no limit", "minimum, maximum or both");
-  if (gate.minimum > gate.maximum)
-    table.refuse("maximum", fmt::format("{}", gate.maximum),
-                 fmt::format("a number >= the minimum, {}", gate.minimum));
-  gate.with_confidence = read_flag_or(table, "with_confidence", gate.with_confidence);
-  if (gate.with_confidence && !finding.has_interval)
-    table.refuse("with_confidence", "true", fmt::format("false: '{}' has no interval", gate.name));
-  gate.minimum_count = read_whole_or(table, "minimum_count", 1, kMaxCount, gate.minimum_count);
-  gate.reason = read_text_or(table, "reason", "");
-  return gate;
+  return findings[read_one_of(table, "aggregate", names)];
 }
 
-BaselineLimits read_baseline(const TomlTable& document, const std::filesystem::path& folder) {
-  const TomlTable table = document.table("baseline", gate_file_keys("baseline"));
-  BaselineLimits limits;
-  limits.archive = folder / read_text(table, "archive");  // an absolute path stands alone
-  limits.significance = read_number_or(table, "significance", NumberRule::inside(0, 1), limits.significance);
-  if (table.has("maximum_lost"))
-    limits.maximum_lost = read_whole(table, "maximum_lost", 0, kMaxCount);
-  return limits;
+OptionKeys gate_keys(Gate& gate, const std::vector<Finding>& findings) {
+  const auto read_finding = [&](const TomlTable& table, const std::string&) {
+    gate.name = finding_of(table, findings).name;
+  };
+  const auto limit = [&](const char* name, double& value, const char* meaning) {
+    OptionKey made =
+        key::option(name, "number", meaning).otherwise("none").allow("finite; [0, 1] for a share");
+    made.reader = [&](const TomlTable& table, const OptionKey& key) {
+      value = read_number_or(table, key.name, limit_rule(finding_of(table, findings)), value);
+    };
+    return made;
+  };
+  const auto check_limits = [&](const TomlTable& table) {
+    if (!table.has("minimum") && !table.has("maximum"))
+      table.refuse("", "no limit", "minimum, maximum or both");
+    if (gate.minimum > gate.maximum)
+      table.refuse("maximum", fmt::format("{}", gate.maximum),
+                   fmt::format("a number >= the minimum, {}", gate.minimum));
+  };
+  const auto check_interval = [&](const TomlTable& table) {
+    if (gate.with_confidence && !finding_of(table, findings).has_interval)
+      table.refuse("with_confidence", "true", fmt::format("false: '{}' has no interval", gate.name));
+  };
+  return {key::option("aggregate", "text", "the number, under the name that `mpmbench summary` prints")
+              .required()
+              .allow("a name of `/findings` ([file_format.md](file_format.md#findings)), those of "
+                     "[methods](#gates-on-methods) too")
+              .read(read_finding)
+              .after([&findings](const TomlTable& table) { require_assessed(table, findings); }),
+          limit("minimum", gate.minimum, "least value that is allowed"),
+          limit("maximum", gate.maximum, "largest value that is allowed").also("at least `minimum`"),
+          key::check(check_limits),
+          key::flag("with_confidence", gate.with_confidence, "judge the interval instead of the value")
+              .allow("`true` only for numbers with an interval"),
+          key::check(check_interval),
+          key::whole("minimum_count", gate.minimum_count, 1, kMaxCount,
+                     "fewer experiments (pairs, for `slope` and `r_squared`) make the gate inconclusive"),
+          key::text("reason", gate.reason, "why the limits stand where they do; printed with the outcome")};
+}
+
+OptionKeys baseline_keys(BaselineLimits& limits, const std::filesystem::path& folder) {
+  const auto read_archive = [&limits, folder](const TomlTable& table, const std::string& key) {
+    limits.archive = folder / read_text(table, key);  // an absolute path stands alone
+  };
+  const auto read_lost = [&limits](const TomlTable& table, const std::string& key) {
+    limits.maximum_lost = read_whole(table, key, 0, kMaxCount);
+  };
+  return {key::option("archive", "text", "the earlier archive")
+              .required()
+              .allow("a path, relative to the gate file")
+              .read(read_archive),
+          key::number("significance", limits.significance, NumberRule::inside(0, 1),
+                      "least p-value that is no regression"),
+          key::option("maximum_lost", "whole number", "verdicts of each kind that may be lost")
+              .otherwise("no limit")
+              .allow("0 to 2147483647")
+              .read(read_lost)};
+}
+
+OptionKeys gate_file_keys(GateFile& file, const std::vector<Finding>& findings,
+                          const std::filesystem::path& folder) {
+  const auto read_baseline = [&file, folder](const TomlTable& document, const std::string& key) {
+    file.baseline.emplace();
+    const OptionKeys keys = baseline_keys(*file.baseline, folder);
+    read_keys(document.table(key, key_names(keys)), keys);
+  };
+  const auto below_baseline = [] {
+    BaselineLimits limits;
+    return baseline_keys(limits, {});
+  };
+  const auto require_gates = [](const TomlTable& document) {
+    if (!document.has("baseline"))
+      document.require("gate", "a list of tables, one or more");
+  };
+  return {key::choice("inconclusive", file.inconclusive, {"fail", "pass"},
+                      "what an inconclusive gate does to the check"),
+          key::option("confidence", "number", "confidence of all intervals")
+              .otherwise("that of the study")
+              .allow("between 0 and 1")
+              .read([&file](const TomlTable& document, const std::string& key) {
+                file.confidence = read_number(document, key, NumberRule::inside(0, 1));
+              }),
+          key::whole("maximum_failed", file.maximum_failed, 0, kMaxCount,
+                     "experiments that may be without a result (not infeasible ones)"),
+          key::whole("minimum_experiments", file.minimum_experiments, 1, kMaxCount,
+                     "experiments that the campaign must have"),
+          key::list<Gate>(
+              "gate", kMaxGates, [&findings](Gate& gate) { return gate_keys(gate, findings); },
+              [&file](const TomlTable&, Gate& gate) { file.gates.push_back(std::move(gate)); }, "the gates")
+              .otherwise("required, unless there is a `[baseline]`")
+              .allow("one or more")
+              .after(require_gates),
+          key::option("baseline", "table", "an earlier archive to compare with")
+              .otherwise("none")
+              .with("", below_baseline)
+              .read(read_baseline)};
 }
 
 }  // namespace
 
-const std::vector<StudyFileTable>& gate_file_tables() {
-  static const std::vector<StudyFileTable> tables{
-      {"", {"inconclusive", "confidence", "maximum_failed", "minimum_experiments", "gate", "baseline"}},
-      {"gate[]", {"aggregate", "minimum", "maximum", "with_confidence", "minimum_count", "reason"}},
-      {"baseline", {"archive", "significance", "maximum_lost"}},
-  };
-  return tables;
+std::vector<KeyTable> gate_file_tables() {
+  GateFile file;
+  return key_tables("", gate_file_keys(file, {}, {}));
 }
 
 GateFile parse_gates(std::string_view text, const std::string& file_name,
                      const std::vector<Finding>& findings) {
   const toml::table toml = parse_toml(text, file_name);
-  const TomlTable document(toml, file_name, gate_file_keys(""));
   GateFile file;
-  file.inconclusive = read_choice_or<InconclusivePolicy>(
-      document, "inconclusive", {{"fail", InconclusivePolicy::fail}, {"pass", InconclusivePolicy::pass}},
-      file.inconclusive);
-  if (document.has("confidence"))
-    file.confidence = read_number(document, "confidence", NumberRule::inside(0, 1));
-  file.maximum_failed = read_whole_or(document, "maximum_failed", 0, kMaxCount, file.maximum_failed);
-  file.minimum_experiments =
-      read_whole_or(document, "minimum_experiments", 1, kMaxCount, file.minimum_experiments);
-  if (document.has("baseline"))
-    file.baseline = read_baseline(document, std::filesystem::path(file_name).parent_path());
-  if (document.has("gate") || !file.baseline)
-    for (const TomlTable& table : document.tables("gate", gate_file_keys("gate[]")))
-      file.gates.push_back(read_gate(table, findings));
+  const OptionKeys keys = gate_file_keys(file, findings, std::filesystem::path(file_name).parent_path());
+  read_keys(TomlTable(toml, file_name, key_names(keys)), keys);
   return file;
 }
 

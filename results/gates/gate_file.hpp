@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/findings/gate.hpp"
-#include "scenarios/files/study_file_keys.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 
@@ -33,9 +33,8 @@ struct GateFile {
   std::optional<BaselineLimits> baseline;
 };
 
-/// All tables of the gate file with their keys; docs/gates.md says what they mean, and a test compares. Named
-/// as those of the study file.
-const std::vector<StudyFileTable>& gate_file_tables();
+/// All tables of the gate file with their keys, for the manual; named as those of the study file.
+std::vector<KeyTable> gate_file_tables();
 
 /// Reads gates on the `findings` from the text of a gate file. `file_name` is for messages, and a
 /// relative path in the text is relative to its folder.

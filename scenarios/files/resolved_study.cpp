@@ -15,7 +15,7 @@ namespace mpm {
 namespace {
 
 TomlDraft resolved_draft(const Study& study) {
-  TomlDraft draft(study_file_keys(""));
+  TomlDraft draft(key_names(study_file_keys("")));
   Study read = read_study(study.source, study.name, &draft);
   read.seed = study.seed;
   read.methods = study.methods;
@@ -23,13 +23,13 @@ TomlDraft resolved_draft(const Study& study) {
     throw InputError(fmt::format("defaults of the study '{}'", study.name),
                      "a study that was changed after it was read",
                      "a study as its text says it, with any seed and methods");
-  TomlDraft& heading = draft.table("study", study_file_keys("study"));
+  TomlDraft& heading = draft.table("study", key_names(study_file_keys("study")));
   constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
   if (study.seed <= static_cast<std::uint64_t>(kLargestSeed))
     heading.set("seed", static_cast<std::int64_t>(study.seed));
   else
     heading.comment("seed", fmt::format("{}, above what a study file can say, {}", study.seed, kLargestSeed));
-  draft.table("methods", study_file_keys("methods")).set("names", study.methods);
+  draft.table("methods", key_names(study_file_keys("methods"))).set("names", study.methods);
   return draft;
 }
 
@@ -39,8 +39,16 @@ std::string resolved_study(const Study& study) {
   return resolved_draft(study).text();
 }
 
+std::vector<TomlDraft::Line> resolved_lines(const Study& study) {
+  return resolved_draft(study).lines();
+}
+
 std::vector<std::string> changed_defaults(const Study& study) {
-  return resolved_draft(study).changes();
+  std::vector<std::string> changes;
+  for (const TomlDraft::Line& line : resolved_lines(study))
+    if (!line.fallback.empty() && line.value != line.fallback)
+      changes.push_back(fmt::format("{} = {} (default: {})", line.path, line.value, line.fallback));
+  return changes;
 }
 
 }  // namespace mpm

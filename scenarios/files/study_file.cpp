@@ -1,6 +1,7 @@
 #include "scenarios/files/study_file.hpp"
 
-#include <cstddef>
+#include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -12,43 +13,65 @@
 #include "scenarios/files/study_file_parts.hpp"
 #include "scenarios/files/study_programs.hpp"
 #include "scenarios/study/window_scan.hpp"
+#include "scenarios/toml/option_keys.hpp"
 #include "scenarios/toml/toml_file.hpp"
 #include "scenarios/toml/toml_text.hpp"
-#include "scenarios/toml/toml_values.hpp"
 
 namespace mpm {
 namespace {
 
-void read_heading(const TomlTable& document, Study& study) {
-  const TomlTable table = document.table("study", study_file_keys("study"));
-  study.name = read_name(table, "name");
-  study.title = read_text(table, "title");
-  study.seed =
-      static_cast<std::uint64_t>(read_whole(table, "seed", 0, std::numeric_limits<std::int64_t>::max()));
+OptionKeys heading_keys(Study& study) {
+  constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
+  return {key::name("name", study.name,
+                    "short name, part of file names; a shipped study has the name of its file"),
+          key::text("title", study.title, "one line for people").required(),
+          key::whole("seed", study.seed, 0, kLargest, "master seed: the same seed gives the same experiments")
+              .required()};
+}
+
+/// The whole study file. `folder` is that of the file.
+OptionKeys study_keys(Study& study, const std::filesystem::path& folder) {
+  OptionKeys keys{key::table(
+                      "study", [&study] { return heading_keys(study); }, "what the study is called")
+                      .required(),
+                  plant_key(study, folder),
+                  controller_key(study),
+                  simulation_key(study),
+                  record_key(study),
+                  experiments_key(study),
+                  scenarios_key(study)};
+  const auto add = [&keys](const OptionKeys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+  add(fault_keys(study));
+  add(analysis_keys(study));
+  add(method_keys(study));
+  add({aggregate_key(study), data_key(study), reference_key(study)});
+  return keys;
+}
+
+[[noreturn]] void refuse_in(const TomlTable& document, const char* table, const char* key,
+                            const std::string& found, const std::string& allowed) {
+  document.table(table, key_names(study_file_keys(table))).refuse(key, found, allowed);
 }
 
 /// The moving windows of (6.13) and (6.14), in samples, against the horizon and the length of the record.
 void refuse_unusable_windows(const TomlTable& document, const Study& study) {
   const WindowScan scan = window_scan(study);
   if (scan.shortest < kShortestWindow) {
-    const TomlTable controller = document.table("controller", study_file_keys("controller"));
-    controller.refuse("prediction_horizon",
-                      fmt::format("{} (the shortest moving window has {} samples)",
-                                  study.controller.prediction_horizon, scan.shortest),
-                      fmt::format("windows of at least {} samples", kShortestWindow));
+    refuse_in(document, "controller", "prediction_horizon",
+              fmt::format("{} (the shortest moving window has {} samples)",
+                          study.controller.prediction_horizon, scan.shortest),
+              fmt::format("windows of at least {} samples", kShortestWindow));
   }
   if (scan.longest < scan.shortest) {
-    const TomlTable diagnosis = document.table("diagnosis", study_file_keys("diagnosis"));
-    diagnosis.refuse(
-        "windows", fmt::format("[{}, {}]", study.diagnosis.shortest_window, study.diagnosis.longest_window),
-        fmt::format("a whole number of samples between them, at a prediction horizon of {} samples",
-                    study.controller.prediction_horizon));
+    refuse_in(document, "diagnosis", "windows",
+              fmt::format("[{}, {}]", study.diagnosis.shortest_window, study.diagnosis.longest_window),
+              fmt::format("a whole number of samples between them, at a prediction horizon of {} samples",
+                          study.controller.prediction_horizon));
   }
   if (study.simulation.samples < scan.longest + kFewestCorrelatedPairs) {
-    const TomlTable simulation = document.table("simulation", study_file_keys("simulation"));
-    simulation.refuse("samples", fmt::format("{}", study.simulation.samples),
-                      fmt::format("at least {}: the longest moving window has {} samples",
-                                  scan.longest + kFewestCorrelatedPairs, scan.longest));
+    refuse_in(document, "simulation", "samples", fmt::format("{}", study.simulation.samples),
+              fmt::format("at least {}: the longest moving window has {} samples",
+                          scan.longest + kFewestCorrelatedPairs, scan.longest));
   }
 }
 
@@ -56,38 +79,31 @@ void refuse_unusable_windows(const TomlTable& document, const Study& study) {
 
 Study read_study(std::string_view text, const std::string& file_name, TomlDraft* draft) {
   const toml::table toml = parse_toml(text, file_name);
-  const TomlTable document(toml, file_name, study_file_keys(""), draft);
   Study study;
-  read_heading(document, study);
-  study.plant = read_plant(document);
-  study.nonlinear =
-      read_nonlinear_simulation(document, study.plant, std::filesystem::path(file_name).parent_path());
-  study.controller = read_controller(document, study.plant);
-  study.controller_program = read_controller_program(document);
-  study.simulation = read_simulation(document, study.plant, study.controller);
-  study.record = read_record(document, study);
-  study.scenarios = read_scenarios(document, study);
-  study.experiments = read_experiments(document);
-  study.disturbance = read_disturbance(document);
-  if (!study.names_scenarios()) {
-    study.mismatch = read_mismatch(document, study);
-    study.tuning = read_tuning(document, study);
-    study.other = read_other(document, study);
-    study.onset = read_onset(document, study);
-  }
-  study.sensitivity = read_sensitivity(document, study.plant, study.controller);
-  study.s0_perturbation = read_s0_perturbation(document, study.plant, study.controller);
-  study.diagnosis = read_diagnosis(document);
-  study.methods = read_methods(document);
-  study.assessment = read_assessment(document);
-  study.monitoring = read_monitoring(document, study);
-  study.calibration = read_calibration(document, study);
-  study.aggregate = read_aggregate(document);
-  study.data = read_data(document, study);
-  study.reported = read_reported(document);
+  const OptionKeys keys = study_keys(study, std::filesystem::path(file_name).parent_path());
+  const TomlTable document(toml, file_name, key_names(keys), draft);
+  read_keys(document, keys);
   refuse_unusable_windows(document, study);
   study.source = text;
   return study;
+}
+
+const std::vector<KeyTable>& study_file_tables() {
+  static const std::vector<KeyTable> tables = [] {
+    Study study;
+    std::vector<KeyTable> made = key_tables("", study_keys(study, {}));
+    made.push_back({"DISTRIBUTION", key::distribution_keys()});
+    return made;
+  }();
+  return tables;
+}
+
+const OptionKeys& study_file_keys(std::string_view table) {
+  const std::vector<KeyTable>& tables = study_file_tables();
+  const auto found = std::find_if(tables.begin(), tables.end(),
+                                  [table](const KeyTable& entry) { return entry.name == table; });
+  assert(found != tables.end());
+  return found->keys;
 }
 
 Study parse_study(std::string_view text, const std::string& file_name) {

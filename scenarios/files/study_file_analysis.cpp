@@ -1,14 +1,14 @@
+// [sensitivity], [s0_perturbation], [diagnosis], [aggregate], [reference]
+
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "plants/non_finite.hpp"
-#include "scenarios/files/study_file_keys.hpp"
 #include "scenarios/files/study_file_parts.hpp"
-#include "scenarios/toml/toml_values.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
@@ -17,28 +17,21 @@ constexpr std::int64_t kMaxResponse = 100'000;
 constexpr std::int64_t kFewestReplications = 100;  // below, a 95 % interval is made of two or three values
 constexpr std::int64_t kMaxReplications = 1'000'000;
 constexpr double kMaxWindow = 1000;  // in prediction horizons
+constexpr std::size_t kMostMultipliers = 1000;
 
-/// Section 6.3: at most as many soft limits are active as there are MVs, and a limit must be there to be
+/// CVs whose soft limit is active. Section 6.3: no more of them than `most`, and a limit must be there to be
 /// active.
-std::vector<Eigen::Index> read_active_cvs(const TomlTable& table, const PlantModel& plant,
-                                          const MpcOptions& controller) {
-  std::vector<Eigen::Index> active;
-  if (!table.has("active_cvs")) {
-    return active;
-  }
-  for (const std::size_t cv : read_some_of(table, "active_cvs", variable_names(plant.cvs))) {
-    const auto i = static_cast<Eigen::Index>(cv);
-    if (!controller.has_soft_limit(i)) {
-      table.refuse("active_cvs", fmt::format("'{}', which has no soft limit", plant.cvs[cv].name),
-                   "CVs with a soft limit");
-    }
-    active.push_back(i);
-  }
-  if (active.size() > plant.mvs.size()) {
-    table.refuse("active_cvs", fmt::format("{} CVs", active.size()),
-                 fmt::format("at most as many as MVs, {}", plant.mvs.size()));
-  }
-  return active;
+void refuse_wrong_active(const TomlTable& table, const char* key, const std::vector<Eigen::Index>& active,
+                         const Study& study, std::size_t most, const char* of) {
+  for (const Eigen::Index cv : active)
+    if (!study.controller.has_soft_limit(cv))
+      table.refuse(
+          key,
+          fmt::format("'{}', which has no soft limit", study.plant.cvs[static_cast<std::size_t>(cv)].name),
+          "CVs with a soft limit");
+  if (active.size() > most)
+    table.refuse(key, fmt::format("{} CVs", active.size()),
+                 fmt::format("at most as many as {}, {}", of, most));
 }
 
 /// A step of a soft limit into the range must not cross the opposite one. CVs without a range (equal limits)
@@ -55,116 +48,209 @@ double narrowest_range(const MpcOptions& controller, const std::vector<Eigen::In
   return narrowest;
 }
 
-}  // namespace
-
-SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel& plant,
-                                    const MpcOptions& controller) {
-  const TomlTable table = document.table_or_empty("sensitivity", study_file_keys("sensitivity"));
-  SensitivityOptions options;
-  options.form = read_choice_or<SensitivityForm>(
-      table, "form",
-      {{"step-response", SensitivityForm::step_response}, {"box-jenkins", SensitivityForm::box_jenkins}},
-      options.form);
-  options.samples = static_cast<int>(read_whole_or(table, "samples", 2, kMaxResponse, options.samples));
-  options.active_cvs = read_active_cvs(table, plant, controller);
-  options.step_size = read_number_or(table, "step_size", NumberRule::positive(), options.step_size);
-  options.step_direction = read_choice_or<StepDirection>(table, "step_direction",
-                                                         {{"into-range", StepDirection::into_range},
-                                                          {"out-of-range", StepDirection::out_of_range},
-                                                          {"mean", StepDirection::mean}},
-                                                         options.step_direction);
-  if (table.has("fixed_mvs")) {
-    for (const std::size_t mv : read_some_of(table, "fixed_mvs", variable_names(plant.mvs))) {
-      options.fixed_mvs.push_back(static_cast<Eigen::Index>(mv));
-    }
-  }
-  options.structure =
-      read_choice_or<SensitivityStructure>(table, "structure",
-                                           {{"operating-point", SensitivityStructure::operating_point},
-                                            {"by-instant", SensitivityStructure::by_instant}},
-                                           options.structure);
-  options.switching = read_choice_or<SensitivitySwitching>(
-      table, "switching", {{"output", SensitivitySwitching::output}, {"input", SensitivitySwitching::input}},
-      options.switching);
-  // A structure for every set of constraints, identified in the middle of an experiment, would take minutes.
-  if (options.form == SensitivityForm::box_jenkins && options.structure == SensitivityStructure::by_instant)
-    table.refuse("form", "'box-jenkins' with the structure 'by-instant'",
-                 "'step-response' with it, or 'box-jenkins' with 'operating-point'");
-  const double narrowest = narrowest_range(controller, options.active_cvs);
-  if (options.step_size > narrowest) {
-    table.refuse("step_size", fmt::format("{}", options.step_size),
-                 fmt::format("at most the narrowest range between soft limits, {}", narrowest));
-  }
-  return options;
+OptionKeys sensitivity_keys(Study& study) {
+  SensitivityOptions& options = study.sensitivity;
+  const auto check_active = [&study](const TomlTable& table) {
+    refuse_wrong_active(table, "active_cvs", study.sensitivity.active_cvs, study, study.plant.mvs.size(),
+                        "MVs");
+  };
+  const auto check_all = [&study](const TomlTable& table) {
+    const SensitivityOptions& read = study.sensitivity;
+    // A structure for every set of constraints, identified in the middle of an experiment, would take
+    // minutes.
+    if (read.form == SensitivityForm::box_jenkins && read.structure == SensitivityStructure::by_instant)
+      table.refuse("form", "'box-jenkins' with the structure 'by-instant'",
+                   "'step-response' with it, or 'box-jenkins' with 'operating-point'");
+    if (const double narrowest = narrowest_range(study.controller, read.active_cvs);
+        read.step_size > narrowest)
+      table.refuse("step_size", fmt::format("{}", read.step_size),
+                   fmt::format("at most the narrowest range between soft limits, {}", narrowest));
+  };
+  return {
+      key::choice("form", options.form, {"step-response", "box-jenkins"},
+                  "what T0 is: the step responses themselves, or models identified in a record with a moving "
+                  "reference (A3.1, A3.2; not with the structure `\"by-instant\"`)"),
+      key::whole("samples", options.samples, 2, kMaxResponse,
+                 "length of the step responses, long enough to settle: the static gain holds after it",
+                 "samples"),
+      key::number("step_size", options.step_size, NumberRule::positive(),
+                  "size of the step of a soft limit; small, so that no other limit is met", "CV")
+          .allow("> 0, at most the narrowest range between the soft limits of the active CVs"),
+      key::choice("step_direction", options.step_direction, {"into-range", "out-of-range", "mean"},
+                  "which way the limit is stepped. Open: a range MPC answers the two "
+                  "differently (docs/methods.md, T0)"),
+      key::some_of(
+          "active_cvs", options.active_cvs, [&study] { return variable_names(study.plant.cvs); },
+          "CVs whose soft limit is active. Section 6.3: no more of them than MVs")
+          .otherwise("what the basis case shows")
+          .allow("names of CVs with a soft limit, none twice, at most as many as MVs"),
+      key::check(check_active),
+      key::some_of(
+          "fixed_mvs", options.fixed_mvs, [&study] { return variable_names(study.plant.mvs); },
+          "MVs that are held while T0 is determined (assumption B of 3.3.3), besides those that are at a "
+          "hard limit")
+          .otherwise("none")
+          .allow("names of MVs, none twice"),
+      key::choice(
+          "structure", options.structure, {"operating-point", "by-instant"},
+          "whether S0 is that of the basis case throughout (assumption A), or at each sample that of the "
+          "setpoints, soft limits and MV limits that are active (assumption C)"),
+      key::choice(
+          "switching", options.switching, {"output", "input"},
+          "with `by-instant`: whether the S0 of a sample acts on the whole past, or every error goes on by "
+          "the S0 of its own time. Open; in table 3.7 the first is nearer to the basis case"),
+      key::check(check_all)};
 }
 
-DiagnosisOptions read_diagnosis(const TomlTable& document) {
-  const TomlTable table = document.table_or_empty("diagnosis", study_file_keys("diagnosis"));
-  DiagnosisOptions options;
+OptionKeys s0_perturbation_keys(Study& study) {
+  S0PerturbationOptions& options = study.s0_perturbation;
+  const auto read_multipliers = [&options](const TomlTable& table, const std::string& key) {
+    const Eigen::VectorXd numbers = read_numbers(table, key, NumberRule::positive(), kMostMultipliers);
+    options.multipliers.assign(numbers.begin(), numbers.end());
+    const auto place = std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>());
+    if (place != numbers.end())
+      table.refuse(key, fmt::format("{} after {}", *(place + 1), *place), "numbers that grow");
+  };
+  const auto names = [](const std::vector<PlantModel::Variable>& variables) {
+    return [&variables] { return variable_names(variables); };
+  };
+  const auto check_structure = [&study](const TomlTable& table) {
+    const S0PerturbationOptions& read = study.s0_perturbation;
+    if (!table.has("fixed_mvs") && table.has("fixed_active_cvs"))
+      table.refuse("fixed_active_cvs", "a list without fixed_mvs", "a list beside fixed_mvs");
+    if (table.has("fixed_mvs") && !table.has("fixed_active_cvs"))
+      read_some_of(table, "fixed_active_cvs", variable_names(study.plant.cvs));
+    refuse_wrong_active(table, "fixed_active_cvs", read.fixed_active_cvs, study,
+                        study.plant.mvs.size() - read.fixed_mvs.size(), "MVs that are not fixed");
+  };
+  return {key::option("multipliers", "list of numbers", "factors of time constant and damping", "1")
+              .required()
+              .allow("1 to 1000 numbers > 0 that grow")
+              .read(read_multipliers),
+          key::some_of("cvs", options.cvs, names(study.plant.cvs), "CVs whose experiments are looked at")
+              .otherwise("all at an active limit")
+              .allow("names of CVs at an active soft limit, none twice"),
+          key::band("tolerance", options.tolerance_lower, options.tolerance_upper, NumberRule::positive(),
+                    "multipliers over which the largest change is taken", "1"),
+          key::some_of("fixed_mvs", options.fixed_mvs, names(study.plant.mvs),
+                       "MVs that are not available in a second control structure")
+              .otherwise("none")
+              .allow("names of MVs, none twice"),
+          key::some_of("fixed_active_cvs", options.fixed_active_cvs, names(study.plant.cvs),
+                       "CVs whose soft limit is active in it")
+              .otherwise("required with `fixed_mvs`, else none")
+              .allow("names of CVs with a soft limit, none twice, at most as many as MVs that are left"),
+          key::check(check_structure)};
+}
+
+OptionKeys diagnosis_keys(DiagnosisOptions& options) {
   const NumberRule positive = NumberRule::positive();
-  std::tie(options.impact_lower, options.impact_upper) =
-      read_band_or(table, "impact_band", positive, {options.impact_lower, options.impact_upper});
-  options.variance_centre = read_choice_or<VarianceCentre>(
-      table, "variance_centre", {{"setpoint", VarianceCentre::setpoint}, {"mean", VarianceCentre::mean}},
-      options.variance_centre);
-  options.location_distance = read_choice_or<LocationDistance>(
-      table, "location_distance",
-      {{"linear", LocationDistance::linear}, {"logarithmic", LocationDistance::logarithmic}},
-      options.location_distance);
-  options.mpm_threshold =
-      read_number_or(table, "mpm_threshold", NumberRule::inside(0, 1), options.mpm_threshold);
-  std::tie(options.shortest_window, options.longest_window) =
-      read_band_or(table, "windows", {.low = 0, .high = kMaxWindow, .high_included = true},
-                   {options.shortest_window, options.longest_window});
-  options.window_stride =
-      static_cast<int>(read_whole_or(table, "window_stride", 1, kMaxResponse, options.window_stride));
-  options.source_population = read_choice_or<SourcePopulation>(
-      table, "source_population",
-      {{"impactful", SourcePopulation::impactful}, {"feasible", SourcePopulation::feasible}},
-      options.source_population);
-  options.unstable = read_choice_or<UnstableLoops>(
-      table, "unstable", {{"keep", UnstableLoops::keep}, {"exclude", UnstableLoops::exclude}},
-      options.unstable);
-  options.self_check = read_choice_or<SelfCheck>(
-      table, "self_check",
-      {{"ivar", SelfCheck::ivar}, {"repeat", SelfCheck::repeat}, {"none", SelfCheck::none}},
-      options.self_check);
-  std::tie(options.self_check_lower, options.self_check_upper) =
-      read_band_or(table, "self_check_band", positive, {options.self_check_lower, options.self_check_upper});
-  return options;
+  return {
+      key::band("impact_band", options.impact_lower, options.impact_upper, positive,
+                "an experiment with an Ivar (6.7) outside is impactful (section 6.5.2)", "1"),
+      key::choice("variance_centre", options.variance_centre, {"setpoint", "mean"},
+                  "what the variances of a CV with a setpoint are taken about, (3.24) or "
+                  "(2.20); those of a CV in a range are taken about its mean"),
+      key::choice(
+          "location_distance", options.location_distance, {"linear", "logarithmic"},
+          "distance from 1 of Ivar_diag (6.8), by which the CV is located. Open; the second treats 1/2 as 2"),
+      key::number("mpm_threshold", options.mpm_threshold, NumberRule::inside(0, 1),
+                  "I_MPM (6.15) above it means a mismatch (figure 6.21)", "1"),
+      key::band("windows", options.shortest_window, options.longest_window,
+                {.low = 0, .high = kMaxWindow, .high_included = true},
+                "shortest and longest moving window of (6.13) and (6.14). Skewness and kurtosis of fewer "
+                "than 4 values have no freedom",
+                "prediction horizons")
+          .also("at least 4 samples"),
+      key::whole("window_stride", options.window_stride, 1, kMaxResponse,
+                 "from one window length to the next. Open", "samples"),
+      key::choice("source_population", options.source_population, {"impactful", "feasible"},
+                  "experiments over which the rates of I_MPM are counted. Open"),
+      key::choice(
+          "unstable", options.unstable, {"keep", "exclude"},
+          "what becomes of an experiment whose loop is not stable (`spectral_radius` of the archive 1 or "
+          "more): it counts like any other, or it is left out and counted as infeasible ones are"),
+      key::choice(
+          "self_check", options.self_check, {"ivar", "repeat", "none"},
+          "what must lie in the band for every CV. `\"ivar\"`: Ivar (6.7) of the basis case. `\"repeat\"`: "
+          "Ivar_basis (6.22) of the basis case with other noise, for studies without excitation "
+          "([methods.md](methods_thesis.md#records-and-excitation)). `\"none\"`: nothing. With the first two "
+          "T0 must have settled, too ([methods.md](methods_thesis.md#diagnosis))"),
+      key::band("self_check_band", options.self_check_lower, options.self_check_upper, positive,
+                "band in which the index of the self-check must lie for every CV", "1")};
 }
 
-AggregateOptions read_aggregate(const TomlTable& document) {
-  const TomlTable table = document.table_or_empty("aggregate", study_file_keys("aggregate"));
-  AggregateOptions options;
-  options.confidence = read_number_or(table, "confidence", NumberRule::inside(0, 1), options.confidence);
-  options.bootstrap_replications =
-      static_cast<int>(read_whole_or(table, "bootstrap_replications", kFewestReplications, kMaxReplications,
-                                     options.bootstrap_replications));
-  return options;
+OptionKeys aggregate_keys(AggregateOptions& options) {
+  return {
+      key::number("confidence", options.confidence, NumberRule::inside(0, 1), "confidence of all intervals"),
+      key::whole("bootstrap_replications", options.bootstrap_replications, kFewestReplications,
+                 kMaxReplications, "resamplings for intervals that have no formula")};
 }
 
-std::vector<ReportedValue> read_reported(const TomlTable& document) {
-  // Which names there are is known to the findings, not to the reader.
+OptionKeys share_keys(ReportedValue& share) {
+  return {key::number("value", share.value, NumberRule::share(), "the share").required(),
+          key::whole("of", share.of, 1, std::numeric_limits<std::int32_t>::max(),
+                     "experiments that it is a share of")
+              .required()};
+}
+
+/// Which names there are is known to the findings, not to the reader.
+void read_reported(const TomlTable& document, const std::string& key, std::vector<ReportedValue>& values) {
   std::vector<std::string> names;
-  if (const toml::node* const node = document.find("reference"); node != nullptr && node->is_table())
-    for (const auto& [name, value] : *node->as_table())
+  if (const toml::table* const findings = document.find(key)->as_table())
+    for (const auto& [name, value] : *findings)
       names.emplace_back(name.str());
-  const TomlTable table = document.table_or_empty("reference", names);
-  std::vector<ReportedValue> values;
+  const TomlTable table = document.table(key, names);
   for (const std::string& name : names) {
     ReportedValue value{.name = name, .value = 0.0, .where = table.where(name)};
-    if (const toml::node* const node = table.find(name); node != nullptr && node->is_table()) {
-      const TomlTable share = table.table(name, study_file_keys("reference.FINDING"));
-      value.value = read_number(share, "value",
-                                NumberRule{.low = 0, .high = 1, .low_included = true, .high_included = true});
-      value.of = read_whole(share, "of", 1, std::numeric_limits<std::int32_t>::max());
-    } else {
-      value.value = read_number_or(table, name, NumberRule{}, 0.0);
-    }
+    const OptionKeys keys = share_keys(value);
+    if (table.find(name)->is_table())
+      read_keys(table.table(name, key_names(keys)), keys);
+    else
+      value.value = read_number(table, name, NumberRule::finite());
     values.push_back(std::move(value));
   }
-  return values;
+}
+
+OptionKeys reported_keys() {
+  return {key::option("FINDING", "number, or table",
+                      "a number beside the finding of this name, in quotes: `\"mpm.located\" = 0.89`")
+              .otherwise("none")
+              .allow("any")
+              .with("", [] {
+                ReportedValue value{.name = "", .value = 0.0};
+                return share_keys(value);
+              })};
+}
+
+}  // namespace
+
+OptionKeys analysis_keys(Study& study) {
+  return {key::table(
+              "sensitivity", [&study] { return sensitivity_keys(study); },
+              "how the nominal sensitivity is determined"),
+          key::optional_table(
+              "s0_perturbation", [&study] { return s0_perturbation_keys(study); },
+              "what an error in the nominal sensitivity costs")
+              .otherwise("none: S0 is not perturbed"),
+          key::table(
+              "diagnosis", [&study] { return diagnosis_keys(study.diagnosis); },
+              "the open choices of the diagnosis")};
+}
+
+OptionKey aggregate_key(Study& study) {
+  return key::table(
+      "aggregate", [&study] { return aggregate_keys(study.aggregate); }, "intervals of the aggregates");
+}
+
+OptionKey reference_key(Study& study) {
+  const auto read = [&study](const TomlTable& document, const std::string& key) {
+    read_reported(document, key, study.reported);
+  };
+  return key::option("reference", "table", "reported numbers to show beside the results")
+      .otherwise("none")
+      .with("", reported_keys)
+      .read(read);
 }
 
 }  // namespace mpm

@@ -1,10 +1,13 @@
+// [controller]
+
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "scenarios/files/study_file_keys.hpp"
+#include "plants/non_finite.hpp"
 #include "scenarios/files/study_file_parts.hpp"
-#include "scenarios/toml/toml_values.hpp"
+#include "scenarios/files/transfer_function_keys.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
@@ -17,136 +20,212 @@ void set_limits(Limits& limits, Eigen::Index i, const NumberPair& range) {
   limits.upper(i) = range.second;
 }
 
-void read_mv(const TomlTable& table, Eigen::Index i, MpcOptions& options) {
-  options.move_suppression(i) = read_number(table, "move_suppression", NumberRule::at_least(0));
-  options.target_weight(i) = read_number_or(table, "target_weight", NumberRule::at_least(0), 0.0);
+struct MvOptions {
+  double cost = 0.0, move_suppression = 0.0, target_weight = 0.0;
+  NumberPair hard;
+};
+
+OptionKeys keys(MvOptions& mv) {
   // A cost decides where the target lies: an MV with a target has to say it.
-  options.mv_cost(i) = options.target_weight(i) > 0
-                           ? read_number(table, "cost", NumberRule::finite())
-                           : read_number_or(table, "cost", NumberRule::finite(), 0.0);
-  set_limits(options.mv_hard, i, read_limits(table, "hard"));
+  const auto read_cost = [&mv](const TomlTable& table) {
+    mv.cost = mv.target_weight > 0 ? read_number(table, "cost", NumberRule::finite())
+                                   : read_number_or(table, "cost", NumberRule::finite(), 0.0);
+  };
+  return {key::option("cost", "number", "phi_u of (6.19)", "1 / MV")
+              .otherwise("required with a target")
+              .allow("finite"),
+          key::number("move_suppression", mv.move_suppression, NumberRule::at_least(0), "Q_du of (6.20)",
+                      "1 / MV^2")
+              .required(),
+          key::number("target_weight", mv.target_weight, NumberRule::at_least(0),
+                      "Q_u of (6.20). Weights that leave a move undetermined are refused: both 0 without "
+                      "setpoints, or too few setpoints",
+                      "1 / MV^2")
+              .otherwise("0: no target"),
+          key::check(read_cost), key::limits("hard", mv.hard, "hard limits", "MV")};
 }
+
+struct CvOptions {
+  double setpoint_weight = 0.0, setpoint = 0.0, slack_weight = 0.0;
+  NumberPair soft{-kInfinity, kInfinity}, hard;
+};
 
 /// A soft limit outside of the hard ones could never be reached.
 void refuse_soft_outside_hard(const TomlTable& table, const NumberPair& soft, const NumberPair& hard) {
   const auto outside = [&hard](double limit) {
     return std::isfinite(limit) && (limit < hard.first || limit > hard.second);
   };
-  if (outside(soft.first) || outside(soft.second)) {
+  if (outside(soft.first) || outside(soft.second))
     table.refuse("soft", fmt::format("[{}, {}]", soft.first, soft.second),
                  fmt::format("limits within the hard ones [{}, {}]", hard.first, hard.second));
-  }
 }
 
 /// A CV has a setpoint, a soft range, or both.
-void read_cv(const TomlTable& table, Eigen::Index i, MpcOptions& options) {
-  const NumberPair hard = read_limits(table, "hard");
-  set_limits(options.cv_hard, i, hard);
+void read_setpoint_and_range(const TomlTable& table, CvOptions& cv) {
   const bool has_setpoint = table.has("setpoint_weight");
   if (table.has("setpoint") && !has_setpoint)
     table.refuse("setpoint", "a setpoint without setpoint_weight", "both or none");
   if (!has_setpoint && !table.has("soft") && !table.has("slack_weight"))
     table.refuse("", "neither a setpoint nor a range",
                  "setpoint_weight for a setpoint, slack_weight and soft for a range, or all three");
-  if (has_setpoint)
-    options.setpoint_weight(i) = read_number(table, "setpoint_weight", NumberRule::positive());
+  if (has_setpoint) {
+    cv.setpoint_weight = read_number(table, "setpoint_weight", NumberRule::positive());
+    cv.setpoint = read_number_or(table, "setpoint", NumberRule::finite(), 0.0);
+  }
   if (has_setpoint && !table.has("soft") && !table.has("slack_weight"))
     return;
-  options.slack_weight(i) = read_number(table, "slack_weight", NumberRule::positive());
-  const NumberPair soft = read_limits(table, "soft");
-  refuse_soft_outside_hard(table, soft, hard);
-  set_limits(options.cv_soft, i, soft);
+  cv.slack_weight = read_number(table, "slack_weight", NumberRule::positive());
+  cv.soft = read_limits(table, "soft");
+  refuse_soft_outside_hard(table, cv.soft, cv.hard);
 }
 
-using ReadVariable = void (*)(const TomlTable&, Eigen::Index, MpcOptions&);
-
-/// One table for each of `names`, none more.
-void read_group(const TomlTable& controller, const std::string& group, const std::vector<std::string>& names,
-                ReadVariable read, MpcOptions& options) {
-  const TomlTable tables = controller.table(group, names);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const TomlTable table = tables.table(names[i], study_file_keys("controller." + group + ".NAME"));
-    read(table, static_cast<Eigen::Index>(i), options);
-  }
+OptionKeys keys(CvOptions& cv) {
+  return {key::option("setpoint_weight", "number", "Q_y of (2.26), W of (3.30)", "1 / CV^2")
+              .otherwise("none: no setpoint")
+              .allow("> 0"),
+          key::option("setpoint", "number", "setpoint at the start; `simulation.step` changes it", "CV")
+              .otherwise("0")
+              .allow("finite; with `setpoint_weight`"),
+          key::option("slack_weight", "number", "tau_y of (6.20)", "1 / CV^2")
+              .otherwise("required with `soft`")
+              .allow("> 0"),
+          key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
+              .otherwise("required without a setpoint")
+              .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
+          key::limits("hard", cv.hard, "hard limits; a loop that cannot keep them is infeasible", "CV"),
+          key::check([&cv](const TomlTable& table) { read_setpoint_and_range(table, cv); })};
 }
 
-MpcOptions sized_options(Eigen::Index cv_count, Eigen::Index mv_count) {
-  MpcOptions options;
-  options.move_suppression.setZero(mv_count);
-  options.target_weight.setZero(mv_count);
-  options.setpoint_weight.setZero(cv_count);
-  options.slack_weight.setZero(cv_count);
-  options.mv_cost.setZero(mv_count);
-  options.mv_hard = Limits::none(mv_count);
-  options.cv_hard = Limits::none(cv_count);
-  options.cv_soft = Limits::none(cv_count);
-  return options;
+/// One table for each of the variables, none more.
+template <class Variable>
+OptionKey variable_tables(const char* name, const std::vector<PlantModel::Variable>& variables,
+                          std::function<void(Eigen::Index, const Variable&)> take, const char* meaning) {
+  const auto read = [&variables, take](const TomlTable& controller, const std::string& key) {
+    const std::vector<std::string> names = variable_names(variables);
+    const TomlTable tables = controller.table(key, names);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      Variable variable;
+      const OptionKeys of_variable = keys(variable);
+      read_keys(tables.table(names[i], key_names(of_variable)), of_variable);
+      take(static_cast<Eigen::Index>(i), variable);
+    }
+  };
+  const auto below = [] {
+    Variable variable;
+    return keys(variable);
+  };
+  return key::option(name, "table of tables", meaning).required().read(read).with(".NAME", below);
+}
+
+void resize(Study& study) {
+  MpcOptions& options = study.controller;
+  const Eigen::Index cvs = study.cv_count(), mvs = study.mv_count();
+  for (Eigen::VectorXd* of_mv : {&options.move_suppression, &options.target_weight, &options.mv_cost})
+    of_mv->setZero(mvs);
+  for (Eigen::VectorXd* of_cv :
+       {&options.setpoint_weight, &options.slack_weight, &study.simulation.initial_setpoint})
+    of_cv->setZero(cvs);
+  options.mv_hard = Limits::none(mvs);
+  options.cv_hard = Limits::none(cvs);
+  options.cv_soft = Limits::none(cvs);
 }
 
 /// A controller keeps as many past inputs as the longest dead time has samples.
-void refuse_long_dead_time(const TomlTable& controller, const PlantModel& plant, double sample_time) {
-  for (Eigen::Index row = 0; row < plant.G.rows(); ++row) {
-    for (Eigen::Index col = 0; col < plant.G.cols(); ++col) {
-      const double samples = plant.G(row, col).dead_time() / sample_time;
-      if (!(samples <= kMaxDeadTimeSamples)) {
+void refuse_long_dead_times(const TomlTable& controller, const Study& study) {
+  const double sample_time = study.controller.sample_time;
+  for (Eigen::Index row = 0; row < study.plant.G.rows(); ++row)
+    for (Eigen::Index col = 0; col < study.plant.G.cols(); ++col)
+      if (const double samples = study.plant.G(row, col).dead_time() / sample_time;
+          !(samples <= kMaxDeadTimeSamples))
         controller.refuse("sample_time",
                           fmt::format("{} (a dead time has {:.3g} samples)", sample_time, samples),
                           fmt::format("dead times of at most {} samples", kMaxDeadTimeSamples));
-      }
-    }
-  }
+}
+
+OptionKeys controller_program_keys(std::vector<std::string>& command, double& time_limit) {
+  return {
+      key::command(
+          "command", command,
+          "the program, which is looked for in PATH, and its arguments; it runs in the current folder"),
+      key::time_limit(time_limit,
+                      "seconds of the clock that an answer may take; a loop that needs more is `failed`")};
+}
+
+OptionKey program_key(std::optional<ControllerProgram>& program) {
+  constexpr double kTimeLimit = 60.0;  // s
+  const auto below = [] {
+    std::vector<std::string> command;
+    double time_limit = kTimeLimit;
+    return controller_program_keys(command, time_limit);
+  };
+  const auto read = [&program, below](const TomlTable& controller, const std::string& key) {
+    std::vector<std::string> command;
+    double time_limit = kTimeLimit;
+    read_keys(controller.table(key, key_names(below())), controller_program_keys(command, time_limit));
+    program = ControllerProgram(std::move(command), time_limit);
+  };
+  return key::option(
+             "program", "table",
+             "the controller is a program ([own_plant.md](own_plant.md#your-own-controller)), which is told "
+             "these numbers")
+      .otherwise("none")
+      .with("", below)
+      .read(read);
+}
+
+OptionKeys controller_keys(Study& study) {
+  MpcOptions& options = study.controller;
+  const auto take_mv = [&options](Eigen::Index i, const MvOptions& mv) {
+    options.mv_cost(i) = mv.cost;
+    options.move_suppression(i) = mv.move_suppression;
+    options.target_weight(i) = mv.target_weight;
+    set_limits(options.mv_hard, i, mv.hard);
+  };
+  const auto take_cv = [&study, &options](Eigen::Index i, const CvOptions& cv) {
+    options.setpoint_weight(i) = cv.setpoint_weight;
+    options.slack_weight(i) = cv.slack_weight;
+    study.simulation.initial_setpoint(i) = cv.setpoint;
+    set_limits(options.cv_soft, i, cv.soft);
+    set_limits(options.cv_hard, i, cv.hard);
+  };
+  const auto read_control_horizon = [&options](const TomlTable& table, const std::string& key) {
+    options.control_horizon = static_cast<int>(read_whole(table, key, 1, options.prediction_horizon));
+  };
+  return {key::check([&study](const TomlTable&) { resize(study); }),
+          key::number("sample_time", options.sample_time, NumberRule::positive(), "Ts", "time").required(),
+          key::check([&study](const TomlTable& table) { refuse_long_dead_times(table, study); }),
+          key::whole("prediction_horizon", options.prediction_horizon, 1, kMaxHorizon, "ph", "samples")
+              .required(),
+          key::option("control_horizon", "whole number", "mh", "samples")
+              .required()
+              .allow("1 to `prediction_horizon`")
+              .read(read_control_horizon),
+          key::choice(
+              "weight_convention", options.weight_convention, {"direct", "squared"},
+              "`abs(Q x)^2` in (6.20) as Q x^2 or as (Q x)^2. Open in the thesis; the first comes close to "
+              "its results"),
+          key::choice("slack", options.slack_form, {"per-sample", "per-cv"},
+                      "one slack variable for each CV and sample, or for each CV. Open; with the "
+                      "first T0 settles as in (6.24)"),
+          key::number("target_violation_cost", options.target_violation_cost, NumberRule::positive(),
+                      "price of a unit of steady-state violation of a soft limit, in multiples of the "
+                      "largest `cost`. Open: (6.19) has no answer when no target keeps the limits",
+                      "1"),
+          variable_tables<MvOptions>("mv", study.plant.mvs, take_mv, "one table for each MV, by name"),
+          variable_tables<CvOptions>("cv", study.plant.cvs, take_cv, "one table for each CV, by name"),
+          key::check([&study](const TomlTable& table) {
+            table.located("", [&] { return study.controller.validate(study.cv_count(), study.mv_count()); });
+          }),
+          program_key(study.controller_program)};
 }
 
 }  // namespace
 
-MpcOptions read_controller(const TomlTable& document, const PlantModel& plant) {
-  const TomlTable table = document.table("controller", study_file_keys("controller"));
-  const auto cv_count = static_cast<Eigen::Index>(plant.cvs.size());
-  const auto mv_count = static_cast<Eigen::Index>(plant.mvs.size());
-
-  MpcOptions options = sized_options(cv_count, mv_count);
-  options.sample_time = read_number(table, "sample_time", NumberRule::positive());
-  refuse_long_dead_time(table, plant, options.sample_time);
-  options.prediction_horizon = static_cast<int>(read_whole(table, "prediction_horizon", 1, kMaxHorizon));
-  options.control_horizon =
-      static_cast<int>(read_whole(table, "control_horizon", 1, options.prediction_horizon));
-  options.weight_convention = read_choice_or<WeightConvention>(
-      table, "weight_convention",
-      {{"direct", WeightConvention::direct}, {"squared", WeightConvention::squared}},
-      options.weight_convention);
-  options.slack_form = read_choice_or<SlackForm>(
-      table, "slack", {{"per-sample", SlackForm::per_sample}, {"per-cv", SlackForm::per_cv}},
-      options.slack_form);
-  options.target_violation_cost =
-      read_number_or(table, "target_violation_cost", NumberRule::positive(), options.target_violation_cost);
-  read_group(table, "mv", variable_names(plant.mvs), read_mv, options);
-  read_group(table, "cv", variable_names(plant.cvs), read_cv, options);
-  table.located("", [&] { return options.validate(cv_count, mv_count); });
-  return options;
-}
-
-std::optional<ControllerProgram> read_controller_program(const TomlTable& document) {
-  const TomlTable controller = document.table("controller", study_file_keys("controller"));
-  if (!controller.has("program"))
-    return std::nullopt;
-  const TomlTable program = controller.table("program", study_file_keys("controller.program"));
-  constexpr double kTimeLimit = 60.0;  // s
-  return ControllerProgram(read_command(program, "command"),
-                           read_time_limit_or(program, "time_limit", kTimeLimit));
-}
-
-Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantModel& plant,
-                                       const MpcOptions& controller) {
-  const std::vector<std::string> names = variable_names(plant.cvs);
-  const TomlTable tables = document.table("controller", study_file_keys("controller")).table("cv", names);
-  Eigen::VectorXd setpoint = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const TomlTable table = tables.table(names[i], study_file_keys("controller.cv.NAME"));
-    const auto cv = static_cast<Eigen::Index>(i);
-    if (controller.has_setpoint(cv))
-      setpoint(cv) = read_number_or(table, "setpoint", NumberRule::finite(), 0.0);
-  }
-  return setpoint;
+OptionKey controller_key(Study& study) {
+  return key::table(
+             "controller", [&study] { return controller_keys(study); },
+             "the range MPC (6.20) and the target optimizer (6.19)")
+      .required();
 }
 
 }  // namespace mpm

@@ -1,114 +1,171 @@
+// [data]
+
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "scenarios/files/study_file_keys.hpp"
 #include "scenarios/files/study_file_parts.hpp"
-#include "scenarios/toml/toml_values.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
 
-/// The table under `key`, a column for some of the variables `names`.
-DataOptions::Names read_columns(const TomlTable& data, std::string_view key,
-                                const std::vector<std::string>& names) {
-  DataOptions::Names columns;
-  const TomlTable table = data.table_or_empty(key, names);
-  for (const std::string& name : names)
-    if (table.has(name))
-      columns[name] = read_text(table, name);
-  return columns;
+using Variables = std::function<std::vector<std::string>()>;
+
+/// A table with something for some of the variables.
+template <class Value, class Read>
+OptionKey group(const char* name, const char* type, std::map<std::string, Value>& group, Variables variables,
+                Read read_value, const char* meaning) {
+  const auto read = [&group, variables = std::move(variables), read_value](const TomlTable& data,
+                                                                           const std::string& key) {
+    const TomlTable table = data.table(key, variables());
+    for (const std::string& variable : table.present_keys())
+      group[variable] = read_value(table, variable);
+  };
+  return key::option(name, type, meaning).read(read);
 }
 
-DataOptions::Numbers read_factors(const TomlTable& data, std::string_view key,
-                                  const std::vector<std::string>& names, const NumberRule& rule) {
-  DataOptions::Numbers numbers;
-  const TomlTable table = data.table_or_empty(key, names);
-  for (const std::string& name : names)
-    if (table.has(name))
-      numbers[name] = read_number(table, name, rule);
-  return numbers;
+OptionKey columns(const char* name, DataOptions::Names& names, Variables variables, const char* meaning) {
+  return group(
+      name, "table of texts", names, std::move(variables),
+      [](const TomlTable& table, const std::string& key) { return read_text(table, key); }, meaning);
 }
 
-/// Two time stamps; none without the key.
-std::vector<std::string> read_period(const TomlTable& data, std::string_view key) {
-  if (!data.has(key))
-    return {};
+OptionKey factors(const char* name, DataOptions::Numbers& numbers, Variables variables, const char* meaning) {
+  return group(
+      name, "table of numbers", numbers, std::move(variables),
+      [](const TomlTable& table, const std::string& key) {
+        return read_number(table, key, NumberRule::finite());
+      },
+      meaning);
+}
+
+/// One of these texts.
+OptionKey one_word(const char* name, std::string& value, std::vector<std::string> words,
+                   const char* meaning) {
+  return key::option(name, "text", meaning)
+      .read([&value, words = std::move(words)](const TomlTable& table, const std::string& key) {
+        value = words[read_one_of(table, key, words)];
+      });
+}
+
+/// Two time stamps.
+std::vector<std::string> read_period(const TomlTable& data, const std::string& key) {
   std::vector<std::string> stamps = read_texts_or(data, key, "time stamps as texts, first and last", {});
   if (stamps.size() != 2)
     data.refuse(key, "another number of time stamps", "two, the first and the last");
   return stamps;
 }
 
-/// Two time stamps, or "found" alone.
-std::vector<std::string> read_benchmark_period(const TomlTable& data) {
-  const toml::node* const node = data.find("benchmark");
-  if (node == nullptr || !node->is_string())
-    return read_period(data, "benchmark");
-  read_one_of(data, "benchmark", {"found"});
-  return {"found"};
-}
-
-/// One of these characters; empty without the key.
-std::string read_character(const TomlTable& data, std::string_view key,
-                           const std::vector<std::string>& allowed) {
-  return data.has(key) ? allowed[read_one_of(data, key, allowed)] : std::string();
+OptionKeys data_keys(Study& study) {
+  DataOptions& o = study.data;
+  const Variables cvs = [&study] { return variable_names(study.plant.cvs); };
+  const Variables mvs = [&study] { return variable_names(study.plant.mvs); };
+  const Variables all = [&study] {
+    std::vector<std::string> names = variable_names(study.plant.cvs);
+    for (const std::string& input : input_names(study.plant))
+      names.push_back(input);
+    return names;
+  };
+  const auto refuse_zero = [&o](const TomlTable& data) {
+    for (const auto& [name, factor] : o.scale)
+      if (factor == 0.0)
+        data.refuse("scale", name + " = 0", "factors that are not 0");
+  };
+  const auto read_benchmark = [&o](const TomlTable& data, const std::string& key) {
+    if (data.find(key)->is_string())
+      o.benchmark = {std::vector<std::string>{"found"}[read_one_of(data, key, {"found"})]};
+    else
+      o.benchmark = read_period(data, key);
+  };
+  return {
+      key::text("time", o.time, "column of the time stamps")
+          .otherwise("`time`, `timestamp`, `datetime`, `date` or `t`, or the one column of dates; none: a "
+                     "row a sample")
+          .allow("a column"),
+      one_word("time_unit", o.time_unit, {"s", "min", "h", "d"}, "unit of stamps that are numbers")
+          .otherwise("that of the plant")
+          .allow("`\"s\"`, `\"min\"`, `\"h\"`, `\"d\"`"),
+      key::choice("date_order", o.date_order,
+                  {"automatic", "year-month-day", "day-month-year", "month-day-year"},
+                  "order of day, month and year; found where a number above 12 or points between them tell"),
+      one_word("separator", o.separator, {",", ";", "\t", "|"}, "between the columns")
+          .otherwise("found in the heading")
+          .allow("`\",\"`, `\";\"`, `\"\\t\"`, `\"|\"`"),
+      one_word("decimal", o.decimal, {".", ","}, "decimal sign")
+          .otherwise("found in the cells")
+          .allow("`\".\"`, `\",\"`"),
+      columns("tags", o.tags, all, "of CVs, MVs and MDs")
+          .otherwise("`y.NAME`, `u.NAME`, `d.NAME`, or `NAME`")
+          .allow("columns"),
+      factors("operating_point", o.operating_point, all, "what the study calls 0, in the unit of the file")
+          .otherwise("0")
+          .allow("finite"),
+      factors("scale", o.scale, all, "study value = scale (recorded value - operating point)")
+          .otherwise("1")
+          .allow("not 0"),
+      key::check(refuse_zero),
+      columns("setpoint", o.setpoint, cvs, "setpoints of CVs that have one, recorded as the CV is")
+          .otherwise("`y_set.NAME`; none: that of the study")
+          .allow("columns"),
+      columns("lower", o.lower, cvs,
+              "lower soft limits of CVs at the time, recorded as the CV is; within the hard limits")
+          .otherwise("none: those of the study")
+          .allow("columns"),
+      columns("upper", o.upper, cvs, "upper soft limits, in the same way")
+          .otherwise("none: those of the study")
+          .allow("columns"),
+      columns("y_sim", o.y_sim, cvs, "output of the model for a CV, recorded as the CV is")
+          .otherwise("none: computed from MVs and MDs")
+          .allow("columns"),
+      columns("target", o.target, mvs, "targets of MVs, recorded as the MV is")
+          .otherwise("`u_target.NAME`; none")
+          .allow("columns"),
+      columns("quality", o.quality, all, "quality of any variable, row by row")
+          .otherwise("none: all is good")
+          .allow("columns"),
+      key::texts("good_quality", o.good_quality, "texts",
+                 "words of a good quality; capitals do not matter, and numbers count in any form (`192.0`)"),
+      key::text("controller_on", o.controller_on, "is the controller on? CVs are not judged where it is not")
+          .otherwise("none: always on")
+          .allow("a column"),
+      key::texts("on_values", o.on_values, "texts",
+                 "words for a controller that is on; capitals do not matter"),
+      key::choice("cv_resampling", o.cv_resampling, {"mean", "nearest"},
+                  "value of a CV at a sample, of the rows within half a sample time of it"),
+      key::choice("start", o.start, {"automatic", "rest", "anywhere"},
+                  "does the record begin at rest at the operating point? Automatic: when MVs "
+                  "and MDs begin within half of their standard deviations of it. Anywhere: CVs "
+                  "are not judged until the slowest channel has settled"),
+      key::number("most_missing", o.most_missing, NumberRule::inside(0, 1),
+                  "share of the samples of a variable that may be missing"),
+      key::texts("candidates", o.candidates, "columns",
+                 "signals that the model does not know, for the method `candidates`: inputs that may be "
+                 "missing in it")
+          .allow("columns"),
+      fill_key(o.fill,
+               "what methods that need every sample find where a CV is missing: nothing, so that they do not "
+               "apply; the last value; or a straight line. Methods that bear gaps see them. The loops of the "
+               "calibration run are filled where the first method needs it"),
+      key::option("period", "list of 2 texts", "what is assessed")
+          .otherwise("the whole file")
+          .allow("stamps as in the file")
+          .read([&o](const TomlTable& data, const std::string& key) { o.period = read_period(data, key); }),
+      key::option(
+          "benchmark", "list of 2 texts, or text",
+          "period in which the controller did what it was designed for, for the methods that need one")
+          .otherwise("the simulated nominal loop")
+          .allow("stamps as in the file, or `\"found\"`")
+          .read(read_benchmark)};
 }
 
 }  // namespace
 
-DataOptions read_data(const TomlTable& document, const Study& study) {
-  DataOptions options;
-  if (!document.has("data"))
-    return options;
-  const TomlTable data = document.table("data", study_file_keys("data"));
-  const std::vector<std::string> cvs = variable_names(study.plant.cvs);
-  const std::vector<std::string> mvs = variable_names(study.plant.mvs);
-  std::vector<std::string> all = cvs;
-  all.insert(all.end(), mvs.begin(), mvs.end());
-  for (const std::string& md : variable_names(study.plant.mds))
-    all.push_back(md);
-
-  options.time = read_text_or(data, "time", "");
-  options.time_unit = read_character(data, "time_unit", {"s", "min", "h", "d"});
-  options.date_order = read_choice_or<DateOrder>(data, "date_order",
-                                                 {{"automatic", DateOrder::automatic},
-                                                  {"year-month-day", DateOrder::year_month_day},
-                                                  {"day-month-year", DateOrder::day_month_year},
-                                                  {"month-day-year", DateOrder::month_day_year}},
-                                                 options.date_order);
-  options.separator = read_character(data, "separator", {",", ";", "\t", "|"});
-  options.decimal = read_character(data, "decimal", {".", ","});
-  options.tags = read_columns(data, "tags", all);
-  options.operating_point = read_factors(data, "operating_point", all, NumberRule::finite());
-  options.scale = read_factors(data, "scale", all, NumberRule::finite());
-  for (const auto& [name, factor] : options.scale)
-    if (factor == 0.0)
-      data.refuse("scale", name + " = 0", "factors that are not 0");
-  options.setpoint = read_columns(data, "setpoint", cvs);
-  options.lower = read_columns(data, "lower", cvs);
-  options.upper = read_columns(data, "upper", cvs);
-  options.y_sim = read_columns(data, "y_sim", cvs);
-  options.target = read_columns(data, "target", mvs);
-  options.quality = read_columns(data, "quality", all);
-  options.good_quality = read_texts_or(data, "good_quality", "texts", options.good_quality);
-  options.controller_on = read_text_or(data, "controller_on", "");
-  options.on_values = read_texts_or(data, "on_values", "texts", options.on_values);
-  options.cv_resampling = read_choice_or<CvResampling>(
-      data, "cv_resampling", {{"mean", CvResampling::mean}, {"nearest", CvResampling::nearest}},
-      options.cv_resampling);
-  options.start = read_choice_or<RecordStart>(data, "start",
-                                              {{"automatic", RecordStart::automatic},
-                                               {"rest", RecordStart::rest},
-                                               {"anywhere", RecordStart::anywhere}},
-                                              options.start);
-  options.most_missing = read_number_or(data, "most_missing", NumberRule::inside(0, 1), options.most_missing);
-  if (data.has("candidates"))
-    options.candidates = read_texts_or(data, "candidates", "columns", {});
-  options.fill = read_gap_fill_or(data, "fill", options.fill);
-  options.period = read_period(data, "period");
-  options.benchmark = read_benchmark_period(data);
-  return options;
+OptionKey data_key(Study& study) {
+  return key::optional_table(
+             "data", [&study] { return data_keys(study); },
+             "how `mpmbench assess` reads a file of records of the plant")
+      .otherwise("columns have the names of the variables");
 }
 
 }  // namespace mpm

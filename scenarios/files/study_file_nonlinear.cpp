@@ -3,38 +3,43 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "plants/models/catalogue.hpp"
-#include "scenarios/files/study_file_keys.hpp"
 #include "scenarios/files/study_file_parts.hpp"
+#include "scenarios/toml/option_keys.hpp"
 #include "scenarios/toml/toml_text.hpp"
-#include "scenarios/toml/toml_values.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr std::size_t kMaxParameters = 200;  // a bound on what a file can make the program do
-constexpr const char* kIntegrated = "plant.simulated = \"nonlinear\"";
 constexpr const char* kNonlinear = "plant.simulated = \"nonlinear\", plant.fmu or plant.program";
 
-OdeOptions read_integration(const TomlTable& plant) {
-  const OdeOptions standard;
-  OdeOptions options{.method = read_choice_or<OdeMethod>(
-                         plant, "integrator",
-                         {{"runge-kutta", OdeMethod::runge_kutta}, {"bdf", OdeMethod::bdf}}, standard.method),
-                     .relative_tolerance = read_number_or(plant, "relative_tolerance", NumberRule::positive(),
-                                                          standard.relative_tolerance),
-                     .absolute_tolerance = read_number_or(plant, "absolute_tolerance", NumberRule::positive(),
-                                                          standard.absolute_tolerance),
-                     .step_limit = static_cast<int>(read_whole_or(
-                         plant, "step_limit", 1, std::numeric_limits<int>::max(), standard.step_limit))};
-  plant.located("", [&] { return options.validate(); });
-  return options;
+OptionKeys integration_keys(OdeOptions& options) {
+  OptionKeys keys{
+      key::choice("integrator", options.method, {"runge-kutta", "bdf"},
+                  "which method integrates its equations ([plants.md](plants.md)); `\"bdf\"` for stiff ones"),
+      key::number("relative_tolerance", options.relative_tolerance, NumberRule::positive(),
+                  "of the integration, local error of a step relative to the state")
+          .allow("1e-13 to below 1"),
+      key::number("absolute_tolerance", options.absolute_tolerance, NumberRule::positive(),
+                  "of the integration, in the unit of the state"),
+      key::whole("step_limit", options.step_limit, 1, std::numeric_limits<int>::max(),
+                 "steps of the integration in a sample; a loop that needs more is `failed`")
+          .allow(">= 1")};
+  for (OptionKey& key : keys)
+    key.allowed += "; with `\"nonlinear\"`";
+  return keys;
+}
+
+OptionKey simulated_key(bool& nonlinear) {
+  return key::choice("simulated", nonlinear, {"linear", "nonlinear"},
+                     "which plant the loops run on. The controller, T0 and y_sim keep the linear model")
+      .allow("`\"linear\"`, or `\"nonlinear\"` for a catalogue plant that has [a nonlinear form](plants.md)");
 }
 
 /// The catalogue plants that have a nonlinear form.
@@ -65,20 +70,73 @@ ParameterChange read_change(const TomlTable& table, const NonlinearModel& model)
   return {parameter.name, value};
 }
 
+OptionKeys change_keys(ParameterChange&) {
+  return {key::option("name", "text", "which one")
+              .otherwise("required")
+              .allow("a parameter of the plant ([plants.md](plants.md)), each once in a scenario"),
+          key::option("value", "number", "value in the plant", "of the parameter")
+              .otherwise("this or `factor`")
+              .allow("what the plant can have"),
+          key::option("factor", "number", "value in the plant, in multiples of that of the model", "1")
+              .otherwise("this or `value`")
+              .allow("as there")};
+}
+
+/// An entry of the list `plant_parameter`.
+struct ListedRange {
+  PlantParameterRange range{"", Distribution::constant(1), {}};
+};
+
+OptionKeys range_keys(PlantParameterRange& range, const Study& study) {
+  const auto read_name = [&](const TomlTable& table, const std::string&) {
+    range.name = read_parameter(table, study.nonlinear->model).name;
+  };
+  const auto check_ends = [&](const TomlTable& table) {
+    const NonlinearModel::Parameter& parameter = read_parameter(table, study.nonlinear->model);
+    for (const double end : {range.factor.minimum(), range.factor.maximum()})
+      table.located("factor", [&] {
+        study.nonlinear->model.check({{parameter.name, end * parameter.nominal}});
+      });
+  };
+  return {
+      key::option("name", "text", "which one")
+          .required()
+          .allow("a parameter of the nonlinear plant")
+          .read(read_name),
+      key::distribution("factor", range.factor, NumberRule::positive(), "factor of its nominal value", "1")
+          .required()
+          .also("both ends must be possible"),
+      key::check(check_ends),
+      key::some_of(
+          "affected", range.affected_cvs, [&] { return variable_names(study.plant.cvs); },
+          "CVs that a diagnosis should find")
+          .required()
+          .allow("names of CVs")};
+}
+
 }  // namespace
 
-std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& document,
-                                                             const PlantModel& linear,
+OptionKeys simulated_keys() {
+  bool nonlinear = false;
+  OdeOptions options;
+  OptionKeys keys{simulated_key(nonlinear)};
+  for (OptionKey& key : integration_keys(options))
+    keys.push_back(std::move(key));
+  return described(std::move(keys));
+}
+
+std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& plant, const PlantModel& linear,
                                                              const std::filesystem::path& folder) {
-  const TomlTable plant = document.table("plant", study_file_keys("plant"));
   if (plant.has("fmu") || plant.has("program"))
     return NonlinearSimulation{read_foreign_plant(plant, linear, folder), OdeOptions{}};
-  const bool nonlinear =
-      read_choice_or<bool>(plant, "simulated", {{"linear", false}, {"nonlinear", true}}, false);
+  bool nonlinear = false;
+  read_keys(plant, {simulated_key(nonlinear)});
+  OdeOptions options;
+  const OptionKeys integration = integration_keys(options);
   if (!nonlinear) {
-    for (const char* key : kIntegrationKeys)
+    for (const std::string& key : key_names(integration))
       if (plant.has(key))
-        plant.refuse(key, "a key of the integration of a nonlinear plant", kIntegrated);
+        plant.refuse(key, "a key of the integration of a nonlinear plant", "plant.simulated = \"nonlinear\"");
     return std::nullopt;
   }
   if (!plant.has("catalogue"))
@@ -88,57 +146,48 @@ std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& do
   if (!model)
     plant.refuse("simulated", fmt::format("'nonlinear' for {}, which is linear", in_quotes(name)),
                  nonlinear_names());
-  return NonlinearSimulation{std::move(*model), read_integration(plant)};
+  read_keys(plant, integration);
+  plant.located("", [&] { return options.validate(); });
+  return NonlinearSimulation{std::move(*model), options};
 }
 
-std::vector<ParameterChange> read_parameter_changes(const TomlTable& scenario, const Study& study) {
-  if (!scenario.has("parameter"))
-    return {};
-  if (!study.nonlinear)
-    scenario.refuse("parameter", "parameters of a plant that is simulated by its linear model", kNonlinear);
-  const std::vector<TomlTable> tables =
-      scenario.tables("parameter", study_file_keys("scenario[].parameter[]"));
-  if (tables.size() > kMaxParameters)
-    scenario.refuse("parameter", fmt::format("a list of {}", tables.size()),
-                    fmt::format("at most {}", kMaxParameters));
-  std::vector<ParameterChange> changes;
-  std::set<std::string> listed;
-  for (const TomlTable& table : tables) {
-    changes.push_back(read_change(table, study.nonlinear->model));
-    if (!listed.insert(changes.back().name).second)
-      table.refuse("name", fmt::format("'{}' a second time", changes.back().name), "every parameter once");
+OptionKey parameter_changes_key(std::vector<ParameterChange>& changes, const Study& study) {
+  const auto refuse_linear = [&study](const TomlTable& scenario) {
+    if (scenario.has("parameter") && !study.nonlinear)
+      scenario.refuse("parameter", "parameters of a plant that is simulated by its linear model", kNonlinear);
+  };
+  const auto take = [&](const TomlTable& table, ParameterChange&) {
+    const ParameterChange change = read_change(table, study.nonlinear->model);
+    for (const ParameterChange& other : changes)
+      if (other.name == change.name)
+        table.refuse("name", fmt::format("'{}' a second time", change.name), "every parameter once");
+    changes.push_back(change);
     table.located("", [&] { study.nonlinear->model.check(changes); });
-  }
-  return changes;
+  };
+  return key::list<ParameterChange>("parameter", kMaxParameters, change_keys, take,
+                                    "parameters of the plant that differ from those of the model")
+      .allow("1 to 200; for a nonlinear plant")
+      .after(refuse_linear);
 }
 
-std::vector<PlantParameterRange> read_plant_parameters(const TomlTable& mismatch, const Study& study) {
-  const bool drawn = study.experiments.mpm + study.experiments.mpm_ud > 0;
-  if (!mismatch.has("plant_parameter")) {
-    if (study.nonlinear && drawn)
+OptionKey plant_parameters_key(std::vector<PlantParameterRange>& ranges, const Study& study) {
+  const auto check_plant = [&study](const TomlTable& mismatch) {
+    const bool drawn = study.experiments.mpm + study.experiments.mpm_ud > 0;
+    if (!mismatch.has("plant_parameter") && study.nonlinear && drawn)
       mismatch.refuse("plant_parameter", "nothing",
-                      "the parameters that random mismatches of the nonlinear "
-                      "plant change");
-    return {};
-  }
-  if (!study.nonlinear)
-    mismatch.refuse("plant_parameter", "parameters of a plant that is simulated by its linear model",
-                    kNonlinear);
-  std::vector<PlantParameterRange> ranges;
-  for (const TomlTable& table :
-       mismatch.tables("plant_parameter", study_file_keys("mismatch.plant_parameter[]"))) {
-    const NonlinearModel::Parameter& parameter = read_parameter(table, study.nonlinear->model);
-    const Distribution factor = read_distribution(table, "factor", NumberRule::positive());
-    for (const double end : {factor.minimum(), factor.maximum()})
-      table.located("factor", [&] {
-        study.nonlinear->model.check({{parameter.name, end * parameter.nominal}});
-      });
-    PlantParameterRange range{parameter.name, factor, {}};
-    for (const std::size_t cv : read_some_of(table, "affected", variable_names(study.plant.cvs)))
-      range.affected_cvs.push_back(static_cast<Eigen::Index>(cv));
-    ranges.push_back(std::move(range));
-  }
-  return ranges;
+                      "the parameters that random mismatches of the nonlinear plant change");
+    if (mismatch.has("plant_parameter") && !study.nonlinear)
+      mismatch.refuse("plant_parameter", "parameters of a plant that is simulated by its linear model",
+                      kNonlinear);
+  };
+  return key::list<ListedRange>(
+             "plant_parameter", kMaxParameters,
+             [&study](ListedRange& listed) { return range_keys(listed.range, study); },
+             [&ranges](const TomlTable&, ListedRange& listed) { ranges.push_back(listed.range); },
+             "the parameters of a nonlinear plant of which a mismatch changes one, all equally often; "
+             "channels are then not changed")
+      .allow("of a nonlinear plant")
+      .after(check_plant);
 }
 
 Eigen::Index read_inner_input(const TomlTable& disturbance, const Study& study) {

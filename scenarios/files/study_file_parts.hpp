@@ -1,162 +1,96 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "scenarios/study/study.hpp"
-#include "scenarios/toml/number_rule.hpp"
-#include "scenarios/toml/toml_table.hpp"
+#include "scenarios/toml/option_keys.hpp"
+#include "scenarios/toml/toml_draft.hpp"
 
-// The parts of the reader of study files, one source file each. `document` is the whole study file. All
-// refuse what they cannot take as TomlTable does.
+// The keys of the study file, one source file for each group of tables. They are read into `study`, in the
+// order of the top level, and may depend on what was read before. All refuse what they cannot take as
+// TomlTable does.
 
 namespace mpm {
 
-/// The whole study file (study_file.cpp); see parse_study(). `draft`, whose keys are study_file_keys(""),
+/// The whole study file (study_file.cpp); see parse_study(). `draft`, whose keys are those of the top level,
 /// takes the values in force; null: they are not recorded.
 Study read_study(std::string_view text, const std::string& file_name, TomlDraft* draft);
 
-/// [plant]: a plant of the catalogue, or one that the file defines (study_file_plant.cpp).
-PlantModel read_plant(const TomlTable& document);
+/// The values of resolved_study() with their defaults (resolved_study.cpp).
+std::vector<TomlDraft::Line> resolved_lines(const Study& study);
 
-/// The keys of [plant] that say how equations of ours are integrated (OdeOptions).
-inline constexpr std::array kIntegrationKeys{"integrator", "relative_tolerance", "absolute_tolerance",
-                                             "step_limit"};
+/// [plant] (study_file_plant.cpp). `folder` is that of the study file.
+OptionKey plant_key(Study& study, const std::filesystem::path& folder);
 
-/// How the plant of [plant], whose model is `model`, is simulated; none: by this model
-/// (study_file_nonlinear.cpp, as the next two). `folder` is that of the study file.
-std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& document,
-                                                             const PlantModel& model,
+/// The keys of [plant] that say how a plant of ours is simulated (study_file_nonlinear.cpp).
+OptionKeys simulated_keys();
+
+/// How the plant of [plant], whose model is `model`, is simulated; none: by this model.
+std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& plant, const PlantModel& model,
                                                              const std::filesystem::path& folder);
 
-/// The plant that [plant.fmu] or [plant.program] of the table `plant` describes (study_file_foreign.cpp).
+/// The keys `fmu` and `program` of [plant] (study_file_foreign.cpp).
+OptionKeys foreign_keys();
+
+/// The plant that [plant.fmu] or [plant.program] of the table `plant` describes.
 NonlinearModel read_foreign_plant(const TomlTable& plant, const PlantModel& model,
                                   const std::filesystem::path& folder);
 
 /// The list `parameter` of a scenario: parameters of the nonlinear plant of `study` that differ.
-std::vector<ParameterChange> read_parameter_changes(const TomlTable& scenario, const Study& study);
+OptionKey parameter_changes_key(std::vector<ParameterChange>& changes, const Study& study);
+
+/// The list `plant_parameter` of [mismatch].
+OptionKey plant_parameters_key(std::vector<PlantParameterRange>& ranges, const Study& study);
 
 /// The place of the inner input of the nonlinear plant of `study` that the key `input` of a disturbance
 /// names.
 Eigen::Index read_inner_input(const TomlTable& disturbance, const Study& study);
 
-/// [controller] (study_file_controller.cpp).
-MpcOptions read_controller(const TomlTable& document, const PlantModel& plant);
+/// [controller], with the setpoints at the start (study_file_controller.cpp).
+OptionKey controller_key(Study& study);
 
-/// [controller.program]; none without the table.
-std::optional<ControllerProgram> read_controller_program(const TomlTable& document);
+/// [simulation] (study_file_simulation.cpp). The steps are in the order of their samples.
+OptionKey simulation_key(Study& study);
 
-/// The setpoints at the start, of [controller.cv.NAME]; ny numbers, 0 for a CV without a setpoint.
-Eigen::VectorXd read_initial_setpoints(const TomlTable& document, const PlantModel& plant,
-                                       const MpcOptions& controller);
+/// [record] (study_file_record.cpp)
+OptionKey record_key(Study& study);
 
-/// [simulation] (study_file_simulation.cpp). The steps are returned in the order of their samples.
-SimulationOptions read_simulation(const TomlTable& document, const PlantModel& plant,
-                                  const MpcOptions& controller);
+/// The key `fill`.
+OptionKey fill_key(GapFill& fill, std::string meaning);
 
-/// [record]; `study` has its plant and its simulation (study_file_record.cpp).
-RecordOptions read_record(const TomlTable& document, const Study& study);
+/// [[scenario]] (study_file_scenarios.cpp)
+OptionKey scenarios_key(Study& study);
 
-/// The transfer function in the keys gain, time_constant, numerator, denominator and dead_time of a table
-/// (study_file_plant.cpp), as the next two.
-TransferFunction read_transfer_function(const TomlTable& table);
+/// [experiments] (study_file_draws.cpp)
+OptionKey experiments_key(Study& study);
 
-/// Refuses a channel of a plant that is not stable: the targets of (6.19) need static gains, y_sim = G0 u of
-/// (6.4) runs away for an unstable model, and a plant starts in a steady state.
-void refuse_unstable(const TomlTable& table, const TransferFunction& channel);
-
-/// Refuses a model of a disturbance that grows by itself: poles may lie at 0, but not to the right of it.
-void refuse_growing(const TomlTable& table, const TransferFunction& Gd);
-
-/// Longest dead time that a study may have, in samples: a bound on the memory that a mistake can cost.
-inline constexpr double kMaxDeadTimeSamples = 10000;
-
-/// [[scenario]] (study_file_scenarios.cpp); none when the study draws its experiments at random.
-std::vector<Scenario> read_scenarios(const TomlTable& document, const Study& study);
-
-/// [experiments] (study_file_draws.cpp), as the next three. None in a study of named scenarios.
-ExperimentCounts read_experiments(const TomlTable& document);
-
-/// [mismatch]; `study` has its plant and its experiments.
-MismatchRanges read_mismatch(const TomlTable& document, const Study& study);
-
-/// The list `plant_parameter` of [mismatch] (study_file_nonlinear.cpp).
-std::vector<PlantParameterRange> read_plant_parameters(const TomlTable& mismatch, const Study& study);
-
-/// [disturbance]
-DisturbanceRanges read_disturbance(const TomlTable& document);
-
-/// [other] (study_file_other.cpp), as the next one; `study` has its plant, controller, simulation and
-/// experiments.
-OtherRanges read_other(const TomlTable& document, const Study& study);
-
-/// [onset]
-OnsetRanges read_onset(const TomlTable& document, const Study& study);
-
-/// A table of weights: all of the names, or none of them, in which case `weights` stay as they are. Names
-/// after the first `required` may be left out and have then the weight 0.
-void read_weights(const TomlTable& table, std::span<const std::string_view> names, std::size_t required,
-                  std::span<double> weights);
-
-/// Refuses a table of weights that are all 0.
-void refuse_no_weight(const TomlTable& table, std::span<const double> weights);
-
-/// The size of an effect (FaultScales) under `key`; none without the key.
-std::optional<Distribution> read_impact(const TomlTable& table);
+/// [mismatch], [disturbance], [tuning], [other], [onset]
+OptionKeys fault_keys(Study& study);
 
 /// The key `sequence` of a table of signals.
-SignalSequence read_sequence_or(const TomlTable& table, SignalSequence otherwise);
+OptionKey sequence_key(SignalSequence& sequence, std::string meaning);
 
-/// [tuning]; `study` has its controller and its experiments.
-TuningRanges read_tuning(const TomlTable& document, const Study& study);
+/// [sensitivity], [s0_perturbation], [diagnosis] (study_file_analysis.cpp)
+OptionKeys analysis_keys(Study& study);
 
-/// [sensitivity] (study_file_analysis.cpp), as the next two.
-SensitivityOptions read_sensitivity(const TomlTable& document, const PlantModel& plant,
-                                    const MpcOptions& controller);
+/// [aggregate], [reference]
+OptionKey aggregate_key(Study& study);
+OptionKey reference_key(Study& study);
 
-/// [s0_perturbation] (study_file_s0_perturbation.cpp)
-S0PerturbationOptions read_s0_perturbation(const TomlTable& document, const PlantModel& plant,
-                                           const MpcOptions& controller);
+/// [methods], [assessment], [monitoring], [calibration] (study_file_assessment.cpp)
+OptionKeys method_keys(Study& study);
 
-/// [diagnosis]
-DiagnosisOptions read_diagnosis(const TomlTable& document);
-
-/// [methods], [assessment] (study_file_assessment.cpp)
-std::vector<std::string> read_methods(const TomlTable& document);
-AssessmentOptions read_assessment(const TomlTable& document);
-
-/// [monitoring]; none without the table. `study` has its simulation and its scenarios.
-std::optional<MonitoringOptions> read_monitoring(const TomlTable& document, const Study& study);
-
-/// [calibration] (study_file_calibration.cpp); none without the table. `study` has its seed and its
-/// scenarios.
-std::optional<CalibrationOptions> read_calibration(const TomlTable& document, const Study& study);
-
-/// [aggregate]
-AggregateOptions read_aggregate(const TomlTable& document);
-
-/// "none", "hold" or "linear" under `key` (study_file_record.cpp).
-GapFill read_gap_fill_or(const TomlTable& table, std::string_view key, GapFill fallback);
-
-/// [data] (study_file_data.cpp); `study` has its plant.
-DataOptions read_data(const TomlTable& document, const Study& study);
-
-/// [reference]
-std::vector<ReportedValue> read_reported(const TomlTable& document);
-
-/// A distribution written as an inline table with one key, such as {uniform = [0.3, 1.5]}, whose every draw
-/// satisfies `rule` (study_file_distribution.cpp).
-Distribution read_distribution(const TomlTable& table, std::string_view key, const NumberRule& rule);
-Distribution read_distribution_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
-                                  const Distribution& fallback);
+/// [data] (study_file_data.cpp)
+OptionKey data_key(Study& study);
 
 /// The names of variables, in their order.
 std::vector<std::string> variable_names(const std::vector<PlantModel::Variable>& variables);
+
+/// The names of the MVs and then the MDs.
+std::vector<std::string> input_names(const PlantModel& plant);
 
 }  // namespace mpm

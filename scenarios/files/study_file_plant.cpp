@@ -1,166 +1,126 @@
+// [plant]: a plant of the catalogue, or one that the file defines.
+
 #include <algorithm>
-#include <cmath>
 #include <iterator>
+#include <memory>
 #include <set>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "plants/models/catalogue.hpp"
-#include "plants/non_finite.hpp"
-#include "scenarios/files/study_file_keys.hpp"
 #include "scenarios/files/study_file_parts.hpp"
-#include "scenarios/toml/toml_values.hpp"
+#include "scenarios/files/transfer_function_keys.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
 
-// Bounds on what a file can make the program allocate; far above any plant of the literature.
-constexpr std::size_t kMaxVariables = 200;
-constexpr std::size_t kMaxCoefficients = 20;
+constexpr std::size_t kMaxVariables = 200;  // far above any plant of the literature
 
-/// The variables of one list, with names that none of `known` has; adds them to `known`.
-std::vector<PlantModel::Variable> read_variables(const TomlTable& plant, const std::string& list,
-                                                 std::set<std::string>& known) {
-  const std::vector<TomlTable> tables = plant.tables(list, study_file_keys("plant." + list + "[]"));
-  if (tables.size() > kMaxVariables) {
-    plant.refuse(list, fmt::format("{} variables", tables.size()), fmt::format("at most {}", kMaxVariables));
-  }
-  std::vector<PlantModel::Variable> variables;
-  for (const TomlTable& table : tables) {
-    PlantModel::Variable variable{.name = read_name(table, "name"),
-                                  .unit = read_text(table, "unit"),
-                                  .description = read_text_or(table, "description", "")};
-    if (!known.insert(variable.name).second) {
-      table.refuse("name", fmt::format("'{}' for a second variable", variable.name), "every name once");
-    }
-    variables.push_back(std::move(variable));
-  }
-  return variables;
+OptionKeys variable_keys(PlantModel::Variable& variable) {
+  return {key::name("name", variable.name, "name of the variable in the other tables and in results")
+              .also("no two variables alike"),
+          key::text("unit", variable.unit, "unit").required().allow("not empty; `\"1\"` for none"),
+          key::text("description", variable.description, "what it is").otherwise("empty")};
 }
 
-/// Largest real part of the roots of p_0 s^n + ... + p_n, n >= 1, p_0 != 0, by the companion matrix. The unit
-/// of s is chosen so that the geometric mean of the roots is 1; without that, slow multiple roots would drown
-/// in rounding. Not finite when the ratios of the coefficients are not.
-double largest_real_part_of_roots(const Eigen::VectorXd& p) {
-  const Eigen::Index n = p.size() - 1;
-  const double mean_root = std::pow(std::abs(p(n) / p(0)), 1.0 / static_cast<double>(n));
-  if (mean_root == 0) {
-    return 0;
-  }
-  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    companion(0, i) = -p(i + 1) / p(0) / std::pow(mean_root, static_cast<double>(i + 1));
-  }
-  companion.diagonal(-1).setOnes();
-  if (!companion.allFinite()) {
-    return kNaN;
-  }
-  return mean_root * companion.eigenvalues().real().maxCoeff();
+/// A channel from an MV or MD to a CV.
+struct Channel {
+  Eigen::Index cv, input;
+};
+
+OptionKeys channel_keys(Channel& channel, const PlantModel& model) {
+  OptionKeys keys{key::one_of(
+                      "cv", channel.cv, [&] { return variable_names(model.cvs); }, "output of the channel")
+                      .allow("name of a CV"),
+                  key::one_of(
+                      "input", channel.input, [&] { return input_names(model); },
+                      "its input; a channel can be listed once")
+                      .allow("name of an MV or MD")};
+  for (OptionKey& key : transfer_function_keys("input", "poles with negative real parts"))
+    keys.push_back(std::move(key));
+  return keys;
 }
 
-void read_channels(const TomlTable& plant, PlantModel& model) {
-  const std::vector<std::string> cvs = variable_names(model.cvs);
-  std::vector<std::string> inputs = variable_names(model.mvs);
-  const std::vector<std::string> mds = variable_names(model.mds);
-  inputs.insert(inputs.end(), mds.begin(), mds.end());
-
-  model.G = TransferMatrix(static_cast<Eigen::Index>(cvs.size()), static_cast<Eigen::Index>(inputs.size()));
-  std::set<std::pair<Eigen::Index, Eigen::Index>> listed;
-  for (const TomlTable& table : plant.tables("channel", study_file_keys("plant.channel[]"))) {
-    const auto row = static_cast<Eigen::Index>(read_one_of(table, "cv", cvs));
-    const auto col = static_cast<Eigen::Index>(read_one_of(table, "input", inputs));
+OptionKeys own_plant_keys(PlantModel& model) {
+  const auto variables = [&model](const char* name, std::vector<PlantModel::Variable>& group,
+                                  const char* meaning) {
+    return key::list<PlantModel::Variable>(
+               name, kMaxVariables, variable_keys,
+               [&model, &group](const TomlTable& table, PlantModel::Variable& variable) {
+                 for (const auto* known : {&model.cvs, &model.mvs, &model.mds})
+                   for (const PlantModel::Variable& other : *known)
+                     if (other.name == variable.name)
+                       table.refuse("name", fmt::format("'{}' for a second variable", variable.name),
+                                    "every name once");
+                 group.push_back(variable);
+               },
+               meaning)
+        .allow("1 to 200");
+  };
+  const auto sized = [&model] {
+    model.G = TransferMatrix(static_cast<Eigen::Index>(model.cvs.size()),
+                             static_cast<Eigen::Index>(model.mvs.size() + model.mds.size()));
+  };
+  const auto take = [&model, listed = std::make_shared<std::set<std::pair<Eigen::Index, Eigen::Index>>>()](
+                        const TomlTable& table, Channel& at) {
     const TransferFunction channel = read_transfer_function(table);
     refuse_unstable(table, channel);
-    if (!listed.emplace(row, col).second) {
+    if (!listed->emplace(at.cv, at.input).second)
       table.refuse("", "a second channel from this input to this CV", "every channel once");
-    }
-    model.G(row, col) = channel;
-  }
+    model.G(at.cv, at.input) = channel;
+  };
+  return {
+      key::name("name", model.name, "short name"),
+      key::text("title", model.title, "one line for people").required(),
+      key::text("time_unit", model.time_unit, "unit of all times in the study, such as `\"min\"`").required(),
+      variables("cv", model.cvs, "controlled variables, in the order of the rows of `G0`").required(),
+      variables("mv", model.mvs, "manipulated variables, in the order of the columns").required(),
+      variables("md", model.mds, "measured disturbances, in the order of the columns after those of the MVs"),
+      key::check([sized](const TomlTable&) { sized(); }),
+      key::list<Channel>(
+          "channel", kMaxVariables * kMaxVariables, [&model](Channel& at) { return channel_keys(at, model); },
+          take, "the channels of `G0`; those that are not listed are zero")
+          .allow("one or more")
+          .required()};
 }
 
 /// A mismatch changes a channel from an MV to a CV, so there must be one.
 void refuse_without_mv_channel(const TomlTable& plant, const PlantModel& model) {
-  for (Eigen::Index row = 0; row < model.G.rows(); ++row) {
-    for (std::size_t mv = 0; mv < model.mvs.size(); ++mv) {
-      if (!model.G(row, static_cast<Eigen::Index>(mv)).is_zero()) {
+  for (Eigen::Index row = 0; row < model.G.rows(); ++row)
+    for (std::size_t mv = 0; mv < model.mvs.size(); ++mv)
+      if (!model.G(row, static_cast<Eigen::Index>(mv)).is_zero())
         return;
-      }
-    }
-  }
   plant.refuse("channel", "no channel from an MV that is not zero", "at least one");
 }
 
-PlantModel read_inline_plant(const TomlTable& plant) {
-  std::set<std::string> known;
+PlantModel read_plant(const TomlTable& plant) {
   PlantModel model;
-  model.name = read_name(plant, "name");
-  model.title = read_text(plant, "title");
-  model.time_unit = read_text(plant, "time_unit");
-  model.cvs = read_variables(plant, "cv", known);
-  model.mvs = read_variables(plant, "mv", known);
-  if (plant.has("md")) {
-    model.mds = read_variables(plant, "md", known);
+  if (!plant.has("catalogue")) {
+    read_keys(plant, own_plant_keys(model));
+    refuse_without_mv_channel(plant, model);
+    plant.located("", [&] { return model.validate(); });
+    return model;
   }
-  read_channels(plant, model);
-  refuse_without_mv_channel(plant, model);
-  plant.located("", [&] { return model.validate(); });
-  return model;
+  for (const std::string& key : key_names(own_plant_keys(model)))
+    if (plant.has(key))
+      plant.refuse(key, "a key beside catalogue", "catalogue alone, or an own plant without it");
+  const std::vector<std::string> names = benchmark_plant_names();
+  return benchmark_plant(names[read_one_of(plant, "catalogue", names)]);
+}
+
+OptionKeys plant_keys() {
+  PlantModel model;
+  OptionKeys keys{key::option("catalogue", "text", "a plant that comes with the program")
+                      .otherwise("none")
+                      .allow("a name of [the catalogue](plants.md)")};
+  for (const OptionKeys& part : {simulated_keys(), described(own_plant_keys(model)), foreign_keys()})
+    keys.insert(keys.end(), part.begin(), part.end());
+  return keys;
 }
 
 }  // namespace
-
-TransferFunction read_transfer_function(const TomlTable& table) {
-  const double dead_time = read_number_or(table, "dead_time", NumberRule::at_least(0), 0.0);
-  const bool first_order = table.has("gain") || table.has("time_constant");
-  if (first_order == (table.has("numerator") || table.has("denominator"))) {
-    table.refuse("", first_order ? "both ways to write a channel" : "no transfer function",
-                 "either gain and time_constant, or numerator and denominator");
-  }
-  if (first_order) {
-    return TransferFunction::first_order(read_number(table, "gain", NumberRule::finite()),
-                                         read_number(table, "time_constant", NumberRule::positive()),
-                                         dead_time);
-  }
-  Eigen::VectorXd numerator = read_numbers(table, "numerator", NumberRule::finite(), kMaxCoefficients);
-  Eigen::VectorXd denominator = read_numbers(table, "denominator", NumberRule::finite(), kMaxCoefficients);
-  return table.located(
-      "", [&] { return TransferFunction(std::move(numerator), std::move(denominator), dead_time); });
-}
-
-void refuse_unstable(const TomlTable& table, const TransferFunction& channel) {
-  if (channel.is_zero() || channel.order() == 0) {
-    return;
-  }
-  const double real_part = largest_real_part_of_roots(channel.denominator());
-  if (!std::isfinite(real_part)) {
-    table.refuse("denominator", "coefficients whose ratios overflow", "coefficients of similar size");
-  }
-  if (!(real_part < 0)) {
-    table.refuse("denominator", fmt::format("a pole with real part {:.3g}", real_part),
-                 "poles with negative real parts");
-  }
-}
-
-void refuse_growing(const TomlTable& table, const TransferFunction& Gd) {
-  const Eigen::VectorXd& all = Gd.denominator();
-  Eigen::Index size = all.size();
-  while (size > 1 && all(size - 1) == 0) {
-    --size;  // an integrator
-  }
-  if (Gd.is_zero() || size == 1) {
-    return;
-  }
-  const double real_part = largest_real_part_of_roots(all.head(size));
-  if (!std::isfinite(real_part)) {
-    table.refuse("denominator", "coefficients whose ratios overflow", "coefficients of similar size");
-  }
-  if (real_part > 0) {
-    table.refuse("denominator", fmt::format("a pole with real part {:.3g}", real_part),
-                 "poles with negative real parts, or at 0");
-  }
-}
 
 std::vector<std::string> variable_names(const std::vector<PlantModel::Variable>& variables) {
   std::vector<std::string> names;
@@ -169,18 +129,22 @@ std::vector<std::string> variable_names(const std::vector<PlantModel::Variable>&
   return names;
 }
 
-PlantModel read_plant(const TomlTable& document) {
-  const TomlTable plant = document.table("plant", study_file_keys("plant"));
-  if (!plant.has("catalogue")) {
-    return read_inline_plant(plant);
-  }
-  for (const char* key : {"name", "title", "time_unit", "cv", "mv", "md", "channel"}) {
-    if (plant.has(key)) {
-      plant.refuse(key, "a key beside catalogue", "catalogue alone, or an own plant without it");
-    }
-  }
-  const std::vector<std::string> names = benchmark_plant_names();
-  return benchmark_plant(names[read_one_of(plant, "catalogue", names)]);
+std::vector<std::string> input_names(const PlantModel& plant) {
+  std::vector<std::string> names = variable_names(plant.mvs);
+  for (const PlantModel::Variable& md : plant.mds)
+    names.push_back(md.name);
+  return names;
+}
+
+OptionKey plant_key(Study& study, const std::filesystem::path& folder) {
+  return key::option("plant", "table", "the nominal model `G0`")
+      .required()
+      .with("", plant_keys)
+      .read([&study, folder](const TomlTable& document, const std::string& key) {
+        const TomlTable plant = document.table(key, key_names(plant_keys()));
+        study.plant = read_plant(plant);
+        study.nonlinear = read_nonlinear_simulation(plant, study.plant, folder);
+      });
 }
 
 }  // namespace mpm

@@ -1,45 +1,55 @@
+// [record]
+
 #include <cstdint>
 
 #include <fmt/format.h>
 
-#include "scenarios/files/study_file_keys.hpp"
 #include "scenarios/files/study_file_parts.hpp"
-#include "scenarios/toml/toml_values.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr double kMostOutliers = 0.5;  // beyond it the others are the outliers
 
-/// A gap begins with a probability of at most 1 after each sample that is there.
-double largest_missing_share(double length) {
-  return length / (length + 1.0);
+OptionKeys outliers_keys(RecordOptions& options) {
+  return {
+      key::number("share", options.outlier_share, {.low = 0, .high = kMostOutliers, .high_included = true},
+                  "probability that a sample of a CV is one", "1")
+          .required(),
+      key::distribution("size", options.outlier_size, NumberRule::positive(),
+                        "added to the sample, up or down", "noise standard deviations")};
 }
 
-void read_outliers(const TomlTable& record, RecordOptions& options) {
-  const TomlTable table = record.table("outliers", study_file_keys("record.outliers"));
-  options.outlier_share = read_number(
-      table, "share", {.low = 0, .high = kMostOutliers, .low_included = false, .high_included = true});
-  options.outlier_size = read_distribution_or(table, "size", NumberRule::positive(), options.outlier_size);
+OptionKeys missing_keys(RecordOptions& options) {
+  // A gap begins with a probability of at most 1 after each sample that is there.
+  const auto check_share = [&options](const TomlTable& table) {
+    if (const double largest = options.missing_length / (options.missing_length + 1.0);
+        options.missing_share > largest)
+      table.refuse("share", fmt::format("{}", options.missing_share),
+                   fmt::format("at most {:.3g} with gaps of {} samples: a sample stands between two gaps",
+                               largest, options.missing_length));
+  };
+  return {key::number("share", options.missing_share, NumberRule::inside(0, 1),
+                      "of the samples of each CV, in the long run", "1")
+              .required()
+              .allow("above 0, at most `length` / (`length` + 1)"),
+          key::number("length", options.missing_length, NumberRule::at_least(1),
+                      "mean length of a gap; lengths are geometrically distributed", "samples"),
+          key::check(check_share),
+          fill_key(options.fill,
+                   "what the reader finds in a gap: nothing (NaN; methods that need every sample say that "
+                   "they do not apply), the last value, or a straight line")};
 }
 
-void read_missing(const TomlTable& record, RecordOptions& options) {
-  const TomlTable table = record.table("missing", study_file_keys("record.missing"));
-  options.missing_length = read_number_or(table, "length", NumberRule::at_least(1), options.missing_length);
-  options.missing_share = read_number(table, "share", NumberRule::inside(0, 1));
-  if (const double largest = largest_missing_share(options.missing_length); options.missing_share > largest)
-    table.refuse("share", fmt::format("{}", options.missing_share),
-                 fmt::format("at most {:.3g} with gaps of {} samples: a sample stands between two gaps",
-                             largest, options.missing_length));
-  options.fill = read_gap_fill_or(table, "fill", options.fill);
-}
-
-void read_candidates(const TomlTable& record, RecordOptions& options) {
-  const TomlTable table = record.table("candidates", study_file_keys("record.candidates"));
-  options.candidates = static_cast<int>(read_whole(table, "count", 1, RecordOptions::kMostCandidates));
-  options.candidate_share =
-      read_number_or(table, "share", {.low = 0, .high = 1, .low_included = true, .high_included = true},
-                     options.candidate_share);
+OptionKeys candidates_keys(RecordOptions& options) {
+  return {key::whole("count", options.candidates, 1, RecordOptions::kMostCandidates,
+                     "how many there are in each loop", "signals")
+              .required(),
+          key::number("share", options.candidate_share, NumberRule::share(),
+                      "probability that one of them is the signal v that drives the first disturbance of an "
+                      "experiment. All others are decoys: of the form of v, with random numbers of their own",
+                      "1")};
 }
 
 /// Sizes are in standard deviations of the noise: without noise they would all be 0.
@@ -54,28 +64,38 @@ void refuse_without_noise(const TomlTable& record, const Study& study) {
                       "simulation.noise_standard_deviation > 0 for every CV");
 }
 
-}  // namespace
-
-GapFill read_gap_fill_or(const TomlTable& table, std::string_view key, GapFill fallback) {
-  return read_choice_or<GapFill>(
-      table, key, {{"none", GapFill::none}, {"hold", GapFill::hold}, {"linear", GapFill::linear}}, fallback);
+OptionKeys record_keys(Study& study) {
+  RecordOptions& options = study.record;
+  return {
+      key::optional_table(
+          "outliers", [&options] { return outliers_keys(options); }, "single samples that are far off"),
+      key::number("quantisation", options.quantisation, NumberRule::at_least(0), "step between two values",
+                  "noise standard deviations")
+          .otherwise("0: none"),
+      key::optional_table(
+          "missing", [&options] { return missing_keys(options); }, "gaps, each CV with its own"),
+      key::number("compression", options.compression, NumberRule::at_least(0),
+                  "deviation that a swinging door allows itself. The reader interpolates between archived "
+                  "points, so that no sample is off by more",
+                  "noise standard deviations")
+          .otherwise("0: every sample is kept"),
+      key::optional_table(
+          "candidates", [&options] { return candidates_keys(options); },
+          "further signals, of which the model knows nothing: some drive a disturbance, others are decoys"),
+      key::check([&study](const TomlTable& table) { refuse_without_noise(table, study); })};
 }
 
-RecordOptions read_record(const TomlTable& document, const Study& study) {
-  RecordOptions options;
-  if (!document.has("record"))
-    return options;
-  const TomlTable table = document.table("record", study_file_keys("record"));
-  if (table.has("outliers"))
-    read_outliers(table, options);
-  if (table.has("missing"))
-    read_missing(table, options);
-  if (table.has("candidates"))
-    read_candidates(table, options);
-  options.quantisation = read_number_or(table, "quantisation", NumberRule::at_least(0), options.quantisation);
-  options.compression = read_number_or(table, "compression", NumberRule::at_least(0), options.compression);
-  refuse_without_noise(table, study);
-  return options;
+}  // namespace
+
+OptionKey fill_key(GapFill& fill, std::string meaning) {
+  return key::choice("fill", fill, {"none", "hold", "linear"}, std::move(meaning));
+}
+
+OptionKey record_key(Study& study) {
+  return key::optional_table(
+             "record", [&study] { return record_keys(study); },
+             "what the historian makes of the record that the methods see")
+      .otherwise("none: every sample as it was measured");
 }
 
 }  // namespace mpm

@@ -1,19 +1,20 @@
+// [simulation]
+
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "scenarios/files/study_file_keys.hpp"
 #include "scenarios/files/study_file_parts.hpp"
-#include "scenarios/toml/toml_values.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr std::int64_t kMaxSamples = 1'000'000;
+constexpr std::size_t kMaxSteps = kMaxSamples;  // of one list
 
 /// One number for all variables, or a table with one each; `each` says what they are.
 Eigen::VectorXd read_deviations(const TomlTable& parent, const std::string& key, const std::string& each,
@@ -33,112 +34,159 @@ Eigen::VectorXd read_deviations(const TomlTable& parent, const std::string& key,
   return deviations;
 }
 
-NoiseOptions read_noise(const TomlTable& simulation) {
-  const TomlTable table = simulation.table("noise", study_file_keys("simulation.noise"));
-  NoiseOptions noise;
-  noise.distribution = read_choice_or<NoiseDistribution>(table, "distribution",
-                                                         {{"normal", NoiseDistribution::normal},
-                                                          {"student", NoiseDistribution::student},
-                                                          {"laplace", NoiseDistribution::laplace}},
-                                                         noise.distribution);
-  noise.autocorrelation =
-      read_number_or(table, "autocorrelation", NumberRule::inside(-1, 1), noise.autocorrelation);
-  noise.factor = read_distribution_or(table, "factor", NumberRule::at_least(0), noise.factor);
-  noise.sequence = read_sequence_or(table, noise.sequence);
-  return noise;
+OptionKeys noise_keys(NoiseOptions& noise) {
+  return {
+      key::choice(
+          "distribution", noise.distribution, {"normal", "student", "laplace"},
+          "of the innovations, with variance 1. `\"student\"` has 4 degrees of freedom: some values far out"),
+      key::number("autocorrelation", noise.autocorrelation, NumberRule::inside(-1, 1),
+                  "phi of e(k) = phi e(k-1) + sqrt(1 - phi^2) w(k), w the innovations; the variance stays",
+                  "1"),
+      key::distribution(
+          "factor", noise.factor, NumberRule::at_least(0),
+          "factor of the standard deviations of all CVs, drawn for each experiment. The basis case has 1: "
+          "noise of another size than in the benchmark. In the archive as `noise_factor`",
+          "1"),
+      sequence_key(noise.sequence,
+                   "whether every experiment draws its own innovations, or all have the same, drawn once for "
+                   "the study. The basis case has the shared ones as well; its repetition "
+                   "(`diagnosis.self_check`) has others")};
+}
+
+/// The CVs with a setpoint.
+std::vector<Eigen::Index> setpoint_cvs(const MpcOptions& controller) {
+  std::vector<Eigen::Index> cvs;
+  for (Eigen::Index cv = 0; cv < controller.setpoint_weight.size(); ++cv)
+    if (controller.has_setpoint(cv))
+      cvs.push_back(cv);
+  return cvs;
+}
+
+OptionKeys step_keys(SignalStep& step, int samples) {
+  return {key::option("md", "text", "the measured disturbance that changes")
+              .otherwise("this or `cv`")
+              .allow("name of an MD"),
+          key::option("cv", "text", "the CV whose setpoint changes")
+              .otherwise("this or `md`")
+              .allow("name of a CV with a setpoint"),
+          key::whole("sample", step.sample, 0, samples - 1, "first sample with the new level", "samples")
+              .required()
+              .allow("0 to `samples` - 1, one step a sample and variable"),
+          key::number("level", step.level, NumberRule::finite(),
+                      "level from there on; an MD begins at 0, a setpoint at `setpoint`", "MD or CV")
+              .required()};
 }
 
 /// The steps of the MDs and of the setpoints stand in one list; a step names one of the two.
-void read_steps(const TomlTable& simulation, const std::vector<std::string>& mds,
-                const std::vector<std::string>& setpoint_cvs, const std::vector<Eigen::Index>& cv_of_setpoint,
-                SimulationOptions& options) {
-  std::set<std::tuple<bool, Eigen::Index, int>> taken;
-  for (const TomlTable& table : simulation.tables("step", study_file_keys("simulation.step[]"))) {
-    const bool of_md = table.has("md");
-    if (of_md == table.has("cv"))
-      table.refuse("", of_md ? "both md and cv" : "neither md nor cv", "exactly one of the two");
-    if (!of_md && setpoint_cvs.empty())
-      table.refuse("cv", "a step of a setpoint, and no CV has one",
-                   "none, or a CV with controller.cv.NAME.setpoint_weight");
-    if (of_md && mds.empty())
-      table.refuse("md", "a step of a measured disturbance, and the plant has none",
-                   "none, or an MD of the plant, plant.md[]");
-    const SignalStep step{.variable = of_md ? static_cast<Eigen::Index>(read_one_of(table, "md", mds))
-                                            : cv_of_setpoint[read_one_of(table, "cv", setpoint_cvs)],
-                          .sample = static_cast<int>(read_whole(table, "sample", 0, options.samples - 1)),
-                          .level = read_number(table, "level", NumberRule::finite())};
-    if (!taken.emplace(of_md, step.variable, step.sample).second) {
+void take_step(const TomlTable& table, SignalStep& step, Study& study) {
+  const std::vector<std::string> mds = variable_names(study.plant.mds);
+  const std::vector<Eigen::Index> cvs = setpoint_cvs(study.controller);
+  std::vector<std::string> cv_names;
+  for (const Eigen::Index cv : cvs)
+    cv_names.push_back(study.plant.cvs[static_cast<std::size_t>(cv)].name);
+  const bool of_md = table.has("md");
+  if (of_md == table.has("cv"))
+    table.refuse("", of_md ? "both md and cv" : "neither md nor cv", "exactly one of the two");
+  if (!of_md && cvs.empty())
+    table.refuse("cv", "a step of a setpoint, and no CV has one",
+                 "none, or a CV with controller.cv.NAME.setpoint_weight");
+  if (of_md && mds.empty())
+    table.refuse("md", "a step of a measured disturbance, and the plant has none",
+                 "none, or an MD of the plant, plant.md[]");
+  step.variable = of_md ? static_cast<Eigen::Index>(read_one_of(table, "md", mds))
+                        : cvs[read_one_of(table, "cv", cv_names)];
+  std::vector<SignalStep>& steps = of_md ? study.simulation.steps : study.simulation.setpoint_steps;
+  for (const SignalStep& other : steps)
+    if (other.variable == step.variable && other.sample == step.sample)
       table.refuse("sample", fmt::format("{} for a second step of this variable", step.sample),
                    "one step a sample");
-    }
-    (of_md ? options.steps : options.setpoint_steps).push_back(step);
-  }
-  for (std::vector<SignalStep>* steps : {&options.steps, &options.setpoint_steps})
-    std::sort(steps->begin(), steps->end(), [](const SignalStep& a, const SignalStep& b) {
-      return std::tie(a.sample, a.variable) < std::tie(b.sample, b.variable);
-    });
+  steps.push_back(step);
 }
 
-void read_random_steps(const TomlTable& simulation, SimulationOptions& options) {
-  const TomlTable table = simulation.table("random_steps", study_file_keys("simulation.random_steps"));
-  options.random_steps = true;
-  options.step_interval =
-      read_distribution_or(table, "interval", NumberRule::at_least(1), options.step_interval);
-  options.step_level = read_distribution_or(table, "level", NumberRule::finite(), options.step_level);
+OptionKeys random_steps_keys(SimulationOptions& options) {
+  return {key::check([&options](const TomlTable&) { options.random_steps = true; }),
+          key::distribution("interval", options.step_interval, NumberRule::at_least(1),
+                            "from one step of an MD to its next", "samples"),
+          key::distribution("level", options.step_level, NumberRule::finite(), "level after a step", "MD")
+              .allow("any")};
+}
+
+/// A step of soft limits as it stands in the file.
+struct ListedLimits {
+  Eigen::Index cv = 0;
+  int sample = 0;
+  NumberPair soft;
+};
+
+OptionKeys limit_step_keys(ListedLimits& step, const Study& study) {
+  return {key::one_of(
+              "cv", step.cv, [&study] { return variable_names(study.plant.cvs); }, "the CV whose limits move")
+              .allow("name of a CV with a soft limit"),
+          key::whole("sample", step.sample, 0, study.simulation.samples - 1,
+                     "first sample with the new limits", "samples")
+              .required()
+              .allow("0 to `samples` - 1, one step a sample and CV"),
+          key::limits("soft", step.soft, "soft limits from there on", "CV")
+              .allow("low <= high, finite where `controller.cv.NAME.soft` is, within `hard`")};
 }
 
 /// A limit may move where there is one: the problems of the controller have a row for it, and no other.
-void read_limit_steps(const TomlTable& simulation, const PlantModel& plant, const MpcOptions& controller,
-                      SimulationOptions& options) {
-  std::set<std::pair<Eigen::Index, int>> taken;
-  for (const TomlTable& table : simulation.tables("limit_step", study_file_keys("simulation.limit_step[]"))) {
-    const auto cv = static_cast<Eigen::Index>(read_one_of(table, "cv", variable_names(plant.cvs)));
-    const auto sample = static_cast<int>(read_whole(table, "sample", 0, options.samples - 1));
-    const auto [lower, upper] = read_limits(table, "soft");
-    const auto moves = [](double from, double to) { return std::isfinite(from) == std::isfinite(to); };
-    const Limits &soft = controller.cv_soft, &hard = controller.cv_hard;
-    if (!controller.has_soft_limit(cv))
-      table.refuse("cv", "a CV without a soft limit", "a CV with one");
-    if (!moves(soft.lower(cv), lower) || !moves(soft.upper(cv), upper) || lower < hard.lower(cv) ||
-        upper > hard.upper(cv))
-      table.refuse("soft", fmt::format("[{}, {}]", lower, upper),
-                   fmt::format("limits where [{}, {}] has them, within the hard ones [{}, {}]",
-                               soft.lower(cv), soft.upper(cv), hard.lower(cv), hard.upper(cv)));
-    if (!taken.emplace(cv, sample).second)
+void take_limit_step(const TomlTable& table, const ListedLimits& step, Study& study) {
+  const auto [cv, sample, range] = step;
+  const auto [lower, upper] = range;
+  const auto moves = [](double from, double to) { return std::isfinite(from) == std::isfinite(to); };
+  const Limits &soft = study.controller.cv_soft, &hard = study.controller.cv_hard;
+  if (!study.controller.has_soft_limit(cv))
+    table.refuse("cv", "a CV without a soft limit", "a CV with one");
+  if (!moves(soft.lower(cv), lower) || !moves(soft.upper(cv), upper) || lower < hard.lower(cv) ||
+      upper > hard.upper(cv))
+    table.refuse("soft", fmt::format("[{}, {}]", lower, upper),
+                 fmt::format("limits where [{}, {}] has them, within the hard ones [{}, {}]", soft.lower(cv),
+                             soft.upper(cv), hard.lower(cv), hard.upper(cv)));
+  for (const LimitStep& other : study.simulation.limit_steps)
+    if (other.cv == cv && other.sample == sample)
       table.refuse("sample", fmt::format("{} for a second step of this CV", sample), "one step a sample");
-    options.limit_steps.push_back({cv, sample, lower, upper});
-  }
-  std::sort(options.limit_steps.begin(), options.limit_steps.end(),
-            [](const LimitStep& a, const LimitStep& b) {
-              return std::tie(a.sample, a.cv) < std::tie(b.sample, b.cv);
-            });
+  study.simulation.limit_steps.push_back({cv, sample, lower, upper});
 }
 
-void read_md_noise(const TomlTable& simulation, const std::vector<std::string>& mds,
-                   SimulationOptions& options) {
-  if (mds.empty())
-    simulation.refuse("md_noise", "variation of measured disturbances",
-                      "none, because the plant has no measured disturbance");
-  const TomlTable table = simulation.table("md_noise", study_file_keys("simulation.md_noise"));
-  options.md_noise_standard_deviation = read_deviations(table, "standard_deviation", "MD", mds);
-  options.md_noise_time_constant =
-      read_number_or(table, "time_constant", NumberRule::at_least(0), options.md_noise_time_constant);
+OptionKeys md_noise_keys(Study& study) {
+  const auto read_deviation = [&study](const TomlTable& table, const std::string& key) {
+    study.simulation.md_noise_standard_deviation =
+        read_deviations(table, key, "MD", variable_names(study.plant.mds));
+  };
+  return {key::option("standard_deviation", "number, or table",
+                      "of the normal variation; one for all MDs, or `{d1 = 0.1, d2 = 0.2}` with every MD. It "
+                      "is measured without error",
+                      "MD")
+              .required()
+              .allow(">= 0")
+              .read(read_deviation),
+          key::number("time_constant", study.simulation.md_noise_time_constant, NumberRule::at_least(0),
+                      "tau of its autocorrelation exp(-t/tau)", "time")
+              .otherwise("0: white")};
 }
 
-void read_dither(const TomlTable& simulation, const std::vector<std::string>& mvs,
-                 SimulationOptions& options) {
-  for (const TomlTable& table : simulation.tables("dither", study_file_keys("simulation.dither[]")))
-    options.dither.push_back({static_cast<Eigen::Index>(read_one_of(table, "mv", mvs)),
-                              read_number(table, "amplitude", NumberRule::positive()),
-                              static_cast<int>(read_whole_or(table, "hold", 1, options.samples, 1))});
+OptionKeys dither_keys(Dither& dither, const Study& study) {
+  dither.hold = 1;
+  return {
+      key::one_of(
+          "mv", dither.mv, [&study] { return variable_names(study.plant.mvs); }, "the MV that it is added to")
+          .allow("name of an MV"),
+      key::number("amplitude", dither.amplitude, NumberRule::positive(),
+                  "the signal is + or - this, with the same probability", "MV")
+          .required(),
+      key::whole("hold", dither.hold, 1, study.simulation.samples, "samples between two draws of the sign",
+                 "samples")
+          .allow("1 to `samples`")};
 }
 
 /// MDs are stepped in one of two ways. A loop without any excitation has to be asked for by name: what the
 /// variances then compare is noise.
-void refuse_wrong_excitation(const TomlTable& simulation, const std::vector<std::string>& mds,
-                             const std::vector<std::string>& setpoint_cvs, const SimulationOptions& options) {
+void refuse_wrong_excitation(const TomlTable& simulation, const Study& study) {
+  const SimulationOptions& options = study.simulation;
+  const bool has_mds = !study.plant.mds.empty();
   const bool random_steps = simulation.has("random_steps");
-  if (mds.empty() && random_steps) {
+  if (!has_mds && random_steps) {
     simulation.refuse("random_steps", "steps of measured disturbances",
                       "none, because the plant has no measured disturbance");
   }
@@ -149,50 +197,91 @@ void refuse_wrong_excitation(const TomlTable& simulation, const std::vector<std:
     read_one_of(simulation, "excitation", {"none"});
     if (options.is_excited())
       simulation.refuse("excitation", "'none' beside steps, md_noise or dither", "one of the two");
-  } else if (!options.is_excited() && !(mds.empty() && setpoint_cvs.empty())) {
+  } else if (!options.is_excited() && (has_mds || study.controller.has_setpoints())) {
     simulation.refuse("", "no excitation",
                       "step, random_steps, limit_step, md_noise, dither, or excitation = \"none\"");
   }
 }
 
+void sort_steps(SimulationOptions& options) {
+  for (std::vector<SignalStep>* steps : {&options.steps, &options.setpoint_steps})
+    std::sort(steps->begin(), steps->end(), [](const SignalStep& a, const SignalStep& b) {
+      return std::tie(a.sample, a.variable) < std::tie(b.sample, b.variable);
+    });
+  std::sort(options.limit_steps.begin(), options.limit_steps.end(),
+            [](const LimitStep& a, const LimitStep& b) {
+              return std::tie(a.sample, a.cv) < std::tie(b.sample, b.cv);
+            });
+}
+
+OptionKeys simulation_keys(Study& study) {
+  SimulationOptions& options = study.simulation;
+  const auto read_noise = [&study](const TomlTable& table, const std::string& key) {
+    study.simulation.noise_standard_deviation =
+        read_deviations(table, key, "CV", variable_names(study.plant.cvs));
+  };
+  const auto refuse_steps = [&study](const TomlTable& table) {
+    if (table.has("step") && study.plant.mds.empty() && setpoint_cvs(study.controller).empty())
+      table.refuse("step", "steps of measured disturbances or setpoints", "none, because there are neither");
+  };
+  const auto refuse_md_noise = [&study](const TomlTable& table) {
+    if (table.has("md_noise") && study.plant.mds.empty())
+      table.refuse("md_noise", "variation of measured disturbances",
+                   "none, because the plant has no measured disturbance");
+  };
+  return {
+      key::whole("samples", options.samples, 1, kMaxSamples, "length of the record", "samples")
+          .required()
+          .also("at least the longest moving window + 20"),
+      key::option("noise_standard_deviation", "number, or table",
+                  "of the measurement noise; one for all CVs, or `{y1 = 0.01, y2 = 0.02}` with every CV",
+                  "CV")
+          .required()
+          .allow(">= 0")
+          .read(read_noise),
+      key::optional_table(
+          "noise", [&options] { return noise_keys(options.noise); },
+          "what the noise is beside its standard deviation")
+          .otherwise("white, normal, of the same size in every experiment"),
+      key::option("excitation", "text", "nothing but noise and faults moves the loop")
+          .otherwise("none")
+          .allow("`\"none\"`, without anything that excites"),
+      key::list<SignalStep>(
+          "step", kMaxSteps, [&options](SignalStep& step) { return step_keys(step, options.samples); },
+          [&study](const TomlTable& table, SignalStep& step) { take_step(table, step, study); },
+          "the steps of setpoints and measured disturbances, the same in every experiment")
+          .allow("one or more")
+          .after(refuse_steps),
+      key::optional_table(
+          "random_steps", [&options] { return random_steps_keys(options); },
+          "steps of the measured disturbances drawn once for the study, the same in every experiment"),
+      key::list<ListedLimits>(
+          "limit_step", kMaxSteps, [&study](ListedLimits& step) { return limit_step_keys(step, study); },
+          [&study](const TomlTable& table, const ListedLimits& step) { take_limit_step(table, step, study); },
+          "moves of soft limits, as an operator makes them: the controller has them from their sample on")
+          .allow("one or more"),
+      key::optional_table(
+          "md_noise", [&study] { return md_noise_keys(study); },
+          "a variation of every measured disturbance, added to its steps, drawn once for the study")
+          .after(refuse_md_noise),
+      key::list<Dither>(
+          "dither", kMaxSteps, [&study](Dither& dither) { return dither_keys(dither, study); },
+          [&options](const TomlTable&, Dither& dither) { options.dither.push_back(dither); },
+          "test signals, added to the moves of MVs, the same under every seed; those of one MV add up")
+          .allow("one or more"),
+      key::check([&study](const TomlTable& table) {
+        sort_steps(study.simulation);
+        refuse_wrong_excitation(table, study);
+      })};
+}
+
 }  // namespace
 
-SimulationOptions read_simulation(const TomlTable& document, const PlantModel& plant,
-                                  const MpcOptions& controller) {
-  const TomlTable table = document.table("simulation", study_file_keys("simulation"));
-  const std::vector<std::string> mds = variable_names(plant.mds);
-  SimulationOptions options;
-  options.samples = static_cast<int>(read_whole(table, "samples", 1, kMaxSamples));
-  options.noise_standard_deviation =
-      read_deviations(table, "noise_standard_deviation", "CV", variable_names(plant.cvs));
-  if (table.has("noise"))
-    options.noise = read_noise(table);
-  options.initial_setpoint = read_initial_setpoints(document, plant, controller);
-  std::vector<std::string> setpoint_cvs;
-  std::vector<Eigen::Index> cv_of_setpoint;
-  for (Eigen::Index cv = 0; cv < controller.setpoint_weight.size(); ++cv) {
-    if (controller.has_setpoint(cv)) {
-      setpoint_cvs.push_back(plant.cvs[static_cast<std::size_t>(cv)].name);
-      cv_of_setpoint.push_back(cv);
-    }
-  }
-  if (table.has("step")) {
-    if (mds.empty() && setpoint_cvs.empty()) {
-      table.refuse("step", "steps of measured disturbances or setpoints", "none, because there are neither");
-    }
-    read_steps(table, mds, setpoint_cvs, cv_of_setpoint, options);
-  }
-  if (table.has("random_steps")) {
-    read_random_steps(table, options);
-  }
-  if (table.has("limit_step"))
-    read_limit_steps(table, plant, controller, options);
-  if (table.has("md_noise"))
-    read_md_noise(table, mds, options);
-  if (table.has("dither"))
-    read_dither(table, variable_names(plant.mvs), options);
-  refuse_wrong_excitation(table, mds, setpoint_cvs, options);
-  return options;
+OptionKey simulation_key(Study& study) {
+  return key::table(
+             "simulation", [&study] { return simulation_keys(study); },
+             "length, noise and excitation of every closed loop")
+      .required();
 }
 
 }  // namespace mpm

@@ -10,7 +10,6 @@
 #include "plants/error.hpp"
 #include "plants/linear/settling_time.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/files/key_meaning.hpp"
 #include "scenarios/files/study_file_keys.hpp"
 #include "scenarios/toml/toml_draft.hpp"
 
@@ -101,13 +100,17 @@ std::string channel_name(const PlantModel& plant, Eigen::Index input) {
 }
 
 TomlDraft& below(TomlDraft& parent, std::string_view key, std::string_view table) {
-  return parent.table(key, study_file_keys(table));
+  return parent.table(key, key_names(study_file_keys(table))).explain(study_file_keys(table));
+}
+
+TomlDraft& entry_of(TomlDraft& parent, std::string_view list, std::size_t place, std::string_view table) {
+  return parent.table_in_list(list, place, key_names(study_file_keys(table))).explain(study_file_keys(table));
 }
 
 void write_variables(TomlDraft& plant, const std::string& group,
                      const std::vector<PlantModel::Variable>& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
-    TomlDraft& variable = plant.table_in_list(group, i, study_file_keys(fmt::format("plant.{}[]", group)));
+    TomlDraft& variable = entry_of(plant, group, i, fmt::format("plant.{}[]", group));
     variable.set("name", list[i].name);
     variable.set("unit", list[i].unit);
   }
@@ -127,7 +130,7 @@ void write_plant(TomlDraft& document, const PlantModel& plant) {
       const TransferFunction& G = plant.G(cv, input);
       if (G.is_zero())
         continue;
-      TomlDraft& channel = table.table_in_list("channel", place++, study_file_keys("plant.channel[]"));
+      TomlDraft& channel = entry_of(table, "channel", place++, "plant.channel[]");
       channel.set("cv", plant.cvs[static_cast<std::size_t>(cv)].name);
       channel.set("input", channel_name(plant, input));
       if (G.order() == 1 && G.numerator().size() == 1 && G.denominator()(0) > 0) {
@@ -210,15 +213,14 @@ void write_moves(TomlDraft& simulation, const StudySketch& sketch, const Guess& 
     const std::string& name = sketch.plant.cvs[cv].name;
     if (const auto& range = sketch.ranges[cv]) {
       const double cut = turn % 2 == 0 ? 0.25 * (range->second - range->first) : 0.0;
-      TomlDraft& step =
-          simulation.table_in_list("limit_step", limit_steps++, study_file_keys("simulation.limit_step[]"));
+      TomlDraft& step = entry_of(simulation, "limit_step", limit_steps++, "simulation.limit_step[]");
       step.set("cv", name);
       step.set("sample", sample);
       step.set("soft", std::pair(range->first, range->second - cut));
     } else {
       level[cv] = level[cv] > 0 ? -guess.size(static_cast<Eigen::Index>(cv))
                                 : guess.size(static_cast<Eigen::Index>(cv));
-      TomlDraft& step = simulation.table_in_list("step", steps++, study_file_keys("simulation.step[]"));
+      TomlDraft& step = entry_of(simulation, "step", steps++, "simulation.step[]");
       step.set("cv", name);
       step.set("sample", sample);
       step.set("level", level[cv]);
@@ -280,7 +282,8 @@ void write_analysis(TomlDraft& document, const Guess& guess) {
 std::string study_template(const StudySketch& sketch) {
   require(sketch);
   const Guess guess(sketch);
-  TomlDraft document(study_file_keys(""));
+  TomlDraft document(key_names(study_file_keys("")));
+  document.explain(study_file_keys(""));
   TomlDraft& heading = below(document, "study", "study");
   heading.set("name", sketch.plant.name);
   heading.set("title", fmt::format("{}: random mismatches and disturbances", sketch.plant.title));
@@ -290,7 +293,7 @@ std::string study_template(const StudySketch& sketch) {
   write_simulation(document, sketch, guess);
   write_faults(document, guess);
   write_analysis(document, guess);
-  return kHead + commented_study(document.text());
+  return kHead + document.text();
 }
 
 }  // namespace mpm

@@ -27,7 +27,7 @@ struct StudySketch {
   Limits mv_hard;
 };
 
-/// A study of this plant as the text of a study file, with a comment above each key (commented_study()). What
+/// A study of this plant as the text of a study file, with a comment above each key. What
 /// the sketch leaves open follows from the time constants, dead times and gains of the model and the sizes of
 /// its CVs: horizons from the settling time, weights from what a move does to the CVs in parts of their
 /// sizes, the excitation, and faults by their effect on the loop. They are a beginning, and the text says so.

@@ -25,12 +25,8 @@ VerdictRule read_rule(const TomlTable& table, const std::vector<TableQuantity>& 
   VerdictRule rule;
   for (const std::size_t quantity : read_some_of(table, "quantities", quantity_names(quantities)))
     rule.quantities.push_back(quantities[quantity].name);
-  rule.kind = read_choice_or<RuleKind>(table, "kind",
-                                       {{"outside", RuleKind::outside},
-                                        {"any-above", RuleKind::any_above},
-                                        {"any-within", RuleKind::any_within},
-                                        {"rank", RuleKind::rank}},
-                                       RuleKind::outside);
+  rule.kind =
+      static_cast<RuleKind>(read_one_of_or(table, "kind", {"outside", "any-above", "any-within", "rank"}, 0));
   refuse_idle_keys(table, rule.kind);
   if (rule.kind == RuleKind::any_above)
     rule.lower = read_number(table, "threshold", NumberRule::finite());

@@ -19,6 +19,10 @@ struct NumberRule {
   static NumberRule at_least(double low) { return {.low = low, .low_included = true}; }
   /// Any finite number.
   static NumberRule finite() { return {}; }
+  /// 0 <= x <= 1
+  static NumberRule share() { return {.low = 0, .high = 1, .low_included = true, .high_included = true}; }
+  /// 0 <= x < 1
+  static NumberRule below_one() { return {.low = 0, .high = 1, .low_included = true}; }
   /// low < x < high
   static NumberRule inside(double low, double high) { return {.low = low, .high = high}; }
 

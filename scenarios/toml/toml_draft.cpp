@@ -2,11 +2,23 @@
 
 #include <algorithm>
 #include <cassert>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "scenarios/toml/option_keys.hpp"
+
 namespace mpm {
+namespace {
+
+/// A long list without its line breaks.
+std::string on_one_line(std::string literal) {
+  std::erase(literal, '\n');
+  return literal;
+}
+
+}  // namespace
 
 TomlDraft::Entry& TomlDraft::entry(std::string_view key) {
   assert(std::find(key_order_.begin(), key_order_.end(), key) != key_order_.end());
@@ -14,7 +26,8 @@ TomlDraft::Entry& TomlDraft::entry(std::string_view key) {
 }
 
 void TomlDraft::comment(std::string_view key, std::string_view text) {
-  entry(key).line = fmt::format("# {}: {}", toml_key(key), text);
+  entry(key).value = text;
+  entry(key).is_comment = true;
 }
 
 TomlDraft& TomlDraft::table(std::string_view key, const std::vector<std::string>& key_order) {
@@ -35,55 +48,80 @@ TomlDraft& TomlDraft::table_in_list(std::string_view key, std::size_t place,
 
 bool TomlDraft::has_values() const {
   return std::any_of(entries_.begin(), entries_.end(),
-                     [](const auto& entry) { return !entry.second.line.empty(); });
+                     [](const auto& entry) { return !entry.second.value.empty(); });
 }
 
-void TomlDraft::write(std::string& text, const std::string& path) const {
+TomlDraft& TomlDraft::explain(const std::vector<OptionKey>& keys) {
+  keys_ = &keys;
+  return *this;
+}
+
+/// The comment above a key; empty for one that has its comment, or has none.
+std::string TomlDraft::explanation(const std::string& key, Explained& explained) const {
+  constexpr std::size_t kWidth = 100;
+  const auto found = keys_ == nullptr
+                         ? std::vector<OptionKey>::const_iterator()
+                         : std::find_if(keys_->begin(), keys_->end(),
+                                        [&key](const OptionKey& each) { return each.name == key; });
+  if (keys_ == nullptr || found == keys_->end() || !explained.insert(&*found).second)
+    return "";
+  std::string comment, line = "#";
+  std::istringstream words(plain_meaning(*found));
+  for (std::string word; words >> word; line += ' ' + word)
+    if (line.size() > 1 && line.size() + 1 + word.size() > kWidth) {
+      comment += line + '\n';
+      line = "#";
+    }
+  return line.size() > 1 ? comment + line + '\n' : comment;
+}
+
+void TomlDraft::write(std::string& text, const std::string& path, Explained& explained) const {
   // What follows the heading of another table belongs to that table, so values come first.
   for (const std::string& key : key_order_)
-    if (const auto found = entries_.find(key); found != entries_.end() && !found->second.line.empty())
-      text += found->second.line + '\n';
+    if (const auto found = entries_.find(key); found != entries_.end() && !found->second.value.empty())
+      text += explanation(key, explained) +
+              (found->second.is_comment ? fmt::format("# {}: {}\n", toml_key(key), found->second.value)
+                                        : fmt::format("{} = {}\n", toml_key(key), found->second.value));
   for (const std::string& key : key_order_) {
     const auto found = entries_.find(key);
-    if (found == entries_.end() || !found->second.line.empty())
+    if (found == entries_.end() || !found->second.value.empty())
       continue;
     const std::string below = path.empty() ? toml_key(key) : path + '.' + toml_key(key);
     for (const std::unique_ptr<TomlDraft>& table : found->second.tables) {
       if (found->second.is_list)
-        text += fmt::format("\n[[{}]]\n", below);
+        text += fmt::format("\n{}[[{}]]\n", explanation(key, explained), below);
       else if (table->has_values())
-        text += fmt::format("\n[{}]\n", below);
-      table->write(text, below);
+        text += fmt::format("\n{}[{}]\n", explanation(key, explained), below);
+      table->write(text, below, explained);
     }
   }
 }
 
-void TomlDraft::add_changes(std::vector<std::string>& changes, const std::string& path) const {
-  for (const std::string& key : key_order_) {
-    const auto found = entries_.find(key);
-    if (found == entries_.end())
-      continue;
-    const Entry& entry = found->second;
-    const std::string below = path.empty() ? "" : path + '.';
-    if (!entry.line.empty() && !entry.fallback.empty() && entry.line != entry.fallback)
-      changes.push_back(fmt::format("{}{} (default: {})", below, entry.line,
-                                    entry.fallback.substr(entry.fallback.find(" = ") + 3)));
-    if (entry.line.empty())
-      for (std::size_t i = 0; i < entry.tables.size(); ++i)
-        entry.tables[i]->add_changes(changes,
-                                     below + toml_key(key) + (entry.is_list ? fmt::format("[{}]", i) : ""));
-  }
+void TomlDraft::add_lines(std::vector<Line>& lines, const std::string& path) const {
+  for (const bool values : {true, false})
+    for (const std::string& key : key_order_) {
+      const auto found = entries_.find(key);
+      if (found == entries_.end() || found->second.value.empty() == values)
+        continue;
+      const Entry& entry = found->second;
+      const std::string below = path.empty() ? toml_key(key) : path + '.' + toml_key(key);
+      if (values)
+        lines.push_back({below, on_one_line(entry.value), on_one_line(entry.fallback)});
+      for (std::size_t i = 0; i < entry.tables.size() && !values; ++i)
+        entry.tables[i]->add_lines(lines, below + (entry.is_list ? fmt::format("[{}]", i) : ""));
+    }
 }
 
-std::vector<std::string> TomlDraft::changes() const {
-  std::vector<std::string> changes;
-  add_changes(changes, "");
-  return changes;
+std::vector<TomlDraft::Line> TomlDraft::lines() const {
+  std::vector<Line> lines;
+  add_lines(lines, "");
+  return lines;
 }
 
 std::string TomlDraft::text() const {
   std::string text;
-  write(text, "");
+  Explained explained;
+  write(text, "", explained);
   return text.erase(0, text.find_first_not_of('\n'));
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +12,8 @@
 #include "scenarios/toml/toml_literal.hpp"
 
 namespace mpm {
+
+struct OptionKey;
 
 /// One table of a TOML text that is being written, with its tables below it. Keys come out in the order given
 /// when the table is made, whatever the order in which they are set.
@@ -21,15 +24,22 @@ class TomlDraft {
   /// Writes the value under a key of the order; the last one counts, also in place of tables under this key.
   template <class Value>
   void set(std::string_view key, const Value& value) {
-    entry(key).line = toml_key(key) + " = " + toml_literal(value);
+    entry(key).value = toml_literal(value);
   }
-  /// Notes what the key would have without a value of its own, for changes().
+  /// Notes what the key would have without a value of its own, for lines().
   template <class Value>
   void set_default(std::string_view key, const Value& value) {
-    entry(key).fallback = toml_key(key) + " = " + toml_literal(value);
+    entry(key).fallback = toml_literal(value);
   }
-  /// The values that are not their defaults: "table.key = value (default: value)", in the order of text().
-  std::vector<std::string> changes() const;
+  /// A value with its path, "table.list[0].key"; of a key without a default the default is empty.
+  struct Line {
+    std::string path, value, fallback;
+  };
+  /// All values, with those that comment() has put in their place, in the order of text().
+  std::vector<Line> lines() const;
+  /// Writes what the manual says of each key of this table above it; of tables with the same `keys`, which
+  /// must outlive the draft, above the first. Returns this table.
+  TomlDraft& explain(const std::vector<OptionKey>& keys);
   /// "# KEY: TEXT" in place of a value that TOML cannot have. The text has no line break.
   void comment(std::string_view key, std::string_view text);
   /// The table under `key`, made when it is not there.
@@ -44,18 +54,22 @@ class TomlDraft {
 
  private:
   struct Entry {
-    std::string line;      // "key = value"; empty: tables
-    std::string fallback;  // "key = default"; empty: nothing was noted
+    std::string value;     // empty: tables
+    std::string fallback;  // empty: nothing was noted
+    bool is_comment = false;
     bool is_list = false;
     std::vector<std::unique_ptr<TomlDraft>> tables;
   };
 
   Entry& entry(std::string_view key);
-  void write(std::string& text, const std::string& path) const;
-  void add_changes(std::vector<std::string>& changes, const std::string& path) const;
+  using Explained = std::set<const OptionKey*>;
+  void write(std::string& text, const std::string& path, Explained& explained) const;
+  std::string explanation(const std::string& key, Explained& explained) const;
+  void add_lines(std::vector<Line>& lines, const std::string& path) const;
   bool has_values() const;
 
   std::vector<std::string> key_order_;
+  const std::vector<OptionKey>* keys_ = nullptr;  ///< null: nothing is explained
   std::map<std::string, Entry, std::less<>> entries_;
 };
 

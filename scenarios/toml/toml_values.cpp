@@ -74,6 +74,23 @@ std::size_t position_of(const TomlTable& table, std::string_view key, const toml
   return static_cast<std::size_t>(place - names.begin());
 }
 
+Distribution make_distribution(const TomlTable& inline_table, const std::string& kind) {
+  if (kind == "constant") {
+    return Distribution::constant(read_number(inline_table, kind, NumberRule::finite()));
+  }
+  const bool normal = kind == "normal";
+  const NumberPair pair = read_pair(
+      inline_table, kind,
+      normal ? "[mean, standard deviation], two finite numbers" : "[low, high], two finite numbers");
+  return inline_table.located(kind, [&] {
+    if (normal) {
+      return Distribution::normal(pair.first, pair.second);
+    }
+    return kind == "uniform" ? Distribution::uniform(pair.first, pair.second)
+                             : Distribution::log_uniform(pair.first, pair.second);
+  });
+}
+
 }  // namespace
 
 double read_number(const TomlTable& table, std::string_view key, const NumberRule& rule) {
@@ -144,6 +161,13 @@ std::size_t read_one_of(const TomlTable& table, std::string_view key, const std:
   const std::size_t position = position_of(table, key, node, names);
   table.record(key, names[position]);
   return position;
+}
+
+std::size_t read_one_of_or(const TomlTable& table, std::string_view key,
+                           const std::vector<std::string>& names, std::size_t fallback) {
+  table.record_default(key, names[fallback]);
+  table.record(key, names[fallback]);
+  return table.has(key) ? read_one_of(table, key, names) : fallback;
 }
 
 std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view key,
@@ -264,6 +288,32 @@ NumberPair read_limits(const TomlTable& table, std::string_view key) {
     table.refuse(key, describe_pair(low, high), allowed);
   }
   return recorded(table, key, limits);
+}
+
+Distribution read_distribution(const TomlTable& table, std::string_view key, const NumberRule& rule) {
+  const TomlTable inline_table = table.table(key, {"constant", "uniform", "log_uniform", "normal"});
+  const std::vector<std::string> kinds = inline_table.present_keys();
+  if (kinds.size() != 1) {
+    table.refuse(key, fmt::format("a table with {} keys", kinds.size()),
+                 "one of {constant = x}, {uniform = [low, high]}, {log_uniform = [low, high]}, "
+                 "{normal = [mean, standard deviation]}");
+  }
+  const Distribution distribution = make_distribution(inline_table, kinds.front());
+  if (!rule.contains_support(distribution.minimum(), distribution.maximum())) {
+    table.refuse(key, fmt::format("draws from {} to {}", distribution.minimum(), distribution.maximum()),
+                 fmt::format("a distribution whose every draw is {}", rule.text()));
+  }
+  table.record(key, distribution);
+  return distribution;
+}
+
+Distribution read_distribution_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
+                                  const Distribution& fallback) {
+  table.record_default(key, fallback);
+  if (table.has(key))
+    return read_distribution(table, key, rule);
+  table.record(key, fallback);
+  return fallback;
 }
 
 }  // namespace mpm

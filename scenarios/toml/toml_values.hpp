@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "scenarios/random/distribution.hpp"
 #include "scenarios/toml/number_rule.hpp"
 #include "scenarios/toml/toml_table.hpp"
 
@@ -44,23 +45,8 @@ std::string read_name(const TomlTable& table, std::string_view key);
 /// One of `names`; returns its position.
 std::size_t read_one_of(const TomlTable& table, std::string_view key, const std::vector<std::string>& names);
 
-/// The value that goes with the text under `key`.
-template <class Value>
-Value read_choice_or(const TomlTable& table, std::string_view key,
-                     const std::vector<std::pair<std::string, Value>>& choices, Value fallback) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : choices) {
-    names.push_back(name);
-    if (value == fallback) {
-      table.record(key, name);
-      table.record_default(key, name);
-    }
-  }
-  if (!table.has(key)) {
-    return fallback;
-  }
-  return choices[read_one_of(table, key, names)].second;
-}
+std::size_t read_one_of_or(const TomlTable& table, std::string_view key,
+                           const std::vector<std::string>& names, std::size_t fallback);
 
 /// A list of one or more of `names`, none twice; returns their positions.
 std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view key,
@@ -90,5 +76,11 @@ NumberPair read_band_or(const TomlTable& table, std::string_view key, const Numb
 
 /// Limits [low, high] with low <= high. -inf as the lower and inf as the upper one stand for no limit.
 NumberPair read_limits(const TomlTable& table, std::string_view key);
+
+/// A distribution written as an inline table with one key, such as {uniform = [0.3, 1.5]}, whose every draw
+/// satisfies `rule`.
+Distribution read_distribution(const TomlTable& table, std::string_view key, const NumberRule& rule);
+Distribution read_distribution_or(const TomlTable& table, std::string_view key, const NumberRule& rule,
+                                  const Distribution& fallback);
 
 }  // namespace mpm

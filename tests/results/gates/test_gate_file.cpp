@@ -8,7 +8,6 @@
 #include "results/gates/gate_file.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
-#include "tests/scenarios/documented_keys.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
 namespace {
@@ -153,10 +152,6 @@ TEST_CASE("gate file: mistakes are refused with line, key, what was found and wh
   CHECK(refused(kGate) == "accepted");
   CHECK_THROWS_WITH(load_gates("none.toml", findings()),
                     "none.toml: found no such file; allowed: a gate file");
-}
-
-TEST_CASE("the document of the gate file has exactly the keys that the reader knows") {
-  check_documented_keys(project_file("docs/gates.md"), gate_file_tables());
 }
 
 }  // namespace

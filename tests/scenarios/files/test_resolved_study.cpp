@@ -109,7 +109,7 @@ std::string random_study_text() {
       "on_values = ['yes']\ncv_resampling = 'nearest'\nstart = 'rest'\nmost_missing = 0.5\nfill = 'hold'\n"
       "candidates = ['FI 9']\n"
       "period = ['0', '9']\nbenchmark = ['1', '4']\n[reference]\n";
-  for (const std::string& key : study_file_keys("reference"))
+  for (const std::string& key : key_names(study_file_keys("reference")))
     text += "\"" + key + "\" = 0.123\n";
   text += "share = {value = 0.5, of = 7}\n";
   return text;
@@ -240,9 +240,9 @@ std::vector<Study> of_tests() {
 }
 
 bool is_known(const std::string& table) {
-  const std::vector<StudyFileTable>& tables = study_file_tables();
+  const std::vector<KeyTable>& tables = study_file_tables();
   return std::any_of(tables.begin(), tables.end(),
-                     [&](const StudyFileTable& known) { return known.name == table; });
+                     [&](const KeyTable& known) { return known.name == table; });
 }
 
 /// The keys in `table`, which stands under `name`, and below it.
@@ -296,8 +296,8 @@ TEST_CASE("every key of a study file comes out in a resolved study", "[resolved_
   for (const std::vector<Study>& studies : {shipped(), of_tests()})
     for (const Study& study : studies)
       written.merge(keys_of(study));
-  for (const StudyFileTable& table : study_file_tables())
-    for (const std::string& key : table.keys) {
+  for (const KeyTable& table : study_file_tables())
+    for (const std::string& key : key_names(table.keys)) {
       INFO("in no resolved study; give a study in tests/scenarios/data the key: [" << table.name << "] "
                                                                                    << key);
       CHECK(written.count({table.name, key}) == 1);
@@ -336,7 +336,7 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
                            "assessment.pmr",
                            "assessment.autocovariance",
                            "aggregate"})
-    for (const std::string& key : study_file_keys(name)) {
+    for (const std::string& key : key_names(study_file_keys(name))) {
       INFO("[" << name << "] " << key);
       CHECK(written.count({name, key}) != without_value.count({name, key}));
     }

@@ -1,0 +1,118 @@
+#include "scenarios/files/transfer_function_keys.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include "plants/non_finite.hpp"
+#include "scenarios/toml/toml_values.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::size_t kMaxCoefficients = 20;
+
+/// Largest real part of the roots of p_0 s^n + ... + p_n, n >= 1, p_0 != 0, by the companion matrix. The unit
+/// of s is chosen so that the geometric mean of the roots is 1; without that, slow multiple roots would drown
+/// in rounding. Not finite when the ratios of the coefficients are not.
+double largest_real_part_of_roots(const Eigen::VectorXd& p) {
+  const Eigen::Index n = p.size() - 1;
+  const double mean_root = std::pow(std::abs(p(n) / p(0)), 1.0 / static_cast<double>(n));
+  if (mean_root == 0) {
+    return 0;
+  }
+  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    companion(0, i) = -p(i + 1) / p(0) / std::pow(mean_root, static_cast<double>(i + 1));
+  }
+  companion.diagonal(-1).setOnes();
+  if (!companion.allFinite()) {
+    return kNaN;
+  }
+  return mean_root * companion.eigenvalues().real().maxCoeff();
+}
+
+}  // namespace
+
+OptionKeys transfer_function_keys(const std::string& input, const std::string& poles) {
+  return {key::option("gain", "number", "static gain, of `gain / (time_constant s + 1)`", "CV / " + input)
+              .otherwise("none; with `time_constant`")
+              .allow("finite"),
+          key::option("time_constant", "number", "time constant, of the same", "time")
+              .otherwise("none; with `gain`")
+              .allow("> 0"),
+          key::option("numerator", "list of numbers",
+                      "coefficients in descending powers of s, at most as many as in the denominator",
+                      "CV / " + input + " time^k")
+              .otherwise("none; with `denominator`")
+              .allow("1 to 20 finite numbers"),
+          key::option("denominator", "list of numbers", "coefficients in descending powers of s", "time^k")
+              .otherwise("none; with `numerator`")
+              .allow("1 to 20 finite numbers, the first one not 0; " + poles),
+          key::option("dead_time", "number", "dead time", "time")
+              .otherwise("0")
+              .allow(">= 0, at most 10000 sample times")};
+}
+
+TransferFunction read_transfer_function(const TomlTable& table) {
+  const double dead_time = read_number_or(table, "dead_time", NumberRule::at_least(0), 0.0);
+  const bool first_order = table.has("gain") || table.has("time_constant");
+  if (first_order == (table.has("numerator") || table.has("denominator"))) {
+    table.refuse("", first_order ? "both ways to write a channel" : "no transfer function",
+                 "either gain and time_constant, or numerator and denominator");
+  }
+  if (first_order) {
+    return TransferFunction::first_order(read_number(table, "gain", NumberRule::finite()),
+                                         read_number(table, "time_constant", NumberRule::positive()),
+                                         dead_time);
+  }
+  Eigen::VectorXd numerator = read_numbers(table, "numerator", NumberRule::finite(), kMaxCoefficients);
+  Eigen::VectorXd denominator = read_numbers(table, "denominator", NumberRule::finite(), kMaxCoefficients);
+  return table.located(
+      "", [&] { return TransferFunction(std::move(numerator), std::move(denominator), dead_time); });
+}
+
+void refuse_unstable(const TomlTable& table, const TransferFunction& channel) {
+  if (channel.is_zero() || channel.order() == 0) {
+    return;
+  }
+  const double real_part = largest_real_part_of_roots(channel.denominator());
+  if (!std::isfinite(real_part)) {
+    table.refuse("denominator", "coefficients whose ratios overflow", "coefficients of similar size");
+  }
+  if (!(real_part < 0)) {
+    table.refuse("denominator", fmt::format("a pole with real part {:.3g}", real_part),
+                 "poles with negative real parts");
+  }
+}
+
+void refuse_growing(const TomlTable& table, const TransferFunction& Gd) {
+  const Eigen::VectorXd& all = Gd.denominator();
+  Eigen::Index size = all.size();
+  while (size > 1 && all(size - 1) == 0) {
+    --size;  // an integrator
+  }
+  if (Gd.is_zero() || size == 1) {
+    return;
+  }
+  const double real_part = largest_real_part_of_roots(all.head(size));
+  if (!std::isfinite(real_part)) {
+    table.refuse("denominator", "coefficients whose ratios overflow", "coefficients of similar size");
+  }
+  if (real_part > 0) {
+    table.refuse("denominator", fmt::format("a pole with real part {:.3g}", real_part),
+                 "poles with negative real parts, or at 0");
+  }
+}
+
+void refuse_long_dead_time(const TomlTable& table, const std::string& key, double dead_time,
+                           double sample_time) {
+  if (!(dead_time / sample_time <= kMaxDeadTimeSamples))
+    table.refuse(key,
+                 key.empty() ? fmt::format("a dead time of {}", dead_time) : fmt::format("{}", dead_time),
+                 fmt::format("at most {} samples", kMaxDeadTimeSamples));
+}
+
+}  // namespace mpm

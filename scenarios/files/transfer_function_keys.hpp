@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "plants/linear/transfer_function.hpp"
+#include "scenarios/toml/option_keys.hpp"
+
+namespace mpm {
+
+/// Longest dead time that a study may have, in samples: a bound on the memory that a mistake can cost.
+inline constexpr double kMaxDeadTimeSamples = 10000;
+
+/// The keys of a transfer function from `input` to a CV, which read_transfer_function() reads; `poles` says
+/// where they may lie.
+OptionKeys transfer_function_keys(const std::string& input, const std::string& poles);
+
+/// The transfer function in these keys of a table.
+TransferFunction read_transfer_function(const TomlTable& table);
+
+/// Refuses a channel of a plant that is not stable: the targets of (6.19) need static gains, y_sim = G0 u of
+/// (6.4) runs away for an unstable model, and a plant starts in a steady state.
+void refuse_unstable(const TomlTable& table, const TransferFunction& channel);
+
+/// Refuses a model of a disturbance that grows by itself: poles may lie at 0, but not to the right of it.
+void refuse_growing(const TomlTable& table, const TransferFunction& Gd);
+
+/// Refuses a dead time of more than kMaxDeadTimeSamples.
+void refuse_long_dead_time(const TomlTable& table, const std::string& key, double dead_time,
+                           double sample_time);
+
+}  // namespace mpm

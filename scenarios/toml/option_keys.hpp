@@ -1,0 +1,191 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/random/distribution.hpp"
+#include "scenarios/toml/number_rule.hpp"
+#include "scenarios/toml/toml_table.hpp"
+#include "scenarios/toml/toml_values.hpp"
+
+// Each key of a table is declared once, as an OptionKey that ties it to a member of the options. The reader,
+// the list of allowed keys, the comments of `mpmbench init` and the tables of the manual are made from it.
+
+namespace mpm {
+
+struct OptionKey;
+using OptionKeys = std::vector<OptionKey>;
+
+/// One key: what the manual says of it, in Markdown, and how it is read. Made by the functions of mpm::key.
+/// It refers to the options that it is read into, which must live while it is read.
+struct OptionKey {
+  std::string name;  ///< empty: a check of what was read so far
+  std::string type;
+  std::string meaning;
+  std::string unit = {};
+  std::string fallback = {};  ///< the default
+  std::string allowed = {};
+  bool is_required = false;
+  /// Reads it from the table in which it stands; none: whoever reads the table does.
+  std::function<void(const TomlTable& table, const OptionKey& key)> reader = {};
+  /// The keys of the table, or of each of the tables, under it; may be empty. They are asked for when the
+  /// table is read, and may depend on what was read before.
+  std::function<OptionKeys()> below = {};
+  std::string suffix = {};  ///< of the name of that table: "[]" for a list, ".NAME" for one a variable
+
+  /// The key has no default.
+  OptionKey required() &&;
+  /// The default in words.
+  OptionKey otherwise(std::string words) &&;
+  /// What is allowed, in words.
+  OptionKey allow(std::string words) &&;
+  /// What is allowed in words, after what is known.
+  OptionKey also(std::string words) &&;
+  /// The reader of a key of type option(), called when the key is there or required.
+  OptionKey read(std::function<void(const TomlTable& table, const std::string& key)> how) &&;
+  /// Makes a check of the table in which the key stands before the key is read.
+  OptionKey after(std::function<void(const TomlTable& table)> check) &&;
+  /// The keys of the tables under a key of type option().
+  OptionKey with(std::string suffix_of_table, std::function<OptionKeys()> keys_below) &&;
+};
+
+/// The names, in their order.
+std::vector<std::string> key_names(const OptionKeys& keys);
+
+/// The same keys without their readers: for tables whose reader calls others for some of its keys.
+OptionKeys described(OptionKeys keys);
+
+/// Reads every key, in their order, into the options. Errors: InputError.
+void read_keys(const TomlTable& table, const OptionKeys& keys);
+
+/// The options in a table, as the overload `keys(Options&)` declares them.
+template <class Options>
+Options read_options(const TomlTable& table) {
+  Options options;
+  read_keys(table, keys(options));
+  return options;
+}
+
+/// One table of a file with its keys. The name is its path: "[]" stands for each table of a list, "NAME" for
+/// the name of a variable.
+struct KeyTable {
+  std::string name;
+  OptionKeys keys;
+};
+
+/// The table of this name, and all below it.
+std::vector<KeyTable> key_tables(const std::string& name, const OptionKeys& keys);
+
+/// The table of the manual, in Markdown.
+std::string manual_table(const OptionKeys& keys);
+
+/// What the manual says of a key, as plain text on one line: meaning, unit, what is allowed.
+std::string plain_meaning(const OptionKey& key);
+
+}  // namespace mpm
+
+// The kinds of keys. `meaning` and `unit` are for the manual; the present value is the default.
+namespace mpm::key {
+
+/// A key that is read by hand.
+OptionKey option(std::string name, std::string type, std::string meaning, std::string unit = {});
+OptionKey number(std::string name, double& value, const NumberRule& rule, std::string meaning,
+                 std::string unit = {});
+OptionKey flag(std::string name, bool& value, std::string meaning);
+/// A text that is not empty; the default is none.
+OptionKey text(std::string name, std::string& value, std::string meaning);
+/// A text as read_name() takes it.
+OptionKey name(std::string name, std::string& value, std::string meaning);
+/// A list of texts; `allowed` says what they are.
+OptionKey texts(std::string name, std::vector<std::string>& value, std::string allowed, std::string meaning);
+/// [low, high] with low < high.
+OptionKey band(std::string name, double& low, double& high, const NumberRule& rule, std::string meaning,
+               std::string unit = {});
+OptionKey distribution(std::string name, Distribution& value, const NumberRule& rule, std::string meaning,
+                       std::string unit = {});
+/// The keys of the inline table of a distribution.
+OptionKeys distribution_keys();
+/// A program and its arguments.
+OptionKey command(std::string name, std::vector<std::string>& value, std::string meaning);
+/// The names of some of the variables that `names` gives when it is read; their places come into `value`.
+OptionKey some_of(std::string name, std::vector<Eigen::Index>& value,
+                  std::function<std::vector<std::string>()> names, std::string meaning);
+/// The name of one of the variables.
+OptionKey one_of(std::string name, Eigen::Index& value, std::function<std::vector<std::string>()> names,
+                 std::string meaning);
+
+/// [low, high] with low <= high, which may be infinite.
+OptionKey limits(std::string name, NumberPair& value, std::string meaning, std::string unit);
+/// Seconds that a program may take for an answer.
+OptionKey time_limit(double& value, std::string meaning);
+
+/// A table that may be missing: its keys then have their defaults.
+OptionKey table(std::string name, std::function<OptionKeys()> below, std::string meaning);
+/// A table that is looked at when it is there only.
+OptionKey optional_table(std::string name, std::function<OptionKeys()> below, std::string meaning);
+/// A table of relative frequencies in the order of `weights`, all of the first `required` names or none; what
+/// is left out beside others is 0. `keys` have the names and meanings.
+OptionKey weights(std::string name, OptionKeys keys, std::size_t required, double* weights,
+                  std::string meaning);
+/// Makes a check of what was read before it.
+OptionKey check(std::function<void(const TomlTable& table)> what);
+
+/// A whole number.
+template <class Whole>
+OptionKey whole(std::string name, Whole& value, std::int64_t low, std::int64_t high, std::string meaning,
+                std::string unit = {}) {
+  OptionKey made = option(std::move(name), "whole number", std::move(meaning), std::move(unit));
+  made.fallback = std::to_string(value);
+  made.allowed = std::to_string(low) + " to " + std::to_string(high);
+  made.reader = [&value, low, high](const TomlTable& table, const OptionKey& key) {
+    value = static_cast<Whole>(key.is_required ? read_whole(table, key.name, low, high)
+                                               : read_whole_or(table, key.name, low, high, value));
+  };
+  return made;
+}
+
+/// One of several words: those of the values of an enumeration, in their order.
+template <class Value>
+OptionKey choice(std::string name, Value& value, std::vector<std::string> words, std::string meaning) {
+  OptionKey made = option(std::move(name), "text", std::move(meaning));
+  made.fallback = "`\"" + words[static_cast<std::size_t>(value)] + "\"`";
+  for (const std::string& word : words)
+    made.allowed += (made.allowed.empty() ? "`\"" : ", `\"") + word + "\"`";
+  made.reader = [&value, words = std::move(words)](const TomlTable& table, const OptionKey& key) {
+    value = static_cast<Value>(read_one_of_or(table, key.name, words, static_cast<std::size_t>(value)));
+  };
+  return made;
+}
+
+/// A list of tables, whose keys `below` ties to one Entry; `take` gets each that was read, in their order.
+/// More than `most` are refused.
+template <class Entry>
+OptionKey list(std::string name, std::size_t most, std::function<OptionKeys(Entry&)> below,
+               std::function<void(const TomlTable& table, Entry& entry)> take, std::string meaning) {
+  OptionKey made = option(std::move(name), "list of tables", std::move(meaning));
+  made.fallback = "none";
+  made.suffix = "[]";
+  made.below = [below] {
+    Entry entry{};
+    return below(entry);
+  };
+  made.reader = [below, take = std::move(take), most](const TomlTable& table, const OptionKey& key) {
+    if (!key.is_required && !table.has(key.name))
+      return;
+    const std::vector<TomlTable> tables = table.tables(key.name, key_names(key.below()));
+    if (tables.size() > most)
+      table.refuse(key.name, "a list of " + std::to_string(tables.size()), "at most " + std::to_string(most));
+    for (const TomlTable& of_entry : tables) {
+      Entry entry{};
+      read_keys(of_entry, below(entry));
+      take(of_entry, entry);
+    }
+  };
+  return made;
+}
+
+}  // namespace mpm::key
