@@ -22,8 +22,8 @@ struct CampaignHooks {
   std::function<void(const Study&, const BasisCase&)> on_basis = {};
   /// Called once before the first experiment: an earlier run has left `done` of the `count` experiments.
   std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
-  /// Called after each experiment that is done, in the order of completion.
-  std::function<void(const ExperimentRecord&)> on_done = {};
+  /// Called after each experiment that is done, in the order of completion, and whether it failed.
+  std::function<void(bool failed)> on_done = {};
   /// Called with a text that the user must see.
   std::function<void(const std::string&)> on_warning = {};
   /// Called with the whole campaign while its shards are still locked: the place to write its archive.
@@ -36,22 +36,25 @@ class UnhealthyBasis : public InputError {
   using InputError::InputError;
 };
 
-/// Whether loops run in threads, or in worker processes: these also where somebody else simulates the plant
-/// or is the controller, since such loops wait for other processes, which are made without other threads at
-/// work. Throws InputError for threads that the solver does not bear.
-bool runs_in_threads(const Study& study, const RunOptions& options);
+/// The basis case, checked. With Ipopt it takes as long as an experiment, so that a stop does not wait for
+/// it: it throws Interrupted with `done` of `count`, and UnhealthyBasis as above (or, when the basis case
+/// does not even run through, in any case).
+BasisCase checked_basis(const Study& study, const RunOptions& options, const CampaignHooks& hooks,
+                        std::int64_t done, std::int64_t count);
+
+/// How, when and by which program; without the times.
+CampaignInfo info_of(const Study& study, const RunOptions& options);
 
 /// Runs the basis case, checks it, and then the experiments, in threads or processes. The records stand in
 /// the order of their index; an experiment whose worker process died is marked `failed` and the campaign goes
-/// on. Basis case, records and audit are those of run_serially(), bit for bit, for any number of jobs, and
-/// whether the campaign was run in one go or resumed. Finished experiments wait in shards in the folder
+/// on. Basis case, records and audit are the same, bit for bit, for any number of jobs, and whether the
+/// campaign was run in one go or resumed. Finished experiments wait in shards in the folder
 /// `shards`, in memory without one. The shards are still there when it returns: they may go when the archive
 /// is written.
 ///
 /// Throws InputError for options that make no campaign (threads for a solver that is not thread-safe),
-/// UnhealthyBasis as above (or, when the basis case does not even run through, in any case),
-/// Interrupted when a stop was requested, InputError and ArchiveError of ShardStore,
-/// std::system_error when no worker process can be made.
+/// UnhealthyBasis and Interrupted as checked_basis(), Interrupted when a stop was requested, InputError and
+/// ArchiveError of ShardStore, std::system_error when no worker process can be made.
 Campaign run_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks = {},
                       const std::optional<std::filesystem::path>& shards = {});
 

@@ -6,27 +6,21 @@
 #include <memory>
 #include <mutex>
 #include <numeric>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
+#include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "bench/campaign/calibration_runs.hpp"
-#include "bench/execution/experiment_execution.hpp"
-#include "bench/execution/thread_loop.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
 #include "plants/system/program_trust.hpp"
+#include "results/files/byte_stream.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {
 namespace {
-
-bool is_compared(const ExperimentRecord& record, const std::optional<std::int64_t>& experiments) {
-  return record.status == ExperimentStatus::ok && (!experiments || record.draw.index < *experiments);
-}
 
 /// Changes every record, at once, or those that are streamed whenever they are read.
 void change_records(Campaign& campaign, const std::function<RecordChange()>& begin) {
@@ -110,29 +104,26 @@ void append(Campaign& campaign, const AssessmentForms& forms, const std::functio
 
 }  // namespace
 
-std::int64_t compared_loops(const Campaign& campaign, const std::optional<std::int64_t>& experiments) {
-  std::int64_t count = 0;
-  records_of(campaign).each(
-      [&](const ExperimentRecord& record) { count += is_compared(record, experiments) ? 1 : 0; });
-  return count;
-}
-
-std::vector<std::string> missing_methods(const Campaign& campaign, const std::vector<std::string>& asked,
-                                         const std::optional<std::int64_t>& experiments) {
+ComparedLoops compared_loops(const Campaign& campaign, const std::vector<std::string>& asked,
+                             const std::optional<std::int64_t>& experiments) {
+  ComparedLoops loops;
   const std::vector<std::string> names = method_names(campaign);
   std::vector<bool> whole(names.size(), true);
   records_of(campaign).each([&](const ExperimentRecord& record) {
-    for (std::size_t place = 0; place < names.size() && is_compared(record, experiments); ++place)
+    loops.end = record.draw.index + 1;
+    if (record.status != ExperimentStatus::ok || (experiments && record.draw.index >= *experiments))
+      return;
+    loops.experiments.push_back(record.draw.index);
+    for (std::size_t place = 0; place < names.size(); ++place)
       if (record.assessments[place].status == AssessmentStatus::not_assessed)
         whole[place] = false;
   });
-  std::vector<std::string> missing;
   for (const std::string& method : asked)
     if (const auto place =
             static_cast<std::size_t>(std::find(names.begin(), names.end(), method) - names.begin());
         place == names.size() || !whole[place])
-      missing.push_back(method);
-  return missing;
+      loops.missing.push_back(method);
+  return loops;
 }
 
 std::vector<CampaignMethod> methods_of(const Study& study, const std::string& command) {
@@ -205,37 +196,23 @@ class ThreadedRunners {
   std::mutex ipopt_;  // no critical region: an exception must not leave one
 };
 
-/// Has an execution give out loops that it makes itself: `make(index, thread)` returns the record of each.
-template <class Make>
-Execution execution_by(Make make) {
-  return [make](const ExecutionPlan& plan, const StopRequest& stop, const OutcomeSink& deliver) {
-    std::mutex delivery;
-    for_each_in_threads(plan.indices.size(), plan.options.jobs, [&](std::size_t i, std::size_t thread) {
-      if (requested(stop))
-        return;
-      ExperimentOutcome outcome;
-      outcome.record = make(plan.indices[i], thread);
-      const std::lock_guard one_at_a_time(delivery);
-      deliver(std::move(outcome));
-    });
-  };
-}
-
 /// The study of an archive, as the further methods have it.
 Study study_with(Study study, const std::vector<std::string>& methods) {
   study.methods = methods;
   return study;
 }
 
-RunOptions run_options(const Campaign& campaign, const ComparisonOptions& options) {
-  RunOptions run{.solver = campaign.info.solver,
+RunOptions run_options(const Campaign& campaign, const ComparedLoops& loops,
+                       const ComparisonOptions& options) {
+  RunOptions run{.experiments = loops.end,
+                 .solver = campaign.info.solver,
                  .audit_share = 0.0,
                  .store = StorePolicy::none,
                  .jobs = std::max(1, options.jobs)};
   if (options.kept) {
     run.archive = options.kept->archive;
-    run.leftovers = options.kept->leftovers;
-    run.shard_interval = options.kept->interval;
+    run.leftovers = options.kept->options.leftovers;
+    run.shard_interval = options.kept->options.interval;
   }
   return run;
 }
@@ -268,137 +245,135 @@ class RecordsInTurn {
 
 /// The numbers of blind loops in the order in which they are made: that of the records, and then the
 /// calibration loops.
-std::vector<std::size_t> numbers_in_turn(const std::vector<BlindLoop>& order) {
-  std::vector<std::size_t> numbers(order.size());
-  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-  std::sort(numbers.begin(), numbers.end(), [&](std::size_t a, std::size_t b) {
-    return std::tie(order[a].of_calibration, order[a].place) <
-           std::tie(order[b].of_calibration, order[b].place);
-  });
+std::vector<std::int64_t> numbers_in_turn(const std::vector<BlindLoop>& order) {
+  std::vector<std::int64_t> numbers(order.size());
+  std::iota(numbers.begin(), numbers.end(), std::int64_t{0});
+  const auto turn = [&](std::int64_t number) {
+    const BlindLoop& loop = order[static_cast<std::size_t>(number)];
+    return std::pair(loop.of_calibration, loop.place);
+  };
+  std::sort(numbers.begin(), numbers.end(),
+            [&](std::int64_t one, std::int64_t other) { return turn(one) < turn(other); });
   return numbers;
 }
 
-/// Opens the experiments of a comparison, or its calibration loops.
-void open(std::optional<ExperimentSeries>& series, const Study& study, const RunOptions& run,
-          const WantedLoops& wanted, const std::optional<KeptAssessments>& kept, bool calibration) {
-  if (!kept) {
-    series.emplace(study, run, wanted, std::nullopt, ShardStore::Warn());
-    return;
-  }
-  const auto folder = [&](const std::filesystem::path& shards) {
-    return calibration ? calibration_shard_folder(shards) : shards;
-  };
-  std::vector<std::filesystem::path> others;
-  for (const std::filesystem::path& part : kept->parts)
-    for (std::filesystem::path& shard : shards_in(folder(part)))
-      others.push_back(std::move(shard));
-  series.emplace(study, run, wanted, folder(kept->shards), kept->warn, others);
+/// A loop as methods see it as bytes, and the reverse.
+template <class Stream, class Loop>
+void transfer_loop(Stream& stream, Loop& loop) {
+  for (const LoopSignal& signal : loop_signals())
+    transfer(stream, loop.*signal.member);
+}
+
+/// Has threads do `make(key, thread)`.
+template <class Make>
+LoopWork threaded_work(int jobs, const CampaignHooks& hooks, Make make) {
+  const auto made = std::make_shared<std::size_t>(0);
+  return {.jobs = jobs,
+          .thread =
+              [make, made] {
+                return
+                    [make, thread = (*made)++](std::int64_t key) -> LoopResult { return make(key, thread); };
+              },
+          .stop = hooks.stop,
+          .on_start = hooks.on_start,
+          .on_done = hooks.on_done};
 }
 
 }  // namespace
 
-Comparison::Comparison(const Campaign& campaign, const ComparisonOptions& options)
+Comparison::Comparison(const Campaign& campaign, const ComparedLoops& loops, const ComparisonOptions& options)
     : campaign_(campaign),
-      study_(study_with(campaign.study, options.methods)),
-      run_(run_options(campaign, options)) {
-  std::size_t place = 0;  // of a loop among those of the comparison
-  std::vector<std::int64_t> wanted, calibrating;
-  std::int64_t experiments = 0;
-  records_of(campaign).each([&](const ExperimentRecord& record) {
-    experiments = record.draw.index + 1;
-    if (is_compared(record, options.experiments) && is_in_shard(place++, options.shard))
-      wanted.push_back(record.draw.index);
-  });
-  open(loops_, study_, run_, {experiments, std::move(wanted)}, options.kept, false);
-  const std::int64_t loops = std::ssize(campaign.calibration.loops);
-  if (loops == 0)
-    return;
-  for (std::int64_t index = 0; index < loops; ++index)
-    if (is_in_shard(place++, options.shard))
-      calibrating.push_back(index);
-  calibration_study_ = calibration_study(study_);
-  open(calibration_, calibration_study_, calibration_options(run_), {loops, std::move(calibrating)},
-       options.kept, true);
-}
-
-ExperimentTally Comparison::tally() const {
-  ExperimentTally tally = loops_->tally();
-  if (calibration_)
-    tally += calibration_->tally();
-  return tally;
+      loops_(study_with(campaign.study, options.methods), run_options(campaign, loops, options)),
+      store_(options.kept ? loops_.open(options.kept->shards, options.kept->options.warn)
+                          : loops_.in_memory()) {
+  std::vector<std::int64_t> all = loops.experiments;
+  for (std::int64_t index = 0; index < std::ssize(campaign.calibration.loops); ++index)
+    all.push_back(kCalibrationKeys + index);
+  for (std::size_t place = 0; place < all.size(); ++place)
+    if (is_in_part(place, options.part))
+      keys_.push_back(all[place]);
+  if (options.kept)
+    for (const std::filesystem::path& part : options.kept->parts)
+      store_.take_stock(shards_in(part), options.kept->options.warn);
 }
 
 void Comparison::run(const CampaignHooks& hooks) {
-  ExperimentTally tally = this->tally();
-  if (hooks.on_start)
-    hooks.on_start(tally.done, tally.count);
   prepare_plant(campaign_.study);
-  ThreadedRunners runners(campaign_, study_, study_.methods, run_.jobs);
-  const Execution assess = [&](const ExecutionPlan& plan, const StopRequest& stop,
-                               const OutcomeSink& deliver) {
-    RecordsInTurn records(records_of(campaign_), plan.indices);
-    execution_by([&](std::int64_t index, std::size_t thread) {
-      ExperimentRecord record = records.take(index);
-      record.assessments = runners.assess(record, thread);
-      record.loop.reset();  // the archive has them
-      record.truth.reset();
-      return record;
-    })(plan, stop, deliver);
+  const std::vector<std::string>& methods = loops_.study().methods;
+  const int jobs = loops_.options().jobs;
+  ThreadedRunners runners(campaign_, loops_.study(), methods, jobs);
+  std::optional<ThreadedRunners> calibrating;
+  if (!campaign_.calibration.loops.empty())
+    calibrating.emplace(campaign_, loops_.calibration(), methods, jobs);
+  const std::vector<std::int64_t> missing = store_.missing(keys_);
+  RecordsInTurn records(records_of(campaign_), missing);
+  const auto assess = [&](std::int64_t key, std::size_t thread) {
+    ExperimentOutcome outcome;
+    if (key >= kCalibrationKeys) {
+      outcome.record = calibrating->run(key - kCalibrationKeys, thread);
+    } else {
+      outcome.record = records.take(key);
+      outcome.record.assessments = runners.assess(outcome.record, thread);
+      outcome.record.loop.reset();  // the archive has them
+      outcome.record.truth.reset();
+    }
+    return loops_.result(key, outcome);
   };
-  loops_->run(campaign_.study, campaign_.basis, assess, hooks, tally);
-  if (!calibration_)
-    return;
-  ThreadedRunners calibrating(campaign_, calibration_study_, study_.methods, run_.jobs);
-  calibration_->run(
-      campaign_.study, campaign_.basis,
-      execution_by([&](std::int64_t index, std::size_t thread) { return calibrating.run(index, thread); }),
-      hooks, tally);
-}
-
-void Comparison::compact() {
-  loops_->compact();
-  if (calibration_)
-    calibration_->compact();
+  run_missing(store_, keys_, threaded_work(jobs, hooks, assess));
 }
 
 void Comparison::add_to(Campaign& campaign, const std::string& command, const StopRequest& stop) {
   append(
-      campaign, assessment_forms(study_, study_.methods),
-      [assessed = loops_->records(stop)] { return answers_in(assessed); }, command);
-  if (!calibration_)
+      campaign, assessment_forms(loops_.study(), loops_.study().methods),
+      [assessed = loops_.experiment_records(store_, stop)] { return answers_in(assessed); }, command);
+  if (campaign.calibration.loops.empty())
     return;
-  const Calibration scored = calibration_of(calibration_study_, calibration_->records(stop));
+  const Calibration scored = calibration_of(loops_.calibration(), loops_.calibration_records(store_, stop));
   for (std::size_t i = 0; i < scored.loops.size(); ++i) {
     std::vector<double>& scores = campaign.calibration.loops[i].scores;
     scores.insert(scores.end(), scored.loops[i].scores.begin(), scored.loops[i].scores.end());
   }
 }
 
-void each_loop(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
-               const std::function<void(std::size_t, const AssessedLoop&)>& take) {
+void run_blind_loops(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
+                     const CampaignHooks& hooks, ShardStore& store) {
   const int threads = std::max(1, jobs);
   prepare_plant(campaign.study);
   ThreadedRunners runners(campaign, campaign.study, {}, threads);
   const Study calibration = campaign.study.calibration ? calibration_study(campaign.study) : campaign.study;
   ThreadedRunners calibrating(campaign, calibration, {}, threads);
-  const std::vector<std::size_t> numbers = numbers_in_turn(order);
+  const std::vector<std::int64_t> numbers = store.missing(numbers_in_turn(order));
   std::vector<std::int64_t> indices;
-  for (const std::size_t number : numbers)
-    if (!order[number].of_calibration)
-      indices.push_back(order[number].index);
+  for (const std::int64_t number : numbers)
+    if (const BlindLoop& loop = order[static_cast<std::size_t>(number)]; !loop.of_calibration)
+      indices.push_back(loop.index);
   RecordsInTurn records(records_of(campaign), indices);
-  const auto make = [&](const BlindLoop& loop, std::size_t thread) {
-    if (!loop.of_calibration)
-      return runners.loop_of(records.take(loop.index), thread);
-    const ExperimentRecord record = calibrating.run(loop.index, thread, StorePolicy::all);
-    return record.status == ExperimentStatus::ok ? calibrating.loop_of(record, thread) : AssessedLoop();
+  const auto make = [&](std::int64_t number, std::size_t thread) {
+    const BlindLoop& blind = order[static_cast<std::size_t>(number)];
+    AssessedLoop loop;
+    if (!blind.of_calibration) {
+      loop = runners.loop_of(records.take(blind.index), thread);
+    } else {
+      const ExperimentRecord record = calibrating.run(blind.index, thread, StorePolicy::all);
+      if (record.status == ExperimentStatus::ok)
+        loop = calibrating.loop_of(record, thread);
+    }
+    ByteWriter writer;
+    transfer_loop(writer, std::as_const(loop));
+    return LoopResult{.bytes = writer.take()};
   };
-  std::mutex taking;
-  for_each_in_threads(numbers.size(), threads, [&](std::size_t i, std::size_t thread) {
-    const AssessedLoop loop = make(order[numbers[i]], thread);
-    const std::lock_guard one_at_a_time(taking);
-    take(numbers[i], loop);
-  });
+  run_missing(store, numbers, threaded_work(threads, hooks, make));
+}
+
+BlindLoops blind_loops_in(const ShardStore& store, std::size_t count) {
+  return {count, [&store, count]() -> BlindLoops::Next {
+            return [next = store.in_order(0, static_cast<std::int64_t>(count))] {
+              ByteReader reader(next()->bytes);
+              AssessedLoop loop;
+              transfer_loop(reader, loop);
+              return loop;
+            };
+          }};
 }
 
 void add_verdicts(Campaign& campaign, OutsideVerdicts verdicts, const std::string& command) {

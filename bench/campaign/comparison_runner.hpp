@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analysis/methods/assessed_loop.hpp"
+#include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/campaign_runner.hpp"
-#include "bench/campaign/experiment_series.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/shards/shard_store.hpp"
 #include "results/archive/campaign.hpp"
@@ -27,25 +27,26 @@ struct KeptAssessments {
   std::filesystem::path shards;              ///< folder of its own
   std::vector<std::filesystem::path> parts;  ///< folders of shards that others have left
   std::string archive;                       ///< digest of the archive whose loops are assessed
-  Leftovers leftovers = Leftovers::resume;
-  double interval = RunOptions().shard_interval;  ///< s
-  ShardStore::Warn warn;
+  ShardStore::Options options;
 };
 
 struct ComparisonOptions {
   std::vector<std::string> methods;          ///< names of assessment_methods(), each once
-  std::optional<std::int64_t> experiments;   ///< the first N only
   int jobs = 1;                              ///< threads
   std::optional<KeptAssessments> kept = {};  ///< none: they wait in memory
-  std::optional<ShardNumber> shard = {};     ///< which piece of the loops is assessed; none: all
+  std::optional<PartNumber> part = {};       ///< which part of the loops is assessed; none: all
 };
 
-/// How many loops a comparison of this campaign has: its experiments with status ok.
-std::int64_t compared_loops(const Campaign& campaign, const std::optional<std::int64_t>& experiments);
+/// What a comparison of a campaign is on.
+struct ComparedLoops {
+  std::vector<std::int64_t> experiments;  ///< indices of those with status ok, among the first ones asked for
+  std::int64_t end = 0;                   ///< behind the last index of the campaign
+  std::vector<std::string> missing;       ///< methods that the campaign does not have on all of them
+};
 
-/// Those of the methods `asked` that the campaign does not have on all the loops of such a comparison.
-std::vector<std::string> missing_methods(const Campaign& campaign, const std::vector<std::string>& asked,
-                                         const std::optional<std::int64_t>& experiments);
+/// The loops of a comparison on the first `experiments`, and those of the methods `asked` that are missing.
+ComparedLoops compared_loops(const Campaign& campaign, const std::vector<std::string>& asked,
+                             const std::optional<std::int64_t>& experiments);
 
 /// Methods that assess the experiments with status ok, and the calibration loops, in threads; the same answer
 /// for any number of them, and however often it was stopped, but for the processor times. A loop that was not
@@ -53,39 +54,42 @@ std::vector<std::string> missing_methods(const Campaign& campaign, const std::ve
 /// does not bear two threads.
 class Comparison {
  public:
-  /// `campaign` must outlive run(). Errors: as ShardStore, and as its records.
-  Comparison(const Campaign& campaign, const ComparisonOptions& options);
+  /// On these loops of the campaign, which must outlive run(). Errors: as CampaignLoops::open().
+  Comparison(const Campaign& campaign, const ComparedLoops& loops, const ComparisonOptions& options);
   Comparison(const Comparison&) = delete;
   Comparison& operator=(const Comparison&) = delete;
 
-  /// Of the loops that are wanted; what an earlier comparison has left is done.
-  ExperimentTally tally() const;
+  /// How many loops are wanted.
+  std::int64_t count() const { return std::ssize(keys_); }
 
   /// Assesses those that are missing. Throws Interrupted, and InputError for an unknown method, or options
   /// that do not fit the study: that of its first loop.
   void run(const CampaignHooks& hooks);
 
   /// Makes as few shards as there can be.
-  void compact();
+  void compact() { store_.compact(); }
 
   /// Puts the answers, which must all be there, behind those of the other methods of the campaign; answers
   /// that it has of one of them, such as on its first experiments only, are replaced. To records that are
   /// streamed they come when these are read, from the shards: the campaign must not be read when the
-  /// comparison is gone. It then throws Interrupted when a stop was requested. Errors: as ShardIndex.
+  /// comparison is gone. It then throws Interrupted when a stop was requested. Errors: as ShardStore::Next.
   void add_to(Campaign& campaign, const std::string& command, const StopRequest& stop = {});
 
  private:
   const Campaign& campaign_;
-  Study study_, calibration_study_;  ///< with the methods of the comparison
-  RunOptions run_;
-  std::optional<ExperimentSeries> loops_, calibration_;
+  CampaignLoops loops_;  ///< with the methods of the comparison
+  ShardStore store_;
+  std::vector<std::int64_t> keys_;
 };
 
-/// Calls take(number, loop), one call at a time, for these loops as methods see them, in any order; `number`
-/// is the place in `order`. Loops are run again where they were not kept. Without samples: a calibration loop
-/// that does not run to its end.
-void each_loop(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
-               const std::function<void(std::size_t number, const AssessedLoop& loop)>& take);
+/// Keeps these loops, as methods see them, in the store: key `number` for the loop in that place of `order`.
+/// Loops are run again where they were not kept. Without samples: a calibration loop that does not run to its
+/// end.
+void run_blind_loops(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
+                     const CampaignHooks& hooks, ShardStore& store);
+
+/// Those loops again, in the order of their numbers, each there until the next one is read.
+BlindLoops blind_loops_in(const ShardStore& store, std::size_t count);
 
 /// Puts verdicts from outside behind the answers of the methods that the campaign has, in the place of those
 /// of the same name.

@@ -38,22 +38,6 @@ bool is_of(const Campaign& campaign, const Study& of, const RunOptions& options)
          static_cast<std::int64_t>(records_of(campaign).size()) == count;
 }
 
-void run_resumed(const fs::path& archive, const Study& study, RunOptions options,
-                 const CampaignHooks& hooks) {
-  options.leftovers = Leftovers::resume;
-  const auto once = [&] { stream_campaign(study, options, hooks, shard_folder_of(archive)); };
-  if (!has_shards(archive))
-    return once();
-  try {
-    once();
-  } catch (const UnhealthyBasis&) {
-    throw;
-  } catch (const InputError&) {
-    options.leftovers = Leftovers::discard;
-    once();
-  }
-}
-
 }  // namespace
 
 std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& study, const RunOptions& options,
@@ -81,9 +65,27 @@ Campaign run_and_keep(const fs::path& archive, const Study& study, RunOptions op
     note_command(campaign, command);
     write_archive(archive, campaign, findings_of(campaign));
   };
-  run_resumed(archive, study, std::move(options), hooks);
+  options.leftovers = Leftovers::renew;
+  stream_campaign(study, options, hooks, shard_folder_of(archive));
   remove_shards(archive);
   return stream_archive(archive);
+}
+
+KeptRun run_unless_kept(const fs::path& archive, const Study& study, const RunOptions& options,
+                        const CampaignHooks& hooks, const std::string& command,
+                        const std::function<void(bool is_there)>& on_start) {
+  try {
+    std::optional<Campaign> campaign = kept_campaign(archive, study, options, hooks.on_warning);
+    on_start(campaign.has_value());
+    if (!campaign)
+      campaign = run_and_keep(archive, study, options, hooks, command);
+    return {.campaign = std::move(campaign)};
+  } catch (const InputError& error) {
+    remove_shards(archive);
+    std::error_code no_file;
+    fs::remove(archive, no_file);  // of another run: the table says that there is none
+    return {.trouble = error.what()};
+  }
 }
 
 }  // namespace mpm

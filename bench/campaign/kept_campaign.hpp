@@ -25,4 +25,17 @@ std::optional<Campaign> kept_campaign(const std::filesystem::path& archive, cons
 Campaign run_and_keep(const std::filesystem::path& archive, const Study& study, RunOptions options,
                       CampaignHooks hooks, const std::string& command);
 
+/// What came of a study whose archive is kept.
+struct KeptRun {
+  std::optional<Campaign> campaign = {};  ///< none: it cannot be run
+  std::string trouble = {};               ///< why
+};
+
+/// One or the other: a study is run unless its archive is there, which `on_start` is told before. One that
+/// cannot be run (its basis case fails the self-check, a method refuses an option of it) leaves no archive.
+/// Errors: Interrupted, ArchiveError as run_and_keep().
+KeptRun run_unless_kept(const std::filesystem::path& archive, const Study& study, const RunOptions& options,
+                        const CampaignHooks& hooks, const std::string& command,
+                        const std::function<void(bool is_there)>& on_start);
+
 }  // namespace mpm

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/parts/part_folder.hpp"
-#include "bench/shards/shard_set.hpp"
+#include "bench/shards/shard_store.hpp"
 
 namespace mpm {
 
@@ -30,7 +31,7 @@ class PartMerge {
   /// without parts, and for parts that were not run by this program, or not with the study, seed, methods,
   /// solver, audit share and store of the first one; the number of experiments may differ, the largest one
   /// counts.
-  PartMerge(const std::vector<std::string>& folders, const ShardSet::Warn& warn);
+  PartMerge(const std::vector<std::string>& folders, const ShardStore::Warn& warn);
 
   const Study& study() const { return first_.study; }
   std::int64_t experiments() const { return *first_.options.experiments; }
@@ -57,15 +58,14 @@ class PartMerge {
   Campaign merge(const CampaignHooks& hooks) const;
 
  private:
-  void take_stock(const std::vector<std::string>& folders, const ShardSet::Warn& warn);
+  void take_stock(const std::vector<std::string>& folders, const ShardStore::Warn& warn);
   void take_part(const std::filesystem::path& folder);
 
   PartFolder first_;  ///< with the largest number of experiments
   std::size_t part_count_ = 0;
   std::vector<PartFolder> pieces_;
-  std::optional<ShardSet> experiments_;
-  Study calibration_study_;
-  std::optional<ShardSet> calibration_;
+  std::optional<CampaignLoops> loops_;
+  std::optional<ShardStore> store_;
 };
 
 }  // namespace mpm

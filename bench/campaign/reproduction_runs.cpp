@@ -1,87 +1,190 @@
 #include "bench/campaign/reproduction_runs.hpp"
 
-#include <algorithm>
 #include <cstddef>
+#include <map>
+#include <memory>
 #include <mutex>
+#include <string>
+#include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "analysis/reproduction/seeded_reproduction.hpp"
-#include "bench/execution/thread_loop.hpp"
+#include "bench/campaign/loop_farm.hpp"
+#include "bench/files/output_file.hpp"
+#include "bench/files/outside_files.hpp"
+#include "bench/parts/part_folder.hpp"
+#include "bench/shards/shard_folder.hpp"
+#include "bench/shards/shard_identity.hpp"
+#include "plants/error.hpp"
+#include "results/files/byte_stream.hpp"
+#include "scenarios/files/resolved_study.hpp"
 
 namespace mpm {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kKeys = std::int64_t{1} << 60;
+
+template <class Stream, class Numbers>
+void transfer_numbers(Stream& stream, Numbers& numbers) {
+  transfer_list(stream, numbers.rows, [&](auto& row) {
+    transfer(stream, row.remark);
+    transfer_list(stream, row.ours, [&](auto& number) { transfer(stream, number); });
+  });
+}
 
 /// A table with one seed.
 struct TableRun {
   ThesisTable table;
   std::uint64_t offset;
-  bool wanted;
-  std::optional<TableNumbers> numbers;
+  std::int64_t key;
 };
+
+/// A number for all that the numbers of a table depend on, beside program and solver.
+std::int64_t key_of(const ThesisTable& table) {
+  std::string text = table.name() + '\n';
+  for (const auto& [variant, study] : table.studies)
+    text += fmt::format("{}\n{}\n{}\n", variant, study.seed, resolved_study(study));
+  for (const TableRow& row : table.rows) {
+    text += fmt::format("{}|{}|{}\n", row.variant, row.scenario, row.benchmark.value_or(row.variant));
+    for (const TableCell& cell : row.cells)
+      text += fmt::format("{}|{}|{}\n", cell.quantity, cell.cv, cell.mv);
+  }
+  constexpr int kHexadecimal = 16;
+  return std::stoll(digest_of(text).substr(0, 12), nullptr, kHexadecimal);
+}
 
 std::vector<TableRun> listed(const TableRuns& runs) {
   std::vector<TableRun> list;
   for (int seed = 0; seed < runs.seeds; ++seed)
     for (const ThesisTable& table : runs.tables) {
       const auto offset = static_cast<std::uint64_t>(seed);
-      TableRun& run = list.emplace_back(TableRun{with_seed_offset(table, offset), offset, false, {}});
-      run.wanted = is_in_shard(list.size() - 1, runs.shard);
-      if (runs.kept != nullptr)
-        run.numbers = runs.kept->find(run.table, offset);
+      ThesisTable seeded = with_seed_offset(table, offset);
+      const std::int64_t key = key_of(seeded);
+      list.push_back({std::move(seeded), offset, key});
     }
   return list;
 }
 
-/// Runs what is missing. Tables that have a study in common, with one seed, find its basis case made.
-void run_missing(std::vector<TableRun>& list, const TableRuns& runs) {
-  const QpSolverFactory factory = qp_solver_factory(runs.run.solver);
-  const int jobs = runs.run.solver == "active-set" ? runs.run.jobs : 1;  // Ipopt has no threads
-  std::mutex one_at_a_time;
-  for (std::size_t first = 0; first < list.size(); first += runs.tables.size()) {
-    BasisCases basis_cases(factory);
-    for_each_in_threads(runs.tables.size(), jobs, [&](std::size_t table, std::size_t) {
-      TableRun& run = list[first + table];
-      if (!run.wanted || run.numbers || requested(runs.stop))
-        return;
-      run.numbers = table_numbers(run.table, factory, basis_cases);
-      const std::lock_guard alone(one_at_a_time);
-      if (runs.kept != nullptr)
-        runs.kept->keep(run.table, run.offset, *run.numbers);
-      if (runs.on_done)
-        runs.on_done();
-    });
+ShardIdentity identity_of(const TableRuns& runs) {
+  return {{"program", program_identity()}, {"solver", runs.run.solver}};
+}
+
+/// The folders of these tables: that of all, and within it those of parts.
+std::vector<fs::path> folders_of(const TableRuns& runs) {
+  std::vector<fs::path> folders{*runs.folder};
+  std::error_code no_folder;
+  for (const fs::directory_entry& entry : fs::directory_iterator(*runs.folder, no_folder))
+    if (entry.is_directory(no_folder))
+      folders.push_back(entry.path());
+  return folders;
+}
+
+ShardStore opened_tables(const TableRuns& runs) {
+  if (!runs.folder)
+    return ShardStore(identity_of(runs));
+  make_output_folder(*runs.folder, "tables");
+  const fs::path own = runs.part ? *runs.folder / part_name("", runs.part) : *runs.folder;
+  ShardStore store(own, identity_of(runs), {Leftovers::renew, 0.0, runs.warn});  // a table takes long
+  for (const fs::path& folder : folders_of(runs))
+    try {
+      if (folder != own)
+        store.take_stock(shards_in(folder), runs.warn);
+    } catch (const OtherRun&) {
+      continue;
+    }
+  return store;
+}
+
+/// The basis cases of tables that have a study in common, with one seed; those of earlier seeds go when no
+/// table needs them any more.
+class SeededBasisCases {
+ public:
+  explicit SeededBasisCases(QpSolverFactory factory) : factory_(std::move(factory)) {}
+
+  std::shared_ptr<BasisCases> of(std::uint64_t offset) {
+    const std::lock_guard alone(mutex_);
+    std::shared_ptr<BasisCases>& cases = cases_[offset];
+    if (!cases) {
+      cases = std::make_shared<BasisCases>(factory_);
+      std::erase_if(cases_,
+                    [&](const auto& other) { return other.first < offset && other.second.use_count() == 1; });
+    }
+    return cases_[offset];
   }
+
+ private:
+  QpSolverFactory factory_;
+  std::mutex mutex_;
+  std::map<std::uint64_t, std::shared_ptr<BasisCases>> cases_;
+};
+
+std::map<std::int64_t, TableNumbers> numbers_in(const ShardStore& store) {
+  std::map<std::int64_t, TableNumbers> numbers;
+  const ShardStore::Next next = store.in_order(0, kKeys);
+  while (const ShardStore::Entry* const entry = next()) {
+    ByteReader reader(entry->bytes);
+    transfer_numbers(reader, numbers[entry->key]);
+  }
+  return numbers;
 }
 
 }  // namespace
 
 std::vector<std::vector<ReproducedTable>> run_tables(const TableRuns& runs) {
   std::vector<TableRun> list = listed(runs);
-  const auto done = [&] {
-    return std::count_if(list.begin(), list.end(),
-                         [](const TableRun& run) { return run.wanted && run.numbers; });
+  std::vector<std::int64_t> wanted;
+  std::map<std::int64_t, const TableRun*> by_key;
+  for (std::size_t place = 0; place < list.size(); ++place) {
+    by_key.emplace(list[place].key, &list[place]);
+    if (is_in_part(place, runs.part))
+      wanted.push_back(list[place].key);
+  }
+  const QpSolverFactory factory = qp_solver_factory(runs.run.solver);
+  SeededBasisCases basis_cases(factory);
+  const LoopWork::Thread run_table = [&](std::int64_t key) -> LoopResult {
+    const TableRun& run = *by_key.at(key);
+    const TableNumbers numbers = table_numbers(run.table, factory, *basis_cases.of(run.offset));
+    ByteWriter writer;
+    transfer_numbers(writer, numbers);
+    return {.bytes = writer.take()};
   };
-  const std::int64_t count =
-      std::count_if(list.begin(), list.end(), [](const TableRun& run) { return run.wanted; });
-  if (runs.on_start)
-    runs.on_start(done(), count);
-  run_missing(list, runs);
-  if (done() < count)
-    throw Interrupted(done(), count, "tables");
+  ShardStore store = opened_tables(runs);
+  run_missing(store, wanted,
+              {.jobs = runs.run.solver == "active-set" ? runs.run.jobs : 1,  // Ipopt has no threads
+               .thread = [&] { return run_table; },
+               .stop = runs.stop,
+               .what = "tables",
+               .on_start = runs.on_start,
+               .on_done = runs.on_done});
+  const std::map<std::int64_t, TableNumbers> numbers = numbers_in(store);
   std::vector<std::vector<ReproducedTable>> result(runs.tables.size());
-  for (std::size_t i = 0; i < list.size(); ++i)
-    result[i % runs.tables.size()].push_back(list[i].numbers
-                                                 ? reproduced(std::move(list[i].table), *list[i].numbers)
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto found = numbers.find(list[i].key);
+    result[i % runs.tables.size()].push_back(found != numbers.end()
+                                                 ? reproduced(std::move(list[i].table), found->second)
                                                  : ReproducedTable{std::move(list[i].table), {}});
+  }
   return result;
 }
 
 void remove_kept(const TableRuns& runs) {
-  if (runs.kept == nullptr)
+  if (!runs.folder)
     return;
-  for (const ThesisTable& table : runs.tables)
-    for (int seed = 0; seed < runs.seeds; ++seed)
-      runs.kept->remove(table, static_cast<std::uint64_t>(seed));
+  std::vector<std::int64_t> keys;
+  for (const TableRun& run : listed(runs))
+    keys.push_back(run.key);
+  for (const fs::path& folder : folders_of(runs))
+    try {
+      ShardStore(folder, identity_of(runs), {}).remove(keys);
+    } catch (const InputError&) {
+      continue;  // another program's, or at work
+    }
+  std::error_code stays;
+  fs::remove(*runs.folder, stays);  // when nothing is left in it
 }
 
 }  // namespace mpm

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "bench/campaign/calibration_runs.hpp"
+#include "bench/campaign/campaign_loops.hpp"
 
 namespace mpm {
 

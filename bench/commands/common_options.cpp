@@ -136,7 +136,7 @@ std::vector<std::string> with_programs(const std::vector<std::string>& named,
   return methods;
 }
 
-void add_shard_of(CLI::App& app, std::string& shard, const std::string& what) {
+void add_part_of(CLI::App& app, std::string& shard, const std::string& what) {
   add_part_option(
       app, "--shard", shard, "I/N, auto or auto/N",
       fmt::format(
@@ -152,8 +152,8 @@ void add_shard_interval(CLI::App& app, double& interval) {
       ->capture_default_str();
 }
 
-std::optional<ShardNumber> shard_of(const std::string& text) {
-  return text.empty() ? std::nullopt : std::optional(parse_shard(text, process_environment));
+std::optional<PartNumber> part_of_option(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(parse_part(text, process_environment));
 }
 
 void add_overwrite(CLI::App& app, bool& overwrite) {

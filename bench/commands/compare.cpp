@@ -14,7 +14,6 @@
 #include <fmt/ranges.h>
 
 #include "analysis/methods/method_table.hpp"
-#include "bench/campaign/calibration_runs.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
@@ -159,24 +158,32 @@ std::vector<std::filesystem::path> parts_to_take(const std::string& output, bool
   return {};
 }
 
-/// Where the answers of a comparison wait.
-KeptAssessments kept_assessments(const CompareArguments& options, std::filesystem::path shards,
-                                 std::string archive, Progress& progress) {
-  KeptAssessments kept{.shards = std::move(shards),
-                       .parts = {},
-                       .archive = std::move(archive),
-                       .leftovers = options.discard ? Leftovers::discard : Leftovers::resume,
-                       .interval = options.shard_interval,
-                       .warn = [&progress](const std::string& text) { progress.warn(text); }};
-  if (options.shard.empty() && !options.output.empty())
-    kept.parts = parts_to_take(options.output, options.discard);
-  return kept;
-}
+/// What the command is about, once its archive is read.
+struct ComparisonTask {
+  const CompareArguments& options;
+  const std::string& command_line;
+  std::string digest;  ///< of the archive
+  Campaign campaign;
+  std::vector<std::string> asked;  ///< methods
+  ComparedLoops loops;
+  ComparisonOptions comparison;
+};
 
-/// Throws InputError where what is kept belongs to another comparison.
-void open(std::optional<Comparison>& comparison, const Campaign& campaign, const ComparisonOptions& options) {
+/// Opens what is kept of the comparison in this folder. Throws InputError where it belongs to another one.
+std::unique_ptr<Comparison> open_comparison(const ComparisonTask& task, std::filesystem::path shards,
+                                            Progress& progress) {
+  const CompareArguments& options = task.options;
+  ComparisonOptions comparison = task.comparison;
+  comparison.kept = {.shards = std::move(shards),
+                     .parts = {},
+                     .archive = task.digest,
+                     .options = {.leftovers = options.discard ? Leftovers::discard : Leftovers::resume,
+                                 .interval = options.shard_interval,
+                                 .warn = [&progress](const std::string& text) { progress.warn(text); }}};
+  if (!comparison.part && !options.output.empty())
+    comparison.kept->parts = parts_to_take(options.output, options.discard);
   try {
-    comparison.emplace(campaign, options);
+    return std::make_unique<Comparison>(task.campaign, task.loops, comparison);
   } catch (const OtherRun& error) {
     throw error.with_advice();
   }
@@ -184,101 +191,98 @@ void open(std::optional<Comparison>& comparison, const Campaign& campaign, const
 
 /// What `work` returns; stopped, it says how to go on.
 template <class Work>
-auto advised(const CompareArguments& options, const Progress& progress, const std::string& command_line,
-             const Work& work) {
+auto advised(const ComparisonTask& task, const Progress& progress, const Work& work) {
   try {
     return work();
   } catch (const Interrupted& error) {
-    throw std::runtime_error(progress.explain(error) +
-                             (options.output.empty()
-                                  ? ""
-                                  : how_to_go_on("beside " + options.output, without_discard(command_line))));
+    throw std::runtime_error(
+        progress.explain(error) +
+        (task.options.output.empty()
+             ? ""
+             : how_to_go_on("beside " + task.options.output, without_discard(task.command_line))));
   }
 }
 
-/// A piece of the loops, whose answers wait for the comparison of all of them.
-ExitCode compare_part(const Campaign& campaign, ComparisonOptions comparison_options,
-                      const CompareArguments& options, const std::string& archive, Progress& progress,
-                      const std::string& command_line) {
-  if (comparison_options.methods.empty()) {
-    print_result("every loop is assessed already\n");
-    return ExitCode::done;
-  }
-  const ShardNumber& shard = *comparison_options.shard;
-  const std::filesystem::path folder = kept_parts(options.output) / part_name("", shard);
+/// A part of the loops, whose answers wait for the comparison of all of them.
+std::string compare_part(const ComparisonTask& task, Progress& progress) {
+  if (task.comparison.methods.empty())
+    return "every loop is assessed already\n";
+  const PartNumber& part = *task.comparison.part;
+  const std::filesystem::path folder = kept_parts(task.options.output) / part_name("", part);
   make_output_folder(folder.parent_path(), "parts");
-  comparison_options.kept = kept_assessments(options, folder, archive, progress);
-  std::optional<Comparison> comparison;
-  open(comparison, campaign, comparison_options);
-  const std::int64_t count = comparison->tally().count;
-  advised(options, progress, command_line, [&] { comparison->run(hooks_of(progress)); });
+  const std::unique_ptr<Comparison> comparison = open_comparison(task, folder, progress);
+  advised(task, progress, [&] { comparison->run(hooks_of(progress)); });
   comparison->compact();
-  print_result(
-      fmt::format("{}: {} loops assessed, part {} of {}\n", folder.string(), count, shard.number, shard.of));
-  return ExitCode::done;
+  return fmt::format("{}: {} loops assessed, part {} of {}\n", folder.string(), comparison->count(),
+                     part.number, part.of);
 }
 
-/// How often each of the methods that are asked for is right.
-std::string findings_text(const CompareArguments& options, const Campaign& campaign,
-                          const std::vector<std::string>& asked) {
-  const Campaign shown = with_methods(campaign, asked, options.experiments);
-  const StudyFindings findings = findings_of(shown);
-  return options.json ? comparison_json(shown, findings) : comparison_text(shown, findings);
-}
-
-/// Adds the answers that are missing to the campaign, and writes the archive with them when an output is
-/// asked for; no other comparison writes it meanwhile. Returns what was found. Without an output the answers
-/// wait among the temporary files.
-std::string complete(Campaign campaign, ComparisonOptions comparison_options, const CompareArguments& options,
-                     const std::vector<std::string>& asked, const std::string& archive, Progress& progress,
-                     const std::string& command_line) {
-  std::optional<TemporaryFolder> temporary;
-  std::optional<Comparison> comparison;  // its shards are locked until the archive is written
-  std::optional<ShardFolder> alone;      // where there is nothing to assess
-  if (!comparison_options.methods.empty()) {
-    if (options.output.empty())
-      temporary.emplace();
-    comparison_options.kept = kept_assessments(
-        options, temporary ? temporary->path() / "compared" : kept_shards(options.output), archive, progress);
-    open(comparison, campaign, comparison_options);
-  } else if (!options.output.empty()) {
-    alone.emplace(kept_shards(options.output));
+/// How often each of the methods that are asked for is right; the archive with all of them is written when an
+/// output is asked for.
+std::string found_text(const ComparisonTask& task) {
+  const CompareArguments& options = task.options;
+  const auto text = [&](const Campaign& shown, const StudyFindings& findings) {
+    return options.json ? comparison_json(shown, findings) : comparison_text(shown, findings);
+  };
+  const bool shows_all = task.asked == method_names(task.campaign) && !options.experiments;
+  std::string found;
+  if (!shows_all) {
+    const Campaign shown = with_methods(task.campaign, task.asked, options.experiments);
+    found = text(shown, findings_of(shown));
   }
-  require_unchanged(options, archive);
-  std::string found = advised(options, progress, command_line, [&] {
+  if (!shows_all && options.output.empty())
+    return found;
+  const StudyFindings findings = findings_of(task.campaign);
+  if (!options.output.empty())
+    write_archive(options.output, task.campaign, findings);
+  return shows_all ? text(task.campaign, findings) : found;
+}
+
+/// Adds the answers that are missing to the campaign, and shows and writes what was found; no other
+/// comparison writes it meanwhile. Without an output the answers wait among the temporary files.
+std::string compare_all(ComparisonTask& task, Progress& progress) {
+  const std::string& output = task.options.output;
+  std::optional<TemporaryFolder> temporary;
+  std::unique_ptr<Comparison> comparison;  // its shards are locked until the archive is written
+  std::optional<ShardFolder> alone;        // where there is nothing to assess
+  if (output.empty())
+    temporary.emplace();
+  if (!task.comparison.methods.empty())
+    comparison =
+        open_comparison(task, temporary ? temporary->path() / "compared" : kept_shards(output), progress);
+  else if (!output.empty())
+    alone.emplace(kept_shards(output));
+  require_unchanged(task.options, task.digest);
+  std::string found = advised(task, progress, [&] {
     if (comparison) {
       const CampaignHooks hooks = hooks_of(progress);
       comparison->run(hooks);
-      comparison->add_to(campaign, command_line, hooks.stop);
+      comparison->add_to(task.campaign, task.command_line, hooks.stop);
     }
-    std::string text = findings_text(options, campaign, asked);
-    if (!options.output.empty())
-      write_archive(options.output, campaign, findings_of(campaign));
-    return text;
+    return found_text(task);
   });
-  if (comparison && !options.output.empty()) {
+  if (comparison && !output.empty()) {
     comparison.reset();
-    remove_shard_folder(kept_shards(options.output));
+    remove_shard_folder(kept_shards(output));
   }
   return found;
 }
 
 /// What the comparison would do.
-std::string intended_text(const Campaign& campaign, const ComparisonOptions& comparison,
-                          const CompareArguments& options) {
-  ComparisonOptions in_memory = comparison;
-  in_memory.kept.reset();
+std::string intended_text(const ComparisonTask& task) {
+  const CompareArguments& options = task.options;
+  const std::vector<std::string>& methods = task.comparison.methods;
+  const std::int64_t experiments = std::ssize(task.loops.experiments),
+                     calibration = std::ssize(task.campaign.calibration.loops);
   return fmt::format(
       "methods: {}\nloops: {} of {} ({} experiments, {} calibration loops) to be assessed, {} at "
       "once\nfiles: "
       "{}\nnothing was assessed, nothing was written\n",
-      comparison.methods.empty() ? "none that the archive lacks"
-                                 : fmt::to_string(fmt::join(comparison.methods, ", ")),
-      comparison.methods.empty() ? 0 : Comparison(campaign, in_memory).tally().count,
-      compared_loops(campaign, options.experiments) + std::ssize(campaign.calibration.loops),
-      compared_loops(campaign, options.experiments), campaign.calibration.loops.size(), options.jobs,
+      methods.empty() ? "none that the archive lacks" : fmt::to_string(fmt::join(methods, ", ")),
+      methods.empty() ? 0 : Comparison(task.campaign, task.loops, task.comparison).count(),
+      experiments + calibration, experiments, calibration, options.jobs,
       options.output.empty() ? "none"
-      : comparison.shard     ? fmt::format("shards in {}, for the same command without --shard",
+      : task.comparison.part ? fmt::format("shards in {}, for the same command without --shard",
                                            kept_parts(options.output).string())
                              : output_text(options.output, kept_shards(options.output)));
 }
@@ -317,24 +321,21 @@ std::vector<std::string> take_asked(Campaign& campaign, const CompareArguments& 
 /// that are asked for is right, and writes the archive with them when an output is asked for. Loops that the
 /// archive has not kept are run again from (study, seed, index).
 ExitCode compare(const CompareArguments& options, const std::string& command_line) {
-  const std::string archive = digest_of_archive(options.archive);
-  Campaign campaign = stream_input(options.archive);
+  ComparisonTask task{
+      options, command_line, digest_of_archive(options.archive), stream_input(options.archive), {}, {}, {}};
   require_output(options);
   if (!options.output.empty() && options.shard.empty() && !options.overwrite)
-    require_replaceable(options.output, campaign.study);
-  if (compared_loops(campaign, options.experiments) == 0)
+    require_replaceable(options.output, task.campaign.study);
+  task.asked = take_asked(task.campaign, options, command_line);
+  task.loops = compared_loops(task.campaign, task.asked, options.experiments);
+  if (task.loops.experiments.empty())
     throw InputError(options.archive, "no loop that ran to its end", "one or more to compare methods on");
-  const std::vector<std::string> asked = take_asked(campaign, options, command_line);
-  const std::vector<std::string> missing = missing_methods(campaign, asked, options.experiments);
+  task.comparison = {
+      .methods = task.loops.missing, .jobs = options.jobs, .part = part_of_option(options.shard)};
   Progress progress(options.quiet);
-  const ComparisonOptions comparison{missing, options.experiments, options.jobs, {}, shard_of(options.shard)};
-  if (options.dry_run) {
-    print_result(intended_text(campaign, comparison, options));
-    return ExitCode::done;
-  }
-  if (comparison.shard)
-    return compare_part(campaign, comparison, options, archive, progress, command_line);
-  print_result(complete(std::move(campaign), comparison, options, asked, archive, progress, command_line));
+  print_result(options.dry_run        ? intended_text(task)
+               : task.comparison.part ? compare_part(task, progress)
+                                      : compare_all(task, progress));
   return ExitCode::done;
 }
 
@@ -356,7 +357,7 @@ void add_compare(CommandSet& commands) {
            "Archive to write, with the comparison in it (HDF5); may be ARCHIVE itself. Until then finished "
            "work waits beside it, and the same command resumes it");
   add_experiments(app, options->experiments, "Compare only the first N experiments");
-  add_shard_of(app, options->shard, "loops");
+  add_part_of(app, options->shard, "loops");
   app.add_flag("--discard", options->discard,
                "Delete what an interrupted comparison of this output has finished, and start again");
   add_overwrite(app, options->overwrite);

@@ -10,8 +10,7 @@
 #include <fmt/ranges.h>
 #include <sys/resource.h>
 
-#include "bench/campaign/calibration_runs.hpp"
-#include "bench/campaign/campaign_steps.hpp"
+#include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/campaign/study_pilot.hpp"
 #include "bench/console/output.hpp"

@@ -1,7 +1,8 @@
 #include <cstdint>
-#include <iterator>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,10 +19,12 @@
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/shards/shard_folder.hpp"
+#include "bench/shards/shard_identity.hpp"
+#include "bench/shards/shard_store.hpp"
 #include "plants/error.hpp"
 #include "results/archive/csv_table.hpp"
 #include "results/blind/blind_loops.hpp"
-#include "results/blind/loop_store.hpp"
 
 namespace mpm {
 namespace {
@@ -56,16 +59,21 @@ ExitCode export_blind(const ExportArguments& options) {
   }
   make_output_folder(options.output, "loops");
   Progress progress(options.quiet);
-  progress.begin(std::ssize(order));
-  LoopStore loops(options.output, campaign.study, order.size());
-  each_loop(campaign, order, options.jobs, [&](std::size_t number, const AssessedLoop& loop) {
-    loops.put(number, loop);
-    progress.advance();
-    progress.end_when_requested();
-  });
+  const std::filesystem::path shards = std::filesystem::path(options.output) / "loops.shards";
+  const ShardIdentity identity{{"program", program_identity()},
+                               {"list of loops", loops_hash(campaign, options.parts.calibration)}};
+  std::optional<ShardStore> loops(std::in_place, shards, identity,
+                                  ShardStore::Options{.leftovers = Leftovers::renew});
+  try {
+    run_blind_loops(campaign, order, options.jobs, hooks_of(progress), *loops);
+  } catch (const Interrupted& error) {
+    throw std::runtime_error(progress.explain(error) + "; the same command goes on");
+  }
   const AssessmentContext context =
       assessment_context(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver));
-  write_blind_loops(options.output, campaign, context, loops, options.parts);
+  write_blind_loops(options.output, campaign, context, blind_loops_in(*loops, order.size()), options.parts);
+  loops.reset();
+  remove_shard_folder(shards);
   if (!options.key.empty())
     write_text(options.key, blind_key(campaign, options.parts.calibration));
   print_result(

@@ -75,13 +75,13 @@ std::vector<std::vector<ReproducedTable>> run_tables(TableRuns runs, const Repro
   Progress progress(options.quiet, "tables");
   runs.stop = [&progress] { return progress.stop_requested(); };
   runs.on_start = [&progress](std::int64_t done, std::int64_t count) { progress.begin(count, done); };
-  runs.on_done = [&progress] { progress.advance(); };
+  runs.on_done = [&progress](bool) { progress.advance(); };
+  runs.warn = [&progress](const std::string& text) { progress.warn(text); };
   try {
     return run_tables(runs);
   } catch (const Interrupted& error) {
-    throw std::runtime_error(
-        progress.explain(error) +
-        (runs.kept == nullptr ? "" : how_to_go_on("in " + runs.kept->folder().string(), command_line)));
+    throw std::runtime_error(progress.explain(error) +
+                             (runs.folder ? how_to_go_on("in " + runs.folder->string(), command_line) : ""));
   }
 }
 
@@ -97,7 +97,7 @@ std::string intended_text(const TableRuns& runs, const ReproduceArguments& optio
     text += fmt::format("{}: {} rows: {}\n", table.label(), table.rows.size(), table.title);
   std::size_t wanted = 0, all = runs.tables.size() * static_cast<std::size_t>(runs.seeds);
   for (std::size_t place = 0; place < all; ++place)
-    wanted += is_in_shard(place, runs.shard) ? 1 : 0;
+    wanted += is_in_part(place, runs.part) ? 1 : 0;
   return text +
          fmt::format(
              "together: {} tables with {} seeds, {} of {} to run, with {} at once by {}\nfiles: {}\nnothing "
@@ -119,18 +119,17 @@ ExitCode reproduce_tables(const ReproduceArguments& options, const std::string& 
   TableRuns runs{.tables = tables_of(options),
                  .seeds = options.seeds.value_or(1),
                  .run = options.run,
-                 .shard = shard_of(options.shard)};
+                 .part = part_of_option(options.shard)};
   if (options.dry_run) {
     print_result(intended_text(runs, options));
     return ExitCode::done;
   }
-  std::optional<KeptTables> kept;
   if (has_place(options.output))
-    runs.kept = &kept.emplace(options.output, options.run.solver);
+    runs.folder = options.output + ".tables";
   const std::vector<std::vector<ReproducedTable>> reproduced = run_tables(runs, options, command_line);
-  if (runs.shard) {
-    print_result(fmt::format("{}: part {} of {} of {} tables with {} seeds\n", kept->folder().string(),
-                             runs.shard->number, runs.shard->of, runs.tables.size(), runs.seeds));
+  if (runs.part) {
+    print_result(fmt::format("{}: part {} of {} of {} tables with {} seeds\n", runs.folder->string(),
+                             runs.part->number, runs.part->of, runs.tables.size(), runs.seeds));
     return ExitCode::done;
   }
   if (options.seeds) {
@@ -166,7 +165,7 @@ void add_reproduce(CommandSet& commands) {
   app.add_option("--seeds", options->seeds,
                  "Run each table with N seeds, and report medians and the share of seeds that agree")
       ->check(whole_number(1, 100000));
-  add_shard_of(app, options->shard, "tables and seeds");
+  add_part_of(app, options->shard, "tables and seeds");
   add_untimed_dry_run(app, options->dry_run);
   add_quiet(app, options->quiet);
   add_jobs(app, options->run.jobs, "How many tables run at once, with --solver active-set");

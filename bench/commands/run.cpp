@@ -13,9 +13,8 @@
 #include <fmt/format.h>
 
 #include "analysis/validation/study_warnings.hpp"
-#include "bench/campaign/calibration_runs.hpp"
+#include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/campaign_runner.hpp"
-#include "bench/campaign/campaign_steps.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
@@ -57,7 +56,7 @@ struct RunArguments {
 /// The end of a message about a run that was not finished; empty when no shard is left to go on with.
 std::string how_to_resume(const RunArguments& options, const std::filesystem::path& shards,
                           std::string command_line) {
-  if (shards_in(shards).empty() && shards_in(calibration_shard_folder(shards)).empty())
+  if (shards_in(shards).empty())
     return "";
   if (options.run.leftovers == Leftovers::discard)
     command_line = without_discard(std::move(command_line));
@@ -104,21 +103,21 @@ PartFolder part_of(const RunArguments& options, const Study& study, const RunOpt
   part.part.loops = {{0, part.loops}};
   if (!options.range.empty())
     part.part.loops = parse_loop_ranges(options.range, part.loops);
-  std::optional<ShardNumber> shard;
+  std::optional<PartNumber> number;
   if (!options.shard.empty()) {
-    shard = parse_shard(options.shard, process_environment);
-    part.part.loops = piece_of(part.part.loops, shard->number, shard->of);
+    number = parse_part(options.shard, process_environment);
+    part.part.loops = piece_of(part.part.loops, number->number, number->of);
     if (options.range.empty())
-      part.part.shard = shard;
+      part.part.number = number;
   }
-  part.path = parts_folder_of(options.output) / part_name(options.range, shard);
+  part.path = parts_folder_of(options.output) / part_name(options.range, number);
   return part;
 }
 
 void run_one_part(const RunArguments& options, const PartFolder& part, const CampaignHooks& hooks,
                   Progress& progress) {
-  if (part.part.shard && !part.part.shard->launcher.empty())
-    progress.note(part.part.shard->launcher);
+  if (part.part.number && !part.part.number->launcher.empty())
+    progress.note(part.part.number->launcher);
   make_output_folder(part.path.parent_path(), "parts");
   const std::int64_t run = run_part(part, hooks);
   if (!options.quiet)

@@ -4,13 +4,15 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "analysis/findings/leaderboard.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "bench/campaign/suite_runner.hpp"
+#include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
@@ -29,6 +31,8 @@
 namespace mpm {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct SuiteArguments {
   std::string suite;
   std::string output;
@@ -43,7 +47,7 @@ struct SuiteArguments {
 };
 
 /// The page and the figure. What has been computed is shown all the same without gnuplot.
-void write_pictures(const std::filesystem::path& folder, const Leaderboard& board, Progress& progress) {
+void write_pictures(const fs::path& folder, const Leaderboard& board, Progress& progress) {
   try {
     write_text(folder / "leaderboard.html", leaderboard_html(board));
     write_text(folder / "leaderboard.svg", draw_figure(leaderboard_figure(board), FigureFormat::svg));
@@ -52,67 +56,76 @@ void write_pictures(const std::filesystem::path& folder, const Leaderboard& boar
   }
 }
 
-std::vector<IntendedStudy> intended(const Suite& suite, const SuiteRun& run) {
-  std::vector<IntendedStudy> studies;
-  for (std::size_t cell = 0; cell < suite.cells.size(); ++cell)
-    if (run.is_wanted(cell))
-      studies.push_back({suite.name_of(suite.cells[cell]), suite.cells[cell].study,
-                         suite_archive(suite, suite.cells[cell], run.folder)});
-  return studies;
+/// The cells of this part of the suite, each with its archive in this folder.
+std::vector<std::pair<const SuiteCell*, IntendedStudy>> cells_of(const Suite& suite, const fs::path& folder,
+                                                                 const std::optional<PartNumber>& part) {
+  std::vector<std::pair<const SuiteCell*, IntendedStudy>> cells;
+  for (std::size_t place = 0; place < suite.cells.size(); ++place)
+    if (const SuiteCell& cell = suite.cells[place]; is_in_part(place, part))
+      cells.emplace_back(&cell, IntendedStudy{suite.name_of(cell), cell.study,
+                                              folder / fmt::format("{}.h5", suite.name_of(cell))});
+  return cells;
 }
 
-/// Runs the suite, or what is missing of it, and shows its leaderboard, which is also left in the folder as a
-/// page and as JSON.
-ExitCode run_suite_command(const SuiteArguments& options, const std::string& command_line) {
+/// Runs a suite, or what is missing of it, cell by cell, and shows its leaderboard, which is also left in the
+/// folder as a page and as JSON. An archive that is there and is what this run would make of the cell is kept
+/// as it is, so that the same command goes on, and the scores are those of one go.
+ExitCode run_suite(const SuiteArguments& options, const std::string& command_line) {
   const Suite suite = find_suite(options.suite, options.choice);
-  SuiteRun run{.run = options.run, .folder = options.output, .command = command_line};
-  run.run.methods =
-      with_programs(options.run.methods, suite.methods, take_method_files(options.method_files));
-  run.run.methods = known_methods(run.run.methods.empty() ? suite.methods : run.run.methods,
-                                  run.run.methods.empty() ? "suite.methods" : "--methods");
-  const std::optional<ShardNumber> shard = shard_of(options.shard);
-  run.is_wanted = [&](std::size_t cell) { return is_in_shard(cell, shard); };
+  RunOptions run = options.run;
+  run.methods = with_programs(options.run.methods, suite.methods, take_method_files(options.method_files));
+  run.methods = known_methods(run.methods.empty() ? suite.methods : run.methods,
+                              run.methods.empty() ? "suite.methods" : "--methods");
+  const fs::path folder = options.output;
+  const std::optional<PartNumber> part = part_of_option(options.shard);
+  const auto cells = cells_of(suite, folder, part);
+  std::vector<IntendedStudy> studies;
+  for (const auto& [cell, study] : cells)
+    studies.push_back(study);
+  Progress progress(options.quiet);
   if (options.dry_run) {
-    Progress progress(options.quiet);
-    print_result(dry_run_text(intended(suite, run), run.run, hooks_of(progress)));
+    print_result(dry_run_text(studies, run, hooks_of(progress)));
     return ExitCode::done;
   }
-  make_output_folder(run.folder, "archives");
-  for (const IntendedStudy& study : intended(suite, run)) {
+  make_output_folder(folder, "archives");
+  for (const IntendedStudy& study : studies) {
     require_output_archive(study.archive, "archive");
     if (!options.overwrite)
-      require_replaceable(study.archive, study_to_run(study.study, run.run), Unreadable::replaced);
+      require_replaceable(study.archive, study_to_run(study.study, run), Unreadable::replaced);
   }
 
-  Progress progress(options.quiet);
-  std::string cell_name;
-  run.hooks = hooks_of(progress);
-  run.on_cell = [&](std::size_t cell, bool is_there) {
-    cell_name = suite.name_of(suite.cells[cell]);
-    progress.note(fmt::format("cell {} of {}: {}{}", cell + 1, suite.cells.size(), cell_name,
-                              is_there ? ", done already" : ""));
-  };
-  std::vector<CellScores> cells;
-  try {
-    cells = run_suite(suite, run);
-  } catch (const Interrupted& error) {
-    throw std::runtime_error(fmt::format("{}, in {}{}", progress.explain(error), cell_name,
-                                         how_to_go_on("in " + options.output, command_line)));
-  }
-  for (const CellScores& cell : cells)
-    if (!cell.trouble.empty())
-      progress.warn(fmt::format("{}.{}: {}", suite.plants[cell.plant].name, suite.families[cell.family].name,
-                                cell.trouble));
+  std::vector<CellScores> scores;
+  std::vector<std::string> troubles;
+  for (const auto& [cell, study] : cells)
+    try {
+      const std::string name =
+          fmt::format("cell {} of {}: {}", cell - suite.cells.data() + 1, suite.cells.size(), study.name);
+      const KeptRun kept = run_unless_kept(
+          study.archive, study.study, run, hooks_of(progress), command_line,
+          [&progress, &name](bool is_there) { progress.note(name + (is_there ? ", done already" : "")); });
+      scores.push_back(kept.campaign ? cell_scores(*cell, findings_of(*kept.campaign))
+                                     : CellScores{.plant = cell->plant,
+                                                  .family = cell->family,
+                                                  .seed = cell->study.seed,
+                                                  .trouble = kept.trouble});
+      if (!kept.trouble.empty())
+        troubles.push_back(fmt::format("{}: {}", study.name, kept.trouble));
+    } catch (const Interrupted& error) {
+      throw std::runtime_error(fmt::format("{}, in {}{}", progress.explain(error), study.name,
+                                           how_to_go_on("in " + options.output, command_line)));
+    }
+  for (const std::string& trouble : troubles)
+    progress.warn(trouble);
 
-  if (shard) {
-    print_result(fmt::format("{}: {} of {} cells, part {} of {}\n", options.output, cells.size(),
-                             suite.cells.size(), shard->number, shard->of));
+  if (part) {
+    print_result(fmt::format("{}: {} of {} cells, part {} of {}\n", options.output, scores.size(),
+                             suite.cells.size(), part->number, part->of));
     return ExitCode::done;
   }
-  const Leaderboard board = make_leaderboard(suite, run.run.methods, mpmbench_version(), std::move(cells));
+  const Leaderboard board = make_leaderboard(suite, run.methods, mpmbench_version(), std::move(scores));
   const std::string json = leaderboard_json(board);
-  write_text(run.folder / "leaderboard.json", json);
-  write_pictures(run.folder, board, progress);
+  write_text(folder / "leaderboard.json", json);
+  write_pictures(folder, board, progress);
   print_result(options.json ? json : leaderboard_text(board));
   return ExitCode::done;
 }
@@ -125,7 +138,7 @@ void add_suite(CommandSet& commands) {
   options->run.audit_share = 0.0;          // Ipopt answers where the active set does not, and checks nothing
   CLI::App& app =
       commands.add("suite", "Run a suite of plants and families of experiments, and make its leaderboard",
-                   [options, &commands] { return run_suite_command(*options, commands.command_line()); });
+                   [options, &commands] { return run_suite(*options, commands.command_line()); });
   add_path(app, "SUITE", options->suite, "Suite file, or name of a shipped suite: standard, quick")
       ->required();
   add_path(app, "-o,--output", options->output,
@@ -136,7 +149,7 @@ void add_suite(CommandSet& commands) {
       ->delimiter(',');
   app.add_option("--families", options->choice.families, "Only these families, separated by commas")
       ->delimiter(',');
-  add_shard_of(app, options->shard, "cells");
+  add_part_of(app, options->shard, "cells");
   add_experiments(app, options->run.experiments, "Run the first N experiments of each cell");
   add_methods_option(
       app, options->run.methods,

@@ -3,7 +3,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -19,8 +19,6 @@
 #include "bench/files/output_file.hpp"
 #include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
-#include "bench/shards/shard_folder.hpp"
-#include "plants/error.hpp"
 #include "results/summary/sweep_table.hpp"
 #include "scenarios/files/sweep_file.hpp"
 
@@ -43,36 +41,15 @@ std::string label(const SweepVariant& variant) {
   return variant.choice.empty() ? "as shipped" : fmt::format("{} = {}", variant.choice, variant.value);
 }
 
-/// What its archive says where it is there and of this study and program, and otherwise the study, which is
-/// run and kept. A study that cannot be run has the reason in its row.
-SweepRow row_of(const SweepVariant& variant, const fs::path& archive, const RunOptions& options,
-                const CampaignHooks& hooks, const std::string& command_line) {
-  SweepRow row{
-      .choice = variant.choice, .value = variant.value, .healthy = true, .trouble = "", .findings = {}};
-  try {
-    std::optional<Campaign> campaign = kept_campaign(archive, variant.study, options, hooks.on_warning);
-    if (!campaign)
-      campaign = run_and_keep(archive, variant.study, options, hooks, command_line);
-    row.healthy = campaign->basis.healthy;
-    row.findings = findings_of(*campaign).rows;
-  } catch (const InputError& error) {
-    remove_shards(archive);
-    std::error_code no_file;
-    fs::remove(archive, no_file);  // of another study: the table says that there is none
-    row.trouble = error.what();
-  }
-  return row;
-}
-
 fs::path archive_of(const fs::path& folder, std::size_t place) {
   return folder / fmt::format("{:02}.h5", place);
 }
 
-std::vector<IntendedStudy> intended(const Sweep& sweep, const std::optional<ShardNumber>& shard,
+std::vector<IntendedStudy> intended(const Sweep& sweep, const std::optional<PartNumber>& part,
                                     const fs::path& folder) {
   std::vector<IntendedStudy> studies;
   for (std::size_t i = 0; i < sweep.variants.size(); ++i)
-    if (is_in_shard(i, shard))
+    if (is_in_part(i, part))
       studies.push_back({label(sweep.variants[i]), sweep.variants[i].study, archive_of(folder, i)});
   return studies;
 }
@@ -81,15 +58,15 @@ std::vector<IntendedStudy> intended(const Sweep& sweep, const std::optional<Shar
 /// (`sweep.md`, and on stdout). A part of the studies leaves its archives only, which another call finds.
 ExitCode run_sweep(const SweepArguments& options, const std::string& command_line) {
   const Sweep sweep = find_sweep(options.sweep);
-  const std::optional<ShardNumber> shard = shard_of(options.shard);
+  const std::optional<PartNumber> part = part_of_option(options.shard);
   const fs::path folder = options.output;
   if (options.dry_run) {
     Progress progress(options.quiet);
-    print_result(dry_run_text(intended(sweep, shard, folder), options.run, hooks_of(progress)));
+    print_result(dry_run_text(intended(sweep, part, folder), options.run, hooks_of(progress)));
     return ExitCode::done;
   }
   make_output_folder(folder, "archives");
-  for (const IntendedStudy& study : intended(sweep, shard, folder)) {
+  for (const IntendedStudy& study : intended(sweep, part, folder)) {
     require_output_archive(study.archive, "archive");
     if (!options.overwrite)
       require_replaceable(study.archive, study_to_run(study.study, options.run), Unreadable::replaced);
@@ -97,23 +74,30 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
   Progress progress(options.quiet);
   std::vector<SweepRow> rows;
   for (std::size_t i = 0; i < sweep.variants.size(); ++i) {
-    if (!is_in_shard(i, shard))
+    if (!is_in_part(i, part))
       continue;
     const SweepVariant& variant = sweep.variants[i];
     const std::string name = fmt::format("study {} of {}: {}", i + 1, sweep.variants.size(), label(variant));
-    progress.note(name);
+    SweepRow& row = rows.emplace_back(SweepRow{
+        .choice = variant.choice, .value = variant.value, .healthy = true, .trouble = "", .findings = {}});
     try {
-      rows.push_back(row_of(variant, archive_of(folder, i), options.run, hooks_of(progress), command_line));
+      KeptRun run = run_unless_kept(archive_of(folder, i), variant.study, options.run, hooks_of(progress),
+                                    command_line, [&](bool) { progress.note(name); });
+      row.trouble = std::move(run.trouble);
+      if (run.campaign) {
+        row.healthy = run.campaign->basis.healthy;
+        row.findings = findings_of(*run.campaign).rows;
+      }
     } catch (const Interrupted& error) {
       throw std::runtime_error(fmt::format("{}, in {}{}", progress.explain(error), name,
                                            how_to_go_on("in " + options.output, command_line)));
     }
-    if (!rows.back().trouble.empty())
-      progress.warn(fmt::format("{}: {}", name, rows.back().trouble));
+    if (!row.trouble.empty())
+      progress.warn(fmt::format("{}: {}", name, row.trouble));
   }
-  if (shard) {
+  if (part) {
     print_result(fmt::format("{}: {} of {} studies, part {} of {}\n", options.output, rows.size(),
-                             sweep.variants.size(), shard->number, shard->of));
+                             sweep.variants.size(), part->number, part->of));
     return ExitCode::done;
   }
   const std::string table = sweep_table(rows);
@@ -137,7 +121,7 @@ void add_sweep(CommandSet& commands) {
            "Folder for the archives and the table; finished studies in it are kept")
       ->required();
   add_experiments(app, options->run.experiments, "Run the first N experiments of each study");
-  add_shard_of(app, options->shard, "studies");
+  add_part_of(app, options->shard, "studies");
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
   add_overwrite(app, options->overwrite);

@@ -100,10 +100,7 @@ void Progress::end_line() {
 CampaignHooks hooks_of(Progress& progress) {
   return {.stop = [&progress] { return progress.stop_requested(); },
           .on_start = [&progress](std::int64_t done, std::int64_t count) { progress.begin(count, done); },
-          .on_done =
-              [&progress](const ExperimentRecord& record) {
-                progress.advance(record.status == ExperimentStatus::failed);
-              },
+          .on_done = [&progress](bool failed) { progress.advance(failed); },
           .on_warning = [&progress](const std::string& text) { progress.warn(text); }};
 }
 

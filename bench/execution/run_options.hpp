@@ -20,8 +20,9 @@ const std::string& name_of(StorePolicy store);
 /// The reverse. Throws InputError for another name, found in `place`.
 StorePolicy store_policy(const std::string& name, const std::string& place);
 
-/// What becomes of the shards of an interrupted run.
-enum class Leftovers { refuse, resume, discard };
+/// What becomes of the shards of an interrupted run; `renew`: they are resumed, and those of another run
+/// discarded.
+enum class Leftovers { refuse, resume, discard, renew };
 
 /// How studies are run: filled by the command line, and handed down unchanged to the worker.
 struct RunOptions {

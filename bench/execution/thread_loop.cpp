@@ -43,17 +43,10 @@ class ReleasedThreads {
 
 }  // namespace
 
-void in_threads(int threads, const std::function<void(std::size_t thread)>& body) {
-  require_threads(threads);
-  const ReleasedThreads release;
-#pragma omp parallel num_threads(threads)
-  body(static_cast<std::size_t>(omp_get_thread_num()));
-}
-
 void for_each_in_threads(std::size_t count, int threads,
                          const std::function<void(std::size_t index, std::size_t thread)>& body) {
-  std::vector<std::exception_ptr> failures(count);  // none may leave a thread
-  std::atomic<std::size_t> first_failure{count};    // only calls before it can still matter
+  std::exception_ptr failure;                     // none may leave a thread
+  std::atomic<std::size_t> first_failure{count};  // only calls before it can still matter
   require_threads(threads);
   const ReleasedThreads release;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
@@ -63,14 +56,15 @@ void for_each_in_threads(std::size_t count, int threads,
     try {
       body(i, static_cast<std::size_t>(omp_get_thread_num()));
     } catch (...) {
-      failures[i] = std::current_exception();
-      std::size_t first = first_failure;
-      while (i < first && !first_failure.compare_exchange_weak(first, i)) {
+#pragma omp critical
+      if (i < first_failure) {
+        first_failure = i;
+        failure = std::current_exception();
       }
     }
   }
-  if (first_failure < count)
-    std::rethrow_exception(failures[first_failure]);
+  if (failure)
+    std::rethrow_exception(failure);
 }
 
 }  // namespace mpm

@@ -40,14 +40,6 @@ std::string OutcomeBytes::to_bytes(const ExperimentOutcome& outcome) const {
   return writer.take();
 }
 
-std::int64_t OutcomeBytes::index_of(std::string_view bytes) {
-  ByteReader reader(bytes);
-  std::size_t record_size = 0;
-  std::int64_t index = 0;  // the first of the record
-  transfer_all(reader, record_size, index);
-  return index;
-}
-
 ExperimentOutcome OutcomeBytes::from_bytes(std::string_view bytes) const {
   ByteReader reader(bytes);
   ExperimentOutcome outcome;

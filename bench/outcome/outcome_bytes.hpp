@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,9 +21,6 @@ class OutcomeBytes {
   /// The outcome again. Throws std::runtime_error when the bytes are too short or too long, InputError for an
   /// experiment that the study has not.
   ExperimentOutcome from_bytes(std::string_view bytes) const;
-
-  /// The index of the experiment alone. Throws std::runtime_error when the bytes are too short.
-  static std::int64_t index_of(std::string_view bytes);
 
   /// What of their records is not the same, by name.
   std::vector<std::string> differences(const ExperimentOutcome& one, const ExperimentOutcome& other) const {

@@ -26,73 +26,69 @@ std::optional<std::int64_t> number_of(const Environment& environment, const char
 /// How many tasks a launcher may have: their products stay numbers.
 constexpr std::int64_t kMostTasks = std::numeric_limits<std::int32_t>::max();
 
-/// A launcher that starts all its tasks at once and counts them from 0 on.
-struct Ranks {
-  const char* rank;
-  const char* size;
+/// What starts several processes and tells each its number.
+struct Launcher {
   const char* name;
+  const char* number;
+  const char* size;    ///< how many there are; null: it does not say
+  std::int64_t first;  ///< of the numbers
 };
 
-constexpr Ranks kRanks[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "rank {} of {} of Open MPI"},
-                            {"PMI_RANK", "PMI_SIZE", "rank {} of {} of MPI"},
-                            {"SLURM_PROCID", "SLURM_STEP_NUM_TASKS", "task {} of {} of srun"}};
+/// Those that start processes side by side.
+constexpr Launcher kRanks[] = {
+    {"rank {} of {} of Open MPI", "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", 0},
+    {"rank {} of {} of MPI", "PMI_RANK", "PMI_SIZE", 0},
+    {"task {} of {} of srun", "SLURM_PROCID", "SLURM_STEP_NUM_TASKS", 0}};
 
-std::optional<ShardNumber> rank_of(const Environment& environment) {
-  for (const Ranks& ranks : kRanks) {
-    const auto rank = number_of(environment, ranks.rank), size = number_of(environment, ranks.size);
-    if (!rank || !size)
+/// Those that start jobs, each of which may be several processes. An array is whole when its last number is
+/// how many tasks it has.
+constexpr Launcher kJobs[] = {
+    {"task {} of {} of a Slurm array", "SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MAX", 1},
+    {"pod {} of {} of a Kubernetes job", "JOB_COMPLETION_INDEX", nullptr, 0}};
+
+PartNumber part_by(const Launcher& launcher, std::int64_t number, std::int64_t of) {
+  const std::int64_t place = number - launcher.first;
+  if (place < 0 || place >= of || of > kMostTasks)
+    throw InputError(fmt::format("--shard auto: environment variable {}", launcher.number),
+                     fmt::format("{} of {}", number, of),
+                     fmt::format("{} to {}", launcher.first, of - 1 + launcher.first));
+  return {place + 1, of, fmt::format(fmt::runtime(launcher.name), place + 1, of)};
+}
+
+std::optional<PartNumber> rank_of(const Environment& environment) {
+  for (const Launcher& launcher : kRanks)
+    if (const auto number = number_of(environment, launcher.number),
+        size = number_of(environment, launcher.size);
+        number && size)
+      return part_by(launcher, *number, *size);
+  return std::nullopt;
+}
+
+std::optional<PartNumber> job_of(const Environment& environment, const std::optional<std::int64_t>& given) {
+  for (const Launcher& launcher : kJobs) {
+    const auto number = number_of(environment, launcher.number);
+    if (!number)
       continue;
-    if (*rank < 0 || *rank >= *size || *size > kMostTasks)
-      throw InputError(fmt::format("--shard auto: environment variables {} and {}", ranks.rank, ranks.size),
-                       fmt::format("{} and {}", *rank, *size), "a rank from 0 on, and how many there are");
-    return ShardNumber{*rank + 1, *size, fmt::format(fmt::runtime(ranks.name), *rank + 1, *size)};
+    const auto size = given                      ? given
+                      : launcher.size != nullptr ? number_of(environment, launcher.size)
+                                                 : std::nullopt;
+    if (!size || (!given && size != number_of(environment, "SLURM_ARRAY_TASK_COUNT")))
+      throw InputError("--shard auto",
+                       fmt::format("{} = {}, and not how many there are", launcher.number, *number),
+                       "sbatch --array=1-N as a whole; or --shard auto/N with the number of tasks or the "
+                       "`completions` of the job");
+    return part_by(launcher, *number, *size);
   }
   return std::nullopt;
 }
 
-/// The task of a Slurm array. Its size is known without `given` only as long as it is whole.
-std::optional<ShardNumber> array_task_of(const Environment& environment, std::optional<std::int64_t> given) {
-  const auto task = number_of(environment, "SLURM_ARRAY_TASK_ID");
-  if (!task)
-    return std::nullopt;
-  const auto count = number_of(environment, "SLURM_ARRAY_TASK_COUNT"),
-             least = number_of(environment, "SLURM_ARRAY_TASK_MIN"),
-             most = number_of(environment, "SLURM_ARRAY_TASK_MAX");
-  const bool whole = least == 1 && most == count;
-  if (!given && !whole)
-    throw InputError("--shard auto", fmt::format("a Slurm array that is not 1-N, with task {}", *task),
-                     "sbatch --array=1-N; or --shard auto/N where some of N tasks are run again");
-  const std::int64_t of = given ? *given : *count;
-  if (*task < 1 || *task > of)
-    throw InputError("--shard auto: environment variable SLURM_ARRAY_TASK_ID", fmt::format("{}", *task),
-                     fmt::format("1 to {}: sbatch --array=1-{}", of, of));
-  return ShardNumber{*task, of, fmt::format("task {} of {} of a Slurm array", *task, of)};
-}
-
-/// The pod of an indexed Kubernetes job, which is told its index only.
-std::optional<ShardNumber> pod_of(const Environment& environment, std::optional<std::int64_t> given) {
-  const auto index = number_of(environment, "JOB_COMPLETION_INDEX");
-  if (!index)
-    return std::nullopt;
-  if (!given)
-    throw InputError("--shard auto", "an indexed Kubernetes job, which does not say how many pods it has",
-                     "--shard auto/N with the `completions` of the job");
-  if (*index < 0 || *index >= *given)
-    throw InputError("--shard auto: environment variable JOB_COMPLETION_INDEX", fmt::format("{}", *index),
-                     fmt::format("0 to {}", *given - 1));
-  return ShardNumber{*index + 1, *given, fmt::format("pod {} of {} of a Kubernetes job", *index + 1, *given)};
-}
-
-ShardNumber launched(const Environment& environment, std::optional<std::int64_t> given) {
-  const std::optional<ShardNumber> rank = rank_of(environment);
-  std::optional<ShardNumber> outer = array_task_of(environment, given);
-  if (!outer)
-    outer = pod_of(environment, given);
-  if (rank && outer)
-    return {(outer->number - 1) * rank->of + rank->number, outer->of * rank->of,
-            fmt::format("{}, {}", outer->launcher, rank->launcher)};
-  if (outer)
-    return *outer;
+PartNumber launched(const Environment& environment, const std::optional<std::int64_t>& given) {
+  const std::optional<PartNumber> rank = rank_of(environment), job = job_of(environment, given);
+  if (rank && job)
+    return {(job->number - 1) * rank->of + rank->number, job->of * rank->of,
+            fmt::format("{}, {}", job->launcher, rank->launcher)};
+  if (job)
+    return *job;
   if (!rank)
     throw InputError("--shard auto", "no launcher in the environment",
                      "a Slurm array, srun, mpirun or an indexed Kubernetes job; or --shard I/N");
@@ -114,7 +110,7 @@ std::optional<std::string> process_environment(const char* name) {
   return value != nullptr ? std::optional<std::string>(value) : std::nullopt;
 }
 
-ShardNumber parse_shard(std::string_view text, const Environment& environment) {
+PartNumber parse_part(std::string_view text, const Environment& environment) {
   constexpr std::string_view kAuto = "auto";
   if (text == kAuto)
     return launched(environment, std::nullopt);
@@ -132,8 +128,8 @@ ShardNumber parse_shard(std::string_view text, const Environment& environment) {
   return {*number, *of, ""};
 }
 
-bool is_in_shard(std::size_t place, const std::optional<ShardNumber>& shard) {
-  return !shard || static_cast<std::int64_t>(place) % shard->of == shard->number - 1;
+bool is_in_part(std::size_t place, const std::optional<PartNumber>& part) {
+  return !part || static_cast<std::int64_t>(place) % part->of == part->number - 1;
 }
 
 }  // namespace mpm

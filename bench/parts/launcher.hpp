@@ -9,8 +9,8 @@
 
 namespace mpm {
 
-/// One of the pieces into which a campaign is split.
-struct ShardNumber {
+/// One of the parts into which work is split.
+struct PartNumber {
   std::int64_t number = 1;  ///< from 1 to `of`
   std::int64_t of = 1;
   std::string launcher;  ///< who said so: "Slurm array task 3 of 8"; empty for the command line
@@ -38,10 +38,10 @@ std::optional<std::string> process_environment(const char* name);
 ///
 /// Throws InputError for another text, for `auto` without a launcher, and for an array whose size is not
 /// known.
-ShardNumber parse_shard(std::string_view text, const Environment& environment);
+PartNumber parse_part(std::string_view text, const Environment& environment);
 
-/// Of things that are done one after the other, is the one at this place in the piece? Every Nth is, from the
-/// Ith on; all are without a piece.
-bool is_in_shard(std::size_t place, const std::optional<ShardNumber>& shard);
+/// Of things that are done one after the other, is the one at this place in the part? Every Nth is, from the
+/// Ith on; all are without a part.
+bool is_in_part(std::size_t place, const std::optional<PartNumber>& part);
 
 }  // namespace mpm

@@ -88,11 +88,11 @@ LoopRanges piece_of(const LoopRanges& ranges, std::int64_t number, std::int64_t 
   return piece;
 }
 
-std::vector<std::int64_t> indices_within(const LoopRanges& ranges, std::int64_t first, std::int64_t end) {
+std::vector<std::int64_t> indices_in(const LoopRanges& ranges) {
   std::vector<std::int64_t> indices;
   for (const LoopRange& range : ranges)
-    for (std::int64_t index = std::max(range.first, first); index < std::min(range.end, end); ++index)
-      indices.push_back(index - first);
+    for (std::int64_t index = range.first; index < range.end; ++index)
+      indices.push_back(index);
   return indices;
 }
 

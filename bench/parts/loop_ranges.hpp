@@ -34,7 +34,7 @@ std::int64_t size_of(const LoopRanges& ranges);
 /// length and are together all of `ranges`. Without a loop where there are fewer loops than pieces.
 LoopRanges piece_of(const LoopRanges& ranges, std::int64_t number, std::int64_t of);
 
-/// Those of the loops from `first` to `end` - 1 that are in `ranges`, counted from `first`.
-std::vector<std::int64_t> indices_within(const LoopRanges& ranges, std::int64_t first, std::int64_t end);
+/// The loops in these ranges, one by one.
+std::vector<std::int64_t> indices_in(const LoopRanges& ranges);
 
 }  // namespace mpm

@@ -30,8 +30,8 @@ CampaignPart part_in(const Json& json, std::int64_t loops) {
   if (const auto text = json.at("loops").get<std::string>(); !text.empty())
     part.loops = parse_loop_ranges(text, loops);
   if (json.contains("shard"))
-    part.shard = {json.at("shard").at("number").get<std::int64_t>(),
-                  json.at("shard").at("of").get<std::int64_t>(), ""};
+    part.number = {json.at("shard").at("number").get<std::int64_t>(),
+                   json.at("shard").at("of").get<std::int64_t>(), ""};
   return part;
 }
 
@@ -62,7 +62,7 @@ fs::path parts_folder_of(const fs::path& output) {
   return output.string() + ".parts";
 }
 
-std::string part_name(const std::string& range, const std::optional<ShardNumber>& shard) {
+std::string part_name(const std::string& range, const std::optional<PartNumber>& shard) {
   std::string name = range;
   std::replace(name.begin(), name.end(), ':', '-');
   std::replace(name.begin(), name.end(), ',', '+');
@@ -86,8 +86,8 @@ void write_part_description(const PartFolder& part) {
             {"store", name_of(part.options.store)},
             {"allow_unhealthy_basis", part.options.allow_unhealthy_basis},
             {"scenario", part.study.source}};
-  if (part.part.shard)
-    json["shard"] = Json{{"number", part.part.shard->number}, {"of", part.part.shard->of}};
+  if (part.part.number)
+    json["shard"] = Json{{"number", part.part.number->number}, {"of", part.part.number->of}};
   const std::string text = json.dump(2) + '\n';
   write_file_atomically(part.path / kCampaignDescription, std::as_bytes(std::span(text)));
 }

@@ -102,18 +102,12 @@ fs::path shard_folder_of(const fs::path& output) {
   return output.string() + ".shards";
 }
 
-fs::path calibration_shard_folder(const fs::path& shards) {
-  return shards / "calibration";
-}
-
 void remove_shards(const fs::path& output) {
   remove_shard_folder(shard_folder_of(output));
 }
 
 void remove_shard_folder(const fs::path& folder) {
   ShardFolder shards(folder);
-  if (const fs::path inner = calibration_shard_folder(shards.path()); fs::exists(inner))
-    ShardFolder(inner).clear();
   shards.clear();
   fs::remove(shards.path() / kCampaignDescription);
 }

@@ -44,10 +44,7 @@ inline constexpr const char* kCampaignDescription = "campaign.json";
 /// Where the shards of an output lie: beside it.
 std::filesystem::path shard_folder_of(const std::filesystem::path& output);
 
-/// Where, in the folder of the shards of an output, those of its calibration loops lie.
-std::filesystem::path calibration_shard_folder(const std::filesystem::path& shards);
-
-/// Removes the shards in a folder, those of calibration loops too, their description, and the folder. Throws
+/// Removes the shards in a folder, their description, and the folder. Throws
 /// InputError when a run is at work in it.
 void remove_shard_folder(const std::filesystem::path& folder);
 

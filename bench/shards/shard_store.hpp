@@ -1,64 +1,124 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/execution/run_options.hpp"
+#include "bench/shards/shard.hpp"
 #include "bench/shards/shard_folder.hpp"
-#include "bench/shards/shard_set.hpp"
+#include "bench/shards/shard_identity.hpp"
 
 namespace mpm {
 
-/// Keeps the finished experiments of a campaign on the disk until all of them are there. A shard is also
-/// written when 64 MiB are waiting, so that stored loops do not fill the memory.
+/// Whole numbers from 0 on, many of them neighbours, in little memory.
+class KeySet {
+ public:
+  bool has(std::int64_t key) const;
+  /// Whether it was not there.
+  bool insert(std::int64_t key);
+
+ private:
+  std::map<std::int64_t, std::vector<bool>> blocks_;
+};
+
+/// The one place where finished work waits until all of it is there: bytes, each under a key from 0 on, in
+/// shards on the disk, or without a folder in memory.
 class ShardStore {
  public:
-  using Warn = ShardSet::Warn;
+  using Warn = std::function<void(const std::string&)>;
 
-  /// Opens the folder and reads the shards in it; `options` say what becomes of them, and how often one more
-  /// is written. `study` must outlive it. `count` is the number of experiments of the campaign. A damaged
-  /// shard is passed over with a warning; its experiments are missing.
-  ///
-  /// Throws InputError when shards lie there and are to be refused, belong to another run, or hold an
-  /// experiment beyond `count`; ArchiveError when the folder cannot be made. No shard is changed then.
-  ShardStore(const std::filesystem::path& folder, const RunOptions& options, const Study& study,
-             std::int64_t count, const Warn& warn);
+  /// What opens a folder.
+  struct Options {
+    Leftovers leftovers = Leftovers::resume;
+    double interval = RunOptions().shard_interval;  ///< s from one shard to the next
+    Warn warn = {};
+  };
 
-  /// What is in these shards, which lie elsewhere and stay as they are, is done too; before the first add().
-  /// Errors: as the constructor.
-  void take_others(const std::vector<std::filesystem::path>& shards, const Warn& warn) {
-    set_.take_stock(shards, warn);
-  }
+  struct Entry {
+    std::int64_t key = 0;
+    std::string bytes;
+    const std::filesystem::path* shard = nullptr;  ///< that it is in; null: in memory
+  };
+  /// The next entry at each call, which is there until the next call; null behind the last one.
+  using Next = std::function<const Entry*()>;
 
-  /// The experiments that no shard has, in the order of their index.
-  std::vector<std::int64_t> missing() const { return set_.missing(); }
-  /// Wall-clock time that the experiments in the shards took, in s: those of earlier runs until one is added.
-  double seconds() const { return set_.seconds(); }
+  /// In memory; take_stock() adds shards that others have left.
+  explicit ShardStore(ShardIdentity identity) : identity_(std::move(identity)) {}
 
-  /// Takes an outcome, and writes a shard when it is time. Throws ArchiveError when that fails.
-  void add(const ExperimentOutcome& outcome);
+  /// Opens the folder, which is locked as long as the store lives, and looks at the shards in it. A shard is
+  /// written when the last one is `interval` old, and when 64 MiB are waiting, so that they do not fill the
+  /// memory. Throws InputError when shards lie there and are to be refused, and as take_stock(); ArchiveError
+  /// when the folder cannot be made. No shard is changed then.
+  ShardStore(const std::filesystem::path& folder, ShardIdentity identity, Options options);
+
+  /// What is in these shards, which stay where they are, is done too. A damaged one is passed over with a
+  /// warning. Errors: as read_shard().
+  void take_stock(const std::vector<std::filesystem::path>& shards, const Warn& warn);
+
+  /// Deletes everything.
+  void clear();
+
+  bool has(std::int64_t key) const { return done_.has(key); }
+  /// Those of the keys that it has not, in their order.
+  std::vector<std::int64_t> missing(const std::vector<std::int64_t>& keys) const;
+  /// Wall-clock time that the work in the shards took, in s.
+  double seconds() const { return seconds_; }
+
+  /// Takes finished work, and writes a shard when it is time. Throws ArchiveError when that fails.
+  void add(std::int64_t key, std::string bytes);
   /// Writes what is still waiting.
   void flush();
 
-  /// Puts what is in the shards, which were all flushed, into as few of them as there can be: many small
-  /// files are a burden where they are kept. Damaged ones are removed. Killed in the middle it leaves
-  /// experiments in two shards. Throws ArchiveError.
+  /// Puts what is in the shards of the folder, which were all flushed, into as few of them as there can be:
+  /// many small files are a burden where they are kept. Damaged ones are removed. Killed in the middle it
+  /// leaves entries in two shards. Throws ArchiveError.
   void compact();
+  /// The same without these keys, from which on the store is not used.
+  void remove(const std::vector<std::int64_t>& keys);
 
-  /// The shards, of which none is waiting to be written.
-  const ShardSet& set() const { return set_; }
-  /// Gives each outcome once, shard by shard. Throws ArchiveError when a shard can no longer be read.
-  void read(const ShardSet::Take& take) const { set_.read(take); }
+  /// The entries, all flushed, with keys from `first` to `end` - 1 in the order of their keys, and where
+  /// several shards have a key in the order of these. They are read when they are asked for, and in memory
+  /// are their places in those shards that hold neighbours of the one at hand. The store must outlive it.
+  /// Throws ArchiveError when a shard can no longer be read.
+  Next in_order(std::int64_t first, std::int64_t end) const;
+  /// Whether several shards have one key.
+  bool has_repeated() const { return repeated_; }
 
  private:
   using Clock = std::chrono::steady_clock;
+  class Sweep;
 
-  ShardFolder folder_;
-  ShardSet set_;
-  std::chrono::duration<double> interval_;
+  /// A shard that is whole.
+  struct Shard {
+    std::filesystem::path path;
+    std::int64_t least, most;  ///< its keys
+  };
+
+  /// One more entry for the next shard.
+  void hold(std::int64_t key, const std::string& bytes);
+  /// Puts all but the removed entries into new shards.
+  void pack(const KeySet& removed);
+  /// Writes what is held as a shard.
+  Shard write(double seconds);
+
+  ShardIdentity identity_;
+  std::unique_ptr<ShardFolder> folder_;  ///< none: in memory
+  std::chrono::duration<double> interval_{0.0};
+  std::vector<Shard> shards_;
+  KeySet done_;
+  bool repeated_ = false;
+  double seconds_ = 0.0;
   ShardBytes waiting_;
+  Shard next_;  ///< that the waiting entries will be
+  std::map<std::int64_t, std::string> memory_;
   Clock::time_point written_ = Clock::now();
 };
 

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/methods/method_messages.hpp"
+#include "plants/non_finite.hpp"
 #include "plants/row_major.hpp"
 #include "results/archive/dimensions.hpp"
 #include "results/archive/matrix_io.hpp"
@@ -67,14 +68,25 @@ std::string heading_of_samples(const Study& study, bool with_candidates, const c
   return text + "\n";
 }
 
-void write_blind_csv(const std::filesystem::path& path, const Study& study, LoopStore& loops,
+/// The next one, missing throughout when it did not run to its end.
+AssessedLoop next_loop(const BlindLoops::Next& next, const Study& study) {
+  AssessedLoop loop = next();
+  if (loop.samples() == 0)
+    for (const LoopSignal& signal : loop_signals())
+      loop.*signal.member =
+          Eigen::MatrixXd::Constant(std::ssize(row_names(study, signal)), study.simulation.samples, kNaN);
+  return loop;
+}
+
+void write_blind_csv(const std::filesystem::path& path, const Study& study, const BlindLoops& loops,
                      const std::string& hash) {
   write_text_atomically(path, [&](const TextSink& add) {
     add(hash_line(hash));
     add(heading_of_samples(study, true, "loop,"));
-    for (std::size_t i = 0; i < loops.size(); ++i) {
+    const BlindLoops::Next next = loops.begin();
+    for (std::size_t i = 0; i < loops.count; ++i) {
       std::string text;
-      append_samples(text, study, loops.loop(i), fmt::format("{},", i));
+      append_samples(text, study, next_loop(next, study), fmt::format("{},", i));
       add(text);
     }
   });
@@ -103,19 +115,23 @@ VariableText text_of(const Study& study, const LoopSignal& signal) {
   return {signal.name, signal.meaning, unit_of_rows(study.plant, signal), "", {}, "time"};
 }
 
-/// Each signal of all loops, one after the other.
-void write_loops(Hdf5Group& group, const Study& study, LoopStore& loops) {
-  for (const LoopSignal& signal : loop_signals()) {
-    if (row_names(study, signal).empty() && is_candidates(signal))
-      continue;
-    Hdf5Rows<double> rows = group.create_rows<double>(signal.name, {"loop", signal.rows, "sample"},
-                                                      attributes<double>(text_of(study, signal)));
-    for (std::size_t i = 0; i < loops.size(); ++i) {
-      const RowMajorMatrix values = loops.signal(i, signal);
+/// All signals side by side, so that each loop is read once.
+void write_loops(Hdf5Group& group, const Study& study, const BlindLoops& loops) {
+  std::vector<std::pair<const LoopSignal*, Hdf5Rows<double>>> all;
+  for (const LoopSignal& signal : loop_signals())
+    if (!row_names(study, signal).empty() || !is_candidates(signal))
+      all.emplace_back(&signal, group.create_rows<double>(signal.name, {"loop", signal.rows, "sample"},
+                                                          attributes<double>(text_of(study, signal))));
+  const BlindLoops::Next next = loops.begin();
+  for (std::size_t i = 0; i < loops.count; ++i) {
+    const AssessedLoop loop = next_loop(next, study);
+    for (auto& [signal, rows] : all) {
+      const RowMajorMatrix values = loop.*signal->member;
       std::copy(values.data(), values.data() + values.size(), rows.add());
     }
-    rows.finish();
   }
+  for (auto& [signal, rows] : all)
+    rows.finish();
 }
 
 void write_benchmark(Hdf5Group& group, const Study& study, const AssessedLoop& benchmark) {
@@ -132,14 +148,14 @@ void write_dimensions(Hdf5Group& group, const Study& study) {
 
 /// `name` is for messages.
 void write_blind_netcdf(const std::filesystem::path& path, const std::string& name, const Study& study,
-                        const AssessmentContext& context, LoopStore& loops, const std::string& hash) {
+                        const AssessmentContext& context, const BlindLoops& loops, const std::string& hash) {
   const Hdf5File file = Hdf5File::create_at(path, name);
   Hdf5Group root = file.root();
   root.write_attribute("filetype", kBlindFileType);
   root.write_attribute("Conventions", "CF-1.8");
   root.write_attribute("title", fmt::format("Loops of {} without the truth", study.plant.name));
   root.write_attribute("loops_sha256", hash);
-  std::vector<std::int32_t> numbers(loops.size());
+  std::vector<std::int32_t> numbers(loops.count);
   std::iota(numbers.begin(), numbers.end(), 0);
   root.write_dimension("loop", numbers,
                        attributes<std::int32_t>({"loop", "number of the loop in this export"}));
@@ -165,6 +181,20 @@ void write_blind_text(const std::filesystem::path& path, const std::string& text
 }
 
 }  // namespace
+
+std::vector<std::string> row_names(const Study& study, const LoopSignal& signal) {
+  const std::string rows = signal.rows;
+  std::vector<std::string> names;
+  if (rows == "candidate")
+    for (int i = 0; i < study.record.candidates; ++i)
+      names.push_back(fmt::format("{}", i + 1));
+  else
+    for (const PlantModel::Variable& variable : rows == "cv"   ? study.plant.cvs
+                                                : rows == "mv" ? study.plant.mvs
+                                                               : study.plant.mds)
+      names.push_back(variable.name);
+  return names;
+}
 
 std::vector<BlindLoop> blind_order(const Campaign& campaign, bool with_calibration) {
   std::vector<BlindLoop> order;
@@ -213,11 +243,11 @@ std::string blind_key(const Campaign& campaign, bool with_calibration) {
 }
 
 void write_blind_loops(const std::filesystem::path& folder, const Campaign& campaign,
-                       const AssessmentContext& context, LoopStore& loops, const BlindParts& parts) {
+                       const AssessmentContext& context, const BlindLoops& loops, const BlindParts& parts) {
   const Study& study = campaign.study;
   const std::string hash = loops_hash(campaign, parts.calibration);
   nlohmann::ordered_json description = context_json(context);
-  description["loops"] = loops.size();
+  description["loops"] = loops.count;
   description["loops_sha256"] = hash;
   std::optional<int> windows;
   if (parts.windows) {
@@ -234,7 +264,7 @@ void write_blind_loops(const std::filesystem::path& folder, const Campaign& camp
   if (context.benchmark)
     write_blind_text(folder / "benchmark.csv", benchmark_csv(study, *context.benchmark));
   write_blind_text(folder / "context.json", description.dump(1) + "\n");
-  write_blind_text(folder / "verdicts.csv", empty_verdicts(loops.size(), windows, hash));
+  write_blind_text(folder / "verdicts.csv", empty_verdicts(loops.count, windows, hash));
 }
 
 }  // namespace mpm

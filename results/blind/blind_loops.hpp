@@ -3,12 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/method_messages.hpp"
 #include "results/archive/campaign.hpp"
-#include "results/blind/loop_store.hpp"
 
 // The loops of a campaign without the truth: for somebody who is to assess them and not to know what is
 // wrong.
@@ -28,6 +29,17 @@ struct BlindLoop {
   std::int64_t index = 0;  ///< of the experiment, or of the calibration loop
 };
 
+/// Loops of a blind export in the order of their numbers, which wait elsewhere and are read anew each time;
+/// one without samples did not run to its end.
+struct BlindLoops {
+  using Next = std::function<AssessedLoop()>;  ///< gives one after the other
+  std::size_t count = 0;
+  std::function<Next()> begin;
+};
+
+/// The names of the rows of a signal of the loops of a study.
+std::vector<std::string> row_names(const Study& study, const LoopSignal& signal);
+
 /// Which loops of the campaign are the loops 0, 1, 2, ... of its blind export: records with status ok and, if
 /// asked for, all calibration loops, in a shuffle by the stream `blind_order` of the master seed (Fisher and
 /// Yates), so that the archive is the key. Whether a calibration loop ran to its end no archive tells.
@@ -45,7 +57,7 @@ std::string hash_line(const std::string& hash);
 /// `loops.csv`, `benchmark.csv`, `context.json` and `verdicts.csv`, a form to fill in. `loops` are those of
 /// blind_order(). With windows the study must monitor. Errors: ArchiveError when a file cannot be written.
 void write_blind_loops(const std::filesystem::path& folder, const Campaign& campaign,
-                       const AssessmentContext& context, LoopStore& loops, const BlindParts& parts);
+                       const AssessmentContext& context, const BlindLoops& loops, const BlindParts& parts);
 
 /// CSV with the columns `loop` and `experiment` (its index; empty: a calibration loop): the key of a blind
 /// export, for whoever trains a method on it.

@@ -35,21 +35,24 @@ def check_going_on(program, folder):
     for number in signal.SIGKILL, signal.SIGTERM:
         process = subprocess.Popen(command(killed, "--jobs", "1"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                    text=True)
-        before = len(list(kept.glob("*.seed*")))
-        while process.poll() is None and len(list(kept.glob("*.seed*"))) == before:
+        before = len(list(kept.rglob("*.shard")))
+        while process.poll() is None and len(list(kept.rglob("*.shard"))) == before:
             time.sleep(0.005)
         process.send_signal(number)
         error = process.communicate(timeout=600)[1]
         assert process.returncode == (3 if number == signal.SIGTERM else -number), (process.returncode, error)
         assert (number == signal.SIGKILL) or "of 6 tables were done" in error and "To go on with it" in error, error
         assert not killed.exists()
-    done = {file.name: file.stat().st_mtime_ns for file in kept.glob("*.seed*")}
+    done = {file: file.stat().st_mtime_ns for file in kept.rglob("*.shard")}
     damaged = min(done)
-    (kept / damaged).write_bytes((kept / damaged).read_bytes()[:-100])
-    reproduce(killed, "--shard", "1/6")  # the first, which is the damaged one
-    now = {file.name: file.stat().st_mtime_ns for file in kept.glob("*.seed*")}
-    assert now[damaged] != done[damaged] and all(now[name] == done[name] for name in done if name != damaged)
-    assert reproduce(killed) == told and killed.read_bytes() == whole.read_bytes() and not kept.exists()
+    damaged.write_bytes(damaged.read_bytes()[:-100])
+    assert f"{damaged}: cut off or damaged" in reproduce(killed, "--shard", "1/6")  # the first, which is that one
+    now = {file: file.stat().st_mtime_ns for file in kept.rglob("*.shard")}
+    assert now.keys() - done.keys() == {kept / "1-of-6" / "00000001.shard"}, now
+    assert all(now[file] == done[file] for file in done if file != damaged)
+    again = reproduce(killed)
+    assert again.startswith(told) and str(damaged) in again, again
+    assert killed.read_bytes() == whole.read_bytes() and not kept.exists()
 
     parted = folder / "parted.html"
     dry = reproduce(parted, "--dry-run", "--shard", "1/4")
@@ -57,13 +60,13 @@ def check_going_on(program, folder):
     assert not (folder / "parted.html.tables").exists()
     for part in "1/2", "2/2":
         assert f"part {part[0]} of 2" in reproduce(parted, "--shard", part)
-    assert len(list((folder / "parted.html.tables").iterdir())) == 6
+    assert len(list((folder / "parted.html.tables").rglob("*.shard"))) == 6
     assert reproduce(parted) == told and parted.read_bytes() == whole.read_bytes()
     result = subprocess.run([program, "reproduce", "4.5", "--shard", "1/2"], capture_output=True, text=True)
     assert result.returncode == 2 and "--output" in result.stderr, result
     reproduce(parted, "--shard", "1/2")  # what waits for this page is not lost by another table on it
     subprocess.run([program, "reproduce", "2.4", "--quiet", "-o", parted], check=True, stdout=subprocess.DEVNULL)
-    assert len(list((folder / "parted.html.tables").iterdir())) == 3
+    assert len(list((folder / "parted.html.tables").rglob("*.shard"))) == 3
     for part in "1/2", "2/2":  # with another study nothing of it fits
         reproduce(parted, "--shard", part)
     assert reproduce(parted, "--set", "simulation.noise_standard_deviation=0.1") != told

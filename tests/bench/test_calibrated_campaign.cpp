@@ -11,10 +11,9 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/findings/calibration.hpp"
-#include "bench/campaign/calibration_runs.hpp"
+#include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/campaign/comparison_runner.hpp"
-#include "bench/campaign/serial_campaign.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
@@ -23,12 +22,14 @@
 #include "scenarios/files/study_file.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/files/suite_file.hpp"
+#include "tests/bench/serial_campaign.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {
 
 using namespace mpm;
 using Catch::Contains;
+using mpm::testing::run_serially;
 using mpm::testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
@@ -47,8 +48,9 @@ RunOptions few() {
   return options;
 }
 
-void add_methods(Campaign& campaign, const ComparisonOptions& options, const CampaignHooks& hooks) {
-  Comparison comparison(campaign, options);
+void add_methods(Campaign& campaign, const ComparisonOptions& options, const CampaignHooks& hooks,
+                 const std::optional<std::int64_t>& experiments = {}) {
+  Comparison comparison(campaign, compared_loops(campaign, {}, experiments), options);
   comparison.run(hooks);
   comparison.add_to(campaign, "compare");
 }
@@ -145,12 +147,12 @@ TEST_CASE(
   options.methods = {"botelho"};
   Campaign later = run_campaign(study, options);
   int done = 0;
-  const CampaignHooks counting{.on_done = [&](const ExperimentRecord&) { ++done; }};
-  add_methods(later, {.methods = {"sse", "counterfactual"}, .experiments = {}, .jobs = 2}, counting);
+  const CampaignHooks counting{.on_done = [&](bool) { ++done; }};
+  add_methods(later, {.methods = {"sse", "counterfactual"}, .jobs = 2}, counting);
   check_same(later.calibration, serial.calibration);
-  CHECK(done == compared_loops(later, {}) + kLoops);
+  CHECK(done == std::ssize(compared_loops(later, {}, {}).experiments) + kLoops);
   // Answers that it has are replaced, and stand behind the others.
-  add_methods(later, {.methods = {"botelho"}, .experiments = {}}, {});
+  add_methods(later, {.methods = {"botelho"}}, {});
   const Campaign chosen = with_methods(later, {"botelho", "sse", "counterfactual"}, {});
   check_same(chosen.calibration, serial.calibration);
 }
@@ -161,7 +163,7 @@ TEST_CASE("comparison: an archive may lack experiments between those that it has
   Campaign whole = run_campaign(calibrated_wood_berry(), options);
   Campaign part = whole;
   part.records.erase(part.records.begin() + 1, part.records.begin() + 3);
-  const ComparisonOptions comparison{.methods = {"sse"}, .experiments = {}};
+  const ComparisonOptions comparison{.methods = {"sse"}};
   add_methods(whole, comparison, {});
   add_methods(part, comparison, {});
   whole.records.erase(whole.records.begin() + 1, whole.records.begin() + 3);
@@ -184,11 +186,13 @@ TEST_CASE("comparison: of records that stay in the archive the same methods are 
   std::vector<std::string> asked = names;
   asked.push_back("no-such-method");
   for (const std::optional<std::int64_t> experiments : {std::optional<std::int64_t>(), {5}}) {
-    CHECK(compared_loops(streamed, experiments) == compared_loops(read, experiments));
-    const std::vector<std::string> missing = missing_methods(read, asked, experiments);
-    CHECK(missing.back() == "no-such-method");
-    CHECK(missing.size() < asked.size());
-    CHECK(missing_methods(streamed, asked, experiments) == missing);
+    const ComparedLoops loops = compared_loops(read, asked, experiments),
+                        same = compared_loops(streamed, asked, experiments);
+    CHECK(loops.missing.back() == "no-such-method");
+    CHECK(loops.missing.size() < asked.size());
+    CHECK(same.missing == loops.missing);
+    CHECK(same.experiments == loops.experiments);
+    CHECK(same.end == loops.end);
     const auto json = [&](const Campaign& campaign) {
       const Campaign part = with_methods(campaign, chosen, experiments);
       return comparison_json(part, findings_of(part));
@@ -227,27 +231,31 @@ TEST_CASE("comparison: answers come to records that stay in the archive as they 
   write_archive(folder / "a.h5", campaign, findings_of(campaign));
   Campaign expected = read_archive(folder / "a.h5");
   // One that is missing and one that is there, on the first experiments: the last one has no answer.
-  ComparisonOptions options{.methods = {"sse", "botelho"}, .experiments = 3};
-  add_methods(expected, options, {});
+  ComparisonOptions options{.methods = {"sse", "botelho"}};
+  add_methods(expected, options, {}, 3);
   CHECK(expected.records[2].by("sse")->answered());
   CHECK(expected.records[3].by("botelho")->status == AssessmentStatus::not_assessed);
 
   Campaign in_memory = stream_archive(folder / "a.h5");
   options.jobs = 3;
-  add_methods(in_memory, options, {});
+  Comparison comparison(in_memory, compared_loops(in_memory, {}, 3), options);
+  comparison.run({});
+  comparison.add_to(in_memory, "compare");
   check_same(in_memory, expected);
 
   // Half of the answers are in the folder of a part.
-  options.shard = ShardNumber{1, 2, ""};
-  options.kept = KeptAssessments{.shards = folder / "part", .parts = {}, .archive = "a", .warn = {}};
+  options.part = PartNumber{1, 2, ""};
+  options.kept = KeptAssessments{.shards = folder / "part", .parts = {}, .archive = "a", .options = {}};
   Campaign in_shards = stream_archive(folder / "a.h5");
-  Comparison(in_shards, options).run({});
-  options.shard.reset();
+  const ComparedLoops loops = compared_loops(in_shards, {}, 3);
+  Comparison(in_shards, loops, options).run({});
+  options.part.reset();
   options.kept->parts = {options.kept->shards};
   options.kept->shards = folder / "shards";
-  Comparison whole(in_shards, options);
-  CHECK(whole.tally().done > 0);
-  whole.run({});
+  Comparison whole(in_shards, loops, options);
+  std::int64_t done = 0;
+  whole.run({.on_start = [&](std::int64_t earlier, std::int64_t) { done = earlier; }});
+  CHECK(done > 0);
   whole.add_to(in_shards, "compare");
   check_same(in_shards, expected);
   write_archive(folder / "a.h5", in_shards, findings_of(in_shards));  // in the place of what it is read from
@@ -276,8 +284,7 @@ TEST_CASE("calibration: stopped in its loops and resumed, it is what one go give
   const Campaign serial = run_serially(study, options);
   options.shard_interval = 0.0;
   std::atomic<int> left = static_cast<int>(kExperiments) + 3;
-  const CampaignHooks stopping{.stop = [&] { return left <= 0; },
-                               .on_done = [&](const ExperimentRecord&) { --left; }};
+  const CampaignHooks stopping{.stop = [&] { return left <= 0; }, .on_done = [&](bool) { --left; }};
   CHECK_THROWS_WITH(run_campaign(study, options, stopping, shards), Contains("of 13 experiments"));
   CHECK(has_shards(output));
   CHECK_THROWS_WITH(run_campaign(study, options, {}, shards), Contains("--resume"));
@@ -290,7 +297,7 @@ TEST_CASE("calibration: stopped in its loops and resumed, it is what one go give
   const Campaign resumed = run_campaign(study, options, counting, shards);
   CHECK(done >= kExperiments + 3);
   check_same(resumed.calibration, serial.calibration);
-  CHECK(fs::exists(calibration_shard_folder(shards)));
+  CHECK(has_shards(output));
   remove_shards(output);
   CHECK_FALSE(fs::exists(shards));
 }

@@ -12,18 +12,19 @@
 
 #include "analysis/methods/method_table.hpp"
 #include "bench/campaign/campaign_runner.hpp"
-#include "bench/campaign/serial_campaign.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
 #include "scenarios/files/study_change.hpp"
 #include "scenarios/files/study_library.hpp"
+#include "tests/bench/serial_campaign.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {
 
 using namespace mpm;
 using Catch::Contains;
+using mpm::testing::run_serially;
 using mpm::testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
@@ -192,8 +193,7 @@ TEST_CASE("campaign: an unhealthy basis case stops it, unless it is allowed") {
 /// Stops a campaign after some experiments, in the way of a signal.
 Campaign interrupted(const Study& study, const RunOptions& options, const fs::path& shards, int experiments) {
   std::atomic<int> left = experiments;
-  const CampaignHooks hooks{.stop = [&] { return left <= 0; },
-                            .on_done = [&](const ExperimentRecord&) { --left; }};
+  const CampaignHooks hooks{.stop = [&] { return left <= 0; }, .on_done = [&](bool) { --left; }};
   return run_campaign(study, options, hooks, shards);
 }
 
@@ -266,7 +266,7 @@ TEST_CASE("campaign: the audit of a killed worker is said and done again, and fo
   const Campaign serial = run_serially(study, options);
   std::vector<std::string> warnings;
   std::size_t kills = GENERATE(1U, 1000U);  // once, and whenever an outcome comes
-  const auto kill_one = [&](const ExperimentRecord&) {
+  const auto kill_one = [&](bool) {
     if (kills-- > 0)
       for (const pid_t worker : children())
         ::kill(worker, SIGKILL);
@@ -348,7 +348,7 @@ TEST_CASE("campaign: an exception on the way of an outcome ends threads and proc
   RunOptions options = fourteen();
   options.jobs = 2;
   options.parallel = GENERATE(Parallel::threads, Parallel::processes);
-  const CampaignHooks hooks{.on_done = [](const ExperimentRecord&) { throw ArchiveError("disk full"); }};
+  const CampaignHooks hooks{.on_done = [](bool) { throw ArchiveError("disk full"); }};
   CHECK_THROWS_WITH(run_campaign(find_study("wood-berry"), options, hooks), "disk full");
 }
 

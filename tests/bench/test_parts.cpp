@@ -20,8 +20,8 @@ using Catch::Contains;
 
 using Variables = std::map<std::string, std::string>;
 
-ShardNumber parsed(const std::string& text, const Variables& variables = {}) {
-  return parse_shard(text, [&](const char* name) {
+PartNumber parsed(const std::string& text, const Variables& variables = {}) {
+  return parse_part(text, [&](const char* name) {
     const auto found = variables.find(name);
     return found != variables.end() ? std::optional(found->second) : std::nullopt;
   });
@@ -30,7 +30,7 @@ ShardNumber parsed(const std::string& text, const Variables& variables = {}) {
 using Piece = std::pair<std::int64_t, std::int64_t>;
 
 Piece shard(const std::string& text, const Variables& variables = {}) {
-  const ShardNumber number = parsed(text, variables);
+  const PartNumber number = parsed(text, variables);
   return {number.number, number.of};
 }
 
@@ -48,7 +48,7 @@ TEST_CASE("loop ranges: a text and back, neighbours as one range") {
   CHECK(to_string(parse_loop_ranges("0:2,2:5", 10)) == "0:5");
   CHECK(to_string(LoopRanges()).empty());
   CHECK(ranges_of({1, 2, 3, 7, 9, 10}) == LoopRanges{{1, 4}, {7, 8}, {9, 11}});
-  CHECK(indices_within({{1, 3}, {7, 9}}, 2, 8) == std::vector<std::int64_t>{0, 5});
+  CHECK(indices_in({{1, 3}, {7, 9}}) == std::vector<std::int64_t>{1, 2, 7, 8});
 }
 
 TEST_CASE("loop ranges: what is none is refused with what is allowed") {
@@ -65,10 +65,10 @@ TEST_CASE("loop ranges: pieces are all of them, in order, and differ by one loop
         const LoopRanges piece = piece_of(all, number, of);
         const std::int64_t least = size_of(all) / of;
         CHECK((size_of(piece) == least || size_of(piece) == least + 1));
-        for (const std::int64_t index : indices_within(piece, 0, 40))
+        for (const std::int64_t index : indices_in(piece))
           together.push_back(index);
       }
-      CHECK(together == indices_within(all, 0, 40));
+      CHECK(together == indices_in(all));
     }
   const std::int64_t many = std::int64_t{1} << 60;  // no product overflows
   CHECK(piece_of({{0, many}}, 1 << 30, 1 << 30).back().end == many);
@@ -114,15 +114,16 @@ TEST_CASE("shard: where a launcher does not say enough, auto says what it needs"
   CHECK_THROWS_WITH(shard("auto", {{"JOB_COMPLETION_INDEX", "7"}}), Contains("auto/N"));
   CHECK_THROWS_WITH(shard("auto/7", {{"JOB_COMPLETION_INDEX", "7"}}), Contains("0 to 6"));
   CHECK_THROWS_WITH(shard("auto/3", {{"PMI_RANK", "0"}, {"PMI_SIZE", "4"}}), Contains("auto/4"));
-  CHECK_THROWS_WITH(shard("auto", {{"PMI_RANK", "4"}, {"PMI_SIZE", "4"}}), Contains("4 and 4"));
+  CHECK_THROWS_WITH(shard("auto", {{"PMI_RANK", "4"}, {"PMI_SIZE", "4"}}),
+                    Contains("4 of 4") && Contains("0 to 3"));
   CHECK_THROWS_WITH(shard("auto", {{"PMI_RANK", "x"}, {"PMI_SIZE", "4"}}),
                     Contains("PMI_RANK") && Contains("a whole number"));
 }
 
 TEST_CASE("part: its folder is named by what was asked for, however long that is") {
-  CHECK(part_name("", ShardNumber{3, 8, ""}) == "3-of-8");
+  CHECK(part_name("", PartNumber{3, 8, ""}) == "3-of-8");
   CHECK(part_name("100:150,160:170", std::nullopt) == "100-150+160-170");
-  CHECK(part_name("100:150", ShardNumber{1, 2, ""}) == "100-150_1-of-2");
+  CHECK(part_name("100:150", PartNumber{1, 2, ""}) == "100-150_1-of-2");
   std::string one = "0:1";
   for (int i = 1; i < 100; ++i)
     one += fmt::format(",{}:{}", 2 * i, 2 * i + 1);

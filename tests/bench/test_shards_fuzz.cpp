@@ -8,7 +8,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "bench/outcome/outcome_bytes.hpp"
+#include "bench/campaign/campaign_loops.hpp"
+#include "bench/shards/shard.hpp"
 #include "bench/shards/shard_store.hpp"
 #include "plants/error.hpp"
 #include "results/files/byte_stream.hpp"
@@ -29,8 +30,9 @@ Campaign any_campaign() {
 /// A store digests the program file each time, which takes long.
 constexpr int kResumeEach = 50;
 
-RunOptions resuming() {
+RunOptions resuming(std::int64_t experiments) {
   RunOptions options;
+  options.experiments = experiments;
   options.leftovers = Leftovers::resume;
   return options;
 }
@@ -54,8 +56,8 @@ class Reader {
  public:
   explicit Reader(Campaign campaign)
       : campaign_(one_loop(std::move(campaign))),
-        format_(campaign_.study),
-        identity_(shard_identity(campaign_.study, resuming())),
+        loops_(campaign_.study, resuming(std::ssize(campaign_.records))),
+        identity_(shard_identity(campaign_.study, loops_.options())),
         file_(folder_ / "00000001.shard") {}
 
   /// The shard, when it is neither damaged nor refused; a refusal must name the file.
@@ -64,12 +66,18 @@ class Reader {
     make_file(file_, content);
     refused_ = false;
     try {
-      Shard shard;
-      const std::optional<double> seconds =
-          read_shard(file_, identity_, format_,
-                     [&](ExperimentOutcome outcome) { shard.outcomes.push_back(std::move(outcome)); });
-      shard.seconds = seconds.value_or(0.0);
-      return seconds ? std::optional(std::move(shard)) : std::nullopt;
+      const std::optional<ShardContent> found = read_shard(file_, identity_);
+      if (!found)
+        return std::nullopt;
+      Shard shard{.seconds = found->seconds};
+      ShardStore::Entry entry{.key = 0, .bytes = "", .shard = &file_};
+      const std::string bytes = file_content(file_);
+      for (const ShardPlace& place : found->places) {
+        entry.key = place.key;
+        entry.bytes = bytes.substr(place.begin, place.size);
+        shard.outcomes.push_back(loops_.outcome(entry));
+      }
+      return shard;
     } catch (const InputError& error) {
       refused_ = true;
       if (!std::string_view(error.what()).starts_with(file_.string() + ": "))
@@ -88,9 +96,8 @@ class Reader {
   /// Resumes a run with the last one as its shard.
   void resume() const {
     try {
-      const auto experiments = static_cast<std::int64_t>(campaign_.records.size());
-      const ShardStore store(folder_.path(), resuming(), campaign_.study, experiments, {});
-      store.read([](const ExperimentOutcome&) {});
+      const ShardStore store = loops_.open(folder_.path(), {});
+      loops_.experiment_records(store, {}).each([](const ExperimentRecord&) {});
     } catch (const InputError& error) {
       if (std::string_view(error.what()).find(file_.string()) == std::string_view::npos)
         FAIL_CHECK("a refusal that does not name the file: " << error.what());
@@ -104,7 +111,7 @@ class Reader {
       ExperimentOutcome outcome;
       outcome.record = record;
       outcome.audited.resize(2);
-      bytes.add(format_.to_bytes(outcome));
+      bytes.add(record.draw.index, loops_.result(record.draw.index, outcome).bytes);
     }
     bytes.write(file_, identity_, 1.5);
     return file_content(file_);
@@ -124,8 +131,8 @@ class Reader {
     std::string content = heading();
     for (const ExperimentOutcome& outcome : shard.outcomes) {
       ByteWriter writer;
-      const std::string bytes = format_.to_bytes(outcome);
-      transfer(writer, bytes);
+      const std::string bytes = loops_.result(outcome.record.draw.index, outcome).bytes;
+      transfer_all(writer, outcome.record.draw.index, bytes);
       content += writer.take();
     }
     return content;
@@ -133,7 +140,7 @@ class Reader {
 
  private:
   Campaign campaign_;
-  OutcomeBytes format_;
+  CampaignLoops loops_;
   ShardIdentity identity_;
   TemporaryFolder folder_;
   std::filesystem::path file_;
@@ -174,8 +181,9 @@ TEST_CASE("shard: random bytes under a right checksum are refused by name, where
     }
   for (int i = 0; i < 300; ++i) {  // an outcome of the right length
     ByteWriter writer;
+    const std::int64_t key = i % 2;
     const std::string outcome = mutator.random_bytes(2000);
-    transfer(writer, outcome);
+    transfer_all(writer, key, outcome);
     CHECK_FALSE(reader.read_sealed(with_identity + writer.take()));
     CHECK(reader.refused());
     if (i % kResumeEach == 0)

@@ -24,7 +24,7 @@
 #include <unistd.h>
 
 #include "analysis/methods/method_messages.hpp"
-#include "bench/outcome/outcome_bytes.hpp"
+#include "bench/campaign/campaign_loops.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard.hpp"
 #include "bench/shards/shard_identity.hpp"
@@ -242,20 +242,24 @@ std::vector<Kind> campaign_kinds(const fs::path& folder, const fs::path& source,
   description.study = find_study("wood-berry");
   description.options.experiments = 40;
   description.loops = 40;
-  description.part = {parse_loop_ranges("0:10,20:30", 40), ShardNumber{1, 2, ""}};
+  description.part = {parse_loop_ranges("0:10,20:30", 40), PartNumber{1, 2, ""}};
   write_part_description(description);
 
   const ShardIdentity identity = shard_identity(campaign.study, {});
-  const auto format = std::make_shared<OutcomeBytes>(campaign.study);
+  const auto loops = std::make_shared<const CampaignLoops>(campaign.study, RunOptions());
   ShardBytes bytes;
   ExperimentOutcome outcome;
   outcome.record = campaign.records.front();
-  bytes.add(format->to_bytes(outcome));
+  bytes.add(outcome.record.draw.index, loops->result(outcome.record.draw.index, outcome).bytes);
   bytes.write(shard, identity, 1.5);
   const std::string sealed_shard = file_content(shard);
-  const auto read = [identity, format](const fs::path& file) {
-    if (!read_shard(file, identity, *format, [](const ExperimentOutcome&) {}))
+  const auto read = [identity, loops](const fs::path& file) {
+    const std::optional<ShardContent> content = read_shard(file, identity);
+    if (!content)
       throw InputError("shard", "damaged", "a whole one");
+    const std::string read_bytes = file_content(file);
+    for (const ShardPlace& place : content->places)
+      loops->outcome({.key = place.key, .bytes = read_bytes.substr(place.begin, place.size), .shard = &file});
   };
   const std::string verdicts = hash_line(loops_hash(campaign, false)) +
                                "loop,flagged,score,cv,source,channels,parameter,size,error\n"

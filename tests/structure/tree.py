@@ -19,8 +19,7 @@ FOLDERS = {
                  "findings", "reproduction", "validation"],
     "results": ["files", "archive", "records", "blind", "text", "plot", "summary", "gates", "report", "assess",
                 "reproduction", "suite"],
-    "bench": ["version.hpp", "files", "outcome", "byte_stream.hpp", "record_bytes.hpp", "outcome_bytes.hpp", "execution",
-              "shards", "parts", "campaign", "comparison_runner.hpp", "console", "commands", "perf"],
+    "bench": ["version.hpp", "files", "outcome", "execution", "shards", "parts", "campaign", "console", "commands", "perf"],
 }
 
 # At the root: what .gitignore names and what tools leave there.

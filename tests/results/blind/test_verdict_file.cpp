@@ -8,9 +8,9 @@
 
 #include "plants/error.hpp"
 #include "results/blind/blind_loops.hpp"
-#include "results/blind/loop_store.hpp"
 #include "results/blind/verdict_file.hpp"
 #include "scenarios/files/study_library.hpp"
+#include "solvers/qp_solver.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 // Files of verdicts: every line comes to the loop or the window that it is of, and what is no verdict is
@@ -90,31 +90,36 @@ TEST_CASE("blind order: without calibration loops every loop that ran, with them
   CHECK(verdicts_in(streamed, "loop,flagged\n0,1\n").answers.size() == 5);
 }
 
-TEST_CASE("loop store: loops come back as they were put, in any order; one that did not run is missing") {
-  const Campaign campaign = five_loops();
-  const Study& study = campaign.study;
+TEST_CASE("blind loops: one that did not run to its end is missing throughout, the others are as they were") {
+  Campaign campaign = made_up_campaign();
   const auto loop_of = [&](double value) {
     AssessedLoop loop;
     for (const LoopSignal& signal : loop_signals())
-      loop.*signal.member = Eigen::MatrixXd::NullaryExpr(
-          std::ssize(row_names(study, signal)), study.simulation.samples,
-          [&](Eigen::Index row, Eigen::Index k) { return value += 0.25 * static_cast<double>(row - k); });
+      loop.*signal.member = Eigen::MatrixXd::Constant(std::ssize(row_names(campaign.study, signal)),
+                                                      campaign.study.simulation.samples, value);
     return loop;
   };
+  const BlindLoops loops{3, [&]() -> BlindLoops::Next {
+                           return [&, number = 0]() mutable {
+                             return number++ == 1 ? AssessedLoop() : loop_of(number);
+                           };
+                         }};
   const TemporaryFolder folder;
-  LoopStore store(folder.path(), study, 3);
-  CHECK(std::filesystem::is_empty(folder.path()));  // whatever ends the process, no file stays
-  store.put(2, loop_of(2.0));
-  store.put(0, loop_of(0.0));
-  store.put(1, {});
-  for (const LoopSignal& signal : loop_signals()) {
-    INFO(signal.name);
-    CHECK((store.loop(0).*signal.member == loop_of(0.0).*signal.member));
-    CHECK((store.signal(2, signal) == loop_of(2.0).*signal.member));
-    CHECK((store.loop(1).*signal.member).array().isNaN().all());
-    CHECK((store.loop(1).*signal.member).rows() == std::ssize(row_names(study, signal)));
-  }
-  CHECK_THROWS_WITH(LoopStore(folder / "none", study, 3), Catch::Contains("none: cannot make a file in it"));
+  write_blind_loops(folder.path(), campaign,
+                    {campaign.study, campaign.basis, qp_solver_factory("active-set")}, loops, {});
+  const std::string text = file_content(folder / "loops.csv");
+  const auto rows = [&](const std::string& start, const std::string& value) {
+    int count = 0;
+    for (std::size_t at = text.find("\n" + start); at != std::string::npos;
+         at = text.find("\n" + start, at + 1)) {
+      const std::string row = text.substr(at, text.find('\n', at + 1) - at);
+      count += row.substr(row.rfind(',') + 1) == value ? 1 : 0;
+    }
+    return count;
+  };
+  CHECK(rows("0,", "1") == campaign.study.simulation.samples);
+  CHECK(rows("1,", "NaN") == campaign.study.simulation.samples);
+  CHECK(rows("2,", "3") == campaign.study.simulation.samples);
 }
 
 TEST_CASE("verdict file: each line is kept with the record of its loop; one without a line has failed") {

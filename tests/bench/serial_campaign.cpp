@@ -1,29 +1,16 @@
-#include "bench/campaign/serial_campaign.hpp"
+#include "tests/bench/serial_campaign.hpp"
 
 #include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "bench/campaign/calibration_runs.hpp"
+#include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "scenarios/loop/calibration.hpp"
+#include "solvers/qp_solver.hpp"
 
-namespace mpm {
-
-namespace {
-
-Calibration calibrate_serially(const Campaign& campaign, const RunOptions& options,
-                               const QpSolverFactory& factory) {
-  const Study loops = calibration_study(campaign.study);
-  ExperimentWork work(loops, campaign.study, campaign.basis, options, factory);
-  std::vector<ExperimentRecord> records;
-  for (std::int64_t index = 0; index < loops.experiment_count(); ++index)
-    records.push_back(work.run(index).record);
-  return calibration_of(loops, records);
-}
-
-}  // namespace
+namespace mpm::testing {
 
 Campaign run_serially(Study study, const RunOptions& options) {
   Campaign campaign;
@@ -40,9 +27,16 @@ Campaign run_serially(Study study, const RunOptions& options) {
     campaign.records.push_back(std::move(outcome.record));
     campaign.audit.insert(campaign.audit.end(), outcome.audited.begin(), outcome.audited.end());
   }
-  if (campaign.study.calibration)
-    campaign.calibration = calibrate_serially(campaign, calibration_options(options), factory);
+  if (!campaign.study.calibration)
+    return campaign;
+  const Study loops = calibration_study(campaign.study);
+  const RunOptions calibrating = calibration_options(options);
+  ExperimentWork calibration(loops, campaign.study, campaign.basis, calibrating, factory);
+  std::vector<ExperimentRecord> records;
+  for (std::int64_t index = 0; index < loops.experiment_count(); ++index)
+    records.push_back(calibration.run(index).record);
+  campaign.calibration = calibration_of(loops, records);
   return campaign;
 }
 
-}  // namespace mpm
+}  // namespace mpm::testing

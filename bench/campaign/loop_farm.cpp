@@ -1,0 +1,170 @@
+#include "bench/campaign/loop_farm.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "bench/execution/thread_loop.hpp"
+#include "bench/execution/worker_pool.hpp"
+#include "results/files/byte_stream.hpp"
+
+namespace mpm {
+namespace {
+
+/// How long threads run before what they have left unfinished is worked off: much longer than an experiment,
+/// so that waiting for the last one is little, and no more than a killed run may lose.
+constexpr std::chrono::seconds kRound(2);
+constexpr std::int64_t kMostInRound = 100'000;
+
+/// A loop for a worker process.
+struct BegunLoop {
+  std::int64_t key = 0;
+  std::string begun = {};
+  bool again = false;
+};
+
+std::string answer(const LoopWork& work, const std::string& request) {
+  ByteReader reader(request);
+  BegunLoop task;
+  transfer_all(reader, task.key, task.begun);
+  const LoopResult result = work.process(task.key, task.begun);
+  ByteWriter writer;
+  transfer_all(writer, result.failed, result.bytes);
+  return writer.take();
+}
+
+class LoopFarm {
+ public:
+  LoopFarm(ShardStore& store, const std::vector<std::int64_t>& keys, const LoopWork& work)
+      : store_(store),
+        work_(work),
+        missing_(store.missing(keys)),
+        count_(std::ssize(keys)),
+        done_(count_ - std::ssize(missing_)) {}
+
+  void run() {
+    if (work_.on_start)
+      work_.on_start(done_, count_);
+    if (work_.process && !missing_.empty())
+      pool_.emplace(work_.thread ? work_.jobs : static_cast<int>(std::min<std::int64_t>(work_.jobs, left())),
+                    [this](const std::string& request) { return answer(work_, request); });
+    if (work_.thread)
+      run_threads();
+    else if (pool_)
+      work_off([this] { return left() > 0 ? std::optional(BegunLoop{missing_[next_++]}) : std::nullopt; });
+    store_.flush();
+    if (done_ < count_)
+      throw Interrupted(done_, count_, work_.what);
+  }
+
+ private:
+  std::int64_t left() const { return std::ssize(missing_) - static_cast<std::int64_t>(next_); }
+
+  void run_threads() {
+    std::vector<LoopWork::Thread> threads;
+    while (left() > 0 && std::ssize(threads) < work_.jobs)
+      threads.push_back(work_.thread());
+    while (left() > 0 && !requested(work_.stop)) {
+      run_round(threads, static_cast<std::size_t>(pool_ ? std::min(kMostInRound, left()) : left()));
+      if (pool_)
+        work_off([] { return std::optional<BegunLoop>(); });
+    }
+  }
+
+  /// Has threads run the next `count` loops, or where worker processes wait those for which there is time.
+  void run_round(const std::vector<LoopWork::Thread>& threads, std::size_t count) {
+    using RoundClock = std::chrono::steady_clock;
+    const RoundClock::time_point end = pool_ ? RoundClock::now() + kRound : RoundClock::time_point::max();
+    std::vector<char> is_left_out(count, 0);
+    for_each_in_threads(count, work_.jobs, [&](std::size_t i, std::size_t thread) {
+      if (requested(work_.stop) || RoundClock::now() >= end) {
+        is_left_out[i] = 1;
+        return;
+      }
+      const std::int64_t key = missing_[next_ + i];
+      LoopResult result = threads[thread](key);
+      const std::lock_guard one_at_a_time(delivery_);
+      if (result.unfinished)
+        waiting_.push_back({key, std::move(result.bytes)});
+      else
+        deliver(key, std::move(result));
+    });
+    std::vector<std::int64_t> left_out;
+    for (std::size_t i = 0; i < count; ++i)
+      if (is_left_out[i] != 0)
+        left_out.push_back(missing_[next_ + i]);
+    next_ += count - left_out.size();
+    std::copy(left_out.begin(), left_out.end(), missing_.begin() + static_cast<std::ptrdiff_t>(next_));
+  }
+
+  /// Has worker processes do what is waiting, and what `more` gives, unless it is to stop.
+  template <class More>
+  void work_off(const More& more) {
+    std::map<std::int64_t, BegunLoop> under_way;
+    while (!requested(work_.stop)) {
+      if (std::optional<BegunLoop> task = pool_->has_idle() ? next_task(more) : std::nullopt) {
+        ByteWriter writer;
+        transfer_all(writer, task->key, std::as_const(task->begun));
+        pool_->start(task->key, writer.take());
+        under_way.insert_or_assign(task->key, *std::move(task));
+      } else if (!pool_->has_busy()) {
+        return;
+      } else if (const std::optional<TaskResult> result = next_finding(*pool_, work_.stop)) {
+        take(*result, std::move(under_way.extract(result->id).mapped()));
+      }
+    }
+  }
+
+  template <class More>
+  std::optional<BegunLoop> next_task(const More& more) {
+    if (waiting_.empty())
+      return more();
+    std::optional<BegunLoop> task = std::move(waiting_.front());
+    waiting_.pop_front();
+    return task;
+  }
+
+  void take(const TaskResult& result, BegunLoop task) {
+    if (!result.crashed) {
+      ByteReader reader(result.bytes);
+      LoopResult done;
+      transfer_all(reader, done.failed, done.bytes);
+      deliver(task.key, std::move(done));
+    } else if (std::optional<LoopResult> lost = work_.lost(task.key, task.begun, result.bytes, task.again)) {
+      deliver(task.key, *std::move(lost));
+    } else {
+      task.again = true;
+      waiting_.push_front(std::move(task));
+    }
+  }
+
+  void deliver(std::int64_t key, LoopResult result) {
+    ++done_;
+    if (work_.on_done)
+      work_.on_done(result.failed);
+    store_.add(key, std::move(result.bytes));
+    if (requested(work_.stop))
+      store_.flush();  // what else runs may not end in the time that there is
+  }
+
+  ShardStore& store_;
+  const LoopWork& work_;
+  std::vector<std::int64_t> missing_;
+  std::int64_t count_, done_;
+  std::size_t next_ = 0;  ///< of the missing ones
+  std::mutex delivery_;
+  std::deque<BegunLoop> waiting_;  ///< for worker processes
+  std::optional<WorkerPool> pool_;
+};
+
+}  // namespace
+
+void run_missing(ShardStore& store, const std::vector<std::int64_t>& keys, const LoopWork& work) {
+  LoopFarm(store, keys, work).run();
+}
+
+}  // namespace mpm

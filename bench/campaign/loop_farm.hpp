@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/execution/stop_request.hpp"
+#include "bench/shards/shard_store.hpp"
+
+namespace mpm {
+
+/// What came of a loop.
+struct LoopResult {
+  std::string bytes;        ///< what is kept of it
+  bool failed = false;      ///< worth mentioning to the user
+  bool unfinished = false;  ///< no thread can finish it: a worker process goes on with `bytes`
+};
+
+/// How loops are run, or whatever takes long: each a function of its key alone.
+struct LoopWork {
+  using Thread = std::function<LoopResult(std::int64_t key)>;
+
+  int jobs = 1;  ///< how many run at once
+  /// Makes what one of the threads works with, before the first of them starts. Empty: every loop runs in a
+  /// worker process.
+  std::function<Thread()> thread = {};
+  /// What a worker process does with a loop, of which a thread has `begun` bytes or nothing. Empty: threads
+  /// finish every loop.
+  std::function<LoopResult(std::int64_t key, const std::string& begun)> process = {};
+  /// What is kept of a loop over which a worker process died, `why`; none: it is tried once more. `again`: it
+  /// was tried once more.
+  std::function<std::optional<LoopResult>(std::int64_t key, const std::string& begun, const std::string& why,
+                                          bool again)>
+      lost = {};
+
+  StopRequest stop = {};
+  std::string_view what = "experiments";  ///< for the message of Interrupted
+  /// Called once before the first one: `done` of `count` were there already.
+  std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
+  /// Called after each one, in the order of completion; one call at a time, from any thread.
+  std::function<void(bool failed)> on_done = {};
+};
+
+/// Runs those of the loops that the store lacks, in this order, and keeps them in it: the one place where
+/// loops run. Threads are those of OpenMP, with a dynamic schedule; worker processes are for what bears no
+/// threads or may crash, and are forked before the first thread starts. The store has the same bytes however
+/// many run at once, and in whatever order they are done.
+///
+/// When a stop is requested, no more are given out, and those in worker processes, which may take minutes,
+/// are given up. Throws Interrupted when not all are done, and otherwise what the first loop in a thread
+/// throws; ArchiveError of the store; std::system_error when no worker process can be made.
+void run_missing(ShardStore& store, const std::vector<std::int64_t>& keys, const LoopWork& work);
+
+}  // namespace mpm
