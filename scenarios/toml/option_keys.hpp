@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -169,10 +170,8 @@ OptionKey list(std::string name, std::size_t most, std::function<OptionKeys(Entr
   OptionKey made = option(std::move(name), "list of tables", std::move(meaning));
   made.fallback = "none";
   made.suffix = "[]";
-  made.below = [below] {
-    Entry entry{};
-    return below(entry);
-  };
+  // The keys refer to the entry, and so may those of tables below it.
+  made.below = [below, entry = std::make_shared<Entry>()] { return below(*entry); };
   made.reader = [below, take = std::move(take), most](const TomlTable& table, const OptionKey& key) {
     if (!key.is_required && !table.has(key.name))
       return;
