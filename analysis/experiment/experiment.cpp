@@ -24,10 +24,16 @@ bool has_loops_alone(const ExperimentDraw& draw) {
   return draw.kind == ExperimentKind::mpm_ud && draw.true_cv() >= 0;
 }
 
-/// The answer of the chain; null when it was not asked or gave no verdict.
+/// Does the method say how much the mismatch dominates, from the loops with one fault alone?
+bool has_dominance(const AssessmentForm& form) {
+  return form.find("ivar_diag_mpm_alone") != nullptr && form.find("ivar_diag_ud_alone") != nullptr &&
+         form.find("dominance_mpm") != nullptr;
+}
+
+/// The answer of the method that has dominance; null when it was not asked or gave no verdict.
 AssessmentRecord* chain_verdict(std::vector<AssessmentRecord>& assessments) {
   const auto chain = std::find_if(assessments.begin(), assessments.end(), [](const auto& said) {
-    return said.form->method().name == kChainMethod && said.answered();
+    return has_dominance(*said.form) && said.answered();
   });
   return chain == assessments.end() ? nullptr : &*chain;
 }
@@ -55,8 +61,14 @@ const AssessmentRecord* ExperimentRecord::by(std::string_view method) const {
   return found == assessments.end() ? nullptr : &*found;
 }
 
+const AssessmentRecord* ExperimentRecord::diagnosed() const {
+  const auto found = std::find_if(assessments.begin(), assessments.end(),
+                                  [](const auto& assessment) { return diagnoses(*assessment.form); });
+  return found == assessments.end() ? nullptr : &*found;
+}
+
 Diagnosis ExperimentRecord::chain() const {
-  const AssessmentRecord* const said = by(kChainMethod);
+  const AssessmentRecord* const said = diagnosed();
   return said == nullptr ? Diagnosis{} : diagnosis_of(*said);
 }
 
@@ -127,7 +139,7 @@ void ExperimentRunner::add_dominance(AssessmentRecord& chain, Eigen::Index true_
   if (mpm_alone.status != ExperimentStatus::ok || ud_alone.status != ExperimentStatus::ok)
     return;
   const auto ivar_diag = [&](const FinishedLoop& part) {
-    return panel_.assess_by(kChainMethod, part.assessed)->number("ivar_diag", true_cv);
+    return panel_.assess_by(chain.form->method().name, part.assessed)->number("ivar_diag", true_cv);
   };
   const double mpm = ivar_diag(mpm_alone);
   const double ud = ivar_diag(ud_alone);
@@ -206,9 +218,10 @@ std::vector<AssessmentRecord> ExperimentRunner::assess(const ExperimentRecord& r
 }
 
 bool ExperimentRunner::runs_loops(const ExperimentRecord& record) const {
-  const bool has_chain = std::any_of(forms().begin(), forms().end(),
-                                     [](const auto& form) { return form->method().name == kChainMethod; });
-  return !record.loop || has_tuned_basis(study_, record.draw) || (has_chain && has_loops_alone(record.draw));
+  const bool asks_dominance =
+      std::any_of(forms().begin(), forms().end(), [](const auto& form) { return has_dominance(*form); });
+  return !record.loop || has_tuned_basis(study_, record.draw) ||
+         (asks_dominance && has_loops_alone(record.draw));
 }
 
 }  // namespace mpm

@@ -82,7 +82,9 @@ struct ExperimentRecord {
 
   /// What the method of this name says; null when it is not one of the study.
   const AssessmentRecord* by(std::string_view method) const;
-  /// What the chain of the thesis says; without vectors and without impact when it says nothing.
+  /// What the method that diagnoses says (diagnoses()); null when the study has none.
+  const AssessmentRecord* diagnosed() const;
+  /// The same as a Diagnosis; without vectors and without impact when it says nothing.
   Diagnosis chain() const;
 };
 

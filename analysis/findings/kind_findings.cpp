@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "analysis/statistics/roc.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
@@ -246,13 +246,19 @@ class SourceScores {
       ud_.push_back(said.number("i_mpm"));
   }
 
-  SourceArea result() const {
-    const RocCurve curve = roc_curve(mpm_, ud_);
-    if (!curve.defined())
-      return {};
-    return {curve.area,
-            area_interval(curve.area, curve.positives, curve.negatives, study_.aggregate.confidence),
-            curve.positives + curve.negatives};
+  SourceCurve result() const {
+    const AggregateOptions& options = study_.aggregate;
+    SourceCurve source{roc_curve(mpm_, ud_)};
+    if (!source.curve.defined())
+      return source;
+    source.area =
+        area_interval(source.curve.area, source.curve.positives, source.curve.negatives, options.confidence);
+    // The regressions have the first streams of this purpose, this one the last.
+    RandomStream stream(study_.seed, std::numeric_limits<std::uint64_t>::max(), StreamId::bootstrap);
+    source.best_threshold =
+        best_threshold_interval(mpm_, ud_, stream, {options.bootstrap_replications, options.confidence});
+    source.at_study = roc_point(mpm_, ud_, study_.diagnosis.mpm_threshold);
+    return source;
   }
 
  private:
@@ -409,17 +415,35 @@ std::vector<Finding> rows_of(const std::vector<DominanceBin>& bins) {
   return rows;
 }
 
-Collector<SourceArea> source_area_collector(const Study& study, std::size_t method) {
+Collector<SourceCurve> source_curve_collector(const Study& study, std::size_t method) {
   return collector_of(SourceScores(study, method));
 }
 
-Finding row_of(const SourceArea& source) {
-  const Finding finding{.name = "i_mpm_auc",
-                        .label = "area under the ROC curve of I_{MPM}",
-                        .meaning = "area under the ROC curve of I_MPM, mismatches against disturbances",
-                        .group = FindingGroup::study,
-                        .prominence = Prominence::headline};
-  return finding.with(source.area, source.interval, source.experiments);
+std::vector<Finding> rows_of(const SourceCurve& source) {
+  const std::int64_t experiments =
+      source.curve.defined() ? source.curve.positives + source.curve.negatives : 0;
+  const Finding area{.name = "i_mpm_auc",
+                     .label = "area under the ROC curve of I_{MPM}",
+                     .meaning = "area under the ROC curve of I_MPM, mismatches against disturbances",
+                     .group = FindingGroup::study,
+                     .prominence = Prominence::headline};
+  const Finding threshold{.name = "i_mpm_best_threshold",
+                          .label = "threshold of I_{MPM} with the largest J",
+                          .meaning = "threshold of I_MPM with the largest Youden's J, chosen on these data",
+                          .group = FindingGroup::study,
+                          .prominence = Prominence::detail};
+  return {area.with(source.curve.area, source.area, experiments),
+          threshold.with(source.curve.defined() ? source.curve.best.threshold : kNaN, source.best_threshold,
+                         experiments)};
+}
+
+Rate over_kinds(const std::vector<KindFindings>& kinds, Rate KindFindings::*member, double confidence) {
+  std::int64_t hits = 0, total = 0;
+  for (const KindFindings& kind : kinds) {
+    hits += (kind.*member).hits;
+    total += (kind.*member).total;
+  }
+  return rate(hits, total, confidence);
 }
 
 }  // namespace mpm

@@ -11,6 +11,7 @@
 #include "analysis/statistics/confusion_matrix.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/regression.hpp"
+#include "analysis/statistics/roc.hpp"
 #include "analysis/statistics/sample_summary.hpp"
 #include "plants/non_finite.hpp"
 
@@ -70,17 +71,22 @@ Collector<std::vector<DominanceBin>> dominance_collector(const Study& study, std
 
 std::vector<Finding> rows_of(const std::vector<DominanceBin>& bins);
 
-/// How well I_MPM tells a mismatch from a disturbance, whatever its threshold: the area under its ROC curve
-/// over the experiments with one fault of in_source_population(). NaN without experiments of either kind.
-struct SourceArea {
-  double area = kNaN;
-  Interval interval{kNaN, kNaN};
-  std::int64_t experiments = 0;
+/// A rate of the experiments of all kinds, which have none in common.
+Rate over_kinds(const std::vector<KindFindings>& kinds, Rate KindFindings::*rate, double confidence);
+
+/// How well I_MPM tells a mismatch from a disturbance, whatever its threshold: its ROC curve over the
+/// experiments with one fault of in_source_population(). Not defined without experiments of either kind.
+struct SourceCurve {
+  RocCurve curve;
+  Interval area{kNaN, kNaN};            ///< of the area under it
+  Interval best_threshold{kNaN, kNaN};  ///< of the threshold with the largest J, by bootstrap
+  RocPoint at_study{};                  ///< with the threshold of the study
 };
 
 /// `method` is the place of the chain. `study` must outlive the collector.
-Collector<SourceArea> source_area_collector(const Study& study, std::size_t method);
+Collector<SourceCurve> source_curve_collector(const Study& study, std::size_t method);
 
-Finding row_of(const SourceArea& source);
+/// The area, and the threshold with the largest J.
+std::vector<Finding> rows_of(const SourceCurve& source);
 
 }  // namespace mpm

@@ -217,4 +217,18 @@ Leaderboard make_leaderboard(const Suite& suite, const std::vector<std::string>&
   return board;
 }
 
+std::vector<std::string> passed_by_nobody(const Leaderboard& board, LeaderboardTask task) {
+  std::vector<std::string> names;
+  const auto somebody_passes = [&](std::size_t family) {
+    for (std::size_t method = 0; method < board.methods.size(); ++method)
+      if (board.methods[method] != kReferenceMethod && passes(board.by_family[method][family], task))
+        return true;
+    return false;
+  };
+  for (std::size_t family = 0; family < board.families.size(); ++family)
+    if (!somebody_passes(family))
+      names.push_back(board.families[family].name);
+  return names;
+}
+
 }  // namespace mpm

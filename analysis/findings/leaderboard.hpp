@@ -121,6 +121,9 @@ struct Leaderboard {
 /// Was the reference asked, on a family of its own?
 bool has_reference(const Leaderboard& board);
 
+/// The families that no method passes.
+std::vector<std::string> passed_by_nobody(const Leaderboard& board, LeaderboardTask task);
+
 /// Pools the cells of a suite. `cells` are those of `suite`, in any number and order; `methods` those of each
 /// cell that was run, in its order.
 Leaderboard make_leaderboard(const Suite& suite, const std::vector<std::string>& methods,

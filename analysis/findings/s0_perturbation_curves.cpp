@@ -5,7 +5,6 @@
 #include <iterator>
 #include <optional>
 
-#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/statistics/quantile.hpp"
 #include "plants/non_finite.hpp"
 
@@ -16,7 +15,7 @@ bool is_looked_at(const Study& study, const ExperimentRecord& record) {
   const auto multipliers = static_cast<Eigen::Index>(study.s0_perturbation.multipliers.size());
   return multipliers > 0 && record.status == ExperimentStatus::ok && record.draw.true_cv() >= 0 &&
          record.perturbed.time_constant.size() == multipliers &&
-         record.perturbed.damping.size() == multipliers && record.by(kChainMethod) != nullptr;
+         record.perturbed.damping.size() == multipliers && record.diagnosed() != nullptr;
 }
 
 /// Ivar_diag(modified)/Ivar_diag(true) of one experiment, multiplier by multiplier.
@@ -78,7 +77,7 @@ class PerturbedExperiments {
     if (!is_looked_at(study_, record))
       return;
     const Eigen::Index true_cv = record.draw.true_cv();
-    const double ivar_diag = record.by(kChainMethod)->number("ivar_diag", true_cv);
+    const double ivar_diag = record.diagnosed()->number("ivar_diag", true_cv);
     all_.push_back(
         {true_cv, record.perturbed.time_constant / ivar_diag, record.perturbed.damping / ivar_diag});
   }

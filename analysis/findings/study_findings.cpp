@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
@@ -20,21 +21,64 @@ void append(std::vector<Finding>&& rows, std::vector<Finding>& to) {
     to.push_back(std::move(row));
 }
 
-std::vector<Finding> rows_of(const std::string& parameter, const char* words, const S0Change& change) {
+std::vector<Finding> rows_of(const std::string& parameter, const char* words, const std::string& method,
+                             const S0Change& change) {
   const std::string of = fmt::format("{} of S0 within tolerance", words);
   const Finding largest{.name = parameter + ".largest_change",
                         .label = fmt::format("largest relative change of Ivar_{{diag}}, {}", of),
                         .meaning = fmt::format("largest relative change of Ivar_diag, {}", of),
                         .group = FindingGroup::s0,
-                        .method = std::string(kChainMethod),
+                        .method = method,
                         .has_interval = false};
   const Finding within{.name = parameter + ".within_band",
                        .label = fmt::format("Ivar_{{diag}} stays in band, {}", of),
                        .meaning = fmt::format("experiments whose Ivar_diag stays in band, {}", of),
                        .group = FindingGroup::s0,
-                       .method = std::string(kChainMethod)};
+                       .method = method};
   return {largest.with(change.largest, {kNaN, kNaN}, change.within_band.total),
           within.with(change.within_band)};
+}
+
+/// What the chain shows of all kinds together, and of the loops without a fault.
+void add_together(const Study& study, StudyFindings& findings) {
+  const double confidence = study.aggregate.confidence;
+  findings.right_scenarios = rate(findings.right_scenarios.hits, findings.right_scenarios.total, confidence);
+  const MethodFindings* const chain = findings.chain();
+  if (chain == nullptr)
+    return;
+  findings.located = over_kinds(chain->kinds, &KindFindings::located, confidence);
+  findings.source_recognised = over_kinds(chain->kinds, &KindFindings::source_recognised, confidence);
+  std::int64_t hits = 0, total = 0;
+  for (const FalseAlarms& group : chain->false_alarms)
+    if (!group.parameter) {
+      hits += group.false_alarm.hits;
+      total += group.false_alarm.total;
+    }
+  findings.false_alarm = rate(hits, total, confidence);
+}
+
+/// Their rows.
+std::vector<Finding> together_rows(const Study& study, const StudyFindings& findings) {
+  std::vector<Finding> rows;
+  const auto add = [&](const char* name, const char* label, const char* meaning, const Rate& found) {
+    rows.push_back(
+        Finding{.name = name, .label = label, .meaning = meaning, .prominence = Prominence::detail}.with(
+            found));
+  };
+  if (study.names_scenarios()) {
+    add("right_scenarios", "scenarios judged rightly", "named scenarios whose every CV and source is right",
+        findings.right_scenarios);
+    return rows;
+  }
+  if (!findings.chain()->kinds.empty()) {
+    add("located", "located", "flagged loops of all kinds whose CV is located", findings.located);
+    add("source_recognised", "source recognised", "loops with one fault whose source is recognised",
+        findings.source_recognised);
+  }
+  if (!findings.chain()->false_alarms.empty())
+    add("false_alarm", "false alarm", "loops in which model and plant agree that are flagged",
+        findings.false_alarm);
+  return rows;
 }
 
 /// The rows of the chain have no prefix: they are what the thesis reports.
@@ -58,18 +102,20 @@ std::vector<Finding> all_rows(const Study& study, const StudyFindings& findings)
   if (const MethodFindings* const chain = findings.chain()) {
     for (const KindFindings& kind : chain->kinds)
       append(rows_of(kind, study, *chain->form, ""), rows);
-    if (findings.source_area)
-      rows.push_back(row_of(*findings.source_area));
+    append(together_rows(study, findings), rows);
+    if (findings.source_curve)
+      append(rows_of(*findings.source_curve), rows);
     append(rows_of(findings.dominance), rows);
     if (findings.s0_changes) {
-      append(rows_of("s0_time_constant", "time constant", findings.s0_changes->time_constant), rows);
-      append(rows_of("s0_damping", "damping", findings.s0_changes->damping), rows);
+      append(rows_of("s0_time_constant", "time constant", chain->name(), findings.s0_changes->time_constant),
+             rows);
+      append(rows_of("s0_damping", "damping", chain->name(), findings.s0_changes->damping), rows);
     }
     for (const FalseAlarms& group : chain->false_alarms)
       append(rows_of(group, chain->name()), rows);
   }
   for (const MethodFindings& method : findings.methods)
-    if (method.name() != kChainMethod)
+    if (&method != findings.chain())
       for (const KindFindings& kind : method.kinds)
         append(rows_of(kind, study, *method.form, method.name() + "."), rows);
   for (const MethodFindings& method : findings.methods)
@@ -105,7 +151,9 @@ const MethodFindings* StudyFindings::of(std::string_view method) const {
 }
 
 const MethodFindings* StudyFindings::chain() const {
-  return of(kChainMethod);
+  const auto found = std::find_if(methods.begin(), methods.end(),
+                                  [](const MethodFindings& each) { return diagnoses(*each.form); });
+  return found == methods.end() ? nullptr : &*found;
 }
 
 StudyFindings study_findings(const Study& study, const AssessmentForms& forms, const RecordRange& records,
@@ -114,16 +162,16 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
   std::vector<MethodCollector> methods;
   const auto pairs = pair_collector(study, forms.size());
   std::optional<Collector<std::vector<DominanceBin>>> dominance;
-  std::optional<Collector<SourceArea>> source_area;
+  std::optional<Collector<SourceCurve>> source_curve;
   std::optional<Collector<S0Changes>> s0_changes;
   for (std::size_t method = 0; method < forms.size(); ++method) {
     methods.push_back({kind_collector(study, *forms[method], method), false_alarm_collector(study, method),
                        rate_collector(study, method, calibration)});
-    if (forms[method]->method().name != kChainMethod)
+    if (dominance || !diagnoses(*forms[method]))
       continue;
     dominance = dominance_collector(study, method);
     if (study.experiments.mpm > 0 && study.experiments.ud > 0)
-      source_area = source_area_collector(study, method);
+      source_curve = source_curve_collector(study, method);
     if (!study.s0_perturbation.multipliers.empty())
       s0_changes = s0_change_collector(study);
   }
@@ -136,8 +184,13 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
     pairs.add(record);
     if (dominance)
       dominance->add(record);
-    if (source_area)
-      source_area->add(record);
+    if (source_curve)
+      source_curve->add(record);
+    if (const AssessmentRecord* const said = record.diagnosed();
+        study.names_scenarios() && said != nullptr && said->answered()) {
+      ++findings.right_scenarios.total;
+      findings.right_scenarios.hits += judge(study, record, *said).wrong() ? 0 : 1;
+    }
     if (s0_changes)
       s0_changes->add(record);
   });
@@ -148,8 +201,9 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
   findings.pairs = pairs.result();
   if (dominance)
     findings.dominance = dominance->result();
-  if (source_area)
-    findings.source_area = source_area->result();
+  if (source_curve)
+    findings.source_curve = source_curve->result();
+  add_together(study, findings);
   if (s0_changes)
     findings.s0_changes = s0_changes->result();
   findings.rows = all_rows(study, findings);

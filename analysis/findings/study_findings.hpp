@@ -30,19 +30,22 @@ struct MethodFindings {
 
 /// All that a study reports, computed once, each number with its uncertainty.
 struct StudyFindings : Endings {
-  std::int64_t assessed = 0;              ///< loops that some method has looked at
-  std::vector<MethodFindings> methods;    ///< in the order of the study
-  std::vector<MethodPair> pairs;          ///< of all methods
-  std::vector<DominanceBin> dominance;    ///< of the chain; empty without experiments of both faults
-  std::optional<SourceArea> source_area;  ///< of the chain; none without experiments of both kinds
-  std::optional<S0Changes> s0_changes;    ///< of the chain; none in a study that does not perturb S0
+  std::int64_t assessed = 0;                ///< loops that some method has looked at
+  std::vector<MethodFindings> methods;      ///< in the order of the study
+  std::vector<MethodPair> pairs;            ///< of all methods
+  std::vector<DominanceBin> dominance;      ///< of the chain; empty without experiments of both faults
+  std::optional<SourceCurve> source_curve;  ///< of the chain; none without experiments of both kinds
+  /// Of the chain: over the experiments of all kinds; over the loops without a fault, flagged; named
+  /// scenarios whose every CV is judged rightly.
+  Rate located, source_recognised, false_alarm, right_scenarios;
+  std::optional<S0Changes> s0_changes;  ///< of the chain; none in a study that does not perturb S0
   /// The table of all of the above: first those of the study, of the chain by kind and where model and plant
   /// agree, then those of the other methods by kind, then every method as they are compared.
   std::vector<Finding> rows;
 
   /// The findings of the method of this name; null when it is none of the study.
   const MethodFindings* of(std::string_view method) const;
-  /// Those of the thesis's chain; null when it is none of the study.
+  /// Those of the method that diagnoses (diagnoses()); null when there is none.
   const MethodFindings* chain() const;
 };
 

@@ -86,7 +86,7 @@ class Botelho final : public AssessmentMethod {
 
 AssessmentMethodInfo botelho_method() {
   AssessmentMethodInfo info;
-  info.name = kChainMethod;
+  info.name = "botelho";
   info.title = "Botelho (2015)";
   info.verdict = "a modelling error has an impact: some Ivar lies outside the band of impact";
   info.requirements.nominal_loop = true;

@@ -204,6 +204,21 @@ void put_back(const ChainNumbers& numbers, const AssessmentRecord& record, Diagn
 
 }  // namespace
 
+bool diagnoses(const AssessmentForm& form) {
+  return form.find("i_mpm") != nullptr;
+}
+
+std::shared_ptr<const AssessmentForm> diagnosis_form(const Study& study) {
+  MethodDescription description;
+  description.locates_cvs = true;
+  description.tells_sources = true;
+  description.numbers = chain_number_infos();
+  if (study.names_scenarios())
+    for (const AssessmentNumberInfo& number : scenario_number_infos())
+      description.numbers.push_back(number);
+  return std::make_shared<const AssessmentForm>(std::move(description), study);
+}
+
 const std::vector<AssessmentNumberInfo>& chain_number_infos() {
   static const std::vector<AssessmentNumberInfo> list = infos(of_every_study());
   return list;

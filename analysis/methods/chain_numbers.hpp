@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string_view>
+#include <memory>
 #include <vector>
 
 #include "analysis/indicators/diagnosis.hpp"
@@ -11,8 +11,10 @@
 
 namespace mpm {
 
-/// The name of the method that is the chain of the thesis.
-inline constexpr std::string_view kChainMethod = "botelho";
+/// Does the method give the numbers of a Diagnosis? I_MPM tells.
+bool diagnoses(const AssessmentForm& form);
+/// The form of a method that does, for a diagnosis without a method: that of the basis case.
+std::shared_ptr<const AssessmentForm> diagnosis_form(const Study& study);
 
 /// The numbers of every study.
 const std::vector<AssessmentNumberInfo>& chain_number_infos();

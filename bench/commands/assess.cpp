@@ -27,6 +27,8 @@
 #include "bench/version.hpp"
 #include "plants/error.hpp"
 #include "results/assess/record_assessment.hpp"
+#include "results/document/document_html.hpp"
+#include "results/document/document_text.hpp"
 #include "results/records/plant_record_file.hpp"
 #include "scenarios/files/recorded_study.hpp"
 #include "scenarios/files/study_library.hpp"
@@ -256,8 +258,8 @@ ExitCode assess(AssessArguments options, const std::string& command) {
     throw std::runtime_error(progress.explain(error) + "; the same command goes on with the calibration run");
   }
   if (!options.page.empty())
-    write_text(options.page, assessment_html(assessment));
-  print_result(options.json ? assessment_json(assessment) : assessment_text(assessment));
+    write_text(options.page, document_html(assessment_document(assessment)));
+  print_result(options.json ? assessment_json(assessment) : document_text(assessment_document(assessment)));
   return ExitCode::done;
 }
 

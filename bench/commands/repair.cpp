@@ -17,9 +17,11 @@
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+#include "results/document/document_text.hpp"
+#include "results/plot/plot_text.hpp"
 #include "results/text/experiment_text.hpp"
 #include "results/text/number_json.hpp"
-#include "results/text/text_table.hpp"
 #include "scenarios/loop/historian.hpp"
 
 namespace mpm {
@@ -135,19 +137,18 @@ std::string text_of(const Study& study, const Repair& repair) {
       text_of(loop.fit.gain_factor), text_of(loop.fit.time_factor),
       dead_time_text(shift.value, shift.lower, shift.upper, shift.bound, study.plant.time_unit),
       100.0 * loop.fit.explained);
-  TextTable table;
-  table.add({"variance", "now", "predicted", "repaired", "perfect"});
+  Table table("", {{"variance", Table::Align::left}, {"now"}, {"predicted"}, {"repaired"}, {"perfect"}});
   const auto cell = [](const Eigen::VectorXd& variances, Eigen::Index cv) {
-    return variances.size() == 0 ? std::string("-") : fmt::format("{:.3g}", variances(cv));
+    return Number{variances.size() == 0 ? kNaN : variances(cv)};
   };
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    table.add({study.plant.cvs[static_cast<std::size_t>(cv)].name, cell(loop.now, cv),
-               cell(loop.predicted, cv), cell(loop.repaired, cv), cell(loop.perfect, cv)});
+    table.row({as_label(cv_name(study, cv)), cell(loop.now, cv), cell(loop.predicted, cv),
+               cell(loop.repaired, cv), cell(loop.perfect, cv)});
   return fmt::format(
       "{}{}\nnow: the controller as it is; predicted: what the repaired model promises, from the record "
       "alone;\n"
       "repaired: with the repaired model on the plant; perfect: with the plant itself as its model\n",
-      text, table.text());
+      text, table_text(table));
 }
 
 /// The outcomes of all repairs that compare.
@@ -172,28 +173,25 @@ Json json_of(const std::vector<RepairFindings>& findings) {
 }
 
 std::string text_of(const std::vector<RepairFindings>& findings) {
-  TextTable table;
-  table.add({"repaired", "loops", "better, %", "worse, %", "loss now", "loss repaired"});
-  const auto share = [](const Rate& rate) {
-    return rate.total == 0 ? std::string("-")
-                           : fmt::format("{:.1f} [{:.1f}, {:.1f}]", 100 * rate.value,
-                                         100 * rate.interval.lower, 100 * rate.interval.upper);
-  };
+  Table table(
+      fmt::format(
+          "Loss: variance over that of a controller whose model is the plant, mean over the CVs, median of "
+          "the loops; better, worse: it changes by more than {:.0f} %.",
+          100.0 * (kNoticeableChange - 1.0)),
+      {{"repaired", Table::Align::left},
+       {"loops"},
+       {"better, %"},
+       {"worse, %"},
+       {"loss now"},
+       {"loss repaired"}});
   const auto median = [](const Estimate& estimate) {
-    return estimate.count == 0 ? std::string("-")
-           : std::isnan(estimate.interval.lower)
-               ? fmt::format("{:.3f}", estimate.value)
-               : fmt::format("{:.3f} [{:.3f}, {:.3f}]", estimate.value, estimate.interval.lower,
-                             estimate.interval.upper);
+    return estimate.count == 0 ? Number{} : fixed(estimate.value, estimate.interval);
   };
   for (const RepairFindings& found : findings)
-    table.add({to_string(found.target), fmt::format("{}", found.better.total), share(found.better),
-               share(found.worse), median(found.loss_now), median(found.loss_repaired)});
-  return fmt::format(
-      "{}\nloss: variance over that of a controller whose model is the plant, mean over the CVs, median of "
-      "the "
-      "loops;\nbetter, worse: it changes by more than {:.0f} %\n",
-      table.text(), 100.0 * (kNoticeableChange - 1.0));
+    table.row({std::string(to_string(found.target)), found.better.total,
+               number(found.better, NumberForm::percent), number(found.worse, NumberForm::percent),
+               median(found.loss_now), median(found.loss_repaired)});
+  return table_text(table);
 }
 
 /// The channel of an experiment that is to be repaired: the one that the user asks for, or that the method

@@ -23,9 +23,10 @@
 #include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
+#include "results/document/document_html.hpp"
+#include "results/document/document_text.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/reproduction/reproduction.hpp"
-#include "results/reproduction/seeded_reproduction.hpp"
 #include "scenarios/files/study_change.hpp"
 
 namespace mpm {
@@ -52,21 +53,12 @@ std::vector<ThesisTable> tables_of(const ReproduceArguments& options) {
   return tables;
 }
 
-void write_page(const std::string& output, const std::string& page) {
-  if (!output.empty())
-    write_text(output, page);
-}
-
-void show(const ReproduceArguments& options, const std::vector<ReproducedTable>& tables) {
-  write_page(options.output, reproduction_html(tables, mpmbench_version(), options.changes));
-  print_result(options.json ? reproduction_json(tables, options.changes)
-                            : reproduction_text(tables, options.changes));
-}
-
-void show_over_seeds(const ReproduceArguments& options, const std::vector<SeededTable>& tables) {
-  write_page(options.output, seeded_reproduction_html(tables, mpmbench_version(), options.changes));
-  print_result(options.json ? seeded_reproduction_json(tables, options.changes)
-                            : seeded_reproduction_text(tables, options.changes));
+template <class Table>
+void show(const ReproduceArguments& options, const std::vector<Table>& tables) {
+  const Document document = reproduction_document(tables, mpmbench_version(), options.changes);
+  if (!options.output.empty())
+    write_text(options.output, document_html(document));
+  print_result(options.json ? reproduction_json(tables, options.changes) : document_text(document));
 }
 
 /// Runs the tables; stopped, it says how to go on.
@@ -136,7 +128,7 @@ ExitCode reproduce_tables(const ReproduceArguments& options, const std::string& 
     std::vector<SeededTable> tables;
     for (const std::vector<ReproducedTable>& of_table : reproduced)
       tables.push_back(over_seeds(of_table));
-    show_over_seeds(options, tables);
+    show(options, tables);
   } else {
     std::vector<ReproducedTable> tables;
     for (const std::vector<ReproducedTable>& of_table : reproduced)

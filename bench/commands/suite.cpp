@@ -22,6 +22,8 @@
 #include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
+#include "results/document/document_html.hpp"
+#include "results/document/document_text.hpp"
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/figure_format.hpp"
 #include "results/plot/gnuplot.hpp"
@@ -49,7 +51,7 @@ struct SuiteArguments {
 /// The page and the figure. What has been computed is shown all the same without gnuplot.
 void write_pictures(const fs::path& folder, const Leaderboard& board, Progress& progress) {
   try {
-    write_text(folder / "leaderboard.html", leaderboard_html(board));
+    write_text(folder / "leaderboard.html", document_html(leaderboard_document(board)));
     write_text(folder / "leaderboard.svg", draw_figure(leaderboard_figure(board), FigureFormat::svg));
   } catch (const GnuplotError& error) {
     progress.warn(fmt::format("no page: {}", error.what()));
@@ -126,7 +128,7 @@ ExitCode run_suite(const SuiteArguments& options, const std::string& command_lin
   const std::string json = leaderboard_json(board);
   write_text(folder / "leaderboard.json", json);
   write_pictures(folder, board, progress);
-  print_result(options.json ? json : leaderboard_text(board));
+  print_result(options.json ? json : document_text(leaderboard_document(board), kLeaderboardWidth));
   return ExitCode::done;
 }
 

@@ -99,7 +99,7 @@ void write_autocorrelations(Hdf5Group& group, const Study& study, const BasisCas
 AssessmentRecord chain_assessment(const Study& study, std::vector<AssessmentNumber> numbers) {
   Assessment assessment;
   assessment.numbers = std::move(numbers);
-  return kept(assessment_forms(study, {std::string(kChainMethod)}).front(), assessment);
+  return kept(diagnosis_form(study), assessment);
 }
 
 }  // namespace

@@ -27,8 +27,9 @@ void note_command(Campaign& campaign, const std::string& command_line) {
 }
 
 std::size_t chain_place(const Campaign& campaign) {
-  const std::vector<std::string> names = method_names(campaign);
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), kChainMethod) - names.begin());
+  const auto chain = std::find_if(campaign.methods.begin(), campaign.methods.end(),
+                                  [](const CampaignMethod& method) { return diagnoses(*method.form); });
+  return static_cast<std::size_t>(chain - campaign.methods.begin());
 }
 
 RecordRange records_of(const Campaign& campaign) {

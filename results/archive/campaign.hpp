@@ -64,7 +64,7 @@ std::vector<std::string> method_names(const Campaign& campaign);
 /// Notes the command line by which the campaign was run and assessed.
 void note_command(Campaign& campaign, const std::string& command_line);
 
-/// The place of the thesis's chain among its methods; as many as there are methods when it is none of them.
+/// The place of the method that diagnoses (diagnoses()); as many as there are methods when none does.
 std::size_t chain_place(const Campaign& campaign);
 
 /// Its records, wherever they are.

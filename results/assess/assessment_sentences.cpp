@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-using Sentences = std::vector<std::string>;
+using Texts = std::vector<std::string>;
 
 std::string share(const Rate& rate) {
   return fmt::format("{:.0f} % [{:.0f}, {:.0f}]", 100.0 * rate.value, 100.0 * rate.interval.lower,
@@ -19,7 +19,7 @@ std::string share(const Rate& rate) {
 
 /// "xD 2.31, xB 1.02" times the nominal loop, of methods that say so.
 std::string costs_text(const RecordAssessment& of) {
-  Sentences parts;
+  Texts parts;
   for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
     if (const double ivar = number_of_cv(of.verdict(), "ivar", cv); !std::isnan(ivar))
       parts.push_back(fmt::format("{} x {:.2f}", cv_name(of.study, cv), ivar));
@@ -43,7 +43,7 @@ NamedMismatch told_once(const RecordAssessment& of, NamedMismatch named) {
   return named;
 }
 
-void add_source(const RecordAssessment& of, Sentences& sentences) {
+void add_source(const RecordAssessment& of, Texts& sentences) {
   const AssessmentRecord& said = of.verdict();
   if (said.predicted_cv < 0)
     return;
@@ -78,8 +78,8 @@ void add_source(const RecordAssessment& of, Sentences& sentences) {
 }
 
 /// What else than the worst CV is flagged: records of plants have more than one fault.
-void add_other_cvs(const RecordAssessment& of, Sentences& sentences) {
-  Sentences others;
+void add_other_cvs(const RecordAssessment& of, Texts& sentences) {
+  Texts others;
   for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
     if (cv != of.verdict().predicted_cv && number_of_cv(of.verdict(), "cv_flagged", cv) == 1.0)
       others.push_back(fmt::format("{} ({})", cv_name(of.study, cv),
@@ -91,8 +91,8 @@ void add_other_cvs(const RecordAssessment& of, Sentences& sentences) {
 }
 
 /// The signals that a method names as inputs which the model lacks.
-void add_candidates(const RecordAssessment& of, Sentences& sentences) {
-  Sentences named;
+void add_candidates(const RecordAssessment& of, Texts& sentences) {
+  Texts named;
   for (const AssessmentRecord& said : of.said)
     for (Eigen::Index cv = 0; said.answered() && cv < of.study.cv_count(); ++cv)
       if (const std::string candidate = named_candidate(of, said, cv); !candidate.empty())
@@ -123,7 +123,7 @@ std::string fitted_text(const Study& study, const PromisedRepair& repair) {
   return named + ", all else as in the model";
 }
 
-void add_repair(const RecordAssessment& of, Sentences& sentences) {
+void add_repair(const RecordAssessment& of, Texts& sentences) {
   if (!of.no_repair.empty())
     sentences.push_back(fmt::format("What a repair would bring is not known: {}.", of.no_repair));
   if (!of.repair)
@@ -132,7 +132,7 @@ void add_repair(const RecordAssessment& of, Sentences& sentences) {
   std::string text =
       fmt::format("Identified again from this record, {}/{} has {}", cv_name(of.study, repair.channel.cv),
                   mv_name(of.study, repair.channel.mv), fitted_text(of.study, repair));
-  Sentences changes;
+  Texts changes;
   if (repair.now.size() > 0 && repair.predicted.size() > 0)
     for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
       changes.push_back(fmt::format("{} {:+.0f} %", cv_name(of.study, cv),
@@ -143,7 +143,7 @@ void add_repair(const RecordAssessment& of, Sentences& sentences) {
                                         fmt::join(changes, ", ")));
 }
 
-void add_trust(const RecordAssessment& of, Sentences& sentences) {
+void add_trust(const RecordAssessment& of, Texts& sentences) {
   if (!of.trial) {
     sentences.push_back(fmt::format("How far to trust this is not known: {}.", of.no_trial));
     return;
@@ -238,7 +238,7 @@ std::string window_text(const RecordAssessment& assessment, int window) {
 }
 
 std::vector<std::string> verdict_sentences(const RecordAssessment& assessment) {
-  Sentences sentences{flag_sentence(assessment)};
+  Texts sentences{flag_sentence(assessment)};
   if (assessment.verdict().answered() && assessment.verdict().flagged)
     add_source(assessment, sentences);
   add_other_cvs(assessment, sentences);

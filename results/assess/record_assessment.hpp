@@ -10,6 +10,7 @@
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_record.hpp"
+#include "results/document/document.hpp"
 #include "scenarios/loop/plant_record.hpp"
 #include "scenarios/study/study.hpp"
 
@@ -45,10 +46,10 @@ struct RecordAssessment {
 /// brings, and how far to trust it.
 std::vector<std::string> verdict_sentences(const RecordAssessment& assessment);
 
-std::string assessment_text(const RecordAssessment& assessment);
+/// The verdict, what it costs, what each method says and how far to trust it.
+Document assessment_document(const RecordAssessment& assessment);
+/// The same for programs.
 std::string assessment_json(const RecordAssessment& assessment);
-/// One page that needs nothing else. Errors: GnuplotError.
-std::string assessment_html(const RecordAssessment& assessment);
 
 /// Number `row` of the answer under this name; NaN when the method has no such number.
 double number_of_cv(const AssessmentRecord& said, std::string_view name, Eigen::Index row);

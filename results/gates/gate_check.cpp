@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
@@ -59,7 +58,7 @@ BaselineComparison compare(const Campaign& campaign, const Campaign& baseline, c
   require_same_study(campaign, baseline, archive);
   const auto question = [&](Correctness (Judgement::*of)() const) {
     return [&study = campaign.study, of](const ExperimentRecord& record) {
-      const AssessmentRecord* const chain = record.by(kChainMethod);
+      const AssessmentRecord* const chain = record.diagnosed();
       return chain == nullptr ? Correctness::not_judged : (judge(study, record, *chain).*of)();
     };
   };

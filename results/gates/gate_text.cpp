@@ -3,22 +3,29 @@
 
 #include <fmt/format.h>
 
+#include "results/document/document_text.hpp"
 #include "results/gates/gate_report.hpp"
 #include "results/gates/gate_sentences.hpp"
-#include "results/text/text_table.hpp"
+#include "results/plot/plot_text.hpp"
 
 namespace mpm {
 namespace {
 
 std::string gate_table(const GateCheck& check) {
-  TextTable table;
-  table.add({"gate", "limit", "judged by", "measured",
-             fmt::format("{:g} % interval", 100.0 * check.confidence), "count", "margin", "outcome"});
+  Table table("", {{"gate", Table::Align::left},
+                   {"limit"},
+                   {"judged by"},
+                   {"measured"},
+                   {fmt::format("{:g} % interval", 100.0 * check.confidence)},
+                   {"count"},
+                   {"margin"},
+                   {"outcome", Table::Align::left}});
   for (const GateResult& result : check.results)
-    table.add({result.gate.name, limit_text(result), result.gate.with_confidence ? "interval" : "value",
-               measured_text(result), interval_text(result), fmt::format("{}", result.measured.count),
-               margin_text(result), std::string(to_string(result.outcome))});
-  return table.text(TextTable::LastColumn::words);
+    table.row({as_label(result.gate.name), limit_text(result),
+               result.gate.with_confidence ? "interval" : "value", measured_text(result),
+               interval_text(result), result.measured.count, margin_text(result),
+               std::string(to_string(result.outcome))});
+  return table_text(table, kUnlimitedWidth);
 }
 
 std::string changes_heading(const char* question, const JudgementChanges& changes) {

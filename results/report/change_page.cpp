@@ -1,60 +1,63 @@
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 
+#include "analysis/findings/run_change.hpp"
+#include "results/document/document_html.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/change_report.hpp"
-#include "results/report/change_sections.hpp"
-#include "results/report/html_page.hpp"
-#include "results/report/section_html.hpp"
+#include "results/text/experiment_text.hpp"
+#include "scenarios/files/study_differences.hpp"
 
 namespace mpm {
 namespace {
+
+constexpr std::size_t kMostRows = 500;  // experiments that are listed one by one
+
+/// What the sections are made from. The first archive is A, the second B.
+struct Change {
+  const Campaign &before, &now;
+  std::string before_file, now_file;  ///< how commands name the archives
+  RunPairing pairing;
+  std::vector<MethodChange> methods;
+
+  bool is_beyond_chance(double p) const { return p < 1.0 - now.study.aggregate.confidence; }
+};
 
 StudyRun run_of(const Campaign& campaign, const AssessmentForms& forms) {
   return {campaign.study, forms, records_of(campaign), campaign.calibration};
 }
 
-std::string paragraph(const std::string& html) {
-  return "<p>" + html + "</p>\n";
+std::string p_text(double p) {
+  return std::isnan(p) ? "-" : fmt::format("{:.2g}", p);
 }
 
-std::string p_text(double p) {
-  return fmt::format("{:.2g}", p);
+/// "+1.2 to +3.4", in percentage points.
+std::string points(double share) {
+  return std::isnan(share) ? "-" : fmt::format("{:+.1f}", 100.0 * share);
 }
 
 /// Which experiments are compared, and how.
-std::string pairing_html(const ChangeInput& input) {
-  const std::int64_t loops = input.pairing.loops;
-  if (!input.pairing.paired())
-    return paragraph(fmt::format(
-        "<strong>Compared as unrelated runs, not experiment by experiment, because {}.</strong> Each "
-        "difference then carries the chance of both draws, and no single experiment can be said to have "
-        "changed.",
-        html_text(input.pairing.obstacle)));
+std::string pairing_words(const Change& change) {
+  const std::int64_t loops = change.pairing.loops;
+  if (!change.pairing.paired())
+    return strong(fmt::format("Compared as unrelated runs, not experiment by experiment, because {}.",
+                              as_label(change.pairing.obstacle))) +
+           " Each difference then carries the chance of both draws, and no single experiment can be said to "
+           "have "
+           "changed.";
   const std::int64_t left_out =
-      std::ssize(records_of(input.before)) + std::ssize(records_of(input.now)) - 2 * loops;
-  std::string html = fmt::format(
-      "Compared experiment by experiment: both ran the same {} with seed {}, each with the same fault{}. ",
-      loops, input.now.study.seed,
-      left_out == 0 ? std::string()
-                    : fmt::format("; the {} that only one of them has are left out", left_out));
-  html += input.pairing.same_loops == loops
-              ? std::string(
-                    "All of these loops ended in the same way and with the same Ivar<sub>basis</sub> to "
-                    "the last bit: what differs is what the methods say of them.")
-              : fmt::format(
-                    "In {} of these loops the end or Ivar<sub>basis</sub> is not the same: the loops "
-                    "themselves changed, and with them what is right to say of them.",
-                    loops - input.pairing.same_loops);
-  return paragraph(html);
-}
-
-/// A question whose answers became worse or better beyond chance, in words.
-std::string verdict_words(const MethodChange& method, const VerdictChange& verdict) {
-  return fmt::format("{}, {}: {} lost, {} gained of {} (p&nbsp;=&nbsp;{} corrected)", html_text(method.name),
-                     verdict.question->name, verdict.changes.lost.size(), verdict.changes.gained.size(),
-                     verdict.changes.pairs, p_text(verdict.p_holm));
+      std::ssize(records_of(change.before)) + std::ssize(records_of(change.now)) - 2 * loops;
+  return fmt::format(
+      "Compared experiment by experiment: both ran the same {} with seed {}, each with the same fault{}. In "
+      "{} of these "
+      "loops the end or Ivar_{{basis}} is not the same, to the last bit.",
+      loops, change.now.study.seed,
+      left_out == 0 ? "" : fmt::format("; the {} that only one of them has are left out", left_out),
+      loops - change.pairing.same_loops);
 }
 
 void add_words(std::string& list, const std::string& words) {
@@ -62,71 +65,280 @@ void add_words(std::string& list, const std::string& words) {
 }
 
 /// The verdict on paired runs.
-std::string paired_html(const ChangeInput& input) {
-  if (std::none_of(input.methods.begin(), input.methods.end(), [](const auto& m) { return m.changed(); }))
-    return "<p class=\"check passed\"><strong>Nothing changed.</strong> Every verdict and every number of "
-           "the "
-           "methods that both have is the same in all of these experiments.</p>\n";
+void add_paired(Section& section, const Change& change) {
   std::string worse, better;
-  std::size_t lost = 0, gained = 0, questions = 0;
-  for (const MethodChange& method : input.methods)
+  std::size_t lost = 0, gained = 0;
+  for (const MethodChange& method : change.methods)
     for (const VerdictChange& verdict : method.verdicts) {
-      ++questions;
-      lost += verdict.changes.lost.size();
-      gained += verdict.changes.gained.size();
-      if (verdict.p_holm < 1.0 - input.now.study.aggregate.confidence)
-        add_words(verdict.changes.lost.size() > verdict.changes.gained.size() ? worse : better,
-                  verdict_words(method, verdict));
+      const JudgementChanges& changes = verdict.changes;
+      lost += changes.lost.size();
+      gained += changes.gained.size();
+      if (change.is_beyond_chance(verdict.p_holm))
+        add_words(changes.lost.size() > changes.gained.size() ? worse : better,
+                  fmt::format("{}, {}: {} lost, {} gained of {} (p = {} corrected)", as_label(method.name),
+                              verdict.question->name, changes.lost.size(), changes.gained.size(),
+                              changes.pairs, p_text(verdict.p_holm)));
     }
-  std::string html = fmt::format(
-      "{} answers that were right in A are not in B, and {} that were not are now, of {} question{} to {} "
-      "method{}. ",
-      lost, gained, questions, questions == 1 ? "" : "s", input.methods.size(),
-      input.methods.size() == 1 ? "" : "s");
+  if (std::none_of(change.methods.begin(), change.methods.end(), [](const auto& m) { return m.changed(); }))
+    return section.say(strong("Nothing changed.") +
+                           " Every verdict and every number of the methods that both have is "
+                           "the same in all of these experiments.",
+                       Paragraph::Kind::passed);
+  std::string words = fmt::format(
+      "{} answers that were right in A are not in B, and {} that were not are now. ", lost, gained);
   if (!worse.empty())
-    html += fmt::format("<strong>B is worse beyond chance</strong> at {}. ", worse);
+    words += fmt::format("{} at {}. ", strong("B is worse beyond chance"), worse);
   if (!better.empty())
-    html += fmt::format("<strong>B is better beyond chance</strong> at {}. ", better);
+    words += fmt::format("{} at {}. ", strong("B is better beyond chance"), better);
   if (worse.empty() && better.empty())
-    html +=
-        "<strong>No question has so many more of the one than of the other that chance is ruled "
-        "out.</strong> ";
-  return fmt::format("<p class=\"check {}\">{}</p>\n", worse.empty() ? "passed" : "failed", html);
+    words += strong("No question has so many more of the one than of the other that chance is ruled out.");
+  section.say(words, worse.empty() ? Paragraph::Kind::passed : Paragraph::Kind::failed);
 }
 
 /// The verdict on unpaired runs.
-std::string unpaired_html(const ChangeInput& input) {
-  constexpr std::size_t kMost = 10;
+void add_unpaired(Section& section, const Change& change) {
   std::size_t rates = 0, different = 0;
-  std::string list;
-  for (const MethodChange& method : input.methods)
-    for (const RateChange& change : method.rates) {
+  for (const MethodChange& method : change.methods)
+    for (const RateChange& rate : method.rates) {
       ++rates;
-      if (!(change.p_holm < 1.0 - input.now.study.aggregate.confidence))
-        continue;
-      if (++different <= kMost)
-        add_words(list, fmt::format("{}, {}: {:.1f} to {:.1f}&nbsp;%", html_text(method.name),
-                                    html_text(change.info->title), 100.0 * change.before.value,
-                                    100.0 * change.now.value));
+      different += change.is_beyond_chance(rate.p_holm) ? 1 : 0;
     }
-  return fmt::format("<p class=\"check {}\"><strong>{} of {} rates differ beyond chance</strong>{}{}.</p>\n",
-                     different == 0 ? "passed" : "failed", different, rates, list.empty() ? "" : ": " + list,
-                     different > kMost ? fmt::format("; and {} more below", different - kMost) : "");
+  section.say(strong(fmt::format("{} of {} rates differ beyond chance.", different, rates)),
+              different == 0 ? Paragraph::Kind::passed : Paragraph::Kind::failed);
+}
+
+Section changes_section(const Change& change) {
+  Section section{"changes", "What changed?"};
+  if (change.methods.empty())
+    section.say(strong("No method of assessment is in both archives") + ", so that nothing can be compared.",
+                Paragraph::Kind::failed);
+  else if (change.pairing.paired())
+    add_paired(section, change);
+  else
+    add_unpaired(section, change);
+  section.say(pairing_words(change));
+  return section;
+}
+
+/// Methods of `campaign` that `other` has not.
+std::string methods_alone(const Campaign& campaign, const Campaign& other) {
+  const std::vector<std::string> others = method_names(other);
+  std::vector<std::string> names = method_names(campaign);
+  std::erase_if(
+      names, [&](const auto& name) { return std::find(others.begin(), others.end(), name) != others.end(); });
+  return listed(names, "none");
+}
+
+Section studies_section(const Change& change) {
+  Section section{"studies", "What differs between the studies?"};
+  Table table(
+      "What ran, and the keys of the study that have other values, with every default written out; what "
+      "differs "
+      "is marked.",
+      {{"", Table::Align::left}, {"A", Table::Align::left}, {"B", Table::Align::left}});
+  const Campaign &a = change.before, &b = change.now;
+  const auto row = [&](const char* what, const std::string& before, const std::string& now) {
+    table.row(
+        {before == now ? Cell(what) : Cell(what).toned(Cell::Tone::strong), as_label(before), as_label(now)});
+  };
+  row("archive", change.before_file, change.now_file);
+  row("study", a.study.name, b.study.name);
+  row("experiments", fmt::format("{}", records_of(a).size()), fmt::format("{}", records_of(b).size()));
+  row("mpmbench", a.info.mpmbench_version, b.info.mpmbench_version);
+  row("revision", a.info.git_sha, b.info.git_sha);
+  row("solver", a.info.solver, b.info.solver);
+  row("programs and FMUs", a.info.outside_files, b.info.outside_files);
+  row("finished", a.info.created, b.info.created);
+  row("methods here alone", methods_alone(a, b), methods_alone(b, a));
+  const std::vector<StudyDifference> differences = study_differences(a.study, b.study);
+  table.group(differences.empty() ? "No key of the study differs" : "Keys of the study that differ");
+  const auto value = [](const std::string& of) { return of.empty() ? "not there" : code(of); };
+  for (const StudyDifference& each : differences)
+    table.row({Cell(code(each.key)).toned(Cell::Tone::strong), value(each.before), value(each.now)});
+  section.add(std::move(table));
+  return section;
+}
+
+/// Those of which a loop changed, or all of unpaired runs.
+bool is_shown(const RateChange& change, bool paired) {
+  return !paired || change.counts.first + change.counts.second > 0 || change.before.hits != change.now.hits ||
+         change.before.total != change.now.total;
+}
+
+Section rates_section(const Change& change) {
+  Section section{"rates", "Rates of A and B"};
+  const bool paired = change.pairing.paired();
+  Table table(
+      fmt::format("Rates of the methods{} Corrected by Holm for the rates of the method.",
+                  paired ? " over the experiments in common, those of which some loop changed. The "
+                           "difference is that over the "
+                           "loops that the rate counts in both archives (below: those that count in A alone, "
+                           "and in B alone): "
+                           "interval of Newcombe (1998, paired, method 10), p of McNemar's exact test."
+                         : ", each over all experiments of its archive. The difference is that of "
+                           "independent shares: interval "
+                           "of Newcombe (1998, method 10), p of Fisher's exact test."),
+      {{"Share of loops", Table::Align::left},
+       {"A"},
+       {"B"},
+       {"Counted in both"},
+       {"B - A, points"},
+       {fmt::format("{:g} % interval", 100.0 * change.now.study.aggregate.confidence)},
+       {"p"},
+       {"p, corrected"}});
+  const auto share = [](const Rate& rate) {
+    return Cell(Number{rate.value, NumberForm::share}).with(fmt::format("{} of {}", rate.hits, rate.total));
+  };
+  for (const MethodChange& method : change.methods) {
+    if (std::any_of(method.rates.begin(), method.rates.end(),
+                    [&](const auto& rate) { return is_shown(rate, paired); }))
+      table.group(as_label(method.name));
+    for (const RateChange& rate : method.rates)
+      if (const ShareDifference& difference = rate.difference; is_shown(rate, paired))
+        table.row(
+            {as_label(rate.info->title), share(rate.before), share(rate.now),
+             paired ? Cell(rate.counts.total())
+                          .with(fmt::format("-{}, +{}", rate.counts.first, rate.counts.second))
+                    : Cell("-"),
+             points(difference.value),
+             fmt::format("{} to {}", points(difference.interval.lower), points(difference.interval.upper)),
+             p_text(difference.p), p_text(rate.p_holm)});
+  }
+  section.add(std::move(table));
+  return section;
+}
+
+/// What the method says, in short.
+std::string answer_text(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
+  if (record.status != ExperimentStatus::ok)
+    return std::string(to_string(record.status));
+  if (!said.answered())
+    return said.reason.empty() ? "no verdict" : "no verdict: " + as_label(said.reason);
+  if (!said.flagged)
+    return "not flagged";
+  return fmt::format(
+      "flagged{}{}", said.predicted_cv < 0 ? "" : " " + as_label(cv_name(study, said.predicted_cv)),
+      said.predicted_source == FaultSource::none ? ""
+                                                 : fmt::format(" ({})", source_name(said.predicted_source)));
+}
+
+Table count_table(const Change& change) {
+  Table table(
+      "Each question to each method: how often the answer is right in both archives, right in A and not in "
+      "B, and "
+      "the reverse. An answer that is not judged any more is lost. p is that of McNemar's exact test, "
+      "two-sided, and corrected by Holm for all rows.",
+      {{"Question", Table::Align::left},
+       {"Judged"},
+       {"Right in both"},
+       {"Right, then not"},
+       {"Not, then right"},
+       {"p"},
+       {"p, corrected"}});
+  for (const MethodChange& method : change.methods) {
+    if (!method.changed())
+      continue;
+    table.group(as_label(method.name));
+    for (const VerdictChange& verdict : method.verdicts)
+      table.row({as_label(verdict.question->name), verdict.changes.pairs, verdict.right_in_both,
+                 verdict.changes.lost.size(), verdict.changes.gained.size(),
+                 p_text(verdict.changes.test.p_two_sided), p_text(verdict.p_holm)});
+  }
+  return table;
+}
+
+/// Questions of each experiment that became right, or are right no more: "flag, impact lost; CV gained".
+std::map<std::int64_t, std::string> changed_experiments(const MethodChange& method) {
+  std::map<std::int64_t, std::string> experiments;
+  for (const VerdictChange& verdict : method.verdicts) {
+    for (const JudgementPair& pair : verdict.changes.lost)
+      add_words(experiments[pair.index], fmt::format("{} lost", verdict.question->name));
+    for (const JudgementPair& pair : verdict.changes.gained)
+      add_words(experiments[pair.index], fmt::format("{} gained", verdict.question->name));
+  }
+  return experiments;
+}
+
+/// The experiments with another verdict, one by one.
+Table experiment_table(const Change& change) {
+  Table table("Experiments with an answer that became right, or is right no more.",
+              {{"No."},
+               {"Kind", Table::Align::left},
+               {"Fault, and how to replay it", Table::Align::text},
+               {"A says", Table::Align::left},
+               {"B says", Table::Align::left},
+               {"Questions", Table::Align::left}});
+  std::vector<std::map<std::int64_t, std::string>> wanted;
+  for (const MethodChange& method : change.methods)
+    wanted.push_back(changed_experiments(method));
+  std::vector<std::vector<std::vector<Cell>>> rows(wanted.size());
+  each_in_both(
+      records_of(change.before), records_of(change.now),
+      [&](const ExperimentRecord& before, const ExperimentRecord& now) {
+        const std::int64_t index = now.draw.index;
+        for (std::size_t m = 0; m < wanted.size(); ++m)
+          if (const auto found = wanted[m].find(index); found != wanted[m].end())
+            rows[m].push_back(
+                {index, kind_name(now.draw.kind),
+                 Cell(as_label(fault_text(change.now.study, now.draw)))
+                     .with(code(fmt::format("mpmbench replay {} {}", change.before_file, index)) + " " +
+                           code(fmt::format("mpmbench replay {} {}", change.now_file, index))),
+                 answer_text(change.before.study, before, before.assessments[change.methods[m].before]),
+                 answer_text(change.now.study, now, now.assessments[change.methods[m].now]), found->second});
+      });
+  for (std::size_t m = 0; m < rows.size(); ++m) {
+    if (rows[m].empty() || table.rows.size() > kMostRows)
+      continue;
+    table.group(as_label(change.methods[m].name));
+    for (std::vector<Cell>& row : rows[m])
+      if (table.rows.size() <= kMostRows)
+        table.row(std::move(row));
+  }
+  return table;
+}
+
+Section verdicts_section(const Change& change) {
+  Section section{"verdicts", "Which experiments changed their verdict?"};
+  if (!change.pairing.paired()) {
+    section.leave_out("the runs are not paired: " + change.pairing.obstacle + ".");
+    return section;
+  }
+  section.add(count_table(change));
+  std::string meanings;
+  for (const VerdictQuestion& question : verdict_questions())
+    meanings += fmt::format("{}: {}. ", strong(question.name), question.meaning);
+  section.say(meanings, Paragraph::Kind::small);
+  section.add(experiment_table(change));
+  return section;
+}
+
+Section numbers_section(const Change& change) {
+  Section section{"numbers", "Numbers and scores, A against B"};
+  Table table(
+      fmt::format(
+          "Numbers of the methods that changed, over the experiments in which both give a verdict; of a "
+          "number of CVs the mean over these. {:g} % interval of the mean: Student's t.",
+          100.0 * change.now.study.aggregate.confidence),
+      {{"Number", Table::Align::left},
+       {"Experiments"},
+       {"Unchanged"},
+       {"Mean of B - A"},
+       {"Largest change"},
+       {"in experiment"}});
+  for (const MethodChange& method : change.methods)
+    for (const NumberChange& number : method.numbers)
+      if (number.same < number.experiments)
+        table.row({as_label(method.name) + ": " + number.label, number.experiments, number.same,
+                   Number{number.difference.mean, NumberForm::digits, number.difference.mean_interval},
+                   Number{number.largest}, number.index < 0 ? Cell("-") : Cell(number.index)});
+  if (table.rows.empty())
+    section.leave_out("no number of a method that both archives have changed in any experiment in common.");
+  else
+    section.add(std::move(table));
+  return section;
 }
 
 }  // namespace
-
-ReportSection changes_section(const ChangeInput& input) {
-  ReportSection section{"changes", "What changed?", {}};
-  if (input.methods.empty())
-    section.add(
-        "<p class=\"check failed\"><strong>No method of assessment is in both archives</strong>, so that "
-        "nothing can be compared.</p>\n");
-  else
-    section.add(input.pairing.paired() ? paired_html(input) : unpaired_html(input));
-  section.add(pairing_html(input));
-  return section;
-}
 
 std::string change_html(const Campaign& before, const std::filesystem::path& before_file, const Campaign& now,
                         const std::filesystem::path& now_file) {
@@ -136,25 +348,18 @@ std::string change_html(const Campaign& before, const std::filesystem::path& bef
   };
   const AssessmentForms before_forms = forms_of(before), now_forms = forms_of(now);
   const StudyRun first = run_of(before, before_forms), second = run_of(now, now_forms);
-  ChangeInput input{before, now, shown(before_file), shown(now_file), pair_runs(first, second), {}};
-  input.methods = method_changes(first, second, input.pairing);
-  const std::vector<ReportSection> sections{changes_section(input), change_studies_section(input),
-                                            change_rates_section(input), change_verdicts_section(input),
-                                            change_numbers_section(input)};
-  const std::string names = fmt::format("A <code>{}</code>, B <code>{}</code>", html_text(input.before_file),
-                                        html_text(input.now_file));
-  return html_page(
-      {fmt::format("{} and {}", input.before_file, input.now_file),
-       fmt::format("From <code>{}</code> to <code>{}</code>", html_text(input.before_file),
-                   html_text(input.now_file)),
-       fmt::format("<p>Archives {}. <span class=\"hint\">Rest a mouse on a point to see its "
-                   "experiment.</span></p>\n{}",
-                   names, contents_html(sections)),
-       fmt::format("Made by <code>mpmbench report</code> from {}. Intervals have a confidence level of "
-                   "{:g}&nbsp;%.",
-                   names, 100.0 * now.study.aggregate.confidence),
-       now.info.mpmbench_version},
-      sections_html(sections));
+  Change change{before, now, shown(before_file), shown(now_file), pair_runs(first, second), {}};
+  change.methods = method_changes(first, second, change.pairing);
+  const std::string names = fmt::format("A {}, B {}", code(change.before_file), code(change.now_file));
+  return document_html(
+      {.title = fmt::format("{} and {}", change.before_file, change.now_file),
+       .heading = fmt::format("From {} to {}", code(change.before_file), code(change.now_file)),
+       .lead = "Archives " + names + ".",
+       .footer = fmt::format("Made by {} from {}. Intervals have a confidence level of {:g} %.",
+                             code("mpmbench report"), names, 100.0 * now.study.aggregate.confidence),
+       .version = now.info.mpmbench_version,
+       .sections = {changes_section(change), studies_section(change), rates_section(change),
+                    verdicts_section(change), numbers_section(change)}});
 }
 
 }  // namespace mpm

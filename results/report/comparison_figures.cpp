@@ -8,6 +8,7 @@
 
 #include "results/plot/panel_script.hpp"
 #include "results/plot/pens.hpp"
+#include "results/summary/comparison.hpp"
 
 namespace mpm {
 namespace {
@@ -117,15 +118,6 @@ NamedPoint verdict_point(const MethodFindings& method) {
 }
 
 }  // namespace
-
-std::vector<MethodRateInfo> counted_rates(const Methods& methods) {
-  std::vector<MethodRateInfo> counted;
-  for (const MethodRateInfo& info : method_rate_infos())
-    if (std::any_of(methods.begin(), methods.end(),
-                    [&](const MethodFindings& m) { return (m.rates.*info.rate).total > 0; }))
-      counted.push_back(info);
-  return counted;
-}
 
 Figure comparison_rates_figure(const Study& study, const Methods& methods) {
   Figure figure;

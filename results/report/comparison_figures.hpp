@@ -8,9 +8,6 @@
 
 namespace mpm {
 
-/// The rates that were counted on some loop of some method; the others are empty rows and panels.
-std::vector<MethodRateInfo> counted_rates(const std::vector<MethodFindings>& methods);
-
 /// A panel a rate; `answered` says nothing that a table does not.
 Figure comparison_rates_figure(const Study& study, const std::vector<MethodFindings>& methods);
 

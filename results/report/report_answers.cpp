@@ -5,48 +5,15 @@
 
 #include <fmt/format.h>
 
-#include "analysis/experiment/judgement.hpp"
-#include "analysis/methods/chain_numbers.hpp"
+#include "results/document/words.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
 namespace {
 
-/// Rates of experiments that have none in common, as one.
-Rate together(const std::vector<Rate>& rates, double confidence) {
-  std::int64_t hits = 0, total = 0;
-  for (const Rate& one : rates) {
-    hits += one.hits;
-    total += one.total;
-  }
-  return rate(hits, total, confidence);
-}
-
 double confidence_of(const ReportInput& input) {
   return input.campaign.study.aggregate.confidence;
-}
-
-/// A rate of the chain over the experiments of all kinds with a fault.
-Rate of_all_kinds(const ReportInput& input, Rate KindFindings::*member) {
-  std::vector<Rate> rates;
-  for (const KindFindings& kind : input.kinds())
-    rates.push_back(kind.*member);
-  return together(rates, confidence_of(input));
-}
-
-/// Named scenarios with a verdict of the chain, and those whose every CV is judged rightly.
-Rate right_scenarios(const ReportInput& input) {
-  std::int64_t right = 0, judged = 0;
-  records_of(input.campaign).each([&](const ExperimentRecord& record) {
-    if (const AssessmentRecord* const chain = record.by(kChainMethod);
-        chain != nullptr && chain->answered()) {
-      ++judged;
-      right += judge(input.campaign.study, record, *chain).wrong() ? 0 : 1;
-    }
-  });
-  return rate(right, judged, confidence_of(input));
 }
 
 /// The method that is right most often, of those that answer and detect; null when there is none. The first
@@ -72,15 +39,14 @@ std::string asked(const ReportInput& input) {
   const Study& study = input.campaign.study;
   const std::size_t methods = input.findings().methods.size();
   return fmt::format(
-      "<strong>Asked:</strong> when loops of this plant ({}) run badly, {} which <a href=\"#term-cv\">CV</a> "
-      "is "
-      "hurt, and whether a wrong model (<a href=\"#term-mpm\">MPM</a>) or an unmeasured disturbance "
-      "(<a href=\"#term-ud\">UD</a>) does it? {} closed loops, {}.",
-      html_text(study.plant.title),
-      methods == 1 ? fmt::format("does the method <code>{}</code> tell",
-                                 html_text(input.findings().methods.front().name()))
+      "{} when loops of this plant ({}) run badly, {} which {} is hurt, and whether a wrong model ({}) or an "
+      "unmeasured "
+      "disturbance ({}) does it? {} closed loops, {}.",
+      strong("Asked:"), as_label(study.plant.title),
+      methods == 1 ? fmt::format("does the method {} tell", code(input.findings().methods.front().name()))
                    : fmt::format("do {} methods tell", methods),
-      input.findings().experiments, kinds_text(input.campaign.study, input.parts.kinds));
+      link("term-cv", "CV"), link("term-mpm", "MPM"), link("term-ud", "UD"), input.findings().experiments,
+      kinds_text(input.campaign.study, input.parts.kinds));
 }
 
 /// Where no method names a source: of the one that finds the CV most often. Empty when none names a CV.
@@ -89,31 +55,31 @@ std::string found_of_cvs(const ReportInput& input) {
   if (best == nullptr)
     return "";
   return fmt::format(
-      "no method names a source; <code>{}</code> flags {} of the loops with a fault and finds the CV most "
+      "no method names a source; {} flags {} of the loops with a fault and finds the CV most "
       "often, in {} of those that it flags",
-      html_text(best->name()), share_words(best->rates.detected), share_words(best->rates.located));
+      code(best->name()), share_words(best->rates.detected), share_words(best->rates.located));
 }
 
 std::string found(const ReportInput& input) {
   if (input.campaign.study.names_scenarios()) {
-    const Rate right = right_scenarios(input);
+    const Rate right = input.findings().right_scenarios;
     return right.total == 0
                ? "no scenario has a verdict."
                : fmt::format("in {} of {} scenarios with a verdict every CV and every source is right.",
                              right.hits, right.total);
   }
   std::string text;
-  if (const Rate located = of_all_kinds(input, &KindFindings::located); located.total > 0)
+  if (const Rate located = input.findings().located; located.total > 0)
     text =
         fmt::format("of the {} loops in which the chain of the thesis sees an impact it finds the CV in {}",
                     located.total, share_words(located));
-  if (const Rate source = of_all_kinds(input, &KindFindings::source_recognised); source.total > 0)
+  if (const Rate source = input.findings().source_recognised; source.total > 0)
     text += fmt::format("{}the source of a single fault in {}",
                         text.empty() ? "the chain of the thesis names " : " and ", share_words(source));
   if (const MethodFindings* const best = best_method(input, &MethodRates::source);
       best != nullptr && best != input.findings().chain())
-    text += fmt::format("{}<code>{}</code> names the source most often, in {} of those that it flags",
-                        text.empty() ? "" : "; ", html_text(best->name()), share_words(best->rates.source));
+    text += fmt::format("{}{} names the source most often, in {} of those that it flags",
+                        text.empty() ? "" : "; ", code(best->name()), share_words(best->rates.source));
   if (text.empty())
     text = found_of_cvs(input);
   if (!text.empty())
@@ -144,14 +110,13 @@ std::string advice(const ReportInput& input) {
     return "read the scenarios that went wrong, one by one.";
   const MethodFindings* const best = best_method(input, &MethodRates::source);
   if (best != nullptr && best != input.findings().chain())
-    return advice_on(fmt::format("<code>{}</code>", html_text(best->name())), best->rates.located,
-                     best->rates.source);
+    return advice_on(code(best->name()), best->rates.located, best->rates.source);
   if (input.kinds().empty())
     return "compare detection and false alarms of the methods below before you choose one.";
-  const Rate located = of_all_kinds(input, &KindFindings::located);
+  const Rate located = input.findings().located;
   if (located.total == 0)
     return "draw larger faults: none of these has an impact that the chain sees.";
-  return advice_on("this chain", located, of_all_kinds(input, &KindFindings::source_recognised));
+  return advice_on("this chain", located, input.findings().source_recognised);
 }
 
 /// "MPM 71.0 % (60.0 to 80.0), UD 85 % (...)": of the kinds that have any.
@@ -167,15 +132,16 @@ std::string by_kind(const ReportInput& input, Rate KindFindings::*member) {
 }  // namespace
 
 std::string share_words(const Rate& rate) {
-  return fmt::format("{:.1f}&nbsp;% ({:.1f} to {:.1f})", 100.0 * rate.value, 100.0 * rate.interval.lower,
+  return fmt::format("{:.1f} % ({:.1f} to {:.1f})", 100.0 * rate.value, 100.0 * rate.interval.lower,
                      100.0 * rate.interval.upper);
 }
 
 std::string verdict_html(const ReportInput& input) {
-  return fmt::format(
-      "<div class=\"verdict\">\n<p>{}</p>\n<p><strong>Found:</strong> {}</p>\n<p><strong>To do:</strong> "
-      "{}</p>\n</div>\n",
-      asked(input), found(input), advice(input));
+  std::string html;
+  for (const std::string& words :
+       {asked(input), strong("Found:") + " " + found(input), strong("To do:") + " " + advice(input)})
+    html += "<p>" + words_html(words) + "</p>\n";
+  return "<div class=\"verdict\">\n" + html + "</div>\n";
 }
 
 std::string rates_answer(const ReportInput& input) {
@@ -186,8 +152,8 @@ std::string rates_answer(const ReportInput& input) {
       ++compared;
       agree += *agrees ? 1 : 0;
     }
-  const Rate located = of_all_kinds(input, &KindFindings::located);
-  const Rate source = of_all_kinds(input, &KindFindings::source_recognised);
+  const Rate located = input.findings().located;
+  const Rate source = input.findings().source_recognised;
   std::string text;
   if (located.total > 0)
     text = fmt::format("The CV is right in {} of {} loops, the source in {} of {}. ", share_words(located),
@@ -198,11 +164,7 @@ std::string rates_answer(const ReportInput& input) {
 }
 
 std::string false_alarm_answer(const ReportInput& input) {
-  std::vector<Rate> rates;
-  for (const FalseAlarms& group : input.false_alarms())
-    if (!group.parameter)
-      rates.push_back(group.false_alarm);
-  const Rate all = together(rates, confidence_of(input));
+  const Rate& all = input.findings().false_alarm;
   return all.total == 0
              ? ""
              : fmt::format("In {} of the {} loops without any fault the chain sees a modelling error.",
@@ -225,7 +187,7 @@ std::string variance_answer(const ReportInput& input) {
     return "";
   const char* const word = least > 0.7 ? "Yes" : largest < 0.5 ? "Hardly" : "In part";
   return fmt::format(
-      "{}: a straight line in Ivar explains this share of the variance of Ivar<sub>basis</sub>, R&sup2; "
+      "{}: a straight line in Ivar explains this share of the variance of Ivar_{{basis}}, R\xC2\xB2 "
       "= {}.",
       word, text);
 }
@@ -251,15 +213,15 @@ std::string dominance_answer(const ReportInput& input) {
                        share_words(bin.above_threshold), bin.lower, bin.upper);
   };
   const bool apart = bins.front().above_threshold.interval.upper < bins.back().above_threshold.interval.lower;
-  return fmt::format("{}: I<sub>MPM</sub> calls the loop a mismatch in {}, and in {}.",
+  return fmt::format("{}: I_{{MPM}} calls the loop a mismatch in {}, and in {}.",
                      apart ? "At the one that dominates" : "At the one that dominates, if at all",
                      words(bins.front()), words(bins.back()));
 }
 
 std::string roc_answer(const RocCurve& curve, const Interval& area, const RocPoint& at_study) {
   return fmt::format(
-      "Of a mismatch and a disturbance, drawn at random, the mismatch has the larger I<sub>MPM</sub> in "
-      "{:.1f}&nbsp;% ({:.1f} to {:.1f}) of pairs; the best threshold has a J of {:.2f}, that of the "
+      "Of a mismatch and a disturbance, drawn at random, the mismatch has the larger I_{{MPM}} in "
+      "{:.1f} % ({:.1f} to {:.1f}) of pairs; the best threshold has a J of {:.2f}, that of the "
       "study {:.2f}.",
       100.0 * curve.area, 100.0 * area.lower, 100.0 * area.upper, curve.best.youden(), at_study.youden());
 }
@@ -284,8 +246,8 @@ std::string comparison_answer(const ReportInput& input) {
   std::string text;
   const auto best = [&](const char* what, Rate MethodRates::*member) {
     if (const MethodFindings* const method = best_method(input, member))
-      text += fmt::format("{}{} by <code>{}</code>, {}", text.empty() ? "" : "; ", what,
-                          html_text(method->name()), share_words(method->rates.*member));
+      text += fmt::format("{}{} by {}, {}", text.empty() ? "" : "; ", what, code(method->name()),
+                          share_words(method->rates.*member));
   };
   best("the CV is found most often", &MethodRates::located);
   best("the source", &MethodRates::source);
@@ -304,9 +266,9 @@ std::string s0_answer(const ReportInput& input) {
     return "";
   const S0PerturbationOptions& options = input.campaign.study.s0_perturbation;
   return fmt::format(
-      "With a time constant from {:g} to {:g} times the true one Ivar<sub>diag</sub> changes by "
-      "{:.1f}&nbsp;% "
-      "at most and stays in the band of impact in {} of loops; with such a damping, by {:.1f}&nbsp;% and "
+      "With a time constant from {:g} to {:g} times the true one Ivar_{{diag}} changes by "
+      "{:.1f} % "
+      "at most and stays in the band of impact in {} of loops; with such a damping, by {:.1f} % and "
       "in {}.",
       options.tolerance_lower, options.tolerance_upper, 100.0 * changes->time_constant.largest,
       share_words(changes->time_constant.within_band), 100.0 * changes->damping.largest,
@@ -320,7 +282,7 @@ std::string interaction_answer(const ReportInput& input, const LoopInteraction& 
       gains += fmt::format("{}{:.2f}", gains.empty() ? "" : ", ", interaction.relative_gain_at_maximum(i, i));
   return fmt::format(
       "RPN is largest, {:.2f}, at {:.3g} rad/{}{}.", interaction.rpn_maximum, interaction.rpn_frequency,
-      html_text(input.campaign.study.plant.time_unit),
+      as_label(input.campaign.study.plant.time_unit),
       gains.empty() ? ""
                     : ", where the diagonal of the RGA has the magnitudes " + gains + " (1: no interaction)");
 }

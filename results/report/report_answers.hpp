@@ -9,7 +9,7 @@
 #include "results/report/report_sections.hpp"
 
 // What the page says in words: the verdict on top, and below each question a sentence made from the numbers,
-// with their uncertainty. HTML. Each gives an empty text where the numbers are missing.
+// with their uncertainty. Each gives an empty text where the numbers are missing.
 
 namespace mpm {
 

@@ -4,8 +4,8 @@
 
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/scenario_sections.hpp"
+#include "results/summary/summary_sections.hpp"
 #include "results/text/scenario_text.hpp"
 
 namespace mpm {
@@ -70,35 +70,14 @@ Figure acf_figure(const Study& study, const Loop& loop) {
   return figure;
 }
 
-std::string acf_table(const Study& study, const std::vector<Loop>& loops) {
-  HtmlTable table(
-      "Verdicts of the autocorrelation functions: the loop against its nominal output. Only CVs that differ "
-      "from it.",
-      {{"Scenario", HtmlTable::Align::left},
-       {"CV", HtmlTable::Align::left},
-       {"Verdict", HtmlTable::Align::left},
-       {"Decay lag of y"},
-       {"of y<sub>0</sub>"},
-       {"Ratio"},
-       {"Own share"}});
-  bool any = false;
-  for (const Loop& loop : loops)
-    for (std::size_t cv = 0; cv < loop.chain.cvs.size(); ++cv)
-      if (const AcfComparison& acf = loop.chain.cvs[cv].acf; acf_differs(acf)) {
-        any = true;
-        table.row({html_text(loop.name), html_text(study.plant.cvs[cv].name), html_text(acf_text(acf)),
-                   html_number(acf.y.decay_lag), html_number(acf.y0.decay_lag),
-                   html_number(acf.decay_lag_ratio), html_number(acf.own_share)});
-      }
-  return any ? table.html()
-             : "<p>The autocorrelation functions of no CV differ from those of its nominal output.</p>\n";
-}
-
 }  // namespace
 
-void add_autocorrelations(ReportSection& section, const Campaign& campaign) {
+void add_autocorrelations(Section& section, const Campaign& campaign) {
   const std::vector<Loop> loops = loops_of(campaign);
-  section.add(acf_table(campaign.study, loops));
+  if (Table table = acf_table(campaign); table.rows.empty())
+    section.say("The autocorrelation functions of no CV differ from those of its nominal output.");
+  else
+    section.add(std::move(table));
   for (const Loop& loop : loops)
     if (!loop.drawn.empty())
       section.add(acf_figure(campaign.study, loop));

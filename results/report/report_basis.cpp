@@ -8,8 +8,8 @@
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/trajectory_figure.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report_sections.hpp"
+#include "results/summary/summary_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
@@ -17,19 +17,6 @@ namespace {
 
 /// The direct step responses under the identified ones.
 const Pen kDirect{colour::kLightGrey, Dash::solid, Mark::none, 4.0};
-
-/// How far the identified T0 is from the direct one.
-std::string difference_text(const Study& study, const BasisCase& basis) {
-  const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
-  std::string html;
-  for (Eigen::Index a = 0; a < largest.size(); ++a)
-    html += fmt::format("{}{}: {}", html.empty() ? "" : ", ",
-                        html_text(cv_name(study, basis.sensitivity.active[static_cast<std::size_t>(a)].cv)),
-                        html_number(largest(a)));
-  return "<p>T<sub>0</sub> is identified as Box-Jenkins models (appendix A3). Largest difference from the "
-         "direct step responses, by constraint: " +
-         html + ".</p>\n";
-}
 
 Panel step_panel(const Study& study, const NominalSensitivity& sensitivity,
                  const std::optional<NominalSensitivity>& direct, std::size_t a) {
@@ -61,11 +48,11 @@ Panel step_panel(const Study& study, const NominalSensitivity& sensitivity,
 
 }  // namespace
 
-ReportSection sensitivity_section(const ReportInput& input) {
+Section sensitivity_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
   const NominalSensitivity& sensitivity = input.campaign.basis.sensitivity;
   const std::optional<NominalSensitivity>& direct = input.campaign.basis.sensitivity_direct;
-  ReportSection section{"sensitivity", "Nominal sensitivity T_{0}", {}};
+  Section section{"sensitivity", "Nominal sensitivity T_{0}", {}};
   Figure figure;
   figure.name = "t0";
   figure.caption =
@@ -83,14 +70,15 @@ ReportSection sensitivity_section(const ReportInput& input) {
   else
     section.add(std::move(figure));
   if (direct)
-    section.add(difference_text(study, input.campaign.basis));
+    section.say("T_{0} is identified (appendix A3). " + identification_words(study, input.campaign.basis) +
+                ".");
   return section;
 }
 
-ReportSection basis_section(const ReportInput& input) {
+Section basis_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
   const BasisCase& basis = input.campaign.basis;
-  ReportSection section{"basis", "Basis case", {}};
+  Section section{"basis", "Basis case", {}};
   if (basis.trajectory.samples_done == 0) {
     section.leave_out("the closed loop of the basis case has no samples.");
     return section;

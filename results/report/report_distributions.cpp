@@ -7,7 +7,6 @@
 #include "analysis/indicators/scatter_ellipse.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/scenario_sections.hpp"
 #include "results/text/scenario_text.hpp"
 
@@ -86,12 +85,13 @@ Figure ellipse_figure(const Campaign& campaign) {
   return figure;
 }
 
-std::string distribution_table(const Campaign& campaign) {
-  HtmlTable table(
+Table distribution_table(const Campaign& campaign) {
+  Table table(
       "Indicators of chapter 5 for the flagged CVs: means over the window lengths, of moving kurtosis (kts) "
-      "and skewness (skn) and of their differences (dkts, dskn).",
-      {{"Scenario, CV", HtmlTable::Align::left},
-       {"Of", HtmlTable::Align::left},
+      "and "
+      "skewness (skn) and of their differences (dkts, dskn).",
+      {{"Scenario, CV", Table::Align::left},
+       {"Of", Table::Align::left},
        {"co"},
        {"ce"},
        {"Angle (degrees)"},
@@ -99,17 +99,16 @@ std::string distribution_table(const Campaign& campaign) {
   for_each_flagged(campaign, [&](const std::string& cv, const CvDiagnosis& found) {
     for (const auto& statistic : kStatistics<ScatterMeans>) {
       const ScatterMeans& means = found.distribution.means.*statistic.member;
-      const bool first = statistic.member == &PerStatistic<ScatterMeans>::kts;
-      table.row({first ? html_text(cv) : "", statistic.label, html_number(means.co), html_number(means.ce),
-                 html_number(means.angle), html_number(means.minor_to_major)});
+      table.row({as_label(cv), statistic.label, fixed(means.co), fixed(means.ce), fixed(means.angle),
+                 fixed(means.minor_to_major)});
     }
   });
-  return table.html();
+  return table;
 }
 
 }  // namespace
 
-void add_distributions(ReportSection& section, const Campaign& campaign) {
+void add_distributions(Section& section, const Campaign& campaign) {
   Figure figure = ellipse_figure(campaign);
   if (figure.panels.empty())
     return;

@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 
 #include "analysis/experiment/judgement.hpp"
-#include "analysis/methods/chain_numbers.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -17,13 +15,13 @@ namespace {
 constexpr std::size_t kMostExperiments = 1000;
 
 /// "right", "wrong", or why it was not judged.
-std::string outcome_cell(const Study& study, const ExperimentRecord& record) {
+Cell outcome_cell(const Study& study, const ExperimentRecord& record) {
   if (record.status != ExperimentStatus::ok)
     return std::string(to_string(record.status));
-  const AssessmentRecord& chain = *record.by(kChainMethod);
+  const AssessmentRecord& chain = *record.diagnosed();
   if (!chain.flagged)
     return is_faultless(record.draw.kind) ? "right" : "no impact";
-  return judge(study, record, chain).wrong() ? "<span class=\"no\">wrong</span>" : "right";
+  return judge(study, record, chain).wrong() ? Cell("wrong").toned(Cell::Tone::bad) : Cell("right");
 }
 
 /// The index of the true CV; without a fault, the one that is farthest from 1.
@@ -54,52 +52,47 @@ std::string experiment_anchor(const ReportInput& input, const ExperimentRecord& 
              : "";
 }
 
-ReportSection experiments_section(const ReportInput& input) {
+Section experiments_section(const ReportInput& input) {
   const Campaign& campaign = input.campaign;
   const Study& study = campaign.study;
-  ReportSection section{"experiments", "Experiments, one by one", {}};
+  Section section{"experiments", "Experiments, one by one", {}};
   const std::size_t experiments = records_of(campaign).size();
   if (experiments == 0) {
     section.leave_out("the archive has no experiments.");
     return section;
   }
-  HtmlTable table(
-      "What was wrong in each loop, and what the chain of the thesis says of it. Ivar, Ivar<sub>diag</sub> "
-      "and "
-      "Ivar<sub>basis</sub> are those of the CV with the fault.",
+  Table table(
+      "What was wrong in each loop, and what the chain of the thesis says of it. Ivar, Ivar_{diag} and "
+      "Ivar_{basis} "
+      "are those of the CV with the fault.",
       {{"No."},
-       {"Kind", HtmlTable::Align::left},
-       {"Fault", HtmlTable::Align::text},
-       {"True CV", HtmlTable::Align::left},
-       {"Located", HtmlTable::Align::left},
-       {"Source", HtmlTable::Align::left},
-       {"Verdict", HtmlTable::Align::left},
-       {"I<sub>MPM</sub>"},
+       {"Kind", Table::Align::left},
+       {"Fault", Table::Align::text},
+       {"True CV", Table::Align::left},
+       {"Located", Table::Align::left},
+       {"Source", Table::Align::left},
+       {"Verdict", Table::Align::left},
+       {"I_{MPM}"},
        {"Ivar"},
-       {"Ivar<sub>diag</sub>"},
-       {"Ivar<sub>basis</sub>"}});
+       {"Ivar_{diag}"},
+       {"Ivar_{basis}"}});
   records_of(campaign).each([&](const ExperimentRecord& record) {
     if (record.draw.index >= input.listed_below)
       return;
     const Diagnosis chain = record.chain();
-    const std::string number = fmt::format("{}", record.draw.index);
     table.row(
-        {input.shows_loop(record.draw.index) ? fmt::format("<a href=\"#loop-{0}\">{0}</a>", number) : number,
-         kind_name(record.draw.kind), html_text(fault_text(study, record.draw)),
-         html_text(cv_name(study, record.draw.true_cv())),
-         chain.impactful ? html_text(cv_name(study, chain.predicted_cv)) : html_number(NAN),
-         chain.impactful ? source_name(chain.predicted_source) : html_number(NAN),
-         outcome_cell(study, record), html_number(chain.impactful ? chain.indicator.i_mpm : NAN),
-         html_number(index_of(study, record, chain.ivar)),
-         html_number(index_of(study, record, chain.ivar_diag)),
-         html_number(index_of(study, record, record.ivar_basis))},
+        {input.number_words(record.draw.index), kind_name(record.draw.kind),
+         as_label(fault_text(study, record.draw)), as_label(cv_name(study, record.draw.true_cv())),
+         chain.impactful ? as_label(cv_name(study, chain.predicted_cv)) : "-",
+         chain.impactful ? source_name(chain.predicted_source) : "-", outcome_cell(study, record),
+         fixed(chain.impactful ? chain.indicator.i_mpm : kNaN), fixed(index_of(study, record, chain.ivar)),
+         fixed(index_of(study, record, chain.ivar_diag)), fixed(index_of(study, record, record.ivar_basis))},
         experiment_anchor(input, record));
   });
   if (experiments > kMostExperiments)
-    section.add(fmt::format(
-        "<p>The first {} of {}; <code>mpmbench export {} --table experiments</code> writes all.</p>\n",
-        kMostExperiments, experiments, html_text(input.file)));
-  section.add(table.html());
+    section.say(fmt::format("The first {} of {}; {} writes all.", kMostExperiments, experiments,
+                            code(fmt::format("mpmbench export {} --table experiments", input.file))));
+  section.add(std::move(table));
   return section;
 }
 

@@ -6,7 +6,6 @@
 #include "results/plot/panel_script.hpp"
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
@@ -70,39 +69,28 @@ Panel group_panel(const ReportInput& input, const FalseAlarms& group) {
       "Ivar farthest from 1 of the experiments of the group {}, with the band of impact.", group.label()));
 }
 
-std::string false_alarm_rates_table(const ReportInput& input) {
-  HtmlTable table(
+Table false_alarm_rates_table(const ReportInput& input) {
+  Table table(
       "Experiments in which model and plant agree: shares of the feasible ones that the chain calls a "
-      "modelling error with impact, and which source it names.",
-      {{"Experiments", HtmlTable::Align::left},
+      "modelling error "
+      "with impact, and which source it names.",
+      {{"Experiments", Table::Align::left},
        {"Infeasible"},
        {"False alarms"},
-       {interval_title(input.campaign.study)},
        {"as MPM"},
        {"as UD"},
        {"Feasible"}});
   for (const FalseAlarms& group : input.false_alarms())
-    table.row({(group.parameter ? "&emsp;" : "") + group.label(), html_number(group.infeasible.value, true),
-               html_number(group.false_alarm.value, true), html_interval(group.false_alarm.interval, true),
-               html_number(group.false_mpm.value, true), html_number(group.false_ud.value, true),
-               fmt::format("{}", group.false_alarm.total)});
-  return table.html();
-}
-
-std::string sensitivity_sentence(const Study& study) {
-  if (study.experiments.tuning == 0)
-    return "";
-  return study.tuning.sensitivity == TuningSensitivity::current
-             ? "<p>S0 of an experiment with a bad tuning is that of the controller with this tuning.</p>\n"
-             : "<p>S0 of an experiment with a bad tuning is that of the controller of the study: nobody "
-               "noticed "
-               "the change.</p>\n";
+    table.row({(group.parameter ? "- " : "") + group.label(), share(group.infeasible.value),
+               number(group.false_alarm), share(group.false_mpm.value), share(group.false_ud.value),
+               group.false_alarm.total});
+  return table;
 }
 
 }  // namespace
 
-ReportSection false_alarm_section(const ReportInput& input) {
-  ReportSection section{"false-alarms", "Are there alarms where the model is right?", {}};
+Section false_alarm_section(const ReportInput& input) {
+  Section section{"false-alarms", "Are there alarms where the model is right?", {}};
   const std::vector<FalseAlarms>& groups = input.false_alarms();
   section.answer = false_alarm_answer(input);
   Figure figure;
@@ -121,7 +109,12 @@ ReportSection false_alarm_section(const ReportInput& input) {
       figure.panels.push_back(group_panel(input, group));
   if (!figure.panels.empty())
     section.add(std::move(figure));
-  section.add(sensitivity_sentence(input.campaign.study));
+  if (const Study& study = input.campaign.study; study.experiments.tuning > 0)
+    section.say(study.tuning.sensitivity == TuningSensitivity::current
+                    ? "S0 of an experiment with a bad tuning is that of the controller with this tuning."
+                    : "S0 of an experiment with a bad tuning is that of the controller of the study: nobody "
+                      "noticed the "
+                      "change.");
   section.add(false_alarm_rates_table(input));
   return section;
 }

@@ -8,7 +8,6 @@
 #include "results/archive/variable_text.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
@@ -113,9 +112,9 @@ Panel size_panel(const ReportInput& input, FaultSize size, const std::vector<Siz
 
 }  // namespace
 
-ReportSection fault_size_section(const ReportInput& input) {
+Section fault_size_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
-  ReportSection section{"fault-size", "Which small faults are missed?", {}};
+  Section section{"fault-size", "Which small faults are missed?", {}};
   Figure figure;
   figure.name = "fault-size";
   figure.caption = fmt::format(

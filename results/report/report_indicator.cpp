@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include "analysis/experiment/judgement.hpp"
-#include "analysis/methods/chain_numbers.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
+#include "results/summary/summary_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
@@ -22,7 +21,7 @@ const Pen kMean{colour::kBlack, Dash::solid, Mark::square, 2.0, 0.6};
 
 /// I_MPM of an experiment that rates of it are counted over, as in the findings; NaN for any other.
 double judged_indicator(const Study& study, const ExperimentRecord& record) {
-  const AssessmentRecord* const chain = record.by(kChainMethod);
+  const AssessmentRecord* const chain = record.diagnosed();
   return chain != nullptr && in_source_population(study, *chain) ? chain->number("i_mpm") : NAN;
 }
 
@@ -51,7 +50,7 @@ Panel kind_panel(const ReportInput& input, const KindFindings& kind) {
     const double i_mpm = judged_indicator(study, record);
     if (record.draw.kind != kind.kind || !std::isfinite(i_mpm))
       return;
-    const Judgement judgement = judge(study, record, *record.by(kChainMethod));
+    const Judgement judgement = judge(study, record, *record.diagnosed());
     (judgement.source() == Correctness::right ? right : wrong)
         .push_back({static_cast<double>(record.draw.index), i_mpm, experiment_line(study, record),
                     experiment_anchor(input, record)});
@@ -74,7 +73,7 @@ Panel dominance_panel(const ReportInput& input, const std::vector<DominanceBin>&
   records_of(campaign).each([&](const ExperimentRecord& record) {
     if (const double i_mpm = judged_indicator(study, record);
         record.draw.kind == ExperimentKind::mpm_ud && std::isfinite(i_mpm)) {
-      const double dominance = record.by(kChainMethod)->number("dominance_mpm");
+      const double dominance = record.diagnosed()->number("dominance_mpm");
       points.push_back({dominance, i_mpm,
                         experiment_line(study, record) + fmt::format(", dominance {:.2f}", dominance),
                         experiment_anchor(input, record)});
@@ -96,26 +95,11 @@ Panel dominance_panel(const ReportInput& input, const std::vector<DominanceBin>&
       "means of four bins.");
 }
 
-std::string dominance_table(const Study& study, const std::vector<DominanceBin>& bins) {
-  HtmlTable table("I<sub>MPM</sub> by dominance of the mismatch.",
-                  {{"Dominance", HtmlTable::Align::left},
-                   {"Mean"},
-                   {interval_title(study)},
-                   {fmt::format("Share &gt; {:g}", study.diagnosis.mpm_threshold)},
-                   {interval_title(study)},
-                   {"Count"}});
-  for (const DominanceBin& bin : bins)
-    table.row({fmt::format("{:g} to {:g}", bin.lower, bin.upper), html_number(bin.i_mpm.mean),
-               html_interval(bin.i_mpm.mean_interval), html_number(bin.above_threshold.value, true),
-               html_interval(bin.above_threshold.interval, true), fmt::format("{}", bin.i_mpm.count)});
-  return table.html();
-}
-
 }  // namespace
 
-ReportSection indicator_section(const ReportInput& input) {
+Section indicator_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
-  ReportSection section{"indicator", "Is the source found? I_{MPM} by experiment", {}};
+  Section section{"indicator", "Is the source found? I_{MPM} by experiment", {}};
   Figure figure;
   figure.name = "i-mpm";
   figure.caption = fmt::format(
@@ -134,10 +118,10 @@ ReportSection indicator_section(const ReportInput& input) {
   return section;
 }
 
-ReportSection dominance_section(const ReportInput& input) {
+Section dominance_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
   const std::vector<DominanceBin>& bins = input.findings().dominance;
-  ReportSection section{"dominance", "Which of two faults does I_{MPM} point at?", {}};
+  Section section{"dominance", "Which of two faults does I_{MPM} point at?", {}};
   std::int64_t count = 0;
   for (const DominanceBin& bin : bins)
     count += bin.i_mpm.count;

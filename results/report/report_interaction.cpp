@@ -6,7 +6,6 @@
 #include "results/plot/panel_script.hpp"
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
@@ -47,29 +46,28 @@ Panel rga_panel(const Study& study, const LoopInteraction& interaction) {
 }
 
 /// The RGA at the frequency of the largest RPN.
-std::string relative_gain_table(const Study& study, const LoopInteraction& interaction) {
-  std::vector<HtmlTable::Column> columns{{"", HtmlTable::Align::left}};
+Table relative_gain_table(const Study& study, const LoopInteraction& interaction) {
+  Table table(fmt::format("Magnitudes of the RGA at {:.3g} rad/{}", interaction.rpn_frequency,
+                          as_label(study.plant.time_unit)),
+              {{"", Table::Align::left}});
   for (const Eigen::Index mv : interaction.mvs)
-    columns.push_back({html_text(mv_name(study, mv))});
-  HtmlTable table(fmt::format("Magnitudes of the RGA at {:.3g} rad/{}", interaction.rpn_frequency,
-                              html_text(study.plant.time_unit)),
-                  std::move(columns));
+    table.columns.push_back({as_label(mv_name(study, mv))});
   for (std::size_t i = 0; i < interaction.cvs.size(); ++i) {
-    std::vector<std::string> cells{html_text(cv_name(study, interaction.cvs[i]))};
+    std::vector<Cell> cells{as_label(cv_name(study, interaction.cvs[i]))};
     for (const double gain : interaction.relative_gain_at_maximum.row(static_cast<Eigen::Index>(i)))
-      cells.push_back(html_number(gain));
-    table.row(cells);
+      cells.emplace_back(fixed(gain));
+    table.row(std::move(cells));
   }
-  return table.html();
+  return table;
 }
 
 }  // namespace
 
-ReportSection interaction_section(const ReportInput& input) {
+Section interaction_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
   const BasisCase& basis = input.campaign.basis;
   const LoopInteraction interaction = loop_interaction(study, basis.point, basis.sensitivity);
-  ReportSection section{"interaction", "How strongly do the loops interact?", {}};
+  Section section{"interaction", "How strongly do the loops interact?", {}};
   if (interaction.frequency.size() == 0) {
     section.leave_out(interaction.cvs.empty() ? "no CV is at a setpoint or a soft limit, so T_0 is zero."
                                               : "T_0 has numbers that are not finite.");
@@ -94,10 +92,10 @@ ReportSection interaction_section(const ReportInput& input) {
   }
   section.add(std::move(figure));
   if (interaction.mvs.empty())
-    section.add(
-        fmt::format("<p>No RGA: {} CVs at a setpoint or soft limit and another number of MVs that "
-                    "can move are not square.</p>\n",
-                    interaction.cvs.size()));
+    section.say(fmt::format(
+        "No RGA: {} CVs at a setpoint or soft limit and another number of MVs that can move are not "
+        "square.",
+        interaction.cvs.size()));
   else
     section.add(relative_gain_table(study, interaction));
   return section;

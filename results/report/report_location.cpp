@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "results/document/document_html.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
@@ -23,9 +23,9 @@ double depth_of_share(double share) {
 std::string cell(std::int64_t count, std::int64_t of_row, bool right) {
   if (count == 0)
     return "<td class=\"number zero\">0</td>";
-  const double share = static_cast<double>(count) / static_cast<double>(of_row);
+  const double of_all = static_cast<double>(count) / static_cast<double>(of_row);
   return fmt::format("<td class=\"number heat\" style=\"background:rgba({},{:.2f})\">{}</td>",
-                     right ? "86,180,233" : "230,159,0", depth_of_share(share), count);
+                     right ? "86,180,233" : "230,159,0", depth_of_share(of_all), count);
 }
 
 /// A few experiments a row carry no decimals.
@@ -47,20 +47,21 @@ std::string matrix_table(const Study& study, const KindFindings& kind) {
       rows += cell(confusion.counts()(truth, found), of_row, truth == found);
     const Rate recall = confusion.recall(truth, study.aggregate.confidence);
     rows += fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
-                        html_number(recall.value, true),
-                        of_row > 0 ? whole_percents(recall.interval) : html_number(NAN));
+                        number_html(share(recall.value)),
+                        of_row > 0 ? whole_percents(recall.interval) : number_html({}));
   }
   const Rate all = confusion.accuracy(study.aggregate.confidence);
   rows += fmt::format(
       "<tr class=\"sum\"><th scope=\"row\">all</th><td class=\"number\" colspan=\"{}\">{} of {} located</td>"
       "<td class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
-      confusion.classes(), all.hits, all.total, html_number(all.value, true), whole_percents(all.interval));
+      confusion.classes(), all.hits, all.total, number_html(share(all.value)), whole_percents(all.interval));
   return scrolling_table(
       kind_name(kind.kind),
       fmt::format("<table class=\"matrix\" aria-label=\"Confusion matrix, {}\">\n"
                   "<thead><tr><th scope=\"col\">true</th>{}<th scope=\"col\" class=\"number\">located</th>"
                   "<th scope=\"col\" class=\"number\">{}</th></tr></thead>\n<tbody>\n{}</tbody></table>",
-                  kind_name(kind.kind), head, interval_title(study), rows));
+                  kind_name(kind.kind), head,
+                  fmt::format("{:g}&nbsp;% interval", 100.0 * study.aggregate.confidence), rows));
 }
 
 /// The matrix as a heat map, true CVs from top to bottom.
@@ -92,9 +93,9 @@ Panel matrix_panel(const Study& study, const KindFindings& kind) {
 
 }  // namespace
 
-ReportSection location_section(const ReportInput& input) {
+Section location_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
-  ReportSection section{"location", "Is the right CV found?", {}};
+  Section section{"location", "Is the right CV found?", {}};
   section.answer = location_answer(input);
   std::string tables;
   std::string without;

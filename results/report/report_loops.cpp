@@ -5,10 +5,8 @@
 #include <fmt/format.h>
 
 #include "analysis/experiment/judgement.hpp"
-#include "analysis/methods/chain_numbers.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/trajectory_figure.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
@@ -36,7 +34,7 @@ struct Candidates {
 
   explicit Candidates(const Campaign& campaign) {
     records_of(campaign).each([&](const ExperimentRecord& record) {
-      const AssessmentRecord* const chain = record.by(kChainMethod);
+      const AssessmentRecord* const chain = record.diagnosed();
       if (chain == nullptr || !chain->answered())
         return;
       const Candidate candidate{cost(record), record.draw.index};
@@ -67,7 +65,7 @@ std::vector<Candidate> costliest(std::vector<Candidate> of) {
 
 /// The CVs that a verdict is about, and the MV of a mismatched channel; the others would only fill the page.
 void keep_panels(Figure& figure, const Study& study, const ExperimentRecord& record) {
-  const AssessmentRecord* const chain = record.by(kChainMethod);
+  const AssessmentRecord* const chain = record.diagnosed();
   std::vector<Eigen::Index> kept{record.draw.true_cv(), chain == nullptr ? -1 : chain->predicted_cv};
   for (const Mismatch& mismatch : record.draw.mismatches)
     kept.push_back(study.cv_count() + mismatch.input);
@@ -81,33 +79,32 @@ void keep_panels(Figure& figure, const Study& study, const ExperimentRecord& rec
 
 std::string verdict_of(const Study& study, const AssessmentRecord& said) {
   if (!said.answered())
-    return html_text(said.reason.empty() ? "no verdict" : said.reason);
+    return as_label(said.reason.empty() ? "no verdict" : said.reason);
   if (!said.flagged)
     return "nothing wrong";
-  return fmt::format("{}: {}", html_text(cv_name(study, said.predicted_cv)),
+  return fmt::format("{}: {}", as_label(cv_name(study, said.predicted_cv)),
                      source_name(said.predicted_source));
 }
 
-std::string judged(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
+Cell judged(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
   if (!said.answered())
-    return html_number(NAN);
-  const bool missed = !said.flagged && has_impact(study.diagnosis, record);
-  if (missed)
-    return "<span class=\"no\">missed</span>";
-  return judge(study, record, said).wrong() ? "<span class=\"no\">wrong</span>"
-                                            : "<span class=\"yes\">right</span>";
+    return "-";
+  if (!said.flagged && has_impact(study.diagnosis, record))
+    return Cell("missed").toned(Cell::Tone::bad);
+  return judge(study, record, said).wrong() ? Cell("wrong").toned(Cell::Tone::bad)
+                                            : Cell("right").toned(Cell::Tone::good);
 }
 
-std::string said_table(const Study& study, const ExperimentRecord& record) {
-  HtmlTable table("What was said of it.", {{"Method", HtmlTable::Align::left},
-                                           {"CV and source", HtmlTable::Align::left},
-                                           {"That is", HtmlTable::Align::left}});
+Table said_table(const Study& study, const ExperimentRecord& record) {
+  Table table("What was said of it.", {{"Method", Table::Align::left},
+                                       {"CV and source", Table::Align::left},
+                                       {"That is", Table::Align::left}});
   for (const AssessmentRecord& said : record.assessments)
-    table.row({html_text(said.form->method().name), verdict_of(study, said), judged(study, record, said)});
-  return table.html();
+    table.row({as_label(said.form->method().name), verdict_of(study, said), judged(study, record, said)});
+  return table;
 }
 
-void add_loop(ReportSection& section, const ReportInput& input, const LoopView& view, bool whole) {
+void add_loop(Section& section, const ReportInput& input, const LoopView& view, bool whole) {
   const Study& study = input.campaign.study;
   const ExperimentRecord& record = view.of.record;
   section.add(fmt::format("<div class=\"loop\" id=\"loop-{}\">\n<h3>{}</h3>\n", record.draw.index,
@@ -128,9 +125,9 @@ std::string loops_answer(const ReportInput& input, const ExperimentRecord& fault
   if (cv < 0 || cv >= ivar.size())
     return "";
   return fmt::format(
-      "With the fault {} varies {:.2f} times as much as its nominal output y<sub>0</sub>, which is what "
+      "With the fault {} varies {:.2f} times as much as its nominal output y_{{0}}, which is what "
       "Ivar says; in the basis case, where nothing is wrong, {:.2f} times.",
-      html_text(cv_name(study, cv)), ivar(cv), input.campaign.basis.diagnosis.ivar(cv));
+      as_label(cv_name(study, cv)), ivar(cv), input.campaign.basis.diagnosis.ivar(cv));
 }
 
 }  // namespace
@@ -165,13 +162,15 @@ std::vector<const LoopView*> ReportInput::loops_of(LoopReason reason) const {
   return views;
 }
 
-bool ReportInput::shows_loop(std::int64_t index) const {
-  return std::any_of(loops.begin(), loops.end(),
-                     [index](const LoopView& view) { return view.of.record.draw.index == index; });
+std::string ReportInput::number_words(std::int64_t index) const {
+  const bool shown = std::any_of(loops.begin(), loops.end(), [index](const LoopView& view) {
+    return view.of.record.draw.index == index;
+  });
+  return shown ? link(fmt::format("loop-{}", index), fmt::to_string(index)) : fmt::to_string(index);
 }
 
-ReportSection loops_section(const ReportInput& input) {
-  ReportSection section{"loops", "What does a faulty loop look like, and a healthy one?", {}};
+Section loops_section(const ReportInput& input) {
+  Section section{"loops", "What does a faulty loop look like, and a healthy one?", {}};
   const std::vector<const LoopView*> faulty = input.loops_of(LoopReason::faulty);
   const std::vector<const LoopView*> healthy = input.loops_of(LoopReason::healthy);
   if (faulty.empty() && healthy.empty()) {
@@ -185,13 +184,12 @@ ReportSection loops_section(const ReportInput& input) {
   for (const LoopView* view : healthy)
     add_loop(section, input, *view, true);
   if (healthy.empty())
-    section.add(
-        "<p>No experiment of this study is healthy; the <a href=\"#basis\">basis case</a> is the same loop "
-        "without any fault.</p>\n");
+    section.say("No experiment of this study is healthy; the " + link("basis", "basis case") +
+                " is the same loop without any fault.");
   return section;
 }
 
-void add_wrong_loops(ReportSection& section, const ReportInput& input) {
+void add_wrong_loops(Section& section, const ReportInput& input) {
   for (const LoopView* view : input.loops_of(LoopReason::wrong))
     add_loop(section, input, *view, false);
 }

@@ -3,22 +3,21 @@
 
 #include <fmt/format.h>
 
+#include "results/document/document_html.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_page.hpp"
 #include "results/report/report.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_glossary.hpp"
 #include "results/report/report_sections.hpp"
-#include "results/report/section_html.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
 namespace {
 
-std::vector<Figure> all_figures(const ReportSection& section) {
+std::vector<Figure> all_figures(const Section& section) {
   std::vector<Figure> figures;
   for (const auto& piece : section.content)
     if (const Figure* const figure = std::get_if<Figure>(&piece))
@@ -33,21 +32,22 @@ std::string report_html(const Campaign& campaign, const StudyFindings& findings,
                         const std::filesystem::path& file, const std::vector<LoopView>& loops) {
   const SummaryContent parts = summary_content(campaign, findings, kMostVerdictRows);
   const ReportInput input{campaign, parts, file.filename().string(), loops, listed_below(campaign)};
-  const std::vector<ReportSection> sections = report_sections(input);
-  const std::string file_name = html_text(file.filename().string());
-  const std::string study = html_text(campaign.study.name);
-  return html_page(
-      {campaign.study.name, html_text(campaign.study.title),
-       fmt::format("<p>Study <strong>{}</strong>, archive <code>{}</code>. <span class=\"hint\">Rest a mouse "
-                   "on a point to "
-                   "see its experiment, press it to get there.</span></p>\n{}{}",
-                   study, file_name, verdict_html(input), contents_html(sections)),
-       fmt::format("Made by <code>mpmbench report</code> from {}; written by mpmbench {}. Intervals have a "
-                   "confidence level of {:g}&nbsp;%.",
-                   file_name, html_text(campaign.info.mpmbench_version),
-                   100.0 * campaign.study.aggregate.confidence),
-       campaign.info.mpmbench_version, glossary_html(findings.chain() != nullptr)},
-      sections_html(sections));
+  const std::vector<Section> sections = report_sections(input);
+  const std::string name = file.filename().string();
+  return document_html(
+      {.title = campaign.study.name,
+       .heading = as_label(campaign.study.title),
+       .lead = fmt::format("Study {}, archive {}.", strong(as_label(campaign.study.name)), code(name)),
+       .footer = fmt::format(
+           "Made by {} from {}; written by mpmbench {}. Intervals have a confidence level of {:g} %.",
+           code("mpmbench report"), as_label(name), as_label(campaign.info.mpmbench_version),
+           100.0 * campaign.study.aggregate.confidence),
+       .version = campaign.info.mpmbench_version,
+       .sections = sections,
+       .lead_html =
+           "<p class=\"hint\">Rest a mouse on a point to see its experiment, press it to get there.</p>\n" +
+           verdict_html(input) + contents_html(sections),
+       .aside_html = glossary_html(findings.chain() != nullptr)});
 }
 
 std::vector<std::filesystem::path> write_figures(const Campaign& campaign, const StudyFindings& findings,
@@ -59,7 +59,7 @@ std::vector<std::filesystem::path> write_figures(const Campaign& campaign, const
                                    error ? ": " : "", error ? error.message() : ""));
   const SummaryContent parts = summary_content(campaign, findings, kMostVerdictRows);
   std::vector<std::filesystem::path> files;
-  for (const ReportSection& section : report_sections({campaign, parts, "", {}, listed_below(campaign)}))
+  for (const Section& section : report_sections({campaign, parts, "", {}, listed_below(campaign)}))
     for (const Figure& figure : all_figures(section)) {
       files.push_back(folder / fmt::format("{}.{}", figure.name, to_string(format)));
       const std::string drawing = draw_figure(figure, format);

@@ -5,9 +5,9 @@
 #include "results/archive/variable_text.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
+#include "results/summary/summary_sections.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
@@ -69,64 +69,6 @@ Figure ratio_figure(const ReportInput& input) {
   return figure;
 }
 
-std::string change_table(const ReportInput& input) {
-  const Study& study = input.campaign.study;
-  HtmlTable table(
-      fmt::format("Fit of (6.24) to the diagonal of T<sub>0</sub>, and what multipliers from {:g} to {:g} do "
-                  "to Ivar<sub>diag</sub>: largest |ratio &minus; 1|, and the share of experiments whose "
-                  "ratio stays in the band of impact.",
-                  study.s0_perturbation.tolerance_lower, study.s0_perturbation.tolerance_upper),
-      {{"CV", HtmlTable::Align::left},
-       {"Time constant (" + html_text(study.plant.time_unit) + ")"},
-       {"Damping"},
-       {"RMS error"},
-       {"Largest change, time constant"},
-       {"In band"},
-       {"Largest change, damping"},
-       {"In band"},
-       {"Experiments"}});
-  for (const DiagonalFit& fit : input.parts.s0_fits) {
-    std::vector<std::string> cells{html_text(cv_name(study, fit.cv)),
-                                   html_number(fit.fit.model.time_constant),
-                                   html_number(fit.fit.model.damping), html_number(fit.fit.rms_error)};
-    for (const S0Curve& curve : input.parts.s0_curves)
-      if (curve.cv == fit.cv)
-        cells.insert(cells.end(), {html_number(curve.time_constant_change.largest),
-                                   html_number(curve.time_constant_change.within_band.value, true),
-                                   html_number(curve.damping_change.largest),
-                                   html_number(curve.damping_change.within_band.value, true),
-                                   fmt::format("{}", curve.experiments)});
-    table.row(cells);
-  }
-  return table.html();
-}
-
-std::string fixed_names(const Study& study) {
-  std::string names;
-  for (const Eigen::Index mv : study.s0_perturbation.fixed_mvs)
-    names += (names.empty() ? "" : ", ") + mv_name(study, mv);
-  return names;
-}
-
-std::string structure_table(const ReportInput& input) {
-  const Study& study = input.campaign.study;
-  HtmlTable table("Fit of (6.24) with all MVs available and with " + html_text(fixed_names(study)) +
-                      " fixed, and the multipliers between the two.",
-                  {{"CV", HtmlTable::Align::left},
-                   {"Time constant"},
-                   {"Damping"},
-                   {"Time constant, fixed"},
-                   {"Damping, fixed"},
-                   {"Multiplier of the time constant"},
-                   {"Multiplier of the damping"}});
-  for (const StructureFit& fit : input.parts.structure_fits)
-    table.row({html_text(cv_name(study, fit.cv)), html_number(fit.available.model.time_constant),
-               html_number(fit.available.model.damping), html_number(fit.fixed.model.time_constant),
-               html_number(fit.fixed.model.damping), html_number(fit.time_constant_multiplier),
-               html_number(fit.damping_multiplier)});
-  return table.html();
-}
-
 /// The diagonal step response of `cv` in T0, with 0 before the first sample.
 std::vector<double> diagonal_response(const NominalSensitivity& sensitivity, Eigen::Index cv) {
   std::vector<double> response{0.0};
@@ -169,7 +111,7 @@ Panel structure_panel(const ReportInput& input, const StructureFit& fit) {
 }
 
 Figure structure_figure(const ReportInput& input) {
-  const std::string fixed = as_label(fixed_names(input.campaign.study));
+  const std::string fixed = fixed_names(input.campaign.study);
   Figure figure;
   figure.name = "s0-structure";
   figure.caption = fmt::format(
@@ -184,8 +126,8 @@ Figure structure_figure(const ReportInput& input) {
 
 }  // namespace
 
-ReportSection s0_perturbation_section(const ReportInput& input) {
-  ReportSection section{"s0-perturbation", "What does an error in S_{0} cost?", {}};
+Section s0_perturbation_section(const ReportInput& input) {
+  Section section{"s0-perturbation", "What does an error in S_{0} cost?", {}};
   if (input.campaign.study.s0_perturbation.multipliers.empty()) {
     section.leave_out("the study does not perturb S0 (s0_perturbation).");
     return section;
@@ -196,10 +138,10 @@ ReportSection s0_perturbation_section(const ReportInput& input) {
   else
     section.add(ratio_figure(input));
   if (!input.parts.s0_fits.empty())
-    section.add(change_table(input));
+    section.add(s0_change_table(input.campaign.study, input.parts));
   if (!input.parts.structure_fits.empty()) {
     section.add(structure_figure(input));
-    section.add(structure_table(input));
+    section.add(s0_structure_table(input.campaign.study, input.parts));
   }
   return section;
 }

@@ -175,7 +175,7 @@ Figure indicator_figure(const Campaign& campaign, const IndicatorRows& rows) {
 
 }  // namespace
 
-void add_scenario_figures(ReportSection& section, const Campaign& campaign) {
+void add_scenario_figures(Section& section, const Campaign& campaign) {
   section.add(index_figure(campaign));
   section.add(indicator_figure(campaign, IndicatorRows(campaign)));
 }

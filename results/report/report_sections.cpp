@@ -1,14 +1,6 @@
 #include "results/report/report_sections.hpp"
 
-#include <fmt/format.h>
-
-#include "results/plot/plot_text.hpp"
-
 namespace mpm {
-
-void ReportSection::leave_out(const std::string& why) {
-  add("<p class=\"absent\">Left out: " + html_text(why) + "</p>\n");
-}
 
 const std::vector<KindFindings>& ReportInput::kinds() const {
   static const std::vector<KindFindings> none;
@@ -20,11 +12,11 @@ const std::vector<FalseAlarms>& ReportInput::false_alarms() const {
   return findings().chain() == nullptr ? none : findings().chain()->false_alarms;
 }
 
-std::vector<ReportSection> report_sections(const ReportInput& input) {
+std::vector<Section> report_sections(const ReportInput& input) {
   const bool named = input.campaign.study.names_scenarios();
   const bool chain = input.findings().chain() != nullptr;
-  std::vector<ReportSection> sections{run_section(input)};
-  const auto add = [&](std::initializer_list<ReportSection (*)(const ReportInput&)> list) {
+  std::vector<Section> sections{run_section(input)};
+  const auto add = [&](std::initializer_list<Section (*)(const ReportInput&)> list) {
     for (const auto& section : list)
       sections.push_back(section(input));
   };
@@ -45,10 +37,6 @@ std::vector<ReportSection> report_sections(const ReportInput& input) {
   if (chain && !named)
     add({wrong_verdict_section, experiments_section});
   return sections;
-}
-
-std::string interval_title(const Study& study) {
-  return fmt::format("{:g}&nbsp;% interval", 100.0 * study.aggregate.confidence);
 }
 
 }  // namespace mpm

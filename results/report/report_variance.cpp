@@ -8,7 +8,6 @@
 
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
@@ -111,25 +110,15 @@ Panel kind_panel(const ReportInput& input, const KindFindings& kind, const Pairs
                       330);
 }
 
-std::string regression_table(const ReportInput& input) {
-  const Study& study = input.campaign.study;
-  HtmlTable table(
-      "Regression of Ivar<sub>basis</sub> on Ivar, all CVs; intervals by resampling whole "
-      "experiments.",
-      {{"Kind", HtmlTable::Align::left},
-       {"R&sup2;"},
-       {interval_title(study)},
-       {"Slope"},
-       {interval_title(study)},
-       {"Intercept"},
-       {"Pairs"}});
+Table regression_table(const ReportInput& input) {
+  Table table("Regression of Ivar_{basis} on Ivar, all CVs; intervals by resampling whole experiments.",
+              {{"Kind", Table::Align::left}, {"R\xC2\xB2"}, {"Slope"}, {"Intercept"}, {"Pairs"}});
   for (const KindFindings& kind : input.kinds()) {
     const LinearFitIntervals& fit = kind.regression;
-    table.row({kind_name(kind.kind), html_number(fit.fit.r_squared), html_interval(fit.r_squared),
-               html_number(fit.fit.slope), html_interval(fit.slope), html_number(fit.fit.intercept),
-               fmt::format("{}", fit.fit.pairs)});
+    table.row({kind_name(kind.kind), fixed(fit.fit.r_squared, fit.r_squared), fixed(fit.fit.slope, fit.slope),
+               fixed(fit.fit.intercept), fit.fit.pairs});
   }
-  return table.html();
+  return table;
 }
 
 bool causes_are_known(const ReportInput& input) {
@@ -138,17 +127,17 @@ bool causes_are_known(const ReportInput& input) {
 }
 
 /// What one linear S0 explains of the loops without each cause why it does not.
-std::string cause_table(const ReportInput& input) {
-  HtmlTable table(
+Table cause_table(const ReportInput& input) {
+  Table table(
       fmt::format(
-          "R&sup2; of Ivar<sub>basis</sub> on Ivar, all CVs, without the experiments in which one linear "
-          "S0 cannot describe the loop: it is unstable with the active set of the basis case, a CV that "
-          "is inside its range there is at a limit in more than {:g} % of the samples, or an MV is.",
+          "R\xC2\xB2 of Ivar_{{basis}} on Ivar, all CVs, without the experiments in which one linear S_{{0}} "
+          "cannot describe the loop: it is unstable with the active set of the basis case, a CV that is "
+          "inside its range there is at a limit in more than {:g} % of the samples, or an MV is.",
           100.0 * kOftenActive),
-      {{"Kind", HtmlTable::Align::left},
-       {"Without", HtmlTable::Align::left},
+      {{"Kind", Table::Align::left},
+       {"Without", Table::Align::left},
        {"Experiments left out"},
-       {"R&sup2;"},
+       {"R\xC2\xB2"},
        {"Slope"},
        {"Pairs"}});
   for (const KindFindings& kind : input.kinds())
@@ -156,16 +145,15 @@ std::string cause_table(const ReportInput& input) {
       table.row(
           {kind_name(kind.kind),
            without.cause == NonlinearCause::none ? "all of these" : std::string(title_of(without.cause)),
-           fmt::format("{}", without.experiments), html_number(without.fit.r_squared),
-           html_number(without.fit.slope), fmt::format("{}", without.fit.pairs)});
-  return table.html();
+           without.experiments, fixed(without.fit.r_squared), fixed(without.fit.slope), without.fit.pairs});
+  return table;
 }
 
 }  // namespace
 
-ReportSection variance_section(const ReportInput& input) {
+Section variance_section(const ReportInput& input) {
   const DiagnosisOptions& options = input.campaign.study.diagnosis;
-  ReportSection section{"variance", "Does Ivar tell what the fault costs?", {}};
+  Section section{"variance", "Does Ivar tell what the fault costs?", {}};
   Figure figure;
   figure.name = "ivar";
   figure.caption = fmt::format(

@@ -7,7 +7,6 @@
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/suite/leaderboard_output.hpp"
-#include "results/suite/leaderboard_words.hpp"
 
 namespace mpm {
 namespace {

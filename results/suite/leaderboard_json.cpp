@@ -5,7 +5,6 @@
 #include "analysis/findings/method_rates.hpp"
 #include "results/files/utf8.hpp"
 #include "results/suite/leaderboard_output.hpp"
-#include "results/suite/leaderboard_words.hpp"
 #include "results/text/number_json.hpp"
 
 namespace mpm {

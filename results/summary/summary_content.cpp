@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/chain_numbers.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
@@ -67,7 +66,7 @@ SummaryContent summary_content(const Campaign& campaign, const StudyFindings& fi
       parts.failures.push_back({record.draw.index, record.message});
       list(record, parts.failed);
     }
-    const AssessmentRecord* const chain = record.by(kChainMethod);
+    const AssessmentRecord* const chain = record.diagnosed();
     if (chain != nullptr && judge(study, record, *chain).wrong()) {
       parts.wrong_verdicts.push_back(record.draw.index);
       list(record, parts.wrong);

@@ -1,19 +1,59 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <string>
 
 #include "results/archive/campaign.hpp"
+#include "results/document/document.hpp"
 #include "results/summary/summary_content.hpp"
-#include "results/summary/summary_lines.hpp"
+
+// What summary and report say in the same tables.
 
 namespace mpm {
 
-// Parts of the summary as text.
+/// What was run, by which program, and whether the basis case is healthy.
+Facts run_facts(const Campaign& campaign, const SummaryContent& parts);
 
-/// Of a study of named scenarios: what the chain says of each of them against what the study says.
-void add_scenarios(SummaryLines& text, const Campaign& campaign);
+/// How far the identified T0 is from the direct one.
+std::string identification_words(const Study& study, const BasisCase& basis);
+/// By how much both solvers differ where one was asked after the other.
+std::string audit_words(const SummaryContent& parts, const CampaignInfo& info);
 
-/// Of a study that modifies S0: fits and changes of the CVs at a soft limit, and the fits with MVs fixed.
-void add_s0_perturbation(SummaryLines& text, const Study& study, const SummaryContent& parts);
+/// The findings of people's interest, beside the reported ones where the study has some.
+Table findings_table(const Study& study, const StudyFindings& findings);
+
+/// I_MPM of the experiments with both faults, by the dominance of the mismatch.
+Table dominance_table(const Study& study, const std::vector<DominanceBin>& bins);
+
+/// The first experiments with a wrong verdict of the method that diagnoses. `number` makes words of an index.
+Table wrong_table(const Study& study, const SummaryContent& parts, const std::string& file, std::size_t most,
+                  const std::function<std::string(std::int64_t)>& number);
+/// The first experiments without a result.
+Table failed_table(const Study& study, const SummaryContent& parts, const std::string& file,
+                   std::size_t most);
+
+/// Named scenarios: the verdict on each against what the study says.
+Table scenario_table(const Campaign& campaign, const std::string& file);
+/// Ivar and Ivar_diag of every CV; what lies outside the band of impact is marked.
+Table index_table(const Campaign& campaign);
+/// The indicators of the flagged CVs.
+Table indicator_table(const Campaign& campaign);
+/// The CVs whose autocorrelation functions differ from those of their nominal outputs.
+Table acf_table(const Campaign& campaign);
+
+/// Fits to the diagonal of T0, and what multiplied parameters do to Ivar_diag.
+Table s0_change_table(const Study& study, const SummaryContent& parts);
+/// The fits with MVs fixed, and the multipliers between the two.
+Table s0_structure_table(const Study& study, const SummaryContent& parts);
+
+/// Is it empty, or the method that diagnoses, whose findings have no method in their names?
+bool is_own(const StudyFindings& findings, const std::string& method);
+/// "MPM"; of another method than the one that diagnoses "MPM, counterfactual".
+std::string kind_heading(const StudyFindings& findings, ExperimentKind kind, const std::string& method);
+
+/// "u1, u2": the MVs that the study fixes.
+std::string fixed_names(const Study& study);
 
 }  // namespace mpm

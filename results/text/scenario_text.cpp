@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/chain_numbers.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
@@ -43,7 +42,7 @@ std::string flagged_text(const Study& study, const Diagnosis& diagnosis) {
 std::string scenario_verdict_text(const Study& study, const ExperimentRecord& record) {
   if (record.status != ExperimentStatus::ok)
     return std::string(to_string(record.status));
-  const AssessmentRecord* const chain = record.by(kChainMethod);
+  const AssessmentRecord* const chain = record.diagnosed();
   if (chain == nullptr || !chain->answered())
     return "not assessed by the chain";
   const CvJudgement verdict = *judge(study, record, *chain).cvs;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <string>
 
-#include "analysis/methods/chain_numbers.hpp"
 #include "scenarios/files/study_file.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/calibration.hpp"
@@ -85,7 +84,7 @@ Campaign campaign_sample() {
   campaign.methods = made_up_methods(campaign.study);
   campaign.study.methods = method_names(campaign);
   campaign.calibration = made_up_calibration(campaign.study);
-  ExperimentRunner runner(campaign.study, campaign.basis, {std::string(kChainMethod)}, factory);
+  ExperimentRunner runner(campaign.study, campaign.basis, {"botelho"}, factory);
   for (std::int64_t i = 0; i < 8; ++i)
     campaign.records.push_back(runner.run(i, i < 3 ? StorePolicy::truth : StorePolicy::none));
   make_awkward(campaign.records);

@@ -169,7 +169,7 @@ void assess(Numbers& numbers, const Campaign& campaign, ExperimentRecord& record
     record.assessments.push_back(unasked(method.form));
     if (record.status != ExperimentStatus::ok)
       continue;
-    if (method.form->method().name == kChainMethod)
+    if (method.form->method().name == "botelho")
       set_chain(campaign.study, record, diagnosis(numbers, campaign.study));
     else
       record.assessments.back() = answer(of_method, campaign.study, method.form);
@@ -352,7 +352,7 @@ AssessmentRecord made_up_answer(const Study& study, std::shared_ptr<const Assess
 void set_chain(const Study& study, ExperimentRecord& record, const Diagnosis& diagnosis) {
   const auto chain =
       std::find_if(record.assessments.begin(), record.assessments.end(),
-                   [](const AssessmentRecord& said) { return said.form->method().name == kChainMethod; });
+                   [](const AssessmentRecord& said) { return said.form->method().name == "botelho"; });
   if (chain == record.assessments.end())
     throw std::logic_error("the chain is no method of this record");
   Assessment said;

@@ -17,7 +17,7 @@ FOLDERS = {
     "scenarios": ["random", "toml", "faults", "controller", "study", "loop", "files"],
     "analysis": ["statistics", "identification", "sensitivity", "indicators", "basis", "methods", "experiment",
                  "findings", "reproduction", "validation"],
-    "results": ["files", "archive", "records", "blind", "text", "plot", "summary", "gates", "report", "assess",
+    "results": ["files", "archive", "records", "blind", "text", "plot", "document", "summary", "gates", "report", "assess",
                 "reproduction", "suite"],
     "bench": ["version.hpp", "files", "outcome", "execution", "shards", "parts", "campaign", "console", "commands", "perf"],
 }

@@ -34,7 +34,7 @@ bool same_bits(const Matrix& a, const Matrix& b) {
 
 /// The basis case in the shape of a record, which RecordBytes takes apart bit by bit.
 std::string basis_bytes(const Study& study, const BasisCase& basis) {
-  const AssessmentForms forms = assessment_forms(study, {std::string(kChainMethod)});
+  const AssessmentForms forms = assessment_forms(study, {"botelho"});
   Assessment chain;
   chain.numbers = chain_numbers(basis.diagnosis);
   ExperimentRecord record;
@@ -248,7 +248,7 @@ TEST_CASE("archive: one of methods without the chain and of one method comes bac
     remove_methods(campaign, unwanted);
     check_same(there_and_back(campaign), campaign);
   };
-  without([](const std::string& name) { return name == kChainMethod; });
+  without([](const std::string& name) { return name == "botelho"; });
   without([](const std::string& name) { return name != "sse"; });
   REQUIRE(campaign.methods.size() == 1);
 }

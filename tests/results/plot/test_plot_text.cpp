@@ -6,7 +6,6 @@
 #include "plants/error.hpp"
 #include "results/plot/figure_format.hpp"
 #include "results/plot/plot_text.hpp"
-#include "results/report/html_table.hpp"
 #include "results/text/experiment_text.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -39,17 +38,6 @@ TEST_CASE("plot text: control characters and broken UTF-8 do not get through") {
   CHECK(gnuplot_label(as_label("a\nsystem('x')")) == "'a system(\xE2\x80\x99x\xE2\x80\x99)'");
   CHECK(shown_text("\xFF") == "\xEF\xBF\xBD");
   CHECK(html_text("R\xC2\xB2") == "R\xC2\xB2");
-}
-
-TEST_CASE("plot text: numbers and intervals in tables") {
-  CHECK(html_number(0.12345) == "0.123");
-  CHECK(html_number(-0.5) == "&minus;0.500");
-  CHECK(html_number(0.972, true) == "97.2&nbsp;%");
-  CHECK_THAT(html_number(std::nan("")), Contains("&ndash;"));
-  CHECK(html_number(-INFINITY) == "&minus;&infin;");
-  CHECK(html_interval({0.1, 0.2}) == "0.100 to 0.200");
-  CHECK(html_interval({0.1, 0.2}, true) == "10.0 to 20.0&nbsp;%");
-  CHECK(without_tags("I<sub>MPM</sub> by <b>x</b>") == "IMPM by x");
 }
 
 TEST_CASE("plot text: the text of a scenario names all its faults, and each CV in its verdict") {

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/method_rates.hpp"
-#include "analysis/methods/chain_numbers.hpp"
 #include "plants/non_finite.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "results/document/document_html.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/report/report.hpp"
 #include "results/report/report_answers.hpp"
@@ -53,7 +53,7 @@ std::string page_of(const Campaign& campaign, const std::string& file) {
 
 std::vector<std::string> section_ids(const Campaign& campaign) {
   std::vector<std::string> ids;
-  for (const ReportSection& section : report_sections(Input(campaign)))
+  for (const Section& section : report_sections(Input(campaign)))
     ids.push_back(section.id);
   return ids;
 }
@@ -70,15 +70,14 @@ void change_chain(Campaign& campaign,
   }
 }
 
-std::string html_of(const ReportSection& section) {
-  std::string html;
-  for (const auto& piece : section.content)
-    if (std::holds_alternative<Html>(piece))
-      html += std::get<Html>(piece).text;
-  return html;
+std::string html_of(const Section& section) {
+  Section drawn = section;
+  std::erase_if(drawn.content, [](const auto& piece) { return std::holds_alternative<Figure>(piece); });
+  const std::string page = document_html({.sections = {drawn}});
+  return page.substr(page.find("<main>"), page.find("</main>") - page.find("<main>"));
 }
 
-bool has_figure(const ReportSection& section) {
+bool has_figure(const Section& section) {
   return std::any_of(section.content.begin(), section.content.end(),
                      [](const auto& piece) { return std::holds_alternative<Figure>(piece); });
 }
@@ -110,15 +109,17 @@ TEST_CASE("report: of records that stay in the archive it is the same page with 
 TEST_CASE("report: headline numbers are those of the summary, beside the reported ones") {
   const std::string html = html_of(rates_section(Input(sample(), "out.h5")));
   // 1 of the 7 experiments that did not fail is infeasible; Wilson's interval of 1/7 is 2.6 to 51.3 %.
-  CHECK_THAT(html,
-             Contains("<td class=\"number\">14.3&nbsp;%</td><td class=\"number\">2.6 to 51.3&nbsp;%</td>"
-                      "<td class=\"number\">4.0&nbsp;%<br><small>of 400</small></td><td><span "
-                      "class=\"yes\">yes</span></td>"));
+  CHECK_THAT(
+      html,
+      Contains(
+          "<td class=\"number\">14.3&nbsp;%<br><small>2.6 to 51.3&nbsp;%</small></td>"
+          "<td class=\"number\">7</td><td class=\"number\">4.0&nbsp;%<br><small>of 400</small></td><td><span "
+          "class=\"yes\">yes</span></td>"));
 }
 
 TEST_CASE("report: what another method than the chain shows stands under its name, and beside no headline") {
   const Campaign campaign = made_up_campaign();
-  const ReportSection section = rates_section(Input(campaign));
+  const Section section = rates_section(Input(campaign));
   const std::string html = html_of(section);
   CHECK_THAT(html, Contains(">MPM<") && Contains(">MPM, sse<") && Contains(">UD, badwe2009<"));
   REQUIRE(std::holds_alternative<Figure>(section.content.front()));
@@ -154,7 +155,7 @@ TEST_CASE("report: each wrong verdict stands there with its numbers and its comm
 TEST_CASE("report: a section without data says in one sentence why it is left out") {
   const Campaign campaign = empty_campaign();
   int left_out = 0;
-  for (const ReportSection& section : report_sections(Input(campaign))) {
+  for (const Section& section : report_sections(Input(campaign))) {
     INFO(section.id);
     CHECK_FALSE(section.content.empty());
     if (section.id == "run" || section.id == "basis")
@@ -173,7 +174,7 @@ TEST_CASE("report: a study of named scenarios has their section in place of rate
   CHECK(section_ids(campaign) == std::vector<std::string>{"run", "scenarios", "comparison", "sensitivity",
                                                           "interaction", "s0-perturbation", "basis",
                                                           "solver"});
-  const ReportSection section = scenarios_section(Input(campaign, "a b.h5"));
+  const Section section = scenarios_section(Input(campaign, "a b.h5"));
   CHECK(has_figure(section));
   const std::string html = html_of(section);
   CHECK_THAT(html, Contains("mpmbench replay a b.h5 4") && Contains("&lt;b&gt; &#39;all&#39; &amp; more"));
@@ -193,7 +194,7 @@ TEST_CASE("report: several methods stand side by side, with curves where it can"
   for (ExperimentRecord& record : campaign.records)
     if (record.status == ExperimentStatus::ok)
       record.assessments[1] = kept(record.assessments[1].form, Assessment::not_applicable("it needs <more>"));
-  const ReportSection section = comparison_section(Input(campaign));
+  const Section section = comparison_section(Input(campaign));
   std::vector<std::string> figures;
   for (const auto& piece : section.content)
     if (const Figure* const figure = std::get_if<Figure>(&piece))
@@ -206,23 +207,23 @@ TEST_CASE("report: several methods stand side by side, with curves where it can"
   for (const std::string& method : method_names(campaign))
     CHECK_THAT(html, Contains(method));
 
-  CHECK_THAT(html, !Contains("calibrated on"));
+  CHECK_THAT(html, !Contains("Thresholds on"));
   Campaign calibrated = campaign;
   calibrated.study.calibration.emplace();
   calibrated.calibration.seed = 4711;
   CHECK_THAT(html_of(comparison_section(Input(calibrated))),
-             Contains("calibrated on 200 healthy loops and 100 with a disturbance alone, of seed 4711"));
+             Contains("Thresholds on 200 healthy loops and 100 with a disturbance of seed 4711"));
 
   // Every loop of the sample has a fault, so that there is nothing to draw a curve with.
-  CHECK_THAT(html_of(comparison_section(Input(sample()))), Contains("ROC curves are left out"));
-  remove_methods(campaign, [](const std::string& name) { return name != kChainMethod; });
+  CHECK_THAT(html_of(comparison_section(Input(sample()))), Contains("Left out: ROC curves"));
+  remove_methods(campaign, [](const std::string& name) { return name != "botelho"; });
   CHECK_THAT(page_of(campaign, "f.h5"), !Contains("Which method is right most often?"));
 }
 
 TEST_CASE("report: a campaign without the chain has no section of it") {
   Campaign campaign =
       GENERATE(made_up_campaign(), faultless_campaign(), scenario_campaign(), empty_campaign());
-  remove_methods(campaign, [](const std::string& name) { return name == kChainMethod; });
+  remove_methods(campaign, [](const std::string& name) { return name == "botelho"; });
   std::vector<std::string> ids{"run",         "rates",           "comparison", "sensitivity",
                                "interaction", "s0-perturbation", "basis",      "solver"};
   if (campaign.study.names_scenarios())
@@ -276,10 +277,10 @@ TEST_CASE("report: false alarms have a section and rows where model and plant ag
   change_chain(campaign, [](const ExperimentRecord& record, Diagnosis& chain) {
     chain.impactful = is_faultless(record.draw.kind);
   });
-  const ReportSection section = false_alarm_section(Input(campaign));
+  const Section section = false_alarm_section(Input(campaign));
   CHECK(has_figure(section));
   CHECK_THAT(html_of(section),
-             Contains("healthy") && Contains("&emsp;setpoint weight") && Contains("100.0&nbsp;%") &&
+             Contains("healthy") && Contains("- setpoint weight") && Contains("100.0&nbsp;%") &&
                  Contains("S0 of an experiment with a bad tuning is that of the controller"));
   CHECK_THAT(html_of(rates_section(Input(campaign))),
              Contains("Model and plant agree") && Contains("false alarm, tuning slack weight"));

@@ -1,4 +1,4 @@
-#include "results/report/figure_html.hpp"
+#include "results/document/figure_html.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "results/report/report_style.hpp"
+#include "results/document/report_style.hpp"
 
 namespace mpm {
 

@@ -1,4 +1,4 @@
-#include "results/report/page_script.hpp"
+#include "results/document/page_script.hpp"
 
 #include <array>
 #include <string_view>

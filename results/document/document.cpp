@@ -1,0 +1,55 @@
+#include "results/document/document.hpp"
+
+#include <fmt/format.h>
+
+#include "results/document/words.hpp"
+#include "results/plot/plot_text.hpp"
+
+namespace mpm {
+
+std::string strong(std::string_view words) {
+  return fmt::format("{}{}{}", kStrong, words, kStrongEnd);
+}
+
+std::string code(std::string_view text) {
+  return fmt::format("{}{}{}", kCode, as_label(text), kCodeEnd);
+}
+
+std::string link(std::string_view target, std::string_view words) {
+  return fmt::format("{}{}{}{}{}", kLink, target, kLinkTarget, words, kLinkEnd);
+}
+
+std::string listed(const std::vector<std::string>& names, std::string_view none) {
+  std::string words;
+  for (const std::string& name : names)
+    words += (words.empty() ? "" : ", ") + as_label(name);
+  return words.empty() ? std::string(none) : words;
+}
+
+Number number(const Rate& rate, NumberForm form) {
+  return rate.total == 0 ? Number{} : Number{rate.value, form, rate.interval};
+}
+
+Number number_of(const Rate& rate, NumberForm form) {
+  return rate.total == 0 ? Number{} : Number{rate.value, form, rate.interval, rate.total};
+}
+
+Number number_of(const Estimate& estimate, NumberForm form) {
+  return estimate.count == 0 ? Number{} : Number{estimate.value, form, estimate.interval, estimate.count};
+}
+
+Cell&& Cell::with(std::string words) && {
+  note = std::move(words);
+  return std::move(*this);
+}
+
+Cell&& Cell::toned(Tone as) && {
+  tone = as;
+  return std::move(*this);
+}
+
+void Section::leave_out(const std::string& why) {
+  say("Left out: " + as_label(why), Paragraph::Kind::absent);
+}
+
+}  // namespace mpm

@@ -1,0 +1,184 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "analysis/statistics/estimate.hpp"
+#include "analysis/statistics/interval.hpp"
+#include "plants/non_finite.hpp"
+#include "results/plot/figure.hpp"
+
+// What a result says, once: sections of sentences, tables of typed cells, and figures. The writers make a
+// text for a terminal (document_text.hpp) and a page (document_html.hpp) of it.
+//
+// Words are labels (results/plot/plot_text.hpp: `_{...}` is a subscript, foreign text goes through
+// as_label()), with further marks that these functions make. A terminal shows the words alone.
+
+namespace mpm {
+
+std::string strong(std::string_view words);
+/// Foreign text that a reader may type: a command, a key, a file.
+std::string code(std::string_view text);
+/// `target`: an anchor of the page.
+std::string link(std::string_view target, std::string_view words);
+
+/// "A, B and C" without the "and": the names as foreign text, or `none` where there are none.
+std::string listed(const std::vector<std::string>& names, std::string_view none = "");
+
+enum class NumberForm {
+  share,          ///< 0.941: "94.1 %"
+  percent,        ///< 0.941: "94.1"; the table says that it is a percentage
+  whole_percent,  ///< 0.941: "94"
+  fixed,          ///< three decimals
+  digits,         ///< three digits
+};
+
+/// A number with what is known of its uncertainty.
+struct Number {
+  double value = kNaN;  ///< NaN: a dash
+  NumberForm form = NumberForm::digits;
+  Interval interval{kNaN, kNaN};  ///< NaN: none
+  std::int64_t of = -1;           ///< how many loops or experiments it rests on; -1: not shown
+};
+
+inline Number fixed(double value, const Interval& interval = {kNaN, kNaN}) {
+  return {value, NumberForm::fixed, interval};
+}
+inline Number share(double value) {
+  return {value, NumberForm::share};
+}
+/// A rate without loops is a dash.
+Number number(const Rate& rate, NumberForm form = NumberForm::share);
+/// With the number of its loops.
+Number number_of(const Rate& rate, NumberForm form = NumberForm::share);
+Number number_of(const Estimate& estimate, NumberForm form = NumberForm::digits);
+
+/// An entry of a table.
+struct Cell {
+  enum class Tone { plain, good, bad, strong };
+
+  Cell(std::string words)
+      : content(std::move(words)) {}               // NOLINT(google-explicit-constructor): rows are lists
+  Cell(const char* words) : content(words) {}      // NOLINT(google-explicit-constructor)
+  Cell(const Number& number) : content(number) {}  // NOLINT(google-explicit-constructor)
+  /// A count.
+  template <std::integral Count>
+  Cell(Count count) : content(fmt::to_string(count)) {}  // NOLINT(google-explicit-constructor)
+
+  Cell&& with(std::string words) &&;  ///< a note
+  Cell&& toned(Tone as) &&;
+
+  std::variant<std::string, Number> content;  ///< words; empty ones are nothing
+  std::string hover = {};                     ///< what a page says where a mouse rests: text
+  std::string mark = {};                      ///< right behind the content
+  std::string note = {};                      ///< words: small and below on a page; a text has no room for it
+  Tone tone = Tone::plain;
+  double ground = kNaN;      ///< 0 to 1: how deep the colour is on which a page shows it; NaN: none
+  bool low_is_good = false;  ///< another colour
+};
+
+/// Who is told something.
+enum class Shown { everywhere, page, text };
+
+/// Cells in rows under named columns. A text has the columns that fit side by side, and the others below.
+struct Table {
+  enum class Align { left, right, text };  ///< text: left, and wide enough for a sentence
+  struct Column {
+    std::string title;  ///< words
+    Align align = Align::right;
+    Shown shown = Shown::everywhere;
+  };
+  struct Row {
+    std::vector<Cell>
+        cells;  ///< the first is the heading of its row; fewer than columns leave the last ones empty
+    std::string anchor = {};  ///< by which links find the row; empty: none
+    bool is_group = false;    ///< its only cell is a heading across all columns
+  };
+
+  Table(std::string of_caption, std::vector<Column> of_columns)
+      : caption(std::move(of_caption)), columns(std::move(of_columns)) {}
+
+  void row(std::vector<Cell> cells, std::string anchor = {}) {
+    rows.push_back({std::move(cells), std::move(anchor)});
+  }
+  void group(std::string title) { rows.push_back({{std::move(title)}, {}, true}); }
+
+  std::string caption;  ///< words
+  std::vector<Column> columns;
+  std::vector<Row> rows = {};
+  bool wraps = false;  ///< a page may break its cells between words: many columns have to fit on a screen
+};
+
+/// Words in a paragraph of their own.
+struct Paragraph {
+  enum class Kind { plain, passed, failed, absent, small };
+
+  std::string words;
+  Kind kind = Kind::plain;
+};
+
+/// Sentences, each with a point before it.
+struct Sentences {
+  std::vector<std::string> words;
+};
+
+/// Names with what there is to say of each.
+struct Facts {
+  struct Fact {
+    std::string name, words;
+    std::string note;  ///< words: small and below on a page, behind the others in a text
+  };
+
+  void add(std::string name, std::string words, std::string note = {}) {
+    list.push_back({std::move(name), std::move(words), std::move(note)});
+  }
+
+  std::vector<Fact> list = {};
+};
+
+/// A piece of a page; a text has nothing in its place.
+struct Html {
+  std::string text;
+};
+
+/// What is said of one question, in the order of reading.
+struct Section {
+  std::string id;  ///< its anchor
+  std::string title;
+  std::vector<std::variant<Html, Paragraph, Sentences, Facts, Table, Figure>> content = {};
+  std::string answer = {};                ///< words: a sentence below the title
+  std::vector<Figure> file_figures = {};  ///< drawn into files only: the page shows a table in their place
+  Shown shown = Shown::everywhere;
+
+  void add(std::string html) { content.emplace_back(Html{std::move(html)}); }
+  void add(const char* html) { add(std::string(html)); }
+  template <class Piece>
+  void add(Piece piece) {
+    content.emplace_back(std::move(piece));
+  }
+  void say(std::string words, Paragraph::Kind kind = Paragraph::Kind::plain) {
+    content.emplace_back(Paragraph{std::move(words), kind});
+  }
+  /// In place of a content for which there are no data: one sentence of why.
+  void leave_out(const std::string& why);
+};
+
+/// A result as a whole.
+struct Document {
+  std::string title = {};    ///< of the window, after "mpmbench: ": text
+  std::string heading = {};  ///< words, as those below
+  std::string lead = {};     ///< below it
+  std::string footer = {};   ///< of the page
+  std::string version = {};  ///< of the program that made the numbers: text
+  std::vector<Section> sections = {};
+  std::string lead_html = {};   ///< what the page has below the lead
+  std::string aside_html = {};  ///< beside the body where there is room, below it elsewhere
+};
+
+}  // namespace mpm

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "results/document/document.hpp"
+
+namespace mpm {
+
+/// Of a table that is not to be broken.
+inline constexpr std::size_t kUnlimitedWidth = 10000;
+
+/// A sentence in lines of at most `width` characters where a word allows it, all but the first set in.
+std::string wrapped(const std::string& sentence, std::size_t width, const std::string& set_in = "");
+
+/// The document for a terminal of this many columns, without figures. A table that is wider has its columns
+/// one block below the other; only its texts may stick out.
+std::string document_text(const Document& document, std::size_t width = 100);
+
+/// One table in the same way.
+std::string table_text(const Table& table, std::size_t width = 100);
+
+/// One number: "94.1 [90.2, 97.3]  150".
+std::string number_text(const Number& number);
+
+}  // namespace mpm

@@ -1,0 +1,267 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "analysis/findings/method_rates.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/suite/leaderboard_output.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+using AllScores = std::vector<std::vector<PooledScores>>;  // [method][column]
+
+/// A share on a ground that is deeper the better it is, or the worse. Its marks: '*' for too many false
+/// alarms, '~' for verdicts on a part of the loops.
+Cell score_cell(const PooledScores& scores, const LeaderboardScore& score) {
+  const Rate* const rate = scores.of(score.rate);
+  if (rate == nullptr || rate->total == 0)
+    return Number{};
+  Cell cell = number(*rate, NumberForm::whole_percent);
+  cell.mark =
+      fmt::format("{}{}", scores.too_many_false_alarms() ? "*" : "", scores.answers_in_part() ? "~" : "");
+  cell.hover = fmt::format("{} of {} loops", rate->hits, rate->total);
+  cell.ground = rate->value;
+  cell.low_is_good = score.low_is_good;
+  return cell;
+}
+
+const char* letter_of(LeaderboardTask task) {
+  return task == LeaderboardTask::detection ? "D" : task == LeaderboardTask::location ? "L" : "S";
+}
+
+/// "DL.": what is passed.
+Cell passed_cell(const PooledScores& scores) {
+  if (scores.cells == 0)
+    return Number{};
+  std::string letters;
+  for (const LeaderboardTask task : kLeaderboardTasks)
+    letters += passes(scores, task) ? strong(letter_of(task)) : ".";
+  return letters;
+}
+
+/// One row a method, one column a name; `cell` makes the entry of a method and a column.
+Table methods_table(const Leaderboard& board, std::string caption, const std::vector<std::string>& heads,
+                    const auto& cell) {
+  std::vector<Table::Column> columns{{"Method", Table::Align::left}};
+  for (const std::string& head : heads)
+    columns.push_back({as_label(head)});
+  Table table(std::move(caption), std::move(columns));
+  for (std::size_t method = 0; method < board.methods.size(); ++method) {
+    std::vector<Cell> cells{as_label(label_of(board.methods[method]))};
+    for (std::size_t column = 0; column < heads.size(); ++column)
+      cells.push_back(cell(method, column));
+    table.row(std::move(cells));
+  }
+  return table;
+}
+
+/// With a column for each plant or family, and one for all of them; `cell` makes the entries from the scores.
+Table axis_table(const Leaderboard& board, std::string caption, const std::vector<SuiteAxis>& axis,
+                 const AllScores& scores, const auto& cell) {
+  std::vector<std::string> heads;
+  for (const SuiteAxis& entry : axis)
+    heads.push_back(entry.name);
+  heads.emplace_back("all");
+  return methods_table(board, std::move(caption), heads, [&](std::size_t method, std::size_t column) {
+    return cell(column < axis.size() ? scores[method][column] : board.overall[method]);
+  });
+}
+
+Section scores_section(const Leaderboard& board, const char* id, const char* title,
+                       const std::vector<SuiteAxis>& axis, const AllScores& scores) {
+  Section section{id, title};
+  for (const LeaderboardScore& score : leaderboard_scores())
+    section.add(axis_table(
+        board, fmt::format("{}, % of loops with {:g} % interval", score.title, 100 * board.confidence), axis,
+        scores, [&](const PooledScores& entry) { return score_cell(entry, score); }));
+  return section;
+}
+
+/// What the marks mean, and what is passed.
+void add_legend(Section& section, const Leaderboard& board) {
+  for (const LeaderboardTask task : kLeaderboardTasks) {
+    const std::string nobody = listed(passed_by_nobody(board, task));
+    section.say(
+        fmt::format("{}: {}", to_string(task),
+                    nobody.empty() ? "every family is passed by some method" : "nobody passes " + nobody));
+  }
+  section.say(fmt::format("* The interval of its own false alarms on healthy loops lies above {:g} %.",
+                          100 * kMostFalseAlarms));
+  section.say(fmt::format(
+      "~ It gives verdicts on fewer than {:g} % of the loops: not on the same loops as the others.",
+      100 * kFewestAnswers));
+  section.say(fmt::format(
+      "Passed is what is done with verdicts on {0:g} % of the loops and false alarms on at most "
+      "{1:g} % of the healthy ones: D, {2:g} % of the faults with an impact flagged; L, in {2:g} % "
+      "of the flagged loops the affected CV named; S, in {2:g} % of all loops with a fault the "
+      "right source named.",
+      100 * kFewestAnswers, 100 * kPassingFalseAlarms, 100 * kPassingShare));
+  if (has_reference(board))
+    section.say(
+        fmt::format("The reference is the method {}, which knows what the study draws. It is shown in the "
+                    "families that draw exactly what it knows of; above 100 % of it chance was kinder.",
+                    code(kReferenceMethod)));
+  section.say(kOfOneBenchmark);
+}
+
+Section passed_section(const Leaderboard& board) {
+  Section section{"passed", "Who passes what"};
+  section.add(axis_table(board, "Passed: D detection, L location, S source", board.families, board.by_family,
+                         passed_cell));
+  add_legend(section, board);
+  return section;
+}
+
+/// With this many digits, and all of those before the point: 1616 instead of 1.62e+03.
+std::string plain_number(double value, int digits) {
+  return std::isinf(value)                      ? "never"
+         : value + 0.5 < std::pow(10.0, digits) ? fmt::format("{:.{}g}", value, digits)
+                                                : fmt::format("{:.0f}", value);
+}
+
+/// "94 (76 to 103); 0": the median delay of a method with its interval, and its false alarms a day.
+Cell delay_cell(const MethodScores& scores) {
+  const Estimate delay = scores.estimate("detection_delay"), alarms = scores.estimate("false_alarms_a_day");
+  if (delay.count == 0 && alarms.count == 0)
+    return Number{};
+  std::string text = delay.count == 0 ? "-" : plain_number(delay.value, 3);
+  if (delay.count > 0 && !std::isnan(delay.interval.lower))
+    text += fmt::format(" ({} to {})", plain_number(delay.interval.lower, 3),
+                        plain_number(delay.interval.upper, 3));
+  return alarms.count == 0 ? text : text + "; " + plain_number(alarms.value, 2);
+}
+
+/// By plant, of the families in which methods watched moving windows.
+Section delays_section(const Leaderboard& board) {
+  Section section{"delays", "How long it takes"};
+  for (std::size_t family = 0; family < board.families.size(); ++family) {
+    std::vector<const CellScores*> cells;
+    for (const CellScores& cell : board.cells)
+      if (cell.family == family && cell.monitored && cell.trouble.empty())
+        cells.push_back(&cell);
+    std::sort(cells.begin(), cells.end(),
+              [](const CellScores* a, const CellScores* b) { return a->plant < b->plant; });
+    std::vector<std::string> heads;
+    for (const CellScores* const cell : cells)
+      heads.push_back(fmt::format("{} ({})", board.plants[cell->plant].name, cell->time_unit));
+    if (!cells.empty())
+      section.add(methods_table(board,
+                                as_label(board.families[family].name) +
+                                    ": median time from the onset to the end of the first flagged window, "
+                                    "faults with an impact; false "
+                                    "alarms a day",
+                                heads, [&](std::size_t method, std::size_t column) {
+                                  return delay_cell(cells[column]->methods[method]);
+                                }));
+  }
+  return section;
+}
+
+/// A table a score, a column for each family that has a reference.
+Section reference_section(const Leaderboard& board) {
+  Section section{"reference", "Against the reference"};
+  std::vector<std::string> heads;
+  std::vector<std::size_t> families;
+  for (std::size_t family = 0; family < board.families.size(); ++family)
+    if (board.families[family].has_reference) {
+      heads.push_back(board.families[family].name);
+      families.push_back(family);
+    }
+  const std::vector<LeaderboardScore> known = leaderboard_scores();
+  for (std::size_t i = 0; has_reference(board) && i < known.size(); ++i)
+    if (!known[i].low_is_good)
+      section.add(methods_table(board, fmt::format("{}, % of the reference", known[i].title), heads,
+                                [&](std::size_t method, std::size_t column) -> Cell {
+                                  return Number{
+                                      board.by_family[method][families[column]].shares_of_ceiling[i],
+                                      NumberForm::whole_percent};
+                                }));
+  return section;
+}
+
+/// What was not run, and which method gave no verdict on what.
+Section silences_section(const Leaderboard& board) {
+  Section section{"silences", "No verdict"};
+  Sentences sentences;
+  for (std::size_t method = 0; method < board.methods.size(); ++method)
+    if (const PooledScores& scores = board.overall[method]; !scores.reason.empty()) {
+      const Rate* const answered = scores.of("answered");
+      sentences.words.push_back(fmt::format("{}: {} of {} loops, the first because: {}",
+                                            as_label(board.methods[method]), answered->total - answered->hits,
+                                            answered->total, as_label(scores.reason)));
+    }
+  for (const CellScores& cell : board.cells)
+    if (!cell.trouble.empty())
+      sentences.words.push_back(fmt::format("{}.{}: not run: {}", as_label(board.plants[cell.plant].name),
+                                            as_label(board.families[cell.family].name),
+                                            as_label(cell.trouble)));
+  if (!sentences.words.empty())
+    section.add(std::move(sentences));
+  return section;
+}
+
+/// What is counted, on which loops; of the page alone.
+Section cells_section(const Leaderboard& board) {
+  Section section{.id = "cells", .title = "Families, plants and cells", .shown = Shown::page};
+  Sentences counted;
+  for (const LeaderboardScore& score : leaderboard_scores())
+    for (const MethodRateInfo& info : method_rate_infos())
+      if (score.rate == info.name)
+        counted.words.push_back(fmt::format("{}: {}", strong(score.title), as_label(info.meaning)));
+  section.add(std::move(counted));
+  const auto axis_table = [&](const char* caption, const char* what, const std::vector<SuiteAxis>& axis) {
+    Table table(caption, {{what, Table::Align::left}, {"", Table::Align::text}});
+    for (const SuiteAxis& entry : axis)
+      table.row({as_label(entry.name), as_label(entry.title)});
+    section.add(std::move(table));
+  };
+  axis_table("What is done to the loops", "Family", board.families);
+  axis_table("On which plants", "Plant", board.plants);
+  Table table("Each cell is an archive of its own, PLANT.FAMILY.h5",
+              {{"Cell", Table::Align::left}, {"Experiments"}, {"Infeasible"}, {"Failed"}, {"Seed"}});
+  for (const CellScores& cell : board.cells)
+    table.row({as_label(board.plants[cell.plant].name + "." + board.families[cell.family].name),
+               cell.experiments, cell.infeasible, cell.failed, fmt::to_string(cell.seed)});
+  section.add(std::move(table));
+  return section;
+}
+
+}  // namespace
+
+std::string label_of(const std::string& method) {
+  return method == kReferenceMethod ? "reference" : method;
+}
+
+Document leaderboard_document(const Leaderboard& board) {
+  std::int64_t experiments = 0, cells = 0;
+  for (const CellScores& cell : board.cells) {
+    experiments += cell.experiments;
+    cells += cell.trouble.empty() ? 1 : 0;
+  }
+  const std::string name = fmt::format("{} {}", board.suite, board.version);
+  Document document{
+      name, as_label("Suite " + name),
+      fmt::format("{}: {} cells ({} plants, {} families), {} experiments, seed {}.", as_label(board.title),
+                  cells, board.plants.size(), board.families.size(), experiments, board.seed),
+      "Made by " + code("mpmbench suite") + ".", board.program};
+  Section figure{.id = "figure", .title = "Detection and false alarms", .shown = Shown::page};
+  figure.add(leaderboard_figure(board));
+  Section by_plant =
+      scores_section(board, "by-plant", "By plant, pooled over the families", board.plants, board.by_plant);
+  by_plant.shown = Shown::page;
+  for (Section section : {passed_section(board), std::move(figure),
+                          scores_section(board, "by-family", "By family, pooled over the plants",
+                                         board.families, board.by_family),
+                          std::move(by_plant), delays_section(board), reference_section(board),
+                          silences_section(board), cells_section(board)})
+    if (!section.content.empty())
+      document.sections.push_back(std::move(section));
+  return document;
+}
+
+}  // namespace mpm

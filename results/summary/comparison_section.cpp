@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "analysis/findings/method_rates.hpp"
+#include "results/document/document_text.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/summary/comparison.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+using Methods = std::vector<MethodFindings>;
+
+Number area(const RocCurve& roc, const Interval& interval) {
+  return roc.defined() ? Number{roc.area, NumberForm::fixed, interval, roc.positives + roc.negatives}
+                       : Number{};
+}
+
+/// The share of healthy loops that the method says it flags, and a mark when it does not.
+Cell stated_cell(const MethodFindings& method) {
+  const MethodDescription& description = method.form->method();
+  const FalseAlarmMark mark = false_alarm_mark(description, method.rates);
+  Cell cell = description.stated_false_alarms ? fmt::format("{:.1f}", 100 * *description.stated_false_alarms)
+                                              : std::string("none");
+  if (mark != FalseAlarmMark::none) {
+    cell.mark = fmt::format(" ({} found) !", to_string(mark));
+    cell.tone = Cell::Tone::strong;
+  }
+  return cell;
+}
+
+/// Words in the first column, one column a method.
+class MethodsTable {
+ public:
+  MethodsTable(std::string caption, std::string what, const Methods& methods)
+      : methods_(methods), table_(std::move(caption), {{std::move(what), Table::Align::left}}) {
+    for (const MethodFindings& method : methods)
+      table_.columns.push_back({as_label(method.name())});
+  }
+  void row(const std::string& words, const std::function<Cell(const MethodFindings&)>& cell) {
+    std::vector<Cell> cells{words};
+    for (const MethodFindings& method : methods_)
+      cells.push_back(cell(method));
+    table_.row(std::move(cells));
+  }
+  Table take() { return std::move(table_); }
+
+ private:
+  const Methods& methods_;
+  Table table_;
+};
+
+Table rates_table(const Study& study, const Methods& methods) {
+  MethodsTable table(
+      fmt::format("Shares of loops in %, with {:g} % intervals and the number of loops looked at; rates "
+                  "that no loop was counted for are left out.",
+                  100 * study.aggregate.confidence),
+      "% of loops", methods);
+  for (const MethodRateInfo& info : counted_rates(methods))
+    table.row(info.title,
+              [&](const MethodFindings& m) { return number_of(m.rates.*info.rate, NumberForm::percent); });
+  table.row("false alarms stated", stated_cell);
+  table.row("area under ROC, fault",
+            [](const MethodFindings& m) { return area(m.rates.roc, m.rates.roc_area); });
+  table.row("area under ROC, impact",
+            [](const MethodFindings& m) { return area(m.rates.roc_impact, m.rates.roc_impact_area); });
+  for (const MethodEstimateInfo& info : method_estimate_infos())
+    if (std::any_of(methods.begin(), methods.end(),
+                    [&](const MethodFindings& m) { return (m.rates.*info.estimate).count > 0; }))
+      table.row(info.title, [&](const MethodFindings& m) { return number_of(m.rates.*info.estimate); });
+  table.row("ms a loop, median", [](const MethodFindings& m) -> Cell {
+    return std::isnan(m.rates.milliseconds) ? "-" : fmt::format("{:.2f}", m.rates.milliseconds);
+  });
+  return table.take();
+}
+
+/// What the marks of stated_cell() mean, when there are any.
+void add_marks(Section& section, const Methods& methods) {
+  if (std::any_of(methods.begin(), methods.end(), [](const MethodFindings& method) {
+        return false_alarm_mark(method.form->method(), method.rates) != FalseAlarmMark::none;
+      }))
+    section.say(
+        fmt::format("!: the interval of the false alarms on healthy loops does not hold the rate that the "
+                    "method states, or {:g} % where it states none.",
+                    100 * kUsualFalseAlarms));
+}
+
+/// On what the thresholds were calibrated, what they are, and where the loops were too few.
+void add_calibration(Section& section, const Campaign& campaign, const Methods& methods) {
+  const CalibrationOptions& options = *campaign.study.calibration;
+  MethodsTable table(
+      fmt::format("Thresholds on {} healthy loops and {} with a disturbance of seed {}; \"calibrated: "
+                  "false alarms\" at a threshold for {:g} %.",
+                  options.healthy, options.ud, campaign.calibration.seed, 100 * options.false_alarms),
+      "threshold", methods);
+  for (const ThresholdInfo& info : threshold_infos())
+    table.row(info.meaning, [&](const MethodFindings& m) {
+      return Number{(m.rates.thresholds.*info.threshold).value.value_or(kNaN)};
+    });
+  section.add(table.take());
+  for (const MethodFindings& method : methods)
+    for (const ThresholdInfo& info : threshold_infos())
+      if (const CalibratedThreshold& threshold = method.rates.thresholds.*info.threshold;
+          !threshold.value && threshold.loops > 0)
+        section.say(fmt::format("no {} of {}: {} calibration loops with a verdict are too few", info.name,
+                                as_label(method.name()), threshold.loops));
+}
+
+/// Which rates cannot be had, and which loops have no verdict, with the reasons.
+void add_unanswered(Section& section, const Study& study, const Methods& methods) {
+  Sentences sentences;
+  for (const MethodFindings& method : methods) {
+    const MethodRates& rates = method.rates;
+    for (const UnansweredPart& part : unanswered_parts(study, rates))
+      sentences.words.push_back(fmt::format("{}: {}", as_label(method.name()), part.reason));
+    if (!rates.reason.empty())
+      sentences.words.push_back(fmt::format(
+          "{}: no verdict on {} of {} loops, the first because: {}", as_label(method.name()),
+          rates.answered.total - rates.answered.hits, rates.answered.total, as_label(rates.reason)));
+  }
+  if (!sentences.words.empty())
+    section.add(std::move(sentences));
+}
+
+void add_pairs(Section& section, const StudyFindings& findings) {
+  Table table(
+      "Two methods on the loops that both gave a verdict on. Right is to flag the loops with a fault, or "
+      "those "
+      "with one that has an impact, and no others; p is that of McNemar's exact test, two-sided, and "
+      "corrected "
+      "by Holm for all pairs of a truth.",
+      {{"Pair", Table::Align::left},
+       {"Truth", Table::Align::left},
+       {"Loops"},
+       {"First alone right"},
+       {"Second alone"},
+       {"p"},
+       {"corrected"}});
+  for (const MethodPair& pair : findings.pairs)
+    if (pair.loops > 0)
+      table.row({as_label(findings.methods[pair.first].name() + " / " + findings.methods[pair.second].name()),
+                 std::string(to_string(pair.truth)), pair.loops, pair.test.lost, pair.test.gained,
+                 fmt::format("{:.2g}", pair.test.p_two_sided), fmt::format("{:.2g}", pair.p_holm)});
+  if (!table.rows.empty())
+    section.add(std::move(table));
+}
+
+}  // namespace
+
+std::vector<MethodRateInfo> counted_rates(const Methods& methods) {
+  std::vector<MethodRateInfo> counted;
+  for (const MethodRateInfo& info : method_rate_infos())
+    if (std::any_of(methods.begin(), methods.end(),
+                    [&](const MethodFindings& m) { return (m.rates.*info.rate).total > 0; }))
+      counted.push_back(info);
+  return counted;
+}
+
+Section comparison_section(const Campaign& campaign, const StudyFindings& findings) {
+  Section section{"comparison", "Which method is right most often?"};
+  section.add(rates_table(campaign.study, findings.methods));
+  section.say(kOfOneBenchmark);
+  add_marks(section, findings.methods);
+  if (campaign.study.calibration)
+    add_calibration(section, campaign, findings.methods);
+  add_unanswered(section, campaign.study, findings.methods);
+  add_pairs(section, findings);
+  return section;
+}
+
+std::string comparison_text(const Campaign& campaign, const StudyFindings& findings) {
+  return document_text(
+      {.heading = fmt::format("{}: {} of {} experiments compared", as_label(campaign.study.name),
+                              findings.assessed, findings.experiments),
+       .sections = {comparison_section(campaign, findings)}});
+}
+
+}  // namespace mpm
