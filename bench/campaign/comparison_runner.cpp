@@ -147,8 +147,6 @@ class ThreadedRunners {
       by_active_set_.push_back(runner_of(campaign, study, methods, "active-set"));
   }
 
-  const AssessmentForms& forms() const { return by_campaign_solver_->forms(); }
-
   /// What they say of an experiment that was run.
   std::vector<AssessmentRecord> assess(const ExperimentRecord& record, std::size_t thread) {
     return with_runner(record, thread, [&](ExperimentRunner& runner) { return runner.assess(record); });
@@ -204,17 +202,14 @@ Study study_with(Study study, const std::vector<std::string>& methods) {
 
 RunOptions run_options(const Campaign& campaign, const ComparedLoops& loops,
                        const ComparisonOptions& options) {
-  RunOptions run{.experiments = loops.end,
-                 .solver = campaign.info.solver,
-                 .audit_share = 0.0,
-                 .store = StorePolicy::none,
-                 .jobs = std::max(1, options.jobs)};
-  if (options.kept) {
-    run.archive = options.kept->archive;
-    run.leftovers = options.kept->options.leftovers;
-    run.shard_interval = options.kept->options.interval;
-  }
-  return run;
+  return {.experiments = loops.end,
+          .solver = campaign.info.solver,
+          .audit_share = 0.0,
+          .store = StorePolicy::none,
+          .archive = options.archive,
+          .jobs = std::max(1, options.jobs),
+          .leftovers = options.kept.leftovers,
+          .shard_interval = options.kept.interval};
 }
 
 /// Records for threads, each of which asks for the next one or one soon after it: they are read one after the
@@ -284,17 +279,15 @@ LoopWork threaded_work(int jobs, const CampaignHooks& hooks, Make make) {
 Comparison::Comparison(const Campaign& campaign, const ComparedLoops& loops, const ComparisonOptions& options)
     : campaign_(campaign),
       loops_(study_with(campaign.study, options.methods), run_options(campaign, loops, options)),
-      store_(options.kept ? loops_.open(options.kept->shards, options.kept->options.warn)
-                          : loops_.in_memory()) {
+      store_(options.shards ? loops_.open(*options.shards, options.kept.warn) : loops_.in_memory()) {
   std::vector<std::int64_t> all = loops.experiments;
   for (std::int64_t index = 0; index < std::ssize(campaign.calibration.loops); ++index)
     all.push_back(kCalibrationKeys + index);
   for (std::size_t place = 0; place < all.size(); ++place)
     if (is_in_part(place, options.part))
       keys_.push_back(all[place]);
-  if (options.kept)
-    for (const std::filesystem::path& part : options.kept->parts)
-      store_.take_stock(shards_in(part), options.kept->options.warn);
+  for (const std::filesystem::path& part : options.parts)
+    store_.take_stock(shards_in(part), options.kept.warn);
 }
 
 void Comparison::run(const CampaignHooks& hooks) {

@@ -22,19 +22,14 @@ namespace mpm {
 /// The methods of a study as they assess its loops now, by this program and the command line `command`.
 std::vector<CampaignMethod> methods_of(const Study& study, const std::string& command);
 
-/// Where the answers of a comparison wait until all of them are there.
-struct KeptAssessments {
-  std::filesystem::path shards;              ///< folder of its own
-  std::vector<std::filesystem::path> parts;  ///< folders of shards that others have left
-  std::string archive;                       ///< digest of the archive whose loops are assessed
-  ShardStore::Options options;
-};
-
 struct ComparisonOptions {
-  std::vector<std::string> methods;          ///< names of assessment_methods(), each once
-  int jobs = 1;                              ///< threads
-  std::optional<KeptAssessments> kept = {};  ///< none: they wait in memory
-  std::optional<PartNumber> part = {};       ///< which part of the loops is assessed; none: all
+  std::vector<std::string> methods;                  ///< names of assessment_methods(), each once
+  int jobs = 1;                                      ///< threads
+  std::optional<PartNumber> part = {};               ///< which part of the loops is assessed; none: all
+  std::string archive = {};                          ///< digest of the archive whose loops are assessed
+  std::optional<std::filesystem::path> shards = {};  ///< where the answers wait; none: in memory
+  ShardStore::Options kept = {};                     ///< of this folder
+  std::vector<std::filesystem::path> parts = {};     ///< folders of shards that others have left
 };
 
 /// What a comparison of a campaign is on.

@@ -174,14 +174,13 @@ std::unique_ptr<Comparison> open_comparison(const ComparisonTask& task, std::fil
                                             Progress& progress) {
   const CompareArguments& options = task.options;
   ComparisonOptions comparison = task.comparison;
-  comparison.kept = {.shards = std::move(shards),
-                     .parts = {},
-                     .archive = task.digest,
-                     .options = {.leftovers = options.discard ? Leftovers::discard : Leftovers::resume,
-                                 .interval = options.shard_interval,
-                                 .warn = [&progress](const std::string& text) { progress.warn(text); }}};
+  comparison.archive = task.digest;
+  comparison.shards = std::move(shards);
+  comparison.kept = {.leftovers = options.discard ? Leftovers::discard : Leftovers::resume,
+                     .interval = options.shard_interval,
+                     .warn = [&progress](const std::string& text) { progress.warn(text); }};
   if (!comparison.part && !options.output.empty())
-    comparison.kept->parts = parts_to_take(options.output, options.discard);
+    comparison.parts = parts_to_take(options.output, options.discard);
   try {
     return std::make_unique<Comparison>(task.campaign, task.loops, comparison);
   } catch (const OtherRun& error) {

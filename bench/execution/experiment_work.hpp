@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/execution/run_options.hpp"
-#include "bench/outcome/experiment_outcome.hpp"
+#include "bench/outcome/outcome_bytes.hpp"
 
 namespace mpm {
 

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include <fmt/format.h>
+
 namespace mpm {
 
 /// Says whether work is to stop; asked by several threads at once. An empty one never says so.
@@ -18,7 +20,8 @@ inline bool requested(const StopRequest& stop) {
 class Interrupted : public std::runtime_error {
  public:
   /// "stopped when `done` of `count` experiments were done"
-  Interrupted(std::int64_t done, std::int64_t count, std::string_view what = "experiments");
+  Interrupted(std::int64_t done, std::int64_t count, std::string_view what = "experiments")
+      : std::runtime_error(fmt::format("stopped when {} of {} {} were done", done, count, what)) {}
 };
 
 }  // namespace mpm

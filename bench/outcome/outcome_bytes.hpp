@@ -4,10 +4,19 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/outcome/experiment_outcome.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "scenarios/loop/audit.hpp"
 
 namespace mpm {
+
+/// What came of one experiment.
+struct ExperimentOutcome {
+  ExperimentRecord record;
+  std::vector<AuditSample> samples;  ///< steps that are still to be audited
+  std::vector<AuditedStep> audited;
+  double audit_seconds = 0.0;  ///< processor time
+};
 
 /// Outcomes of the experiments of one study as bytes, for the way between a process and its workers, and into
 /// shards.

@@ -24,7 +24,7 @@ std::optional<std::string> process_environment(const char* name);
 
 /// Reads the option --shard:
 ///
-/// | text | which piece |
+/// | text | which part |
 /// |---|---|
 /// | I/N | number I of N, from 1 on |
 /// | auto | as the launcher says that started this process, one of several |
@@ -34,7 +34,7 @@ std::optional<std::string> process_environment(const char* name);
 /// (OMPI_COMM_WORLD_RANK, _SIZE), MPICH and others with its process manager (PMI_RANK, PMI_SIZE), Slurm's
 /// srun (SLURM_PROCID, SLURM_STEP_NUM_TASKS); around it the tasks of a Slurm array from 1 on
 /// (SLURM_ARRAY_TASK_ID) or of an indexed Kubernetes job (JOB_COMPLETION_INDEX). A task of an array that
-/// starts R processes has R of the R N pieces. The program is not linked with any of them.
+/// starts R processes has R of the R N parts. The program is not linked with any of them.
 ///
 /// Throws InputError for another text, for `auto` without a launcher, and for an array whose size is not
 /// known.

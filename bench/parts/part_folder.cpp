@@ -62,15 +62,15 @@ fs::path parts_folder_of(const fs::path& output) {
   return output.string() + ".parts";
 }
 
-std::string part_name(const std::string& range, const std::optional<PartNumber>& shard) {
+std::string part_name(const std::string& range, const std::optional<PartNumber>& number) {
   std::string name = range;
   std::replace(name.begin(), name.end(), ':', '-');
   std::replace(name.begin(), name.end(), ',', '+');
   constexpr std::size_t kLongest = 100;  // of a name of a file, with room for the rest
   if (name.size() > kLongest)
     name = fmt::format("{}-{}", name.substr(0, name.find('+')), digest_of(range));
-  if (shard)
-    name += fmt::format("{}{}-of-{}", name.empty() ? "" : "_", shard->number, shard->of);
+  if (number)
+    name += fmt::format("{}{}-of-{}", name.empty() ? "" : "_", number->number, number->of);
   return name;
 }
 

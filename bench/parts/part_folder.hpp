@@ -16,7 +16,7 @@ namespace mpm {
 /// A part of a campaign.
 struct CampaignPart {
   LoopRanges loops;
-  std::optional<PartNumber> number = {};  ///< which piece it is of all loops of the campaign
+  std::optional<PartNumber> number = {};  ///< which part it is of all loops of the campaign
 };
 
 /// The folder of a part: its shards, and `campaign.json`, which says of what it is a part, so that parts
@@ -34,7 +34,7 @@ std::filesystem::path parts_folder_of(const std::filesystem::path& output);
 
 /// The name of the folder of a part that is said by the options --range and --shard, either of which may be
 /// missing: "3-of-8", "100-150", "100-150_3-of-8".
-std::string part_name(const std::string& range, const std::optional<PartNumber>& shard);
+std::string part_name(const std::string& range, const std::optional<PartNumber>& number);
 
 /// Writes `campaign.json` of a part, whose folder is there. Throws ArchiveError.
 void write_part_description(const PartFolder& part);

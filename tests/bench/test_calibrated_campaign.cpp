@@ -245,13 +245,14 @@ TEST_CASE("comparison: answers come to records that stay in the archive as they 
 
   // Half of the answers are in the folder of a part.
   options.part = PartNumber{1, 2, ""};
-  options.kept = KeptAssessments{.shards = folder / "part", .parts = {}, .archive = "a", .options = {}};
+  options.archive = "a";
+  options.shards = folder / "part";
   Campaign in_shards = stream_archive(folder / "a.h5");
   const ComparedLoops loops = compared_loops(in_shards, {}, 3);
   Comparison(in_shards, loops, options).run({});
   options.part.reset();
-  options.kept->parts = {options.kept->shards};
-  options.kept->shards = folder / "shards";
+  options.parts = {folder / "part"};
+  options.shards = folder / "shards";
   Comparison whole(in_shards, loops, options);
   std::int64_t done = 0;
   whole.run({.on_start = [&](std::int64_t earlier, std::int64_t) { done = earlier; }});
