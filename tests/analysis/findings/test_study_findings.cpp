@@ -95,6 +95,16 @@ TEST_CASE("findings count what was put in") {
   CHECK(row(findings, "mpm.y3.slope").value == mpm.regression_of_cv[2].fit.slope);
   CHECK(row(findings, "ud.failed").value == 1.0);
   CHECK(row(findings, "infeasible").count == 11);
+
+  // And those of all kinds together.
+  const KindFindings& both = findings.chain()->kinds[2];
+  CHECK(row(findings, "located").hits == 8 + both.located.hits);
+  CHECK(row(findings, "located").count == 9 + both.located.total);
+  CHECK(row(findings, "source_recognised").hits == 7);
+  CHECK(row(findings, "source_recognised").count == 9);
+  CHECK(row(findings, "i_mpm_best_threshold").value == Approx((0.05 + 0.2) / 2));
+  CHECK(find_finding(findings.rows, "false_alarm") == nullptr);
+  CHECK(row(of_chain(study_of_all_kinds(), {}), "false_alarm").count == 0);
 }
 
 TEST_CASE("experiments that are not flagged count for nothing but the regression, unless the study says so") {

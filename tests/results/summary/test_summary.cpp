@@ -214,6 +214,11 @@ TEST_CASE("summary: a study of named scenarios shows each with its truth and its
 
   const nlohmann::json json = json_of(campaign);
   REQUIRE(json["scenarios"].size() == 5);
+  for (const auto& value : json["findings"])
+    if (value["name"] == "right_scenarios") {
+      CHECK(value["count"] == 3);
+      CHECK(value["value"].get<double>() < 1.0);  // "channels" is missed
+    }
   const nlohmann::json& found = json["scenarios"][1];
   CHECK(found["name"] == "channels");
   CHECK(found["description"] == "<b> 'all' & more");
