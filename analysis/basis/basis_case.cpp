@@ -9,6 +9,7 @@
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "plants/error.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/excitation.hpp"
 #include "scenarios/study/study_controller.hpp"
 
 namespace mpm {
@@ -59,6 +60,8 @@ void run_loop(const Study& study, const QpSolverFactory& factory, const StepObse
 }  // namespace
 
 BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, const StepObserver& observer) {
+  if (study.simulation.excitation == SignalSequence::each)
+    return run_basis_case(with_excitation(study, kBasisIndex), factory, observer);
   BasisCase basis;
   basis.point = operating_point(study, factory);
   if (!runs_on_model(study)) {
@@ -86,6 +89,19 @@ BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory, con
   }
   check_basis(study, factory, basis);
   return basis;
+}
+
+BasisCase world_basis(const Study& study, const BasisCase& basis, int world, const QpSolverFactory& factory) {
+  BasisCase own = basis;
+  own.world = world;
+  own.trajectory = simulate_experiment(study, basis_draw(world), factory);
+  if (own.trajectory.status != ControlStatus::ok) {
+    own.healthy = false;
+    own.explanation = fmt::format("the benchmark of world {} does not run to its end", world);
+    return own;
+  }
+  own.nominal = NominalEstimator(study, own.point, own.sensitivity, factory).estimate(own.trajectory);
+  return own;
 }
 
 }  // namespace mpm

@@ -7,6 +7,7 @@
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/world.hpp"
 
 namespace mpm {
 
@@ -19,6 +20,7 @@ namespace mpm {
 /// another check (SelfCheck): its y0 has no variance of its own, and what can be known is whether the
 /// variance of a healthy loop comes out the same twice, which is what Ivar_basis (6.22) is held against.
 struct BasisCase {
+  int world = kExactWorld;  ///< whose benchmark `trajectory` is
   OperatingPoint point;
   NominalSensitivity sensitivity;
   /// The direct step responses beside an identified `sensitivity`; none unless the study wants it identified.
@@ -37,5 +39,10 @@ struct BasisCase {
 /// be determined, or the plant has no steady state where the loops begin.
 BasisCase run_basis_case(const Study& study, const QpSolverFactory& factory,
                          const StepObserver& observer = {});
+
+/// The basis case of a world of the study, whose own is `basis`: operating point and S0 are those of the
+/// model, and so is the diagnosis of the loop; the loop itself is the benchmark of the world. Nothing is
+/// checked.
+BasisCase world_basis(const Study& study, const BasisCase& basis, int world, const QpSolverFactory& factory);
 
 }  // namespace mpm

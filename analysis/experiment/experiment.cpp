@@ -1,13 +1,16 @@
 #include "analysis/experiment/experiment.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
+#include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/fault_scale.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "scenarios/loop/candidates.hpp"
+#include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/historian.hpp"
 
 namespace mpm {
@@ -77,6 +80,7 @@ ExperimentRunner::ExperimentRunner(const Study& study, AssessmentContext context
     : study_(study),
       basis_(context.basis),
       factory_(context.factory),
+      methods_(methods),
       panel_(study, std::move(context), methods),
       perturbation_(study, basis_.sensitivity),
       stability_(study, basis_.point) {}
@@ -87,27 +91,84 @@ ExperimentRunner::ExperimentRunner(const Study& study, const BasisCase& basis,
 
 ExperimentRunner::FinishedLoop ExperimentRunner::simulate(const ExperimentDraw& draw,
                                                           const StepObserver& observer) {
-  return finished(draw, simulate_experiment(study_, draw, factory_, observer));
+  return finished(draw, simulate_experiment(study_of(draw), draw, factory_, observer));
+}
+
+const Study& ExperimentRunner::study_of(const ExperimentDraw& draw) {
+  if (study_.simulation.excitation == SignalSequence::shared)
+    return study_;
+  if (!moved_ || moved_->first != draw.index)
+    moved_.emplace(draw.index, with_excitation(study_, draw.index));
+  return moved_->second;
+}
+
+const ExperimentRunner::WorldCase& ExperimentRunner::world_of(const ExperimentDraw& draw) {
+  WorldCase& known = worlds_[draw.world];
+  if (known.panel || known.basis.world == draw.world)
+    return known;
+  known.basis = world_basis(study_, basis_, draw.world, factory_);
+  if (known.basis.trajectory.status != ControlStatus::ok)
+    return known;
+  known.panel =
+      std::make_unique<MethodPanel>(study_, assessment_context(study_, known.basis, factory_), methods_);
+  return known;
+}
+
+const BasisCase& ExperimentRunner::basis_of(const ExperimentDraw& draw) {
+  return draw.world == kExactWorld ? basis_ : world_of(draw).basis;
+}
+
+template <class Call>
+auto ExperimentRunner::with_panel(const ExperimentDraw& draw, const FinishedLoop& loop, Call with) {
+  MethodPanel& panel = draw.world == kExactWorld ? panel_ : *world_of(draw).panel;
+  if (loop.own) {
+    const MethodPanel::Own own{loop.own->study, loop.own->basis};
+    return with(panel, &own);
+  }
+  if (study_.simulation.excitation == SignalSequence::shared)
+    return with(panel, static_cast<const MethodPanel::Own*>(nullptr));
+  const MethodPanel::Own own{study_of(draw), basis_of(draw)};
+  return with(panel, &own);
+}
+
+std::vector<AssessmentRecord> ExperimentRunner::assessed(const ExperimentDraw& draw,
+                                                         const FinishedLoop& loop) {
+  return with_panel(draw, loop, [&](MethodPanel& panel, const MethodPanel::Own* own) {
+    return panel.assess(loop.assessed, own);
+  });
+}
+
+std::optional<AssessmentRecord> ExperimentRunner::assessed_by(std::string_view method,
+                                                              const ExperimentDraw& draw,
+                                                              const FinishedLoop& loop) {
+  return with_panel(draw, loop, [&](MethodPanel& panel, const MethodPanel::Own* own) {
+    return panel.assess_by(method, loop.assessed, own);
+  });
 }
 
 ExperimentRunner::FinishedLoop ExperimentRunner::finished(const ExperimentDraw& draw, Trajectory trajectory) {
+  const Study& study = study_of(draw);
   FinishedLoop loop{experiment_status(trajectory.status), trajectory.message, std::move(trajectory), {}, {}};
+  if (loop.status == ExperimentStatus::ok && basis_of(draw).trajectory.status != ControlStatus::ok) {
+    loop.status = experiment_status(basis_of(draw).trajectory.status);
+    loop.message = basis_of(draw).explanation;
+  }
   if (loop.status == ExperimentStatus::ok)
-    loop.own = tuned_basis(study_, draw, factory_);
+    loop.own = tuned_basis(study, draw, factory_);
   if (loop.own && loop.own->basis.trajectory.status != ControlStatus::ok) {
     loop.status = experiment_status(loop.own->basis.trajectory.status);
     if (loop.status == ExperimentStatus::failed)
       loop.message = "no S0 of its own: " + loop.own->basis.explanation;
   }
   if (loop.status != ExperimentStatus::ok)
-    loop.assessed.y_sim = simulated_output(study_.plant.G, study_.controller.sample_time, basis_.point.u,
+    loop.assessed.y_sim = simulated_output(study.plant.G, study.controller.sample_time, basis_.point.u,
                                            loop.trajectory.u, loop.trajectory.d);
   else if (loop.own)
     loop.assessed =
-        assessed_loop(loop.own->study, loop.own->basis.point, recorded(study_, draw.index, loop.trajectory));
+        assessed_loop(loop.own->study, loop.own->basis.point, recorded(study, draw.index, loop.trajectory));
   else
-    loop.assessed = assessed_loop(study_, basis_.point, recorded(study_, draw.index, loop.trajectory));
-  loop.assessed.candidates = logged_candidates(study_, draw);
+    loop.assessed = assessed_loop(study, basis_.point, recorded(study, draw.index, loop.trajectory));
+  loop.assessed.candidates = logged_candidates(study, draw);
   return loop;
 }
 
@@ -127,19 +188,19 @@ void ExperimentRunner::assess_alone(ExperimentRecord& record, const StepObserver
       record.message = part->message;
   }
   if (AssessmentRecord* const chain = chain_verdict(record.assessments))
-    add_dominance(*chain, record.draw.true_cv(), mpm_alone, ud_alone);
+    add_dominance(*chain, record.draw, mpm_alone, ud_alone);
   if (record.truth) {
     record.truth->mpm_alone = {mpm_alone.trajectory.y, mpm_alone.trajectory.u};
     record.truth->ud_alone = {ud_alone.trajectory.y, ud_alone.trajectory.u};
   }
 }
 
-void ExperimentRunner::add_dominance(AssessmentRecord& chain, Eigen::Index true_cv,
+void ExperimentRunner::add_dominance(AssessmentRecord& chain, const ExperimentDraw& draw,
                                      const FinishedLoop& mpm_alone, const FinishedLoop& ud_alone) {
   if (mpm_alone.status != ExperimentStatus::ok || ud_alone.status != ExperimentStatus::ok)
     return;
   const auto ivar_diag = [&](const FinishedLoop& part) {
-    return panel_.assess_by(chain.form->method().name, part.assessed)->number("ivar_diag", true_cv);
+    return assessed_by(chain.form->method().name, draw, part)->number("ivar_diag", draw.true_cv());
   };
   const double mpm = ivar_diag(mpm_alone);
   const double ud = ivar_diag(ud_alone);
@@ -148,35 +209,53 @@ void ExperimentRunner::add_dominance(AssessmentRecord& chain, Eigen::Index true_
   chain.set_number("dominance_mpm", mpm / (mpm + ud));
 }
 
+void ExperimentRunner::add_truth(ExperimentRecord& record, const Trajectory& loop) {
+  if (!study_.world) {
+    record.ivar_basis =
+        basis_variance_indices(study_of(record.draw), loop.y, healthy_output(record.draw, {}));
+    return;
+  }
+  record.cost =
+      fault_cost(study_of(record.draw), record.draw, study_.world->cost_loops, factory_, record.solver);
+  record.ivar_basis = record.cost->variance_ratio;
+}
+
+Eigen::MatrixXd ExperimentRunner::healthy_output(const ExperimentDraw& draw, const StepObserver& observer) {
+  if (draw.world == kExactWorld && study_.simulation.excitation == SignalSequence::shared)
+    return basis_.trajectory.y;
+  return simulate_experiment(study_of(draw), draw.without_faults(), factory_, observer).y;
+}
+
 ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, const StepObserver& observer) {
   ExperimentRecord record;
   record.draw = draw_experiment(study_, index);
   if (has_asked_impact(study_, record.draw))
     record.draw = with_scales(
         study_, record.draw,
-        scales_for_impact(study_, record.draw, basis_.trajectory.y, factory_, record.solver, observer));
+        scales_for_impact(study_of(record.draw), record.draw, healthy_output(record.draw, observer), factory_,
+                          record.solver, observer));
   FinishedLoop main = simulate(record.draw, observer);
   record.status = main.status;
   record.message = main.message;
   record.solver.add(main.trajectory.solver);
   if (main.own)
     record.solver.add(main.own->solver);
-  record.conditions = loop_conditions(study_, basis_, main.trajectory);
+  record.conditions = loop_conditions(study_of(record.draw), basis_, main.trajectory);
   record.conditions.spectral_radius = spectral_radius(record.draw);
   if (record.status == ExperimentStatus::ok && study_.diagnosis.unstable == UnstableLoops::exclude &&
       has_cause(record.conditions, NonlinearCause::unstable))
     record.status = ExperimentStatus::unstable;
   if (record.status == ExperimentStatus::ok)
-    record.assessments = panel_.assess(main.assessed, main.own ? &*main.own : nullptr);
+    record.assessments = assessed(record.draw, main);
   if (store == StorePolicy::truth) {
-    LoopSignals signals = experiment_signals(study_, record.draw);
+    LoopSignals signals = experiment_signals(study_of(record.draw), record.draw);
     record.truth = LoopTruth{std::move(signals.noise), std::move(signals.y_d)};
   }
   const Eigen::Index true_cv = record.draw.true_cv();
   if (has_loops_alone(record.draw) && record.status == ExperimentStatus::ok)
     assess_alone(record, observer);
   if (record.status == ExperimentStatus::ok) {
-    record.ivar_basis = basis_variance_indices(study_, main.trajectory.y, basis_.trajectory.y);
+    add_truth(record, main.trajectory);
     if (true_cv >= 0 && !main.assessed.y.row(true_cv).hasNaN())  // S0 acts on every sample
       record.perturbed = perturbation_.ivar_diag(true_cv, Eigen::RowVectorXd(main.assessed.y.row(true_cv)),
                                                  Eigen::RowVectorXd(main.assessed.y_sim.row(true_cv)));
@@ -191,8 +270,9 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
 }
 
 ExperimentRunner::FinishedLoop ExperimentRunner::finished_again(const ExperimentRecord& record) {
-  return finished(record.draw,
-                  record.loop ? record.loop->trajectory : simulate_experiment(study_, record.draw, factory_));
+  return finished(record.draw, record.loop
+                                   ? record.loop->trajectory
+                                   : simulate_experiment(study_of(record.draw), record.draw, factory_));
 }
 
 AssessedLoop ExperimentRunner::loop_of(const ExperimentRecord& record) {
@@ -202,9 +282,9 @@ AssessedLoop ExperimentRunner::loop_of(const ExperimentRecord& record) {
 std::vector<AssessmentRecord> ExperimentRunner::assess(const ExperimentRecord& record) {
   const FinishedLoop loop = finished_again(record);
   if (loop.status == ExperimentStatus::ok) {
-    std::vector<AssessmentRecord> assessments = panel_.assess(loop.assessed, loop.own ? &*loop.own : nullptr);
+    std::vector<AssessmentRecord> assessments = assessed(record.draw, loop);
     if (AssessmentRecord* const chain = chain_verdict(assessments); chain && has_loops_alone(record.draw))
-      add_dominance(*chain, record.draw.true_cv(), simulate(record.draw.mismatch_alone(), {}),
+      add_dominance(*chain, record.draw, simulate(record.draw.mismatch_alone(), {}),
                     simulate(record.draw.disturbance_alone(), {}));
     return assessments;
   }

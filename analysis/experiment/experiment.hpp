@@ -2,15 +2,19 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/basis/tuned_basis.hpp"
+#include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/loop_conditions.hpp"
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/method_panel.hpp"
@@ -68,9 +72,11 @@ struct LoopTruth {
 struct ExperimentRecord {
   ExperimentDraw draw;
   ExperimentStatus status = ExperimentStatus::failed;
-  std::string message;                        ///< why it failed; empty otherwise
-  LoopConditions conditions;                  ///< of the loop that was assessed
-  Eigen::VectorXd ivar_basis;                 ///< ny, basis_variance_indices(); empty unless the status is ok
+  std::string message;        ///< why it failed; empty otherwise
+  LoopConditions conditions;  ///< of the loop that was assessed
+  /// ny, basis_variance_indices(), in a world FaultCost::variance_ratio; empty unless the status is ok.
+  Eigen::VectorXd ivar_basis;
+  std::optional<FaultCost> cost = {};         ///< of the faults, of an experiment in a world with status ok
   std::vector<AssessmentRecord> assessments;  ///< by each method of the study, in their order
   PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for, or
                             ///< its record has gaps
@@ -118,6 +124,11 @@ class ExperimentRunner {
   const std::vector<std::shared_ptr<const AssessmentForm>>& forms() const { return panel_.forms(); }
 
  private:
+  /// What is known beforehand of the loops of one world: its benchmark, and the methods that have learnt it.
+  struct WorldCase {
+    BasisCase basis;
+    std::unique_ptr<MethodPanel> panel;  ///< null where the benchmark does not run to its end
+  };
   /// One closed loop of an experiment, ready to be assessed.
   struct FinishedLoop {
     ExperimentStatus status;
@@ -133,15 +144,33 @@ class ExperimentRunner {
   FinishedLoop finished_again(const ExperimentRecord& record);
   void assess_alone(ExperimentRecord& record, const StepObserver& observer);
   /// Has the chain say how much the mismatch dominates, from the loops with one fault alone.
-  void add_dominance(AssessmentRecord& chain, Eigen::Index true_cv, const FinishedLoop& mpm_alone,
+  void add_dominance(AssessmentRecord& chain, const ExperimentDraw& draw, const FinishedLoop& mpm_alone,
                      const FinishedLoop& ud_alone);
+  /// The truth of an experiment that ran to its end.
+  void add_truth(ExperimentRecord& record, const Trajectory& loop);
+
+  /// y of the loop without its faults that the size of a fault is measured against.
+  Eigen::MatrixXd healthy_output(const ExperimentDraw& draw, const StepObserver& observer);
+  /// The study with the excitation of this experiment.
+  const Study& study_of(const ExperimentDraw& draw);
+  const WorldCase& world_of(const ExperimentDraw& draw);
+  const BasisCase& basis_of(const ExperimentDraw& draw);
+  std::vector<AssessmentRecord> assessed(const ExperimentDraw& draw, const FinishedLoop& loop);
+  std::optional<AssessmentRecord> assessed_by(std::string_view method, const ExperimentDraw& draw,
+                                              const FinishedLoop& loop);
+  /// Calls with(panel, own) of MethodPanel for a loop of this experiment.
+  template <class Call>
+  auto with_panel(const ExperimentDraw& draw, const FinishedLoop& loop, Call with);
 
   const Study& study_;
   const BasisCase& basis_;
   QpSolverFactory factory_;
-  MethodPanel panel_;
+  std::vector<std::string> methods_;
+  MethodPanel panel_;  ///< of the exact world
   S0Perturbation perturbation_;
   LoopStability stability_;
+  std::map<int, WorldCase> worlds_;                      ///< that were met so far
+  std::optional<std::pair<std::int64_t, Study>> moved_;  ///< study_of() of the last experiment
 };
 
 }  // namespace mpm

@@ -75,7 +75,8 @@ struct Judgement {
 Judgement judge(const Study& study, const ExperimentRecord& record, const AssessmentRecord& assessment);
 
 /// The truth about what a fault costs: some Ivar_basis (6.22), the variance of a CV against the same loop
-/// without fault, lies outside the band of impact of the study. No method has a part in it.
+/// without fault, lies outside the band of impact of the study. In a world: FaultCost::has_impact(). No
+/// method has a part in it.
 bool has_impact(const DiagnosisOptions& options, const ExperimentRecord& record);
 
 /// The experiments over which the study counts what a method says of the source of a fault: those that it

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "analysis/findings/method_rates.hpp"
+#include "analysis/statistics/clustered_rate.hpp"
 #include "plants/non_finite.hpp"
 
 namespace mpm {
@@ -41,7 +42,7 @@ PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, doub
                   const Belongs& belongs) {
   PooledScores pooled;
   const auto infos = method_rate_infos();
-  std::vector<std::int64_t> hits(infos.size()), totals(infos.size());
+  std::vector<std::vector<std::vector<ClusterCount>>> strata(infos.size());  // the worlds of each cell
   for (const CellScores& cell : cells) {
     if (!belongs(cell) || !cell.trouble.empty())
       continue;
@@ -51,13 +52,13 @@ PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, doub
     pooled.answering_cells += answered != nullptr && answered->hits > 0 ? 1 : 0;
     if (pooled.reason.empty())
       pooled.reason = scores.reason;
-    for (std::size_t i = 0; i < infos.size(); ++i) {
-      hits[i] += scores.rates[i].hits;
-      totals[i] += scores.rates[i].total;
-    }
+    for (std::size_t i = 0; i < infos.size(); ++i)
+      strata[i].push_back(scores.rates[i].clusters.empty()
+                              ? std::vector<ClusterCount>{{scores.rates[i].hits, scores.rates[i].total}}
+                              : scores.rates[i].clusters);
   }
   for (std::size_t i = 0; i < infos.size(); ++i)
-    pooled.rates.push_back(rate(hits[i], totals[i], confidence));
+    pooled.rates.push_back(clustered_rate(strata[i], confidence));
   return pooled;
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/monitored_loop.hpp"
+#include "analysis/statistics/clustered_rate.hpp"
 #include "analysis/statistics/holm.hpp"
 #include "plants/non_finite.hpp"
 
@@ -18,19 +19,24 @@ namespace {
 
 constexpr double kNone = kNaN;
 
-/// Counts trials and hits.
-struct Count {
-  std::int64_t hits = 0, total = 0;
-
-  void add(bool hit) {
-    ++total;
-    hits += hit ? 1 : 0;
+/// Counts trials and hits in each world: the loops of one share its errors of the model and its benchmark.
+class Count {
+ public:
+  void add(int world, bool hit) {
+    const auto place = static_cast<std::size_t>(world + 1);  // that of the exact world first
+    if (place >= worlds_.size())
+      worlds_.resize(place + 1);
+    ++worlds_[place].total;
+    worlds_[place].hits += hit ? 1 : 0;
   }
-  void add(Correctness correctness) {
+  void add(int world, Correctness correctness) {
     if (correctness != Correctness::not_judged)
-      add(correctness == Correctness::right);
+      add(world, correctness == Correctness::right);
   }
-  Rate rate(double confidence) const { return mpm::rate(hits, total, confidence); }
+  Rate rate(double confidence) const { return clustered_rate(worlds_, confidence); }
+
+ private:
+  std::vector<ClusterCount> worlds_;
 };
 
 struct Counts {
@@ -39,6 +45,7 @@ struct Counts {
       size_covered, candidate, source_all, abstained;
   Count false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
   Count monitored_impact;
+  int world = 0;  ///< of the record at hand
   std::int64_t false_alarms = 0, verdicts_before = 0;
   std::vector<double> delays;
   /// Of the loops with a fault that has an impact, or none, and of the healthy ones.
@@ -47,7 +54,8 @@ struct Counts {
   CalibratedThresholds thresholds;
 
   void add(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
-    answered.add(said.answered());
+    world = record.draw.world;
+    answered.add(world, said.answered());
     if (!is_faultless(record.draw.kind) && said.form->method().tells_sources)
       add_source(record, said);
     if (!said.answered())
@@ -57,7 +65,7 @@ struct Counts {
     if (study.monitoring)
       add_windows(study, record, said);
     if (record.draw.kind == ExperimentKind::tuning)
-      false_alarm_tuning.add(said.flagged);
+      false_alarm_tuning.add(world, said.flagged);
     else if (is_faultless(record.draw.kind))
       add_healthy(said);
     else
@@ -66,14 +74,14 @@ struct Counts {
 
  private:
   /// Above a calibrated threshold? Not counted when there is none.
-  static void add_above(const CalibratedThreshold& threshold, double score, Count& count) {
+  void add_above(const CalibratedThreshold& threshold, double score, Count& count) const {
     if (threshold.value)
-      count.add(threshold.exceeded_by(score));
+      count.add(world, threshold.exceeded_by(score));
   }
 
   void add_source(const ExperimentRecord& record, const AssessmentRecord& said) {
-    source_all.add(tells_fault(record, said));
-    abstained.add(named_source(said) == FaultSource::none);
+    source_all.add(world, tells_fault(record, said));
+    abstained.add(world, named_source(said) == FaultSource::none);
   }
 
   void add_windows(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
@@ -84,48 +92,48 @@ struct Counts {
     verdicts_before += found.verdicts_before;
     if (std::isnan(found.delay) || !has_impact(study.diagnosis, record))
       return;
-    monitored_impact.add(std::isfinite(found.delay));
+    monitored_impact.add(world, std::isfinite(found.delay));
     delays.push_back(found.delay);
   }
 
   void add_healthy(const AssessmentRecord& said) {
     healthy_scores.push_back(said.score);
-    false_alarm_healthy.add(said.flagged);
+    false_alarm_healthy.add(world, said.flagged);
     add_above(thresholds.chosen, said.score, false_alarm_calibrated);
   }
 
   void add_fault(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
     const bool impact = has_impact(study.diagnosis, record);
     (impact ? impact_scores : no_impact_scores).push_back(said.score);
-    detected.add(said.flagged);
-    (impact ? detected_impact : flagged_without_impact).add(said.flagged);
+    detected.add(world, said.flagged);
+    (impact ? detected_impact : flagged_without_impact).add(world, said.flagged);
     add_above(thresholds.at_01, said.score, power_01);
     add_above(thresholds.at_05, said.score, power_05);
     if (impact)
       add_above(thresholds.at_05, said.score, power_05_impact);
     if (record.draw.kind == ExperimentKind::mpm) {
-      detected_mpm.add(said.flagged);
+      detected_mpm.add(world, said.flagged);
       add_above(thresholds.not_mpm, said.score, power_05_mpm);
     }
     if (record.draw.kind == ExperimentKind::ud)
-      detected_ud.add(said.flagged);
+      detected_ud.add(world, said.flagged);
     const Judgement judgement = judge(study, record, said);
     if (said.flagged)
       add_diagnosis(judgement, said);
     if (impact) {
-      channel_impact.add(judgement.channel);
-      parameter_impact.add(judgement.parameter);
+      channel_impact.add(world, judgement.channel);
+      parameter_impact.add(world, judgement.parameter);
     }
   }
 
   void add_diagnosis(const Judgement& judgement, const AssessmentRecord& said) {
-    located.add(judgement.predicted_cv);
-    source.add(judgement.predicted_source);
-    channel.add(judgement.channel);
+    located.add(world, judgement.predicted_cv);
+    source.add(world, judgement.predicted_source);
+    channel.add(world, judgement.channel);
     if (judgement.channel != Correctness::not_judged)
       channels_named.push_back(said.values("channel_flagged").sum());
-    size_covered.add(judgement.size);
-    candidate.add(judgement.candidate);
+    size_covered.add(world, judgement.size);
+    candidate.add(world, judgement.candidate);
     if (!std::isnan(judgement.size_error))
       size_errors.push_back(judgement.size_error);
   }

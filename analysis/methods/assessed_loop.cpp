@@ -9,6 +9,7 @@
 #include "plants/linear/settling_time.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/historian.hpp"
 #include "scenarios/loop/signals.hpp"
 
@@ -138,12 +139,16 @@ Eigen::MatrixXd gaps_closed(Eigen::MatrixXd signals) {
 }
 
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context) {
-  return recorded(context.study, kBasisIndex, context.basis.trajectory).y;
+  return recorded(context.study, basis_index(context.basis.world), context.basis.trajectory).y;
 }
 
 AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory) {
-  return {study, basis, std::move(factory),
-          assessed_loop(study, basis.point, recorded(study, kBasisIndex, basis.trajectory))};
+  const std::int64_t index = basis_index(basis.world);
+  AssessmentContext context{study, basis, std::move(factory),
+                            assessed_loop(study, basis.point, recorded(study, index, basis.trajectory))};
+  if (study.simulation.excitation == SignalSequence::each)
+    context.benchmark_study = std::make_shared<const Study>(with_excitation(study, index));
+  return context;
 }
 
 }  // namespace mpm

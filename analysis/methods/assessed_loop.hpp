@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -77,6 +78,10 @@ struct AssessmentContext {
   QpSolverFactory factory;
   /// A period in which the controller worked as designed; none if no such period is known.
   std::optional<AssessedLoop> benchmark = {};
+  /// The study of the loop of the benchmark, where its excitation is another one; null: `study`.
+  std::shared_ptr<const Study> benchmark_study = {};
+
+  const Study& study_of_benchmark() const { return benchmark_study ? *benchmark_study : study; }
 };
 
 /// The CVs of the basis case as the historian keeps them, ny x N; a method knows no others.

@@ -27,9 +27,16 @@ CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
       dither_(dither(context.study)),
       loops_(static_cast<std::size_t>(context.study.cv_count()) + 1) {
   const Eigen::MatrixXd y_basis = gaps_closed(recorded_basis(context));
-  const SetpointTrajectories centres = variance_centres(study_, 0, y_basis.cols());
-  const Trajectory& nominal =
-      simulated(0, context.basis.trajectory.d, Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols()));
+  const Study& of_basis = context.study_of_benchmark();
+  const SetpointTrajectories centres = variance_centres(of_basis, 0, y_basis.cols());
+  const Eigen::MatrixXd quiet = Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols());
+  const Trajectory nominal = run_closed_loop(of_basis, of_basis.plant.G,
+                                             {.d = context.basis.trajectory.d,
+                                              .noise = quiet,
+                                              .y_d = quiet,
+                                              .y_set = setpoints(of_basis),
+                                              .dither = dither_},
+                                             factory_);
   if (nominal.status == ControlStatus::ok)
     noise_ = noise_variance(variances(y_basis, centres), variances(nominal.y, centres));
 }

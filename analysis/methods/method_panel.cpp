@@ -14,12 +14,12 @@ MethodPanel::MethodPanel(const Study& study, AssessmentContext context,
     assessors_.emplace_back(assessment_method(form->method().name), context_);
 }
 
-AssessmentRecord MethodPanel::assessed(std::size_t method, const AssessedLoop& loop, const TunedBasis* own) {
+AssessmentRecord MethodPanel::assessed(std::size_t method, const AssessedLoop& loop, const Own* own) {
   if (own == nullptr)
     return timed(method, assessors_[method], loop);
-  // The controller is another one, and its S0 with it; the benchmark is still what the study was designed
-  // for.
-  const AssessmentContext context{own->study, own->basis, context_.factory, context_.benchmark};
+  // The controller or the excitation is another one; the benchmark is still what the study was designed for.
+  const AssessmentContext context{own->study, own->basis, context_.factory, context_.benchmark,
+                                  context_.benchmark_study};
   Assessor assessor(assessment_method(forms_[method]->method().name), context);
   return timed(method, assessor, loop);
 }
@@ -35,7 +35,7 @@ AssessmentRecord MethodPanel::timed(std::size_t method, Assessor& assessor, cons
   return record;
 }
 
-std::vector<AssessmentRecord> MethodPanel::assess(const AssessedLoop& loop, const TunedBasis* own) {
+std::vector<AssessmentRecord> MethodPanel::assess(const AssessedLoop& loop, const Own* own) {
   std::vector<AssessmentRecord> records;
   for (std::size_t method = 0; method < forms_.size(); ++method)
     records.push_back(assessed(method, loop, own));
@@ -43,7 +43,7 @@ std::vector<AssessmentRecord> MethodPanel::assess(const AssessedLoop& loop, cons
 }
 
 std::optional<AssessmentRecord> MethodPanel::assess_by(std::string_view method, const AssessedLoop& loop,
-                                                       const TunedBasis* own) {
+                                                       const Own* own) {
   const auto form = std::find_if(forms_.begin(), forms_.end(),
                                  [&](const auto& each) { return each->method().name == method; });
   if (form == forms_.end())

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/basis/tuned_basis.hpp"
+#include "analysis/basis/basis_case.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/assessment_record.hpp"
@@ -23,18 +23,24 @@ class MethodPanel {
   MethodPanel(const MethodPanel&) = delete;
   MethodPanel& operator=(const MethodPanel&) = delete;
 
-  /// The answer of each method on a loop that ran to its end under the controller of the study, or under
-  /// another one with the basis case `own`, whose status must be ok. `y_sim` is that of assessed_loop().
-  std::vector<AssessmentRecord> assess(const AssessedLoop& loop, const TunedBasis* own = nullptr);
+  /// A loop of another study than that of the panel: under another controller, or another excitation. The
+  /// basis case, whose status must be ok, is what the methods may know of it.
+  struct Own {
+    const Study& study;
+    const BasisCase& basis;
+  };
+
+  /// The answer of each method on a loop that ran to its end. `y_sim` is that of assessed_loop().
+  std::vector<AssessmentRecord> assess(const AssessedLoop& loop, const Own* own = nullptr);
 
   /// The same by one method: null when it is not one of the panel.
   std::optional<AssessmentRecord> assess_by(std::string_view method, const AssessedLoop& loop,
-                                            const TunedBasis* own = nullptr);
+                                            const Own* own = nullptr);
 
   const AssessmentForms& forms() const { return forms_; }
 
  private:
-  AssessmentRecord assessed(std::size_t method, const AssessedLoop& loop, const TunedBasis* own);
+  AssessmentRecord assessed(std::size_t method, const AssessedLoop& loop, const Own* own);
   /// The answer of a method, its time for the whole record, and its windows.
   AssessmentRecord timed(std::size_t method, Assessor& assessor, const AssessedLoop& loop) const;
 

@@ -12,6 +12,7 @@
 #include "plants/linear/zero_order_hold.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/faults/other_fault.hpp"
+#include "scenarios/loop/world.hpp"
 #include "solvers/mpc_qp.hpp"
 
 namespace mpm {
@@ -202,7 +203,7 @@ bool has_linear_law(const Study& study, bool has_active_limits) {
 }  // namespace
 
 LoopStability::LoopStability(const Study& study, const OperatingPoint& point)
-    : model_(study.plant.G), sample_time_(study.controller.sample_time) {
+    : study_(study), model_(study.plant.G), sample_time_(study.controller.sample_time) {
   bool has_limits = false;
   for (const ActiveConstraint& reference : point.active) {
     cvs_.push_back(reference.cv);
@@ -252,7 +253,8 @@ double LoopStability::spectral_radius(const TransferMatrix& plant) const {
 double LoopStability::spectral_radius(const ExperimentDraw& draw) const {
   if (!draw.parameters.empty() || (draw.other && changes_loop(*draw.other)))
     return kNaN;
-  return spectral_radius(with_mismatches(model_, draw.mismatches));
+  return spectral_radius(
+      with_world_mismatches(world_plant(study_, draw_world(study_, draw.world)), draw.mismatches));
 }
 
 /// State: that of the model, that of the channels of the plant which differ, the past inputs. A channel that

@@ -38,9 +38,9 @@ namespace mpm {
 /// CVs inside their range act on nothing, so that their channels are not part of the loop.
 class LoopStability {
  public:
-  /// `point` is the operating point of the study. No law is known of a controller that is a program, of one
-  /// slack for all samples of a CV (not linear), of a nonlinear plant, and where the active CVs do not
-  /// determine the targets.
+  /// `point` is the operating point of the study, which must outlive the object. No law is known of a
+  /// controller that is a program, of one slack for all samples of a CV (not linear), of a nonlinear plant,
+  /// and where the active CVs do not determine the targets.
   LoopStability(const Study& study, const OperatingPoint& point);
 
   /// Spectral radius of the loop with this plant, of the shape of the model: below 1 it is stable. NaN when
@@ -60,6 +60,7 @@ class LoopStability {
 
   double radius_with(const Law& law, const TransferMatrix& plant) const;
 
+  const Study& study_;
   TransferMatrix model_;
   double sample_time_;
   std::vector<Eigen::Index> cvs_, mvs_;  ///< active CVs, MVs that are free

@@ -22,8 +22,16 @@ void require_counts(std::int64_t hits, std::int64_t total) {
   }
 }
 
-/// Wilson's interval of the share p of n trials, [0, 1] of none.
-Interval score_interval(double p, double n, double confidence) {
+}  // namespace
+
+double two_sided_normal_quantile(double confidence) {
+  require_confidence(confidence);
+  // Through the upper tail: 1 - alpha/2 would round for a confidence near 1.
+  return boost::math::quantile(boost::math::complement(boost::math::normal(), (1.0 - confidence) / 2.0));
+}
+
+Interval score_interval(double share, double trials, double confidence) {
+  const double p = share, n = trials;
   const double z = two_sided_normal_quantile(confidence);
   if (n == 0.0)
     return {0.0, 1.0};
@@ -33,14 +41,6 @@ Interval score_interval(double p, double n, double confidence) {
   // At the ends the formula gives 0 or 1 only to rounding.
   return {p == 0.0 ? 0.0 : std::max(0.0, middle - half_width),
           p == 1.0 ? 1.0 : std::min(1.0, middle + half_width)};
-}
-
-}  // namespace
-
-double two_sided_normal_quantile(double confidence) {
-  require_confidence(confidence);
-  // Through the upper tail: 1 - alpha/2 would round for a confidence near 1.
-  return boost::math::quantile(boost::math::complement(boost::math::normal(), (1.0 - confidence) / 2.0));
 }
 
 Interval wilson_interval(std::int64_t hits, std::int64_t total, double confidence) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 namespace mpm {
 
@@ -25,14 +26,23 @@ double two_sided_normal_quantile(double confidence);
 /// @throws InputError unless 0 <= hits <= total and 0 < confidence < 1
 Interval wilson_interval(std::int64_t hits, std::int64_t total, double confidence = 0.95);
 
+/// The same interval of a share p of n trials, of which neither p n nor n need be whole.
+Interval score_interval(double share, double trials, double confidence);
+
+/// Trials and hits within one cluster: trials that share what is drawn once for all of them.
+struct ClusterCount {
+  std::int64_t hits = 0, total = 0;
+};
+
 /// A share of trials with its uncertainty.
 struct Rate {
   std::int64_t hits = 0;
   std::int64_t total = 0;
   /// hits/total; NaN without trials.
   double value = 0.0;
-  /// Wilson's interval.
+  /// Wilson's interval, or that of clustered_rate().
   Interval interval;
+  std::vector<ClusterCount> clusters = {};  ///< of the trials; none: they are independent
 };
 
 /// The rate of `hits` in `total` with Wilson's interval.

@@ -1,6 +1,8 @@
 #include "plants/nonlinear/nonlinear_model.hpp"
 
+#include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "plants/nonlinear/deviation_plant.hpp"
 #include "plants/nonlinear/foreign_plant.hpp"
@@ -21,6 +23,25 @@ auto members(const NonlinearModel& model) {
 void NonlinearModel::check(const std::vector<ParameterChange>& changes) const {
   if (!foreign)
     make_system(changes);
+}
+
+NonlinearModel with_parameters(NonlinearModel model, const std::vector<ParameterChange>& changes) {
+  if (changes.empty())
+    return model;
+  model.check(changes);
+  for (NonlinearModel::Parameter& parameter : model.parameters)
+    for (const ParameterChange& change : changes)
+      if (change.name == parameter.name)
+        parameter.nominal = change.value;
+  if (model.make_system)
+    model.make_system = [make = model.make_system, changes](std::vector<ParameterChange> later) {
+      for (const ParameterChange& change : changes)
+        if (std::none_of(later.begin(), later.end(),
+                         [&change](const ParameterChange& other) { return other.name == change.name; }))
+          later.push_back(change);
+      return make(later);
+    };
+  return model;
 }
 
 std::unique_ptr<Plant> nonlinear_plant(const NonlinearModel& model, double sample_time,

@@ -50,6 +50,10 @@ struct NonlinearModel {
   friend bool operator==(const NonlinearModel& a, const NonlinearModel& b);
 };
 
+/// The same plant, which has always had these parameters: they are its nominal ones, and its operating point
+/// is its own steady state under `operating_input`. Errors: InputError as make_system.
+NonlinearModel with_parameters(NonlinearModel model, const std::vector<ParameterChange>& changes);
+
 /// The plant of a closed loop, in deviations from the operating point of the nominal plant, with some
 /// parameters changed.
 ///

@@ -288,6 +288,11 @@ RecordTable drawn(const Study& study) {
          "against those of the study, which the basis case has"},
         [](const Record& r) { return r.draw.noise_factor; },
         [](Record& r, double value) { r.draw.noise_factor = value; }));
+  if (study.world)
+    table.variables.push_back(scalar<std::int32_t>(
+        {"world", "world in which the experiment takes place", "1", "from 0"},
+        [](const Record& r) { return static_cast<std::int32_t>(r.draw.world); },
+        [](Record&, std::int32_t) {}));  // it follows from the index
   if (study.record.candidates > 0)
     table.variables.push_back(scalar<std::int32_t>(
         {"true_candidate", "position of the logged candidate that drives the disturbance", "1",
@@ -374,6 +379,53 @@ RecordVariable of_conditions(VariableText text, double LoopConditions::*member) 
       [member](Record& r, double value) { r.conditions.*member = value; }));
 }
 
+/// The cost of the faults of a record with status ok, made where it is read.
+FaultCost& cost_of(Record& record) {
+  if (!record.cost)
+    record.cost.emplace();
+  record.cost->variance_ratio = record.ivar_basis;
+  return *record.cost;
+}
+
+/// What faults cost in the worlds of a study (FaultCost), but for the ratios of the variances: ivar_basis.
+std::vector<RecordVariable> fault_costs(const Study& study) {
+  const auto of_cv = [&](VariableText text, Eigen::VectorXd FaultCost::*member) {
+    return vector(
+        std::move(text), "cv", study.cv_count(),
+        [member](const Record& r) -> const Eigen::VectorXd& {
+          static const Eigen::VectorXd none;
+          return r.cost ? (*r.cost).*member : none;
+        },
+        [member](Record& r, Eigen::VectorXd values) {
+          if (r.status == ExperimentStatus::ok)
+            cost_of(r).*member = std::move(values);
+        });
+  };
+  const auto of_loop = [](VariableText text, double FaultCost::*member) {
+    return scalar<double>(
+        std::move(text), [member](const Record& r) { return r.cost ? (*r.cost).*member : kNaN; },
+        [member](Record& r, double value) {
+          if (r.status == ExperimentStatus::ok)
+            cost_of(r).*member = value;
+        });
+  };
+  const char* const same =
+      "against the same loop without the fault, mean over noise; NaN unless the status is ok";
+  return {
+      of_cv({"loss", "what the fault adds to the cost of the CV in the weights of the controller", "1", same},
+            &FaultCost::loss),
+      of_cv({"violation", "what the fault adds to the mean distance outside the soft limits",
+             common_unit(study.plant.cvs), same},
+            &FaultCost::violation),
+      of_loop({"loss_ratio", "cost of the loop with the fault over that without it", "1", same},
+              &FaultCost::loss_ratio),
+      of_loop({"loss_ratio_error", "standard error of loss_ratio", "1", "NaN: of one pair of loops"},
+              &FaultCost::error),
+      of_loop({"effort", "what the fault adds to the cost of the moves", "1", same}, &FaultCost::effort),
+      of_loop({"economics", "what the fault adds to the objective of the target optimizer", "1", same},
+              &FaultCost::economics)};
+}
+
 RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
   RecordTable table;
   table.dimension = "experiment";
@@ -447,6 +499,9 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
   for (const Column<SolverStatistics>& column : solver_columns())
     table.variables.push_back(of_column(
         column, [](auto& record) -> auto& { return record.solver; }));
+  if (study.world)
+    for (RecordVariable& variable : fault_costs(study))
+      table.variables.push_back(std::move(variable));
   return table;
 }
 
@@ -619,8 +674,11 @@ RecordTable perturbed(const Study& study) {
 [[maybe_unused]] void every_member_is_in_a_table(const Record& record, const AssessmentRecord& assessment,
                                                  const LoopRecord& loop, const LoopTruth& truth,
                                                  const SolverStatistics& statistics) {
-  [[maybe_unused]] const auto& [draw, status, message, conditions, ivar_basis, assessments, perturbed, solver,
-                                kept, known] = record;
+  [[maybe_unused]] const auto& [draw, status, message, conditions, ivar_basis, cost, assessments, perturbed,
+                                solver, kept, known] = record;
+  if (cost) {
+    [[maybe_unused]] const auto& [ratio, loss, violation, loss_ratio, error, effort, economics] = *cost;
+  }
   [[maybe_unused]] const auto& [radius, other_cv, mv] = conditions;
   [[maybe_unused]] const auto& [form, ended, reason, flagged, score, cv, source, numbers, milliseconds] =
       assessment;

@@ -39,6 +39,7 @@ OptionKeys study_keys(Study& study, const std::filesystem::path& folder) {
                   simulation_key(study),
                   record_key(study),
                   experiments_key(study),
+                  world_key(study),
                   scenarios_key(study)};
   const auto add = [&keys](const OptionKeys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
   add(fault_keys(study));

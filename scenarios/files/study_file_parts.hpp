@@ -62,6 +62,9 @@ OptionKey record_key(Study& study);
 /// The key `fill`.
 OptionKey fill_key(GapFill& fill, std::string meaning);
 
+/// [world] (study_file_world.cpp)
+OptionKey world_key(Study& study);
+
 /// [[scenario]] (study_file_scenarios.cpp)
 OptionKey scenarios_key(Study& study);
 

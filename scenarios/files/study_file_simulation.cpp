@@ -182,8 +182,8 @@ OptionKeys dither_keys(Dither& dither, const Study& study) {
 
 /// MDs are stepped in one of two ways. A loop without any excitation has to be asked for by name: what the
 /// variances then compare is noise.
-void refuse_wrong_excitation(const TomlTable& simulation, const Study& study) {
-  const SimulationOptions& options = study.simulation;
+void read_excitation(const TomlTable& simulation, Study& study) {
+  SimulationOptions& options = study.simulation;
   const bool has_mds = !study.plant.mds.empty();
   const bool random_steps = simulation.has("random_steps");
   if (!has_mds && random_steps) {
@@ -194,9 +194,13 @@ void refuse_wrong_excitation(const TomlTable& simulation, const Study& study) {
     simulation.refuse("", "both step of an MD and random_steps", "exactly one of the two");
   }
   if (simulation.has("excitation")) {
-    read_one_of(simulation, "excitation", {"none"});
-    if (options.is_excited())
+    const std::size_t choice = read_one_of(simulation, "excitation", {"none", "shared", "each"});
+    if (choice == 0 && options.is_excited())
       simulation.refuse("excitation", "'none' beside steps, md_noise or dither", "one of the two");
+    if (choice != 0 && !options.is_excited())
+      simulation.refuse("excitation", "a choice for signals that are not there",
+                        "\"none\", or step, random_steps, limit_step, md_noise, dither");
+    options.excitation = choice == 2 ? SignalSequence::each : SignalSequence::shared;
   } else if (!options.is_excited() && (has_mds || study.controller.has_setpoints())) {
     simulation.refuse("", "no excitation",
                       "step, random_steps, limit_step, md_noise, dither, or excitation = \"none\"");
@@ -243,9 +247,15 @@ OptionKeys simulation_keys(Study& study) {
           "noise", [&options] { return noise_keys(options.noise); },
           "what the noise is beside its standard deviation")
           .otherwise("white, normal, of the same size in every experiment"),
-      key::option("excitation", "text", "nothing but noise and faults moves the loop")
-          .otherwise("none")
-          .allow("`\"none\"`, without anything that excites"),
+      key::option(
+          "excitation", "text",
+          "whose the signals below are. `\"shared\"`: all loops have the same ones, the benchmark among "
+          "them. "
+          "`\"each\"`: every loop has its own: random steps and variations drawn anew, listed steps at other "
+          "times, in another order and, of MDs and setpoints, by half of the listed move to all of it. "
+          "`\"none\"`: nothing but noise and faults moves the loop")
+          .otherwise("`\"shared\"`, where anything excites")
+          .allow("`\"none\"` without anything that excites; `\"shared\"`, `\"each\"`"),
       key::list<SignalStep>(
           "step", kMaxSteps, [&options](SignalStep& step) { return step_keys(step, options.samples); },
           [&study](const TomlTable& table, SignalStep& step) { take_step(table, step, study); },
@@ -271,7 +281,7 @@ OptionKeys simulation_keys(Study& study) {
           .allow("one or more"),
       key::check([&study](const TomlTable& table) {
         sort_steps(study.simulation);
-        refuse_wrong_excitation(table, study);
+        read_excitation(table, study);
       })};
 }
 

@@ -2,27 +2,13 @@
 
 #include <cassert>
 
-#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/signals.hpp"
 
 namespace mpm {
-namespace {
-
-/// The measured disturbances as steps, so that they no longer hang on the seed.
-std::vector<SignalStep> as_steps(const Eigen::MatrixXd& d) {
-  std::vector<SignalStep> steps;
-  for (Eigen::Index k = 0; k < d.cols(); ++k)
-    for (Eigen::Index md = 0; md < d.rows(); ++md)
-      if (d(md, k) != (k == 0 ? 0.0 : d(md, k - 1)))
-        steps.push_back({md, static_cast<int>(k), d(md, k)});
-  return steps;
-}
-
-}  // namespace
-
 std::uint64_t calibration_seed(const Study& study) {
   assert(study.calibration);
   if (!study.calibration->seed)
@@ -39,7 +25,8 @@ Study calibration_study(const Study& study) {
   loops.monitoring.reset();
   loops.experiments.healthy = study.calibration->healthy;
   loops.experiments.ud = study.calibration->ud;
-  if (study.simulation.random_steps || study.simulation.md_noise_standard_deviation.size() > 0) {
+  if (study.simulation.excitation == SignalSequence::shared &&
+      (study.simulation.random_steps || study.simulation.md_noise_standard_deviation.size() > 0)) {
     loops.simulation.steps = as_steps(measured_disturbances(study));
     loops.simulation.random_steps = false;
     loops.simulation.md_noise_standard_deviation = {};

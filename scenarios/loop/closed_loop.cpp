@@ -14,7 +14,9 @@
 #include "plants/linear/linear_plant.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/faults/other_fault.hpp"
+#include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "scenarios/loop/world.hpp"
 #include "scenarios/study/study_controller.hpp"
 
 namespace mpm {
@@ -151,14 +153,16 @@ Eigen::VectorXd shares(const Onset& onset, Eigen::Index samples) {
 /// The plant of the experiment.
 std::unique_ptr<Plant> plant_of(const Study& study, const ExperimentDraw& draw) {
   const double Ts = study.controller.sample_time;
+  const World world = draw_world(study, draw.world);
   if (study.nonlinear)
-    return nonlinear_plant(study.nonlinear->model, Ts, study.nonlinear->integration, draw.parameters,
+    return nonlinear_plant(with_parameters(study.nonlinear->model, world.parameters), Ts,
+                           study.nonlinear->integration, with_world_parameters(study, world, draw.parameters),
                            draw.onset.sample);
-  TransferMatrix plant = with_mismatches(study.plant.G, draw.mismatches);
+  const TransferMatrix healthy = world_plant(study, world);
+  const TransferMatrix plant = with_world_mismatches(healthy, draw.mismatches);
   if (draw.onset.from_the_start() || draw.mismatches.empty())
     return std::make_unique<LinearPlant>(plant, Ts);
-  return std::make_unique<ChangingPlant>(study.plant.G, plant, Ts,
-                                         shares(draw.onset, study.simulation.samples));
+  return std::make_unique<ChangingPlant>(healthy, plant, Ts, shares(draw.onset, study.simulation.samples));
 }
 
 }  // namespace
@@ -273,11 +277,22 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
 }
 
 LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw) {
-  LoopSignals signals{
-      measured_disturbances(study),           draw.noise_factor * measurement_noise(study, draw.index),
-      unmeasured_disturbances(study, draw),   setpoints(study),
-      disturbances_within_plant(study, draw), dither(study)};
+  const World world = draw_world(study, draw.world);
+  const std::int64_t noise = draw.noise_index.value_or(draw.index);
+  LoopSignals signals{measured_disturbances(study),
+                      draw.noise_factor * (world.noise_factor.asDiagonal() * measurement_noise(study, noise)),
+                      unmeasured_disturbances(study, draw),
+                      setpoints(study),
+                      disturbances_within_plant(study, draw),
+                      dither(study)};
   signals.u_d = disturbances_of_mvs(study, draw);
+  Background always = background(study, world, noise);
+  if (always.y_d.size() > 0)
+    signals.y_d += always.y_d;
+  if (always.u_d.size() > 0 && signals.u_d.size() > 0)
+    signals.u_d += always.u_d;
+  else if (always.u_d.size() > 0)
+    signals.u_d = std::move(always.u_d);
   signals.d_measured = measurements_of_mds(study, draw);
   signals.faults = loop_faults(draw);
   if (const Eigen::MatrixXd errors = sensor_errors(study, draw); errors.size() > 0)
@@ -287,6 +302,8 @@ LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw) {
 
 Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, const QpSolverFactory& factory,
                                const StepObserver& observer) {
+  if (study.simulation.excitation == SignalSequence::each)
+    return simulate_experiment(with_excitation(study, draw.index), draw, factory, observer);
   if (draw.tuning) {
     ExperimentDraw rest = draw;
     rest.tuning.reset();

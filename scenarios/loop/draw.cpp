@@ -12,6 +12,7 @@
 
 #include "plants/error.hpp"
 #include "scenarios/loop/fault_draw.hpp"
+#include "scenarios/loop/world.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
@@ -63,6 +64,7 @@ ExperimentDraw named_experiment(const Study& study, std::int64_t index) {
                       scenario.affected_cvs,
                       scenario.parameters};
   draw.noise_factor = draw_noise_factor(study, index);
+  draw.world = world_of(study, index);
   return draw;
 }
 
@@ -111,6 +113,15 @@ ExperimentDraw ExperimentDraw::disturbance_alone() const {
   return alone;
 }
 
+ExperimentDraw ExperimentDraw::without_faults() const {
+  ExperimentDraw healthy;
+  healthy.index = index;
+  healthy.noise_index = noise_index;
+  healthy.noise_factor = noise_factor;
+  healthy.world = world;
+  return healthy;
+}
+
 KindSequence::KindSequence(const ExperimentCounts& counts) {
   // A kind without experiments is never behind, so that adding one to the list changes no other study.
   constexpr std::array kinds{ExperimentKind::mpm,     ExperimentKind::ud,     ExperimentKind::mpm_ud,
@@ -147,6 +158,14 @@ ExperimentKind KindSequence::operator[](std::int64_t index) const {
   return period_[static_cast<std::size_t>(index) % period_.size()];
 }
 
+std::int64_t KindSequence::earlier(std::int64_t index) const {
+  const auto length = static_cast<std::int64_t>(period_.size());
+  const ExperimentKind kind = (*this)[index];
+  const auto within = period_.begin() + static_cast<std::ptrdiff_t>(index % length);
+  return index / length * std::count(period_.begin(), period_.end(), kind) +
+         std::count(period_.begin(), within, kind);
+}
+
 ExperimentDraw draw_experiment(const Study& study, std::int64_t index) {
   if (index < 0)
     throw InputError("experiment index", fmt::format("{}", index), ">= 0");
@@ -154,6 +173,7 @@ ExperimentDraw draw_experiment(const Study& study, std::int64_t index) {
     return named_experiment(study, index);
   ExperimentDraw draw;
   draw.index = index;
+  draw.world = world_of(study, index);
   draw.noise_factor = draw_noise_factor(study, index);
   draw.kind = KindSequence(study.experiments)[index];
   const bool both = draw.kind == ExperimentKind::mpm_ud;
@@ -191,9 +211,10 @@ ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultS
   return draw;
 }
 
-ExperimentDraw basis_draw() {
+ExperimentDraw basis_draw(int world) {
   ExperimentDraw draw;
-  draw.index = kBasisIndex;
+  draw.index = basis_index(world);
+  draw.world = world;
   return draw;
 }
 

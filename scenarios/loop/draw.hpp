@@ -50,6 +50,10 @@ struct ExperimentDraw {
   Onset onset = {};                              ///< of all faults but that of the tuning
   FaultScales scales = {};                       ///< those of the sizes above
   double noise_factor = 1.0;  ///< of the measurement noise (NoiseOptions::factor); no fault either
+  /// Whose noise and background the loop has, in place of its own: of loops that differ in nothing else.
+  std::optional<std::int64_t> noise_index = {};
+  int world =
+      -1;  ///< in which it takes place (scenarios/loop/world.hpp); -1: that in which the model is exact
 
   /// The CVs that are affected, in their order. A CV that has no fault of its own is affected by what is
   /// wrong in the experiment.
@@ -59,6 +63,8 @@ struct ExperimentDraw {
   /// The same experiment with the mismatches alone, and with the disturbances alone.
   ExperimentDraw mismatch_alone() const;
   ExperimentDraw disturbance_alone() const;
+  /// The same loop, under the same noise, in which nothing is wrong.
+  ExperimentDraw without_faults() const;
 };
 
 /// The index under which the basis case draws its noise: no experiment of a study has it.
@@ -67,6 +73,11 @@ inline constexpr std::int64_t kBasisIndex = -1;
 inline constexpr std::int64_t kRepeatIndex = -2;
 /// The index under which a sequence that all experiments share is drawn (SignalSequence::shared).
 inline constexpr std::int64_t kSharedIndex = -3;
+
+/// The index under which the benchmark of a world draws its noise; kBasisIndex for the exact one.
+constexpr std::int64_t basis_index(int world) {
+  return world < 0 ? kBasisIndex : kSharedIndex - 1 - world;
+}
 
 /// The order of kinds over the experiments of a study.
 ///
@@ -78,6 +89,8 @@ class KindSequence {
   explicit KindSequence(const ExperimentCounts& counts);
 
   ExperimentKind operator[](std::int64_t index) const;
+  /// How many experiments before `index` are of its kind.
+  std::int64_t earlier(std::int64_t index) const;
 
  private:
   std::vector<ExperimentKind> period_;
@@ -92,8 +105,9 @@ ExperimentDraw draw_experiment(const Study& study, std::int64_t index);
 /// The experiment `draw`, which has the scales 1, with these.
 ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultScales& scales);
 
-/// The basis case: nothing is wrong.
-ExperimentDraw basis_draw();
+/// The basis case: nothing is wrong. In a world it is the benchmark that the methods know, with noise and
+/// background of its own.
+ExperimentDraw basis_draw(int world = -1);
 
 /// The study with the controller that runs in the experiment: `study` itself unless the draw changes its
 /// tuning. simulate_experiment() does this by itself; to pass it the result would change the tuning twice.

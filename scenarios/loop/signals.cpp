@@ -20,8 +20,8 @@ void add_steps(const std::vector<SignalStep>& steps, Eigen::MatrixXd& signal) {
         .setConstant(step.level);
 }
 
-void add_random_steps(const Study& study, Eigen::MatrixXd& d) {
-  RandomStream stream = experiment_stream(study, kBasisIndex, StreamId::excitation);
+void add_random_steps(const Study& study, std::int64_t index, Eigen::MatrixXd& d) {
+  RandomStream stream = experiment_stream(study, index, StreamId::excitation);
   for (Eigen::Index md = 0; md < d.rows(); ++md) {
     for (double next = 0.0;;) {
       next += std::max(1.0, study.simulation.step_interval.sample(stream));
@@ -34,11 +34,11 @@ void add_random_steps(const Study& study, Eigen::MatrixXd& d) {
   }
 }
 
-void add_md_noise(const Study& study, Eigen::MatrixXd& d) {
+void add_md_noise(const Study& study, std::int64_t index, Eigen::MatrixXd& d) {
   const double tau = study.simulation.md_noise_time_constant;
   const double phi = tau > 0.0 ? std::exp(-study.controller.sample_time / tau) : 0.0;
   const double innovation = std::sqrt(1.0 - phi * phi);
-  RandomStream stream = experiment_stream(study, kBasisIndex, StreamId::md_noise);
+  RandomStream stream = experiment_stream(study, index, StreamId::md_noise);
   Eigen::VectorXd v(d.rows());
   for (Eigen::Index k = 0; k < d.cols(); ++k)
     for (Eigen::Index md = 0; md < d.rows(); ++md) {
@@ -185,13 +185,13 @@ RandomStream experiment_stream(const Study& study, std::int64_t index, StreamId 
   return {study.seed, static_cast<std::uint64_t>(index), id};
 }
 
-Eigen::MatrixXd measured_disturbances(const Study& study) {
+Eigen::MatrixXd measured_disturbances(const Study& study, std::int64_t index) {
   Eigen::MatrixXd d = Eigen::MatrixXd::Zero(study.md_count(), study.simulation.samples);
   if (study.simulation.random_steps)
-    add_random_steps(study, d);
+    add_random_steps(study, index, d);
   add_steps(study.simulation.steps, d);
   if (study.simulation.md_noise_standard_deviation.size() > 0)
-    add_md_noise(study, d);
+    add_md_noise(study, index, d);
   return d;
 }
 

@@ -16,8 +16,8 @@ RandomStream experiment_stream(const Study& study, std::int64_t index, StreamId 
 
 /// The measured disturbances, nd x samples: the same in every experiment of a study, as in figure 6.17.
 /// Steps, and the variation md_noise: from rest in its own variance, v(k) = exp(-Ts/tau) v(k-1) + white
-/// noise.
-Eigen::MatrixXd measured_disturbances(const Study& study);
+/// noise. `index` says whose random numbers they are made of (with_excitation()).
+Eigen::MatrixXd measured_disturbances(const Study& study, std::int64_t index = kBasisIndex);
 
 /// The setpoints, ny x samples: the same in every experiment of a study; zero for CVs without a setpoint.
 /// Empty (0 x 0) when no CV has one.

@@ -33,6 +33,9 @@ enum class StreamId : std::uint32_t {
   candidate = 50,          ///< which logged candidate drives a disturbance, if one does
   candidate_signals = 51,  ///< the first logged candidate; the numbers up to 59 are those of the others
   blind_order = 70,        ///< order of the loops of a blind export
+  world = 80,              ///< the errors of the model of a world, the size and colour of its background
+  listed_steps = 82,       ///< times, order and sizes of the listed steps of one loop
+  background = 81,         ///< the disturbances that are always there, of one loop
   /// Of the second disturbance of a named scenario; the following numbers are those of the third and so on.
   further_disturbance_signals = 0x1000,
 };

@@ -76,6 +76,9 @@ struct SimulationOptions {
   double md_noise_time_constant =
       0.0;                          ///< of its autocorrelation exp(-t/tau), time unit of the plant; 0: white
   std::vector<Dither> dither = {};  ///< of MVs; the same under every seed
+  /// Of the steps and variations above: in every loop the same ones, the benchmark among them, or in every
+  /// loop other ones (with_excitation()).
+  SignalSequence excitation = SignalSequence::shared;
 
   /// Does anything but noise and faults move the loop?
   bool is_excited() const {

@@ -15,6 +15,7 @@
 #include "scenarios/faults/fault_ranges.hpp"
 #include "scenarios/faults/other_fault.hpp"
 #include "scenarios/faults/tuning.hpp"
+#include "scenarios/faults/world_ranges.hpp"
 #include "scenarios/random/distribution.hpp"
 #include "scenarios/study/assessment_options.hpp"
 #include "scenarios/study/data_options.hpp"
@@ -216,6 +217,7 @@ struct Study {
   TuningRanges tuning;
   OtherRanges other;
   OnsetRanges onset;
+  std::optional<WorldRanges> world;  ///< none: the model is exact but for the faults
   SensitivityOptions sensitivity;
   S0PerturbationOptions s0_perturbation;
   DiagnosisOptions diagnosis;

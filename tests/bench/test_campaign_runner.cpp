@@ -72,6 +72,19 @@ TEST_CASE("campaign: one, two and three threads and processes give what the seri
   check_same_audit(parallel, serial);
 }
 
+TEST_CASE("campaign: loops in worlds with excitations of their own are those of the serial loop") {
+  Study study = find_study("wood-berry");
+  study.simulation.excitation = SignalSequence::each;
+  study.world = WorldRanges{.count = 3,
+                            .gain_factor = Distribution::uniform(0.95, 1.05),
+                            .background = {.cv_size = Distribution::uniform(0.2, 0.5)},
+                            .cost_loops = 2};
+  RunOptions options = fourteen();
+  options.jobs = 2;
+  options.parallel = GENERATE(Parallel::threads, Parallel::processes);
+  check_same(run_campaign(study, options), run_serially(study, options), 14);
+}
+
 TEST_CASE("campaign: loops on a nonlinear plant are those of the serial loop in threads and processes") {
   const Study study = find_study("chapter5-tank");
   RunOptions options;

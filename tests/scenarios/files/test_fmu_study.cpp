@@ -75,6 +75,27 @@ TEST_CASE("an FMU of the nonlinear tank gives the loops of the built-in one", "[
   }
 }
 
+TEST_CASE("an FMU in a world has the loops of the built-in tank in the same world", "[fmu][world]") {
+  const QpSolverFactory factory = qp_solver_factory("active-set");
+  Study fmu = fmu_study(), built_in = built_in_study();
+  for (Study* study : {&fmu, &built_in})
+    study->world = WorldRanges{.count = 2,
+                               .plant_parameters = {{"cd1", Distribution::uniform(0.9, 1.1)},
+                                                    {"A2", Distribution::uniform(0.9, 1.1)}}};
+  for (const int world : {0, 1}) {
+    const Trajectory one = simulate_experiment(fmu, basis_draw(world), factory);
+    const Trajectory other = simulate_experiment(built_in, basis_draw(world), factory);
+    REQUIRE(one.status == ControlStatus::ok);
+    // As without a world, and the error with which the FMU comes to rest at its operating point.
+    CHECK((one.y - other.y).cwiseAbs().maxCoeff() < 1e-6);
+    ExperimentDraw faulty = draw_experiment(fmu, 0);
+    faulty.world = world;
+    const Trajectory changed = simulate_experiment(fmu, faulty, factory);
+    CHECK((changed.y - simulate_experiment(built_in, faulty, factory).y).cwiseAbs().maxCoeff() < 1e-6);
+    CHECK((changed.y - one.y).cwiseAbs().maxCoeff() > 1e-3);
+  }
+}
+
 TEST_CASE("a study with an FMU can be read without it, until a loop is simulated", "[fmu]") {
   const std::string text =
       replaced(replaced(fmu_study_text(), "INNER", "fourth"), MPMBENCH_TANK_FMU, "not_here/tank.fmu");

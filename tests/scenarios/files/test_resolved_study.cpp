@@ -229,12 +229,26 @@ std::string unexcited_study_text() {
          "excitation = 'none'\n[experiments]\nmpm = 1\nud = 1\nmpm_ud = 0\n";
 }
 
+/// The small study in worlds, with an excitation of its own in each loop.
+std::string world_study_text() {
+  return replaced(small_study(), "samples = 60", "samples = 60\nexcitation = \"each\"") +
+         "\n[world]\ncount = 3\ngain_factor = {uniform = [0.95, 1.05]}\n"
+         "background = {cv_size = {constant = 0.5}, time_constant = {constant = 10}}\n";
+}
+
+/// The tank in worlds.
+std::string world_tank_text() {
+  return random_tank_text() +
+         "\n[world]\nplant_parameter = [{name = \"cd1\", factor = {uniform = [0.95, 1.05]}}]\n";
+}
+
 /// Studies of the tests, among them those with the keys that no shipped one has.
 std::vector<Study> of_tests() {
   std::vector<Study> studies;
   for (const std::string& text :
        {small_study(), random_study_text(), scenario_study_text(), nonlinear_study_text(), random_tank_text(),
-        fmu_study_text(), program_study_text(), controller_program_text(), unexcited_study_text()})
+        fmu_study_text(), program_study_text(), controller_program_text(), unexcited_study_text(),
+        world_study_text(), world_tank_text()})
     studies.push_back(parse_study(text, "s.toml"));
   return studies;
 }

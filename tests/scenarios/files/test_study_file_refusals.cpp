@@ -53,7 +53,8 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
       {"[experiments]", "[experiment]", "[experiment]",
        "top level: found unknown key 'experiment' (nearest: 'experiments'); allowed: study, plant, "
        "controller, "
-       "simulation, record, experiments, scenario, mismatch, disturbance, tuning, other, onset, sensitivity, "
+       "simulation, record, experiments, world, scenario, mismatch, disturbance, tuning, other, onset, "
+       "sensitivity, "
        "s0_perturbation, diagnosis, methods, assessment, monitoring, calibration, aggregate, data, "
        "reference"},
       {"seed = 7", "seed = 7\nsed = 8", "sed = 8",

@@ -197,7 +197,7 @@ TEST_CASE("wrong noise and wrong excitation are refused", "[excitation]") {
       {noise, with("excitation = 'none'"), "excitation",
        "simulation.excitation: found 'none' beside steps, md_noise or dither; allowed: one of the two"},
       {noise, with("excitation = 'some'"), "excitation",
-       "simulation.excitation: found 'some' (nearest: 'none'); allowed: none"},
+       "simulation.excitation: found 'some' (nearest: 'none'); allowed: none, shared, each"},
       {noise, with("limit_step = [{cv = 'level', sample = 60, soft = [0, 1]}]"), "limit_step",
        "simulation.limit_step[0].sample: found 60; allowed: a whole number from 0 to 59"},
       {noise, with("limit_step = [{cv = 'heat', sample = 6, soft = [0, 1]}]"), "limit_step",

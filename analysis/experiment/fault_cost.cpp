@@ -1,0 +1,135 @@
+#include "analysis/experiment/fault_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "analysis/indicators/diagnosis.hpp"
+#include "analysis/statistics/variance.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/loop/excitation.hpp"
+#include "scenarios/loop/signals.hpp"
+
+namespace mpm {
+namespace {
+
+/// Indices of the noise of pilot loops: below those of the benchmarks, none twice in a study.
+constexpr std::int64_t kFirstPilot = -(std::int64_t{1} << 32);
+
+double effective(double weight, WeightConvention convention) {
+  return convention == WeightConvention::squared ? weight * weight : weight;
+}
+
+double outside(double y, double lower, double upper) {
+  return std::max({0.0, y - upper, lower - y});
+}
+
+/// Sums over the pairs of one side of them.
+struct Side {
+  Eigen::VectorXd variance, loss, violation;
+  std::vector<double> total;
+  double effort = 0.0, economics = 0.0;
+
+  explicit Side(Eigen::Index ny)
+      : variance(Eigen::VectorXd::Zero(ny)),
+        loss(Eigen::VectorXd::Zero(ny)),
+        violation(Eigen::VectorXd::Zero(ny)) {}
+
+  void add(const Study& study, const Trajectory& loop) {
+    variance += variances(loop.y, variance_centres(study, 0, loop.y.cols()));
+    const LoopCost cost = loop_cost(study, loop);
+    loss += cost.cv;
+    violation += cost.violation;
+    effort += cost.effort;
+    economics += cost.economics;
+    total.push_back(cost.total());
+  }
+};
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values)
+    sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// The standard error of mean(a) / mean(b) over pairs.
+double error_of_ratio(const std::vector<double>& a, const std::vector<double>& b) {
+  const auto n = static_cast<double>(a.size());
+  if (a.size() < 2)
+    return kNaN;
+  const double ratio = mean_of(a) / mean_of(b);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    squares += std::pow(a[i] - ratio * b[i], 2);
+  return std::sqrt(squares / (n - 1.0) / n) / mean_of(b);
+}
+
+}  // namespace
+
+LoopCost loop_cost(const Study& study, const Trajectory& loop) {
+  const MpcOptions& controller = study.controller;
+  const Eigen::Index ny = loop.y.rows(), N = loop.y.cols();
+  LoopCost cost{.cv = Eigen::VectorXd::Zero(ny), .violation = Eigen::VectorXd::Zero(ny)};
+  for (Eigen::Index k = 0; k < N; ++k) {
+    const Limits soft = soft_limits(study, k);
+    for (Eigen::Index cv = 0; cv < ny; ++cv) {
+      const double violation = outside(loop.y(cv, k), soft.lower(cv), soft.upper(cv));
+      cost.violation(cv) += violation;
+      if (controller.has_soft_limit(cv))
+        cost.cv(cv) +=
+            effective(controller.slack_weight(cv), controller.weight_convention) * violation * violation;
+      if (controller.has_setpoint(cv))
+        cost.cv(cv) += effective(controller.setpoint_weight(cv), controller.weight_convention) *
+                       std::pow(loop.y(cv, k) - loop.y_set(cv, k), 2);
+    }
+    for (Eigen::Index mv = 0; mv < loop.u.rows() && k > 0; ++mv)
+      cost.effort += effective(controller.move_suppression(mv), controller.weight_convention) *
+                     std::pow(loop.u(mv, k) - loop.u(mv, k - 1), 2);
+    if (controller.mv_cost.size() > 0)
+      cost.economics += controller.mv_cost.dot(loop.u.col(k));
+  }
+  const auto samples = static_cast<double>(N);
+  return {cost.cv / samples, cost.violation / samples, cost.effort / samples, cost.economics / samples};
+}
+
+bool FaultCost::has_impact(double upper) const {
+  return loss_ratio > upper || std::any_of(variance_ratio.begin(), variance_ratio.end(),
+                                           [upper](double ratio) { return ratio > upper; });
+}
+
+FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
+                     const QpSolverFactory& factory, SolverStatistics& pilots) {
+  const Eigen::Index ny = study.cv_count();
+  FaultCost cost{Eigen::VectorXd::Ones(ny), Eigen::VectorXd::Zero(ny), Eigen::VectorXd::Zero(ny)};
+  if (is_faultless(draw.kind))
+    return cost;
+  const Study moved = with_excitation(study, draw.index);
+  Side with(ny), without(ny);
+  for (int pair = 0; pair < pairs; ++pair) {
+    ExperimentDraw faulty = draw;
+    faulty.noise_index = kFirstPilot - draw.index * pairs - pair;
+    const Trajectory a = simulate_experiment(moved, faulty, factory);
+    const Trajectory b = simulate_experiment(moved, faulty.without_faults(), factory);
+    pilots.add(a.solver);
+    pilots.add(b.solver);
+    if (a.status != ControlStatus::ok || b.status != ControlStatus::ok) {
+      const Eigen::VectorXd none = Eigen::VectorXd::Constant(ny, kNaN);
+      return {none, none, none, kNaN, kNaN, kNaN, kNaN};
+    }
+    with.add(moved, a);
+    without.add(moved, b);
+  }
+  const double n = pairs;
+  cost.variance_ratio = with.variance.cwiseQuotient(without.variance);
+  cost.loss = (with.loss - without.loss) / n;
+  cost.violation = (with.violation - without.violation) / n;
+  cost.effort = (with.effort - without.effort) / n;
+  cost.economics = (with.economics - without.economics) / n;
+  cost.loss_ratio = mean_of(with.total) / mean_of(without.total);
+  cost.error = error_of_ratio(with.total, without.total);
+  return cost;
+}
+
+}  // namespace mpm

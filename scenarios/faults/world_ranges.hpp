@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/random/distribution.hpp"
+
+namespace mpm {
+
+/// A parameter of a nonlinear plant that differs from world to world.
+struct WorldParameter {
+  std::string name = {};
+  Distribution factor = Distribution::constant(1.0);  ///< of the nominal value
+
+  bool operator==(const WorldParameter&) const = default;
+};
+
+/// The disturbances that are always there: first-order noise of its own on every CV, and on every MV between
+/// controller and plant,
+///
+///     x(k) = a x(k-1) + sqrt(1 - a^2) s w(k),    a = exp(-1 / time_constant),    w white, normal,
+///     variance 1.
+///
+/// Size s and time constant are drawn once a world for each CV and each MV, the sequence w in each loop anew.
+struct BackgroundRanges {
+  Distribution cv_size = Distribution::constant(0.0);  ///< s, in standard deviations of the CV's noise
+  Distribution mv_size = Distribution::constant(0.0);  ///< s, in parts of the width of the MV's hard limits
+  Distribution time_constant = Distribution::constant(0.0);  ///< samples; 0: white
+
+  bool operator==(const BackgroundRanges&) const = default;
+};
+
+/// From what the worlds of a study are drawn ([world] of a study file). In a world every channel of the plant
+/// differs a little from the model, small disturbances never stop, and the benchmark is a record of this
+/// plant. The controller and the methods know the model and the benchmark, and nothing else. Every number is
+/// drawn for each channel, CV or MV by itself.
+struct WorldRanges {
+  int count = 8;  ///< worlds, over which the experiments of each kind are spread evenly
+  Distribution gain_factor = Distribution::constant(1.0);
+  Distribution time_constant_factor = Distribution::constant(1.0);
+  Distribution dead_time_factor = Distribution::constant(1.0);
+  /// Added to the dead time, in the time unit of the plant; the dead time that comes out is 0 at least.
+  Distribution dead_time_shift = Distribution::constant(0.0);
+  /// Time constant of a further lag, over the residence time of the channel.
+  Distribution extra_lag = Distribution::constant(0.0);
+  Distribution noise_factor = Distribution::constant(1.0);  ///< of the noise of each CV
+  std::vector<WorldParameter> plant_parameters = {};        ///< of a nonlinear plant, in place of channels
+  BackgroundRanges background = {};
+  int cost_loops = 8;  ///< pairs of loops over whose noise the cost of a fault is an expectation
+
+  bool operator==(const WorldRanges&) const = default;
+};
+
+}  // namespace mpm

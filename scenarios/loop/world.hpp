@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenarios/faults/fault.hpp"
+#include "scenarios/study/study.hpp"
+
+namespace mpm {
+
+/// The number of the world without errors of the model and without background: that of a study without
+/// [world], and of the nominal loop of one that has it.
+inline constexpr int kExactWorld = -1;
+
+/// First-order noise that never stops (BackgroundRanges).
+struct BackgroundNoise {
+  double standard_deviation = 0.0;
+  double pole = 0.0;  ///< a
+};
+
+/// What is true in one world of a study, but for the faults of an experiment.
+///
+/// | member         | size   | meaning                                                       |
+/// |----------------|--------|---------------------------------------------------------------|
+/// | errors         |        | in what the channels of the plant differ from the model       |
+/// | parameters     |        | values of the parameters of a nonlinear plant                 |
+/// | noise_factor   | ny     | of the standard deviations of the measurement noise           |
+/// | cv_background  | ny     | added to each CV                                              |
+/// | mv_background  | nu     | added to each MV on its way to the plant                      |
+struct World {
+  std::vector<Mismatch> errors;
+  std::vector<ParameterChange> parameters;
+  Eigen::VectorXd noise_factor;
+  std::vector<BackgroundNoise> cv_background, mv_background;
+};
+
+/// World `number` of the study, a pure function of (study, seed, number). kExactWorld: nothing differs.
+World draw_world(const Study& study, int number);
+
+/// The world in which experiment `index` takes place: the experiments of each kind go to the worlds in turn.
+int world_of(const Study& study, std::int64_t index);
+
+/// The plant of a world: the model with its errors.
+TransferMatrix world_plant(const Study& study, const World& world);
+
+/// The plant with these mismatches on top of what the world has: factors multiply what is there, shifts of a
+/// dead time are confined to what leaves one of 0.
+TransferMatrix with_world_mismatches(TransferMatrix plant, std::vector<Mismatch> mismatches);
+
+/// The parameters of a nonlinear plant with these changes, drawn for the nominal plant, on top of those of
+/// the world: the ratio to the nominal value stays.
+std::vector<ParameterChange> with_world_parameters(const Study& study, const World& world,
+                                                   std::vector<ParameterChange> changes);
+
+/// The background of the loop of experiment `index`: of the CVs, ny x N, and of the MVs, nu x N; empty where
+/// the world has none.
+struct Background {
+  Eigen::MatrixXd y_d, u_d;
+};
+Background background(const Study& study, const World& world, std::int64_t index);
+
+}  // namespace mpm
