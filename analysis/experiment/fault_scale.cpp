@@ -14,8 +14,8 @@ namespace mpm {
 namespace {
 
 constexpr double kLargestScale = 1024.0, kSmallestScale = 1.0 / 1024.0;
-constexpr double kLargestFactor = 10.0;  // of a gain or a time constant, and its inverse the smallest
-constexpr double kTolerance = 0.03;      // of the effect, relative
+constexpr double kLargestSizedFactor = 10.0;  // of a gain or a time constant, and its inverse the smallest
+constexpr double kTolerance = 0.03;           // of the effect, relative
 constexpr int kMostPilots = 16;
 
 /// The scale at which `factor`^scale reaches the end of [low, high] that it goes to.
@@ -28,7 +28,7 @@ double largest_scale(const Study& study, const Mismatch& mismatch) {
   switch (mismatch.parameter) {
     case MismatchParameter::gain:
     case MismatchParameter::time_constant:
-      return scale_to_end(mismatch.value, 1.0 / kLargestFactor, kLargestFactor);
+      return scale_to_end(mismatch.value, 1.0 / kLargestSizedFactor, kLargestSizedFactor);
     case MismatchParameter::dead_time:
       return mismatch.value < 0.0 ? study.plant.G(mismatch.cv, mismatch.input).dead_time() / -mismatch.value
                                   : kLargestScale;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -23,7 +24,7 @@ constexpr double kNone = kNaN;
 class Count {
  public:
   void add(int world, bool hit) {
-    const auto place = static_cast<std::size_t>(world + 1);  // that of the exact world first
+    const auto place = static_cast<std::size_t>(std::int64_t{world} + 1);  // that of the exact world first
     if (place >= worlds_.size())
       worlds_.resize(place + 1);
     ++worlds_[place].total;

@@ -8,7 +8,7 @@ namespace mpm {
 namespace {
 
 constexpr int kGoldenSteps = 16;        ///< to 1/2000 of two intervals of the grid
-constexpr int kHalvings = 12;           ///< of the ends of an interval
+constexpr int kIntervalHalvings = 12;   ///< of the ends of an interval
 constexpr double kLargestShift = 10.0;  ///< samples
 
 }  // namespace
@@ -82,7 +82,7 @@ double level_crossing(const MismatchObjective& objective, double inside, double 
       outside = end;
     step *= 2.0;
   } while (objective(outside) <= level);
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kIntervalHalvings; ++i) {
     const double middle = 0.5 * (inside + outside);
     (objective(middle) <= level ? inside : outside) = middle;
   }

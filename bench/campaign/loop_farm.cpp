@@ -107,10 +107,11 @@ class LoopFarm {
     std::map<std::int64_t, BegunLoop> under_way;
     while (!requested(work_.stop)) {
       if (std::optional<BegunLoop> task = pool_->has_idle() ? next_task(more) : std::nullopt) {
+        const std::int64_t key = task->key;
         ByteWriter writer;
-        transfer_all(writer, task->key, std::as_const(task->begun));
-        pool_->start(task->key, writer.take());
-        under_way.insert_or_assign(task->key, *std::move(task));
+        transfer_all(writer, key, std::as_const(task->begun));
+        pool_->start(key, writer.take());
+        under_way.insert_or_assign(key, *std::move(task));
       } else if (!pool_->has_busy()) {
         return;
       } else if (const std::optional<TaskResult> result = next_finding(*pool_, work_.stop)) {

@@ -145,7 +145,7 @@ std::vector<std::vector<ReproducedTable>> run_tables(const TableRuns& runs) {
   }
   const QpSolverFactory factory = qp_solver_factory(runs.run.solver);
   SeededBasisCases basis_cases(factory);
-  const LoopWork::Thread run_table = [&](std::int64_t key) -> LoopResult {
+  LoopWork::Thread run_table = [&](std::int64_t key) -> LoopResult {
     const TableRun& run = *by_key.at(key);
     const TableNumbers numbers = table_numbers(run.table, factory, *basis_cases.of(run.offset));
     ByteWriter writer;

@@ -49,4 +49,18 @@ void PlantModel::validate() const {
   }
 }
 
+std::vector<std::string> variable_names(const std::vector<PlantModel::Variable>& variables) {
+  std::vector<std::string> names;
+  for (const PlantModel::Variable& variable : variables)
+    names.push_back(variable.name);
+  return names;
+}
+
+std::vector<std::string> input_names(const PlantModel& plant) {
+  std::vector<std::string> names = variable_names(plant.mvs);
+  for (const PlantModel::Variable& md : plant.mds)
+    names.push_back(md.name);
+  return names;
+}
+
 }  // namespace mpm

@@ -37,4 +37,10 @@ struct PlantModel {
   bool operator==(const PlantModel&) const = default;
 };
 
+/// The names of variables, in their order.
+std::vector<std::string> variable_names(const std::vector<PlantModel::Variable>& variables);
+
+/// The names of the MVs and then the MDs.
+std::vector<std::string> input_names(const PlantModel& plant);
+
 }  // namespace mpm

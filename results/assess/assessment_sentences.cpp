@@ -12,7 +12,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-std::string share(const Rate& rate) {
+std::string share_text(const Rate& rate) {
   return fmt::format("{:.0f} % [{:.0f}, {:.0f}]", 100.0 * rate.value, 100.0 * rate.interval.lower,
                      100.0 * rate.interval.upper);
 }
@@ -154,12 +154,12 @@ void add_trust(const RecordAssessment& of, Texts& sentences) {
       "On {} simulated loops of this controller, excitation and length, {} flagged {} of those without a "
       "fault "
       "and {} of those with one ({} where it had an impact)",
-      of.trial->loops, of.verdict().form->method().name, share(rates.false_alarm_healthy),
-      share(rates.detected), share(rates.detected_impact));
+      of.trial->loops, of.verdict().form->method().name, share_text(rates.false_alarm_healthy),
+      share_text(rates.detected), share_text(rates.detected_impact));
   if (rates.source.total > 0)
-    text += fmt::format("; of one fault alone it named the right source in {}", share(rates.source));
+    text += fmt::format("; of one fault alone it named the right source in {}", share_text(rates.source));
   if (rates.located.total > 0)
-    text += fmt::format(", the right CV in {}", share(rates.located));
+    text += fmt::format(", the right CV in {}", share_text(rates.located));
   sentences.push_back(text + ".");
   if (of.verdict().answered() && of.verdict().flagged) {
     std::string record =
@@ -167,7 +167,7 @@ void add_trust(const RecordAssessment& of, Texts& sentences) {
                     found.as_high.hits, found.as_high.total);
     if (found.same_source.total > 0)
       record += fmt::format("; of the loops of which it said the same of the source, it was right in {}",
-                            share(found.same_source));
+                            share_text(found.same_source));
     sentences.push_back(record + ".");
   }
 }

@@ -35,7 +35,7 @@ std::string cell_text(const Cell& cell) {
   return text + cell.mark;
 }
 
-using Rows = std::vector<std::vector<std::string>>;
+using TextRows = std::vector<std::vector<std::string>>;
 
 /// Characters, not bytes.
 std::size_t width_of(const std::string& text) {
@@ -43,7 +43,7 @@ std::size_t width_of(const std::string& text) {
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-std::vector<std::size_t> widths_of(const Rows& rows, std::size_t columns) {
+std::vector<std::size_t> widths_of(const TextRows& rows, std::size_t columns) {
   std::vector<std::size_t> widths(columns, 0);
   for (const auto& row : rows)
     for (std::size_t i = 0; row.size() > 1 && i < row.size(); ++i)
@@ -56,7 +56,7 @@ std::string blanks(std::size_t width, const std::string& text) {
 }
 
 /// The first column and those of [first, last), a line a row.
-std::string block_text(const Table& table, const Rows& rows, const std::vector<std::size_t>& widths,
+std::string block_text(const Table& table, const TextRows& rows, const std::vector<std::size_t>& widths,
                        std::size_t first, std::size_t last) {
   std::string text;
   for (const auto& row : rows) {
@@ -143,7 +143,7 @@ std::string number_text(const Number& number) {
 std::string table_text(const Table& whole, std::size_t width) {
   const Table table = of_text(whole);
   const std::size_t columns = table.columns.size();
-  Rows rows{{}};
+  TextRows rows{{}};
   for (const Table::Column& column : table.columns)
     rows.front().push_back(words_text(column.title));
   for (const Table::Row& row : table.rows) {

@@ -27,14 +27,6 @@ Json variables_json(const std::vector<PlantModel::Variable>& variables) {
   return list;
 }
 
-std::vector<std::string> input_names(const PlantModel& plant) {
-  std::vector<std::string> names;
-  for (const auto* variables : {&plant.mvs, &plant.mds})
-    for (const PlantModel::Variable& variable : *variables)
-      names.push_back(variable.name);
-  return names;
-}
-
 Json model_json(const PlantModel& plant, double sample_time, Eigen::Index samples) {
   const TransferMatrix& G = plant.G;
   const std::vector<std::string> inputs = input_names(plant);

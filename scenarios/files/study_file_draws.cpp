@@ -171,9 +171,7 @@ OptionKeys disturbance_ranges_keys(DisturbanceRanges& ranges) {
           {"relative frequency of white noise: y_d is slow or fast filtered noise, as `time_constant` has it",
            "of one step, up or down, between 10 and 60 % of the record",
            "of a ramp to the end of the record, which begins in the same part of it", "of summed white noise",
-           "of a sine with a period between 8 samples and a quarter of the record, every ratio equally "
-           "likely: "
-           "another loop that oscillates",
+           "of a sine with a period of 8 samples to a quarter of the record: another loop that oscillates",
            "of white noise in bursts of 20 samples with 80 samples between them, on the average"},
           "how often v has which shape")
           .otherwise("`white` alone"),

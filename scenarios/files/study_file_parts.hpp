@@ -90,10 +90,4 @@ OptionKeys method_keys(Study& study);
 /// [data] (study_file_data.cpp)
 OptionKey data_key(Study& study);
 
-/// The names of variables, in their order.
-std::vector<std::string> variable_names(const std::vector<PlantModel::Variable>& variables);
-
-/// The names of the MVs and then the MDs.
-std::vector<std::string> input_names(const PlantModel& plant);
-
 }  // namespace mpm

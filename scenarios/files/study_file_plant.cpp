@@ -122,20 +122,6 @@ OptionKeys plant_keys() {
 
 }  // namespace
 
-std::vector<std::string> variable_names(const std::vector<PlantModel::Variable>& variables) {
-  std::vector<std::string> names;
-  std::transform(variables.begin(), variables.end(), std::back_inserter(names),
-                 [](const PlantModel::Variable& variable) { return variable.name; });
-  return names;
-}
-
-std::vector<std::string> input_names(const PlantModel& plant) {
-  std::vector<std::string> names = variable_names(plant.mvs);
-  for (const PlantModel::Variable& md : plant.mds)
-    names.push_back(md.name);
-  return names;
-}
-
 OptionKey plant_key(Study& study, const std::filesystem::path& folder) {
   return key::option("plant", "table", "the nominal model `G0`")
       .required()

@@ -143,8 +143,9 @@ OptionKey whole(std::string name, Whole& value, std::int64_t low, std::int64_t h
   made.fallback = std::to_string(value);
   made.allowed = std::to_string(low) + " to " + std::to_string(high);
   made.reader = [&value, low, high](const TomlTable& table, const OptionKey& key) {
-    value = static_cast<Whole>(key.is_required ? read_whole(table, key.name, low, high)
-                                               : read_whole_or(table, key.name, low, high, value));
+    value = static_cast<Whole>(
+        key.is_required ? read_whole(table, key.name, low, high)
+                        : read_whole_or(table, key.name, low, high, static_cast<std::int64_t>(value)));
   };
   return made;
 }
