@@ -120,6 +120,7 @@ CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
                     .seed = cell.study.seed,
                     .time_unit = cell.study.plant.time_unit,
                     .monitored = cell.study.monitoring.has_value(),
+                    .in_worlds = cell.study.world.has_value(),
                     .experiments = findings.experiments,
                     .failed = findings.failed,
                     .infeasible = findings.infeasible.hits};

@@ -35,6 +35,7 @@ struct CellScores {
   std::uint64_t seed = 0;
   std::string time_unit = {};  ///< of the plant, and of its delays
   bool monitored = false;      ///< methods watched moving windows
+  bool in_worlds = false;      ///< its loops take place in worlds drawn at random
   std::string trouble = {};    ///< why it could not be run; empty: it was
   std::int64_t experiments = 0;
   std::int64_t failed = 0;

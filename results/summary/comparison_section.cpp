@@ -165,7 +165,7 @@ std::vector<MethodRateInfo> counted_rates(const Methods& methods) {
 Section comparison_section(const Campaign& campaign, const StudyFindings& findings) {
   Section section{"comparison", "Which method is right most often?"};
   section.add(rates_table(campaign.study, findings.methods));
-  section.say(kOfOneBenchmark);
+  section.say(whose_intervals(campaign.study.world.has_value()));
   add_marks(section, findings.methods);
   if (campaign.study.calibration)
     add_calibration(section, campaign, findings.methods);

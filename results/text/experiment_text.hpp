@@ -8,13 +8,9 @@
 
 namespace mpm {
 
-/// Stands beside every table of rates with intervals.
-inline constexpr const char* kOfOneBenchmark =
-    "Intervals hold for the one benchmark from which the methods of this study have learnt: over 14 "
-    "benchmarks "
-    "the number of false alarms of sse, likelihood, arx-oe and under coloured noise varied 3 to 6 times as "
-    "much as "
-    "a binomial number.";
+/// What the intervals of a table of rates hold for: the one benchmark of a study, or worlds drawn at random.
+/// One sentence.
+std::string whose_intervals(bool in_worlds);
 
 // How reports name experiments and what is in them; plain text. Foreign names in it are as in the study.
 
