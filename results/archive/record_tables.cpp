@@ -13,6 +13,7 @@
 #include "plants/row_major.hpp"
 #include "results/archive/columns.hpp"
 #include "scenarios/loop/candidates.hpp"
+#include "scenarios/loop/world.hpp"
 
 namespace mpm {
 namespace {
@@ -292,7 +293,7 @@ RecordTable drawn(const Study& study) {
     table.variables.push_back(scalar<std::int32_t>(
         {"world", "world in which the experiment takes place", "1", "from 0"},
         [](const Record& r) { return static_cast<std::int32_t>(r.draw.world); },
-        [](Record&, std::int32_t) {}));  // it follows from the index
+        [study](Record& r, std::int32_t) { r.draw.world = world_of(study, r.draw.index); }));
   if (study.record.candidates > 0)
     table.variables.push_back(scalar<std::int32_t>(
         {"true_candidate", "position of the logged candidate that drives the disturbance", "1",

@@ -10,13 +10,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "analysis/experiment/experiment.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/shards/shard_folder.hpp"
+#include "results/archive/archive.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
 #include "scenarios/files/study_change.hpp"
+#include "scenarios/files/study_file.hpp"
 #include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/world.hpp"
 #include "tests/bench/serial_campaign.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -82,7 +86,27 @@ TEST_CASE("campaign: loops in worlds with excitations of their own are those of 
   RunOptions options = fourteen();
   options.jobs = 2;
   options.parallel = GENERATE(Parallel::threads, Parallel::processes);
-  check_same(run_campaign(study, options), run_serially(study, options), 14);
+  const Campaign campaign = run_campaign(study, options);
+  check_same(campaign, run_serially(study, options), 14);
+
+  // An archive has the worlds, so that its loops are run again in theirs.
+  study.source +=
+      "\n[world]\ncount = 3\ngain_factor = {uniform = [0.95, 1.05]}\ncost_loops = 2\n"
+      "background.cv_size = {uniform = [0.2, 0.5]}\n";
+  const Study of_file = parse_study(study.source, "wood-berry");
+  options.experiments = 6;
+  options.store = StorePolicy::none;
+  Campaign written = run_campaign(of_file, options);
+  const TemporaryFolder folder;
+  write_archive(folder / "a.h5", written, findings_of(written));
+  const Campaign read = read_archive(folder / "a.h5");
+  ExperimentRunner again(read.study, read.basis, method_names(read), qp_solver_factory("active-set"));
+  for (const ExperimentRecord& record : read.records) {
+    CHECK(record.draw.world == world_of(of_file, record.draw.index));
+    const ExperimentRecord same = again.run(record.draw.index, StorePolicy::none);
+    CHECK(same.ivar_basis == record.ivar_basis);
+    CHECK(again.assess(record).front().score == record.assessments.front().score);
+  }
 }
 
 TEST_CASE("campaign: loops on a nonlinear plant are those of the serial loop in threads and processes") {
