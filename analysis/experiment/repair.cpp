@@ -2,18 +2,20 @@
 
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"
+#include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "scenarios/loop/world.hpp"
 
 namespace mpm {
 namespace {
 
 /// The experiment as a controller with another model sees it: the plant differs from this model in every
-/// channel in which it is not the same.
+/// channel in which it is not the same; in a world every channel is said, so that none gets its errors twice.
 ExperimentDraw against(const TransferMatrix& model, const TransferMatrix& plant, ExperimentDraw draw) {
   draw.mismatches.clear();
   for (Eigen::Index cv = 0; cv < plant.rows(); ++cv)
     for (Eigen::Index input = 0; input < plant.cols(); ++input)
-      if (!(model(cv, input) == plant(cv, input)))
+      if (draw.world != kExactWorld || !(model(cv, input) == plant(cv, input)))
         draw.mismatches.push_back({cv, input, MismatchParameter::channel, 1.0, plant(cv, input)});
   return draw;
 }
@@ -70,6 +72,8 @@ std::optional<PromisedRepair> promised_repair(const Study& study, const Operatin
 
 RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, const ExperimentDraw& draw,
                            const AssessedLoop& loop, const Channel& channel, const QpSolverFactory& factory) {
+  if (study.simulation.excitation == SignalSequence::each)
+    return repaired_loop(with_excitation(study, draw.index), point, draw, loop, channel, factory);
   RepairedLoop result{.channel = channel,
                       .fit = fit_of(study, point, loop, channel),
                       .now = {},
@@ -90,7 +94,8 @@ RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, cons
     result.perfect = variances_with(study, from_the_start.disturbance_alone());
     return result;
   }
-  const TransferMatrix plant = with_mismatches(study.plant.G, draw.mismatches);
+  const TransferMatrix plant =
+      with_world_mismatches(world_plant(study, draw_world(study, draw.world)), draw.mismatches);
   result.repaired = variances_with(repaired, against(repaired.plant.G, plant, from_the_start));
   Study perfect = study;
   perfect.plant.G = plant;

@@ -48,6 +48,11 @@ ExitCode export_blind(const ExportArguments& options) {
     throw InputError("--calibration", "a study without a table `calibration`", "a study with one");
   if (options.parts.windows && !campaign.study.monitoring)
     throw InputError("--windows", "a study without a table `monitoring`", "a study with one");
+  if (campaign.study.world || campaign.study.simulation.excitation == SignalSequence::each)
+    throw InputError(
+        "--blind", "a study with worlds, or with an excitation of its own for each loop",
+        "one whose loops share a benchmark: a blind export has one; a program (--method-file) is told "
+        "that of each loop");
   const std::vector<BlindLoop> order = blind_order(campaign, options.parts.calibration);
   if (order.empty())
     throw InputError(options.archive, "no loop that ran to its end", "one or more to export");

@@ -142,7 +142,7 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
   refuse_short_record(study, record);
   const std::string name = fmt::format("{} under the record", study.name);
   toml::table text = parse_toml(study.source, name);
-  for (const char* key : {"data", "s0_perturbation", "calibration", "reference", "monitoring"})
+  for (const char* key : {"data", "s0_perturbation", "calibration", "reference", "monitoring", "world"})
     text.erase(key);
   if (study.names_scenarios()) {
     text.erase("scenario");
