@@ -15,6 +15,8 @@ import tomllib
 import h5py
 import numpy
 
+from interrupting import interrupt, shard_files
+
 EXPERIMENTS = 24
 CALIBRATION = 30
 # With calibration loops and moving windows, both of which verdicts may be on.
@@ -458,11 +460,8 @@ def check_changed_programs(outside):
              "--solver", "active-set", "--shard-interval", 0, "--jobs", 2, "--quiet"]
     process = subprocess.Popen([outside.program, *map(str, words)])
     shards = outside.folder / "own.h5.shards"
-    while process.poll() is None and not list(shards.glob("*.shard")):
-        pass
-    process.kill()
-    process.wait()
-    assert not out.exists() and list(shards.glob("*.shard"))
+    interrupt(process, shards)
+    assert not out.exists() and shard_files(shards)
     for changed in "program", "options", "command":
         if changed == "program":
             program.write_text(original + "# of another mind\n", encoding="utf-8")

@@ -16,6 +16,7 @@ import h5py
 import numpy
 
 from archives import check_same
+from interrupting import interrupt, shard_files
 
 # The program knows step responses up to 19 of the longest time constant, where e^-19 = 6e-9 is left of them.
 TOLERANCE = 1e-8
@@ -113,11 +114,8 @@ def check_one_result(own):
     words = ["run", study, "-o", resumed, "--jobs", 2, "--shard-interval", 0, *common]
     process = subprocess.Popen([own.program, *map(str, words)], cwd=own.source, stderr=subprocess.DEVNULL)
     shards = own.folder / "resumed.h5.shards"
-    while process.poll() is None and len(list(shards.glob("*.shard"))) < 3:
-        pass
-    process.kill()
-    process.wait()
-    assert not resumed.exists() and list(shards.glob("*.shard"))
+    interrupt(process, shards, more=3)
+    assert not resumed.exists() and shard_files(shards)
 
     own.run(*words, "--resume")
     check_same(resumed, reference)
@@ -130,11 +128,8 @@ def check_changed_program(own):
     words = ["run", study, "-o", archive, "--jobs", 2, "--shard-interval", 0, "--quiet"]
     process = subprocess.Popen([own.program, *map(str, words)], cwd=own.source, stderr=subprocess.DEVNULL)
     shards = own.folder / "changing.h5.shards"
-    while process.poll() is None and not list(shards.glob("*.shard")):
-        pass
-    process.kill()
-    process.wait()
-    assert list(shards.glob("*.shard"))
+    interrupt(process, shards)
+    assert shard_files(shards)
     program.write_text(program.read_text(encoding="utf-8") + "# another one\n", encoding="utf-8")
     message = own.run(*words, "--resume", code=2)
     assert "it belongs to a run with another study" in message and "changing.py" in message, message

@@ -12,15 +12,14 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 from archives import check_same
+from interrupting import PATIENCE, interrupt, shard_files
 
 EXPERIMENTS, CALIBRATION = 24, 10
 LOOPS = EXPERIMENTS + CALIBRATION
 STOPPED = 80  # experiments of a campaign that is to be stopped before its end
 OPTIONS = {"--experiments": EXPERIMENTS, "--jobs": 1, "--audit": 0.002, "--methods": "botelho,sse"}
-PATIENCE = 300  # s, for a machine that is busy with other things
 LAUNCHERS = ("OMPI_", "PMI_", "PMIX_", "SLURM_", "JOB_COMPLETION_INDEX")
 
 
@@ -69,7 +68,7 @@ def check_any_split(trial, reference):
         assert f"of the {LOOPS} loops" in said, said
     assert trial.merge("--missing").endswith(f": {LOOPS} of {LOOPS} loops in 3 parts\n")
     trial.check(reference)
-    shards = [len(list(part.rglob("*.shard"))) for part in trial.parts.iterdir()]
+    shards = [len(shard_files(part)) for part in trial.parts.iterdir()]
     assert shards == [1, 1, 1], shards
 
     shutil.rmtree(trial.parts)
@@ -175,12 +174,7 @@ def check_stopped(trial, reference, command, name):
     """SIGTERM, as at the end of the time of a job, leaves what is done; the same command with --resume goes on."""
     process = subprocess.Popen([*command, "--shard-interval", "0"], env=plain_environment(), text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    end = time.monotonic() + PATIENCE
-    while len(list(trial.parts.rglob("*.shard"))) < 2 and process.poll() is None:
-        assert time.monotonic() < end
-        time.sleep(0.002)
-    process.send_signal(signal.SIGTERM)
-    said = process.communicate(timeout=PATIENCE)[0]
+    said = interrupt(process, trial.parts, 2, signal.SIGTERM)[0]
     assert process.returncode not in (0, 2), (name, process.returncode, said)
     missing = trial.missing()["missing"]
     assert 0 < missing < STOPPED + CALIBRATION, (name, missing)

@@ -14,6 +14,7 @@ import h5py
 import numpy
 
 from archives import check_same
+from interrupting import interrupt, shard_files
 
 STUDY = """
 [study]
@@ -123,11 +124,8 @@ def main(program):
         check_same(threads, reference)
         words = ["run", "study.toml", "-o", folder / "a.h5", "--jobs", 2, "--shard-interval", 0, "--store", "all", "--quiet"]
         process = subprocess.Popen([program, *map(str, words)], cwd=folder, stderr=subprocess.DEVNULL)
-        while process.poll() is None and len(list(folder.glob("a.h5.shards/*.shard"))) < 2:
-            pass
-        process.kill()
-        process.wait()
-        assert not (folder / "a.h5").exists() and list(folder.glob("a.h5.shards/*.shard"))
+        interrupt(process, folder / "a.h5.shards", more=2)
+        assert not (folder / "a.h5").exists() and shard_files(folder / "a.h5.shards")
 
         # Not with another program of the same name.
         (folder / "lags.py").write_text(PLANT + "# another one\n")

@@ -11,12 +11,12 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 import h5py
 
 from browser import Browser
 from html_page import check_page, check_shown
+from interrupting import interrupt
 
 
 def check_going_on(program, folder):
@@ -35,11 +35,7 @@ def check_going_on(program, folder):
     for number in signal.SIGKILL, signal.SIGTERM:
         process = subprocess.Popen(command(killed, "--jobs", "1"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                    text=True)
-        before = len(list(kept.rglob("*.shard")))
-        while process.poll() is None and len(list(kept.rglob("*.shard"))) == before:
-            time.sleep(0.005)
-        process.send_signal(number)
-        error = process.communicate(timeout=600)[1]
+        error = interrupt(process, kept, number=number)[1]
         assert process.returncode == (3 if number == signal.SIGTERM else -number), (process.returncode, error)
         assert (number == signal.SIGKILL) or "of 6 tables were done" in error and "To go on with it" in error, error
         assert not killed.exists()

@@ -6,11 +6,13 @@ usage: check_scenarios.py MPMBENCH
 import json
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 
 from archives import check_same
+from interrupting import interrupt
 
 
 def main(program):
@@ -51,11 +53,7 @@ def main(program):
         resumed = folder / "resumed.h5"
         process = subprocess.Popen([program, "run", study, "-o", str(resumed), "--audit", "0", "--jobs", "1", "--quiet",
                                     "--shard-interval", "0"], stderr=subprocess.DEVNULL)
-        shards = folder / "resumed.h5.shards"
-        while process.poll() is None and not list(shards.glob("*.shard")):
-            pass
-        process.terminate()
-        process.wait(timeout=60)
+        interrupt(process, folder / "resumed.h5.shards", number=signal.SIGTERM)
         if not resumed.exists():
             run("run", study, "-o", resumed, "--audit", 0, "--jobs", 1, "--quiet", "--resume")
         check_same(resumed, whole)

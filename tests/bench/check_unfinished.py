@@ -10,9 +10,8 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
-PATIENCE = 300  # s, for a machine that is busy with other things
+from interrupting import interrupt, shard_files
 
 
 def main(program, study):
@@ -24,12 +23,8 @@ def main(program, study):
     def stopped(*words, shards):
         """Kills a run when so many shards are there."""
         process = subprocess.Popen([program, *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        end = time.monotonic() + PATIENCE
-        while len(list(shards.glob("*.shard"))) < 1:
-            assert process.poll() is None and time.monotonic() < end
-            time.sleep(0.005)
-        process.send_signal(signal.SIGKILL)
-        process.communicate()
+        interrupt(process, shards)
+        assert process.returncode == -signal.SIGKILL
 
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -80,7 +75,7 @@ def main(program, study):
         assert partial.startswith(f"PARTIAL: {done} of 2000 experiments."), partial
         assert f"experiments   {done} (" in partial, partial
         assert "many.h5.shards" not in partial, partial  # what it names for `replay` is the archive
-        assert len(list(shards.glob("*.shard"))) > 0 and not many.exists()
+        assert shard_files(shards) and not many.exists()
 
         # With an older archive beside it, that one is shown. The next run that is finished leaves no trace of it.
         assert json.loads(run("summary", archive, "--json").stdout)["partial"] is None
