@@ -1,13 +1,10 @@
 #include "solvers/mpc_objective.hpp"
 
 namespace mpm {
-namespace {
 
 Eigen::VectorXd effective_weight(const Eigen::VectorXd& weight, WeightConvention convention) {
   return convention == WeightConvention::squared ? weight.cwiseAbs2().eval() : weight;
 }
-
-}  // namespace
 
 MoveSuppression::MoveSuppression(const MpcOptions& options)
     : control_horizon_(options.control_horizon),

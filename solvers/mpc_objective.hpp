@@ -15,6 +15,9 @@
 
 namespace mpm {
 
+/// What the squares of a group of variables are multiplied by: the weights Q, or their squares.
+Eigen::VectorXd effective_weight(const Eigen::VectorXd& weight, WeightConvention convention);
+
 /// What the terms refer to at one sample.
 ///
 /// | symbol    | member   | shape   | meaning                                          |

@@ -102,7 +102,7 @@ const Study& ExperimentRunner::study_of(const ExperimentDraw& draw) {
   return moved_->second;
 }
 
-const ExperimentRunner::WorldCase& ExperimentRunner::world_of(const ExperimentDraw& draw) {
+const ExperimentRunner::WorldCase& ExperimentRunner::case_of(const ExperimentDraw& draw) {
   WorldCase& known = worlds_[draw.world];
   if (known.panel || known.basis.world == draw.world)
     return known;
@@ -115,12 +115,12 @@ const ExperimentRunner::WorldCase& ExperimentRunner::world_of(const ExperimentDr
 }
 
 const BasisCase& ExperimentRunner::basis_of(const ExperimentDraw& draw) {
-  return draw.world == kExactWorld ? basis_ : world_of(draw).basis;
+  return draw.world == kExactWorld ? basis_ : case_of(draw).basis;
 }
 
 template <class Call>
 auto ExperimentRunner::with_panel(const ExperimentDraw& draw, const FinishedLoop& loop, Call with) {
-  MethodPanel& panel = draw.world == kExactWorld ? panel_ : *world_of(draw).panel;
+  MethodPanel& panel = draw.world == kExactWorld ? panel_ : *case_of(draw).panel;
   if (loop.own) {
     const MethodPanel::Own own{loop.own->study, loop.own->basis};
     return with(panel, &own);
@@ -211,8 +211,7 @@ void ExperimentRunner::add_dominance(AssessmentRecord& chain, const ExperimentDr
 
 void ExperimentRunner::add_truth(ExperimentRecord& record, const Trajectory& loop) {
   if (!study_.world) {
-    record.ivar_basis =
-        basis_variance_indices(study_of(record.draw), loop.y, healthy_output(record.draw, {}));
+    record.ivar_basis = basis_variance_indices(study_of(record.draw), loop.y, healthy_output(record, {}));
     return;
   }
   record.cost =
@@ -220,20 +219,23 @@ void ExperimentRunner::add_truth(ExperimentRecord& record, const Trajectory& loo
   record.ivar_basis = record.cost->variance_ratio;
 }
 
-Eigen::MatrixXd ExperimentRunner::healthy_output(const ExperimentDraw& draw, const StepObserver& observer) {
+Eigen::MatrixXd ExperimentRunner::healthy_output(ExperimentRecord& record, const StepObserver& observer) {
+  const ExperimentDraw& draw = record.draw;
   if (draw.world == kExactWorld && study_.simulation.excitation == SignalSequence::shared)
     return basis_.trajectory.y;
-  return simulate_experiment(study_of(draw), draw.without_faults(), factory_, observer).y;
+  Trajectory healthy = simulate_experiment(study_of(draw), draw.without_faults(), factory_, observer);
+  record.solver.add(healthy.solver);
+  return std::move(healthy.y);
 }
 
 ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, const StepObserver& observer) {
   ExperimentRecord record;
   record.draw = draw_experiment(study_, index);
   if (has_asked_impact(study_, record.draw))
-    record.draw = with_scales(
-        study_, record.draw,
-        scales_for_impact(study_of(record.draw), record.draw, healthy_output(record.draw, observer), factory_,
-                          record.solver, observer));
+    record.draw =
+        with_scales(study_, record.draw,
+                    scales_for_impact(study_of(record.draw), record.draw, healthy_output(record, observer),
+                                      factory_, record.solver, observer));
   FinishedLoop main = simulate(record.draw, observer);
   record.status = main.status;
   record.message = main.message;

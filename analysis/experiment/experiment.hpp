@@ -149,11 +149,11 @@ class ExperimentRunner {
   /// The truth of an experiment that ran to its end.
   void add_truth(ExperimentRecord& record, const Trajectory& loop);
 
-  /// y of the loop without its faults that the size of a fault is measured against.
-  Eigen::MatrixXd healthy_output(const ExperimentDraw& draw, const StepObserver& observer);
+  /// y of the loop without the faults of the record, ny x N; a loop that is run for it counts in `solver`.
+  Eigen::MatrixXd healthy_output(ExperimentRecord& record, const StepObserver& observer);
   /// The study with the excitation of this experiment.
   const Study& study_of(const ExperimentDraw& draw);
-  const WorldCase& world_of(const ExperimentDraw& draw);
+  const WorldCase& case_of(const ExperimentDraw& draw);
   const BasisCase& basis_of(const ExperimentDraw& draw);
   std::vector<AssessmentRecord> assessed(const ExperimentDraw& draw, const FinishedLoop& loop);
   std::optional<AssessmentRecord> assessed_by(std::string_view method, const ExperimentDraw& draw,

@@ -155,7 +155,7 @@ std::string table_text(const Table& whole, std::size_t width) {
   std::string text = table.caption.empty() ? "" : paragraph_text(table.caption, width);
   std::size_t first = std::min<std::size_t>(1, columns), last = first;
   do {
-    std::size_t sum = widths.front();
+    std::size_t sum = std::min(widths.front(), width / 2);  // a wider one leaves the other columns together
     for (; last < columns; ++last) {
       sum += 2 + widths[last];
       if (sum > width && last > first && table.columns[last].align != Table::Align::text)

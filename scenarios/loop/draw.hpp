@@ -10,6 +10,10 @@
 
 namespace mpm {
 
+/// The number of the world without errors of the model and without background (scenarios/loop/world.hpp):
+/// that of a study without [world], and of the nominal loop of one that has it.
+inline constexpr int kExactWorld = -1;
+
 /// A CV that an experiment affects, and by what.
 struct AffectedCv {
   Eigen::Index cv;
@@ -52,8 +56,7 @@ struct ExperimentDraw {
   double noise_factor = 1.0;  ///< of the measurement noise (NoiseOptions::factor); no fault either
   /// Whose noise and background the loop has, in place of its own: of loops that differ in nothing else.
   std::optional<std::int64_t> noise_index = {};
-  int world =
-      -1;  ///< in which it takes place (scenarios/loop/world.hpp); -1: that in which the model is exact
+  int world = kExactWorld;  ///< in which it takes place
 
   /// The CVs that are affected, in their order. A CV that has no fault of its own is affected by what is
   /// wrong in the experiment.
@@ -76,7 +79,7 @@ inline constexpr std::int64_t kSharedIndex = -3;
 
 /// The index under which the benchmark of a world draws its noise; kBasisIndex for the exact one.
 constexpr std::int64_t basis_index(int world) {
-  return world < 0 ? kBasisIndex : kSharedIndex - 1 - world;
+  return world == kExactWorld ? kBasisIndex : kSharedIndex - 1 - world;
 }
 
 /// The order of kinds over the experiments of a study.
@@ -107,7 +110,7 @@ ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultS
 
 /// The basis case: nothing is wrong. In a world it is the benchmark that the methods know, with noise and
 /// background of its own.
-ExperimentDraw basis_draw(int world = -1);
+ExperimentDraw basis_draw(int world = kExactWorld);
 
 /// The study with the controller that runs in the experiment: `study` itself unless the draw changes its
 /// tuning. simulate_experiment() does this by itself; to pass it the result would change the tuning twice.

@@ -6,13 +6,10 @@
 #include <Eigen/Core>
 
 #include "scenarios/faults/fault.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {
-
-/// The number of the world without errors of the model and without background: that of a study without
-/// [world], and of the nominal loop of one that has it.
-inline constexpr int kExactWorld = -1;
 
 /// First-order noise that never stops (BackgroundRanges).
 struct BackgroundNoise {

@@ -115,6 +115,26 @@ def check_python(program, sources):
     assert {"docs/methods_thesis.md", "docs/own_plant.md"} <= set(ran), ran
 
 
+def percents(rate):
+    """A rate as the tables show it; None where nothing was counted."""
+    return "{value} ({lower} to {upper})".format(**{key: round(100 * value) for key, value in rate.items()}) if rate else None
+
+
+def check_worlds(sources):
+    """Each row of the table of the suite worlds has the shares of its method."""
+    columns = [("exact", "false_alarm_healthy"), ("worlds", "false_alarm_healthy")]
+    columns += [(family, "power_05_impact") for family in ("exact", "errors", "worlds", "inputs", "growing")]
+    columns += [(family, "source_all") for family in ("exact", "errors", "worlds")]
+    page = (sources / "docs/suite.md").read_text(encoding="utf-8").split("## The suite of worlds")[1].split("\n## ")[0]
+    rows = {line.split("`")[1]: [cell.strip() for cell in line.strip("|").split("|")][1:]
+            for line in re.findall(r"^\| `[\w-]+` \| \d.*", page, flags=re.MULTILINE)}
+    methods = json.loads((sources / "docs/leaderboard_worlds.json").read_text())["methods"]
+    assert list(rows) == [method["name"] for method in methods], rows
+    for method in methods:
+        expected = [percents(method["families"][family]["rates"].get(rate)) or "names none" for family, rate in columns]
+        assert rows[method["name"]] == expected, (method["name"], rows[method["name"]], expected)
+
+
 def check_board(sources):
     """Each row of the table in README.md has the shares of its method over all families."""
     methods = {method["name"]: method["all"]["rates"] for method in
@@ -126,14 +146,13 @@ def check_board(sources):
         rates = ("answered", "false_alarm_healthy", "power_05_impact", "located", "source_all")
         for cell, name in zip(cells, rates):
             rate = methods[line.split("`")[1]].get(name)
-            percent = {key: round(100 * value) for key, value in rate.items()} if rate else None
-            shown = "names none" if rate is None else "{value} ({lower} to {upper})".format(**percent)
-            expected = shown if name != "answered" else str(percent["value"])
+            expected = str(round(100 * rate["value"])) if name == "answered" else percents(rate) or "names none"
             assert cell.removesuffix(", by construction") == expected, (line, name, expected)
 
 
 def main(program, sources):
     check_board(pathlib.Path(sources))
+    check_worlds(pathlib.Path(sources))
     check_python(program, pathlib.Path(sources))
     with tempfile.TemporaryDirectory() as name:
         shims = pathlib.Path(name)

@@ -39,7 +39,8 @@ TEST_CASE("clustered rate: of one cluster, or without scatter, it is Wilson's of
   CHECK(wide.value == 0.5);
   CHECK(wide.hits == 20);
   CHECK(wide.total == 40);
-  CHECK(wide.interval.upper - wide.interval.lower > 2.0 * (rate(20, 40).interval.upper - 0.5) * 1.5);
+  const Interval independent = rate(20, 40).interval;
+  CHECK(wide.interval.upper - wide.interval.lower > 1.5 * (independent.upper - independent.lower));
   CHECK(wide.clusters.size() == 4);
   CHECK_THROWS(clustered_rate(apart, 1.0));
 }
@@ -59,7 +60,7 @@ TEST_CASE("clustered rate: strata that differ add no variance of their own", "[c
 }
 
 TEST_CASE(
-    "clustered rate: its intervals hold the truth in 93 to 97 % of 500 suites of eight worlds, where those "
+    "clustered rate: its intervals hold the truth in 93 to 98 % of 500 suites of eight worlds, where those "
     "of "
     "independent trials hold it in fewer",
     "[clustered_rate]") {
@@ -73,8 +74,9 @@ TEST_CASE(
       held_by_independent += rate(clustered.hits, clustered.total).interval.contains(mean) ? 1 : 0;
     }
     INFO(mean << " +- " << spread << ": " << held << " and " << held_by_independent << " of 500");
+    // 95 % are meant; a share of 500 has a standard error of 1 %. Wilson's interval of few trials is wide.
     CHECK(held >= 465);
-    CHECK(held <= 490);  // 93 to 97 %, and one standard error of 500 more: it errs on the safe side
+    CHECK(held <= 490);
     CHECK(held_by_independent < held);
   }
 }
