@@ -254,7 +254,7 @@ def check_comparison(program, folder):
 def check_two_at_once(trial):
     """A second run of the same output is refused while the first one is at work; --discard starts anew."""
     process = trial.start()
-    trial.wait_for_shards(process, 1)
+    wait_for_shards(process, trial.shards)
     assert f"process {process.pid}" in trial.run("--resume", code=2)
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=PATIENCE) == 3
