@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 namespace mpm {
 namespace {
 
@@ -102,8 +104,18 @@ const Eigen::ArrayXd& WhitenedProducts::of(Eigen::Index i, Eigen::Index j) const
 WhitenedProducts whitened_products(const NoiseModels& models,
                                    const Eigen::Ref<const Eigen::MatrixXd>& series) {
   const Eigen::Index p = series.rows();
-  Gains gains(models);
   WhitenedProducts sums;
+  if (models.count() == 1) {
+    double log_determinant = 0.0;
+    const Eigen::MatrixXd white = whitened(models, series, log_determinant);
+    const Eigen::MatrixXd products = white * white.transpose();
+    sums.log_determinant = Eigen::ArrayXd::Constant(1, log_determinant);
+    for (Eigen::Index i = 0; i < p; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j)
+        sums.products.push_back(Eigen::ArrayXd::Constant(1, products(i, j)));
+    return sums;
+  }
+  Gains gains(models);
   sums.products.assign(static_cast<std::size_t>(p * (p + 1) / 2), Eigen::ArrayXd::Zero(models.count()));
   Eigen::ArrayXXd state = Eigen::ArrayXXd::Zero(models.count(), p);
   Eigen::ArrayXXd innovation(models.count(), p);
@@ -127,6 +139,30 @@ WhitenedProducts whitened_products(const NoiseModels& models,
   }
   sums.log_determinant = gains.log_determinant();
   return sums;
+}
+
+WhitenedProducts marginalised(const WhitenedProducts& sums, Eigen::Index rows, Eigen::Index q) {
+  WhitenedProducts left{sums.log_determinant,
+                        {sums.products.begin(), sums.products.begin() + rows * (rows + 1) / 2}};
+  if (q == 0)
+    return left;
+  Eigen::MatrixXd inner(q, q), with_rows(q, rows);
+  for (Eigen::Index model = 0; model < sums.log_determinant.size(); ++model) {
+    for (Eigen::Index i = 0; i < q; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j)
+        inner(i, j) = sums.of(rows + i, rows + j)(model) + (i == j ? 1.0 : 0.0);
+      for (Eigen::Index j = 0; j < rows; ++j)
+        with_rows(i, j) = sums.of(rows + i, j)(model);
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factor(inner);
+    factor.matrixL().solveInPlace(with_rows);
+    left.log_determinant(model) += 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+    std::size_t pair = 0;
+    for (Eigen::Index i = 0; i < rows; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j)
+        left.products[pair++](model) -= with_rows.col(i).dot(with_rows.col(j));
+  }
+  return left;
 }
 
 Eigen::MatrixXd whitened(const NoiseModels& models, const Eigen::Ref<const Eigen::MatrixXd>& series,

@@ -36,6 +36,10 @@ struct WhitenedProducts {
 WhitenedProducts whitened_products(const NoiseModels& models,
                                    const Eigen::Ref<const Eigen::MatrixXd>& series);
 
+/// Of the first `rows` series when the others, Z (q x N), are added to the noise with coefficients of their
+/// own, z ~ N(0, I): the noise has the covariance L L' + Z' Z.
+WhitenedProducts marginalised(const WhitenedProducts& sums, Eigen::Index rows, Eigen::Index q);
+
 /// L^-1 of each row of `series` under the first of the models, p x N, and 0 where nothing is observed; log
 /// |L|^2 in `log_determinant`.
 Eigen::MatrixXd whitened(const NoiseModels& models, const Eigen::Ref<const Eigen::MatrixXd>& series,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/methods/model_errors.hpp"
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/linear/settling_time.hpp"
@@ -45,6 +46,15 @@ Eigen::MatrixXd after_rest(const Eigen::MatrixXd& signal, Eigen::Index samples) 
   Eigen::MatrixXd longer(signal.rows(), samples + signal.cols());
   longer << signal.col(0).replicate(1, samples), signal;
   return longer;
+}
+
+constexpr double kModelError = 0.05, kBias = 0.5;
+constexpr Eigen::Index kFewestLearnt = 30;  // samples of a CV
+
+/// Has it enough samples, and every input?
+bool learns_from(const AssessedLoop& benchmark) {
+  return model_inputs(benchmark).allFinite() &&
+         ((!benchmark.y.array().isNaN()).rowwise().count() >= kFewestLearnt).all();
 }
 
 }  // namespace
@@ -148,6 +158,9 @@ AssessmentContext assessment_context(const Study& study, const BasisCase& basis,
                             assessed_loop(study, basis.point, recorded(study, index, basis.trajectory))};
   if (study.simulation.excitation == SignalSequence::each)
     context.benchmark_study = std::make_shared<const Study>(with_excitation(study, index));
+  if (study.world && learns_from(*context.benchmark))
+    context.learnt =
+        std::make_shared<const LearntModel>(study, basis.point.u, *context.benchmark, kModelError, kBias);
   return context;
 }
 

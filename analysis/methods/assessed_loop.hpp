@@ -14,6 +14,8 @@
 
 namespace mpm {
 
+class LearntModel;
+
 /// The records of one closed loop as a method sees them: what the plant's historian keeps, and what the
 /// nominal model makes of it.
 ///
@@ -80,6 +82,8 @@ struct AssessmentContext {
   std::optional<AssessedLoop> benchmark = {};
   /// The study of the loop of the benchmark, where its excitation is another one; null: `study`.
   std::shared_ptr<const Study> benchmark_study = {};
+  /// What the benchmark shows of the errors of the model; null: the model is taken for exact.
+  std::shared_ptr<const LearntModel> learnt = {};
 
   const Study& study_of_benchmark() const { return benchmark_study ? *benchmark_study : study; }
 };
@@ -87,7 +91,8 @@ struct AssessmentContext {
 /// The CVs of the basis case as the historian keeps them, ny x N; a method knows no others.
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context);
 
-/// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault.
+/// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault;
+/// errors of the model are learnt from it where the study has worlds.
 AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory);
 
 }  // namespace mpm

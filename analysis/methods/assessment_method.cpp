@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/model_errors.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
@@ -59,15 +60,24 @@ std::optional<std::string> unmet_requirement(const AssessmentRequirements& requi
 }
 
 Assessor::Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context)
-    : requirements_(info.requirements), locates_cvs_(info.locates_cvs), context_(context), make_(info.make) {}
+    : requirements_(info.requirements),
+      locates_cvs_(info.locates_cvs),
+      relative_(info.relative && context.learnt),
+      context_(context),
+      make_(info.make) {}
 
 Assessment Assessor::assess(const AssessedLoop& loop) {
   if (const std::optional<std::string> unmet = unmet_requirement(requirements_, context_, loop))
     return Assessment::not_applicable(*unmet);
+  if (!method_ && relative_) {
+    corrected_ = std::make_unique<AssessmentContext>(context_);
+    if (context_.benchmark)
+      corrected_->benchmark = context_.learnt->corrected(*context_.benchmark, benchmark_);
+  }
   if (!method_)
-    method_ = make_(context_);
+    method_ = make_(relative_ ? *corrected_ : context_);
   try {
-    Assessment assessment = method_->assess(loop);
+    Assessment assessment = method_->assess(relative_ ? context_.learnt->corrected(loop, whole_) : loop);
     assert(assessment.cvs.empty() || static_cast<Eigen::Index>(assessment.cvs.size()) == loop.y.rows());
     if (assessment.status == AssessmentStatus::ok && assessment.flagged && locates_cvs_ &&
         !assessment.worst_cv())

@@ -72,6 +72,9 @@ struct MethodDescription {
   bool tells_sources = false;     ///< CvAssessment::source
   bool names_mismatches = false;  ///< Assessment::named_mismatch
   bool names_candidates = false;  ///< Assessment::named_candidate
+  /// The method is shown what is new since the benchmark, where errors of the model are learnt from it
+  /// (AssessmentContext::learnt).
+  bool relative = false;
   /// The share of healthy loops that the method states it flags; none if it states no share.
   std::optional<double> stated_false_alarms = {};
   std::vector<AssessmentNumberInfo> numbers;
@@ -111,9 +114,12 @@ class Assessor {
  private:
   AssessmentRequirements requirements_;
   bool locates_cvs_;
+  bool relative_;
   const AssessmentContext& context_;
   std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext&)> make_;
-  std::unique_ptr<AssessmentMethod> method_;  ///< made for the first loop to which it applies
+  std::unique_ptr<AssessmentContext> corrected_;  ///< of a method that is relative
+  AssessedLoop benchmark_, whole_;                ///< LearntModel::corrected
+  std::unique_ptr<AssessmentMethod> method_;      ///< made for the first loop to which it applies
 };
 
 }  // namespace mpm

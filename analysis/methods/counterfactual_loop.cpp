@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/indicators/diagnosis.hpp"
+#include "analysis/methods/model_errors.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
@@ -22,6 +23,8 @@ Eigen::MatrixXd errors_of(const AssessedLoop& whole) {
 
 CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
     : study_(context.study),
+      learnt_(context.learnt),
+      plant_(learnt_ ? learnt_->plant() : context.study.plant.G),
       factory_(context.factory),
       y_set_(setpoints(context.study)),
       dither_(dither(context.study)),
@@ -30,7 +33,7 @@ CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
   const Study& of_basis = context.study_of_benchmark();
   const SetpointTrajectories centres = variance_centres(of_basis, 0, y_basis.cols());
   const Eigen::MatrixXd quiet = Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols());
-  const Trajectory nominal = run_closed_loop(of_basis, of_basis.plant.G,
+  const Trajectory nominal = run_closed_loop(of_basis, plant_,
                                              {.d = context.basis.trajectory.d,
                                               .noise = quiet,
                                               .y_d = quiet,
@@ -61,7 +64,8 @@ Assessment CounterfactualLoop::impact(const AssessedLoop& loop) {
 
 Eigen::VectorXd CounterfactualLoop::ivar_diag(const AssessedLoop& loop) {
   const AssessedLoop& whole = loop.from_start();
-  const Eigen::MatrixXd e = errors_of(whole);
+  AssessedLoop corrected;
+  const Eigen::MatrixXd e = errors_of(learnt_ ? learnt_->corrected(whole, corrected) : whole);
   Eigen::VectorXd found(e.rows());
   for (Eigen::Index cv = 0; cv < e.rows(); ++cv) {
     Eigen::MatrixXd others = e;
@@ -115,7 +119,7 @@ const Trajectory& CounterfactualLoop::simulated(std::size_t place, const Eigen::
                               .y_d = errors,
                               .y_set = y_set_,
                               .dither = dither_};
-    kept = {d, errors, run_closed_loop(study_, study_.plant.G, signals, factory_)};
+    kept = {d, errors, run_closed_loop(study_, plant_, signals, factory_)};
   }
   return kept.loop;
 }

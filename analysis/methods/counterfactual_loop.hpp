@@ -18,6 +18,8 @@ namespace mpm {
 ///   y0_diag = the same for CV i when the recorded errors e_j of all other CVs are added to the outputs of G0
 ///   Ivar = var y / (var y0 + v),   Ivar_diag = var y_i / (var y0_diag,i + v_i),   v = var y_b - var y0_b
 ///
+/// and G0 in the place of the plant corrected by what the benchmark shows of its errors
+/// (AssessmentContext::learnt),
 /// as in (3.24) and (4.14), but exact also where the loop leaves limits and reaches them again, for which no
 /// linear S0 exists: with the errors of all CVs added, the loop returns y. y contains noise and y0 does not;
 /// v is what noise adds to the variance, taken from the basis case y_b of the same controller (NoiseVariance
@@ -54,6 +56,8 @@ class CounterfactualLoop {
   double distance(double ivar) const;
 
   const Study& study_;
+  std::shared_ptr<const LearntModel> learnt_;
+  TransferMatrix plant_;  ///< G0, or what the benchmark has shown of the plant
   QpSolverFactory factory_;
   Eigen::MatrixXd y_set_, dither_;
   std::vector<Simulated> loops_;  ///< y0, then y0_diag of each CV

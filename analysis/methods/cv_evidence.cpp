@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "plants/non_finite.hpp"
 
 namespace mpm {
@@ -88,18 +90,21 @@ double sum_of(const std::vector<MismatchEvidence>& all) {
 /// The work on one record.
 class RecordLikelihood {
  public:
-  RecordLikelihood(const CvPrior& prior, const BaseNoise& base, const ScaleLikelihood& likelihood, bool rest,
-                   const std::vector<MismatchResponses>& responses, const Eigen::RowVectorXd& e,
+  RecordLikelihood(const ModelErrors& model, const CvPrior& prior, const ScaleLikelihood& likelihood,
+                   bool rest, const std::vector<MismatchResponses>& responses, const Eigen::RowVectorXd& e,
                    const Eigen::Ref<const Eigen::MatrixXd>& u,
                    const Eigen::Ref<const Eigen::VectorXd>& initial_u)
-      : prior_(prior),
-        base_(base),
+      : model_(model),
+        prior_(prior),
+        base_(model.noise()),
         likelihood_(likelihood),
         rest_(rest),
         responses_(responses),
         e_(e),
         u_(u),
-        initial_u_(initial_u) {
+        initial_u_(initial_u),
+        slopes_(model.slopes(u, initial_u)),
+        directions_(model.directions(slopes_)) {
     simulate();
   }
 
@@ -107,12 +112,16 @@ class RecordLikelihood {
     const WeighedModels base = base_models(base_, rest_);
     CvEvidence evidence{};
     evidence.mismatch_alone = on_grids(base, &evidence.healthy);
+    const double fitted_alone = evidence.healthy;
+    const double of_others = gain_of_other_noises(e_, directions_);
+    evidence.healthy += of_others;
     // All of them, however far behind the best: between two sizes of a grid a likelihood may lose more than
     // any margin when e is large against the noise.
     for (std::size_t i = 0; i < responses_.size(); ++i)
-      if (evidence.mismatch_alone[i].best_log_likelihood > evidence.healthy + kFaint)
+      if (evidence.mismatch_alone[i].best_log_likelihood > fitted_alone + kFaint)
         look_again(i, false, evidence.mismatch_alone[i]);
-    const WeighedModels disturbances = scan(e_);
+    count_other_noises(of_others, evidence.mismatch_alone);
+    const WeighedModels disturbances = scan(e_, directions_);
     evidence.ud = disturbances.log_evidence();
     const Eigen::Index strongest = disturbances.best();
     evidence.disturbance_a = disturbances.models.a(strongest);
@@ -139,20 +148,76 @@ class RecordLikelihood {
       grids.emplace_back(responses_[i].on_grid(input(i), initial(i)) / base_.deviation);
       rows += grids.back().rows();
     }
-    series_.resize(rows, e_.size());
+    series_.resize(rows + directions_.rows(), e_.size());
     series_.row(0) = e_;
+    series_.bottomRows(directions_.rows()) = directions_;
     for (std::size_t i = 0; i < grids.size(); ++i)
       series_.middleRows(first_row_[i], grids[i].rows()) = grids[i];
   }
 
-  WeighedModels scan(const Eigen::Ref<const Eigen::MatrixXd>& series) const {
-    return scan_disturbances(prior_.disturbances, base_, rest_, likelihood_, series);
+  /// What is unknown of the model when it has this mismatch.
+  Eigen::MatrixXd directions_with(std::size_t i, double size) const {
+    const SizePrior& prior = responses_[i].prior();
+    return model_.directions(
+        model_.slopes(slopes_, {0, prior.channel.mv, prior.parameter, size}, u_, initial_u_));
+  }
+
+  static Eigen::MatrixXd stacked(const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& directions) {
+    Eigen::MatrixXd all(rows.rows() + directions.rows(), rows.cols());
+    all << rows, directions;
+    return all;
+  }
+
+  WeighedModels scan(const Eigen::Ref<const Eigen::MatrixXd>& e,
+                     const Eigen::Ref<const Eigen::MatrixXd>& directions) const {
+    return scan_disturbances(prior_.disturbances, base_, rest_, likelihood_, stacked(e, directions));
+  }
+
+  /// log of the mean likelihood of e over the noises that the benchmark leaves possible, less that of the
+  /// fitted one.
+  double gain_of_other_noises(const Eigen::Ref<const Eigen::MatrixXd>& e,
+                              const Eigen::Ref<const Eigen::MatrixXd>& directions) const {
+    const std::vector<PossibleNoises>& possible = model_.noises().possible;
+    if (possible.empty())
+      return 0.0;
+    const Eigen::MatrixXd series = stacked(e, directions);
+    const auto log_likelihoods = [&](const NoiseModels& models) {
+      const WhitenedProducts sums = marginalised(whitened_products(models, series), 1, directions.rows());
+      Eigen::ArrayXd all(models.count());
+      for (Eigen::Index i = 0; i < all.size(); ++i)
+        all(i) = likelihood_(sums.log_determinant(i), sums.of(0, 0)(i));
+      return all;
+    };
+    double mean = -kInfinity;
+    for (const PossibleNoises& noises : possible)
+      for (const double each :
+           (noises.log_weight + log_likelihoods({noises.a, noises.b, noises.phi, rest_})).eval())
+        mean = log_sum(mean, each);
+    return mean - log_likelihoods(base_models(base_, rest_).models)(0);
+  }
+
+  /// The whitened series without the directions: of each the part that they cannot explain, in N + q numbers,
+  /// so that products of them are those of Marginalised. Adds log |I + Z Z'|.
+  Eigen::MatrixXd whitened_series(const NoiseModels& models, double& log_determinant) const {
+    const Eigen::MatrixXd white = whitened(models, series_, log_determinant);
+    const Eigen::Index q = directions_.rows(), rows = white.rows() - q;
+    if (q == 0)
+      return white;
+    const auto Z = white.bottomRows(q);
+    const Eigen::LLT<Eigen::MatrixXd> inner(Z * Z.transpose() + Eigen::MatrixXd::Identity(q, q));
+    log_determinant += 2.0 * inner.matrixLLT().diagonal().array().log().sum();
+    // w - (w Z') (I + Z Z')^-1 [Z, I]: the residual of the least squares of [w, 0] on [Z, I].
+    const Eigen::MatrixXd coefficients = inner.solve(Z * white.topRows(rows).transpose()).transpose();
+    Eigen::MatrixXd left(rows, white.cols() + q);
+    left << white.topRows(rows) - coefficients * Z, -coefficients;
+    return left;
   }
 
   /// All mismatches under one model of the noise, on their grids; the likelihood of none in `without`.
   std::vector<MismatchEvidence> on_grids(const WeighedModels& model, double* without) const {
     double log_determinant = 0.0;
-    const Eigen::MatrixXd white = whitened(model.models, series_, log_determinant);
+    const Eigen::MatrixXd white = whitened_series(model.models, log_determinant);
     const Eigen::Index rows = white.rows();
     Eigen::ArrayXd with_e = Eigen::ArrayXd::Zero(rows), squares = with_e, with_next = with_e.head(rows - 1);
     for (Eigen::Index k = 0; k < white.cols(); ++k) {
@@ -200,8 +265,11 @@ class RecordLikelihood {
     for (int step = 0; step < kMostSteps; ++step) {
       pair.row(0) = e_ - this->response(i, size);
       pair.row(1) = response.slope(size, input(i), initial(i)) / base_.deviation;
-      const WeighedModels models = disturbed ? scan(pair.row(0)).main_ones() : base_models(base_, rest_);
-      const WhitenedProducts sums = whitened_products(models.models, pair);
+      const Eigen::MatrixXd directions = directions_with(i, size);
+      const WeighedModels models =
+          disturbed ? scan(pair.row(0), directions).main_ones() : base_models(base_, rest_);
+      const WhitenedProducts sums =
+          marginalised(whitened_products(models.models, stacked(pair, directions)), 2, directions.rows());
       closer = nothing_yet();
       for (Eigen::Index node = 0; node < models.models.count(); ++node) {
         const Parabola parabola{sums.of(0, 0)(node), sums.of(1, 0)(node), sums.of(1, 1)(node)};
@@ -234,6 +302,21 @@ class RecordLikelihood {
     evidence = weighed(std::move(closer), std::log(response.prior().weight));
   }
 
+  /// The best mismatches under all noises that are possible, the others with what these bring without a
+  /// fault.
+  void count_other_noises(double without, std::vector<MismatchEvidence>& mismatches) const {
+    double best = -kInfinity;
+    for (const MismatchEvidence& each : mismatches)
+      best = std::max(best, each.best_log_likelihood);
+    for (std::size_t i = 0; i < mismatches.size(); ++i) {
+      const double size = mismatches[i].best_size;
+      const double gain = mismatches[i].best_log_likelihood > best - kWorthALook
+                              ? gain_of_other_noises(e_ - response(i, size), directions_with(i, size))
+                              : without;
+      mismatches[i] = weighed(std::move(mismatches[i]), gain);
+    }
+  }
+
   /// Mismatches beside a disturbance. Looked for where a disturbance alone is best, and where the best
   /// mismatch alone leaves one; the best of them are looked at again, for the others the disturbance is as
   /// without them.
@@ -253,7 +336,8 @@ class RecordLikelihood {
     if (strongest != so_far.mismatch_alone.end() &&
         strongest->best_log_likelihood > so_far.healthy + kFaint) {
       const auto place = static_cast<std::size_t>(strongest - so_far.mismatch_alone.begin());
-      const WeighedModels left = scan(e_ - response(place, strongest->best_size));
+      const WeighedModels left =
+          scan(e_ - response(place, strongest->best_size), directions_with(place, strongest->best_size));
       double none = 0.0;
       const std::vector<MismatchEvidence> second = on_grids(left.only(left.best()), &none);
       const double likelihood_left = left.log_likelihood.maxCoeff();
@@ -282,6 +366,7 @@ class RecordLikelihood {
     return all;
   }
 
+  const ModelErrors& model_;
   const CvPrior& prior_;
   const BaseNoise& base_;
   ScaleLikelihood likelihood_;
@@ -290,26 +375,28 @@ class RecordLikelihood {
   const Eigen::RowVectorXd& e_;
   const Eigen::Ref<const Eigen::MatrixXd>& u_;
   const Eigen::Ref<const Eigen::VectorXd>& initial_u_;
-  Eigen::MatrixXd series_;               ///< e, and every response on its grid
+  Eigen::MatrixXd slopes_, directions_;  ///< of ModelErrors
+  Eigen::MatrixXd series_;               ///< e, every response on its grid, and the directions
   std::vector<Eigen::Index> first_row_;  ///< of each mismatch in `series_`
 };
 
 }  // namespace
 
-CvLikelihood::CvLikelihood(const Study& study, const CvPrior& prior, const BaseNoise& base,
-                           double noise_freedom, bool starts_from_rest)
-    : prior_(prior), base_(base), freedom_(noise_freedom), starts_from_rest_(starts_from_rest) {
+CvLikelihood::CvLikelihood(ModelErrors model, double sample_time, const CvPrior& prior, double noise_freedom,
+                           bool starts_from_rest)
+    : model_(std::move(model)), prior_(prior), freedom_(noise_freedom), starts_from_rest_(starts_from_rest) {
   for (const SizePrior& mismatch : prior.mismatches)
-    responses_.emplace_back(study, mismatch);
+    responses_.emplace_back(model_.model()(0, mismatch.channel.mv), sample_time, mismatch);
 }
 
 CvEvidence CvLikelihood::of(const Eigen::Ref<const Eigen::RowVectorXd>& e,
-                            const Eigen::Ref<const Eigen::MatrixXd>& u,
-                            const Eigen::Ref<const Eigen::VectorXd>& initial_u) const {
-  const Eigen::RowVectorXd scaled = e / base_.deviation;
+                            const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                            const Eigen::Ref<const Eigen::VectorXd>& initial) const {
+  const BaseNoise& base = model_.noise();
+  const Eigen::RowVectorXd scaled = (e - model_.correction(inputs, initial)) / base.deviation;
   const auto samples = static_cast<double>((!scaled.array().isNaN()).count());
-  return RecordLikelihood(prior_, base_, {freedom_, samples}, starts_from_rest_, responses_, scaled, u,
-                          initial_u)
+  return RecordLikelihood(model_, prior_, {freedom_, samples}, starts_from_rest_, responses_, scaled, inputs,
+                          initial)
       .evidence();
 }
 

@@ -7,6 +7,7 @@
 #include "analysis/methods/disturbance_scan.hpp"
 #include "analysis/methods/fault_priors.hpp"
 #include "analysis/methods/mismatch_responses.hpp"
+#include "analysis/methods/model_errors.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 
 namespace mpm {
@@ -33,6 +34,9 @@ struct CvEvidence {
 ///   ud           e = x + n,               x the disturbance, a first-order lag of white noise
 ///   both         e = m(theta) + x + n
 ///
+/// each with S delta of the errors that every model has (ModelErrors) added and integrated out, G0 corrected
+/// by what is known of them,
+///
 /// exactly, in closed loop, too: u(k) is made of what y was up to sample k, so that the probability of the
 /// record is the product of the probabilities of each y(k) given those before it and u, which the Kalman
 /// filter has. The sizes theta are integrated: between neighbours on a grid m is taken as a straight line,
@@ -41,16 +45,18 @@ struct CvEvidence {
 class CvLikelihood {
  public:
   /// `prior` must outlive the likelihood.
-  CvLikelihood(const Study& study, const CvPrior& prior, const BaseNoise& base, double noise_freedom,
+  CvLikelihood(ModelErrors model, double sample_time, const CvPrior& prior, double noise_freedom,
                bool starts_from_rest);
 
-  /// `e` (N, CV unit): NaN where there is no sample; `u` (nu x N) with `initial_u` (nu) before it.
-  CvEvidence of(const Eigen::Ref<const Eigen::RowVectorXd>& e, const Eigen::Ref<const Eigen::MatrixXd>& u,
-                const Eigen::Ref<const Eigen::VectorXd>& initial_u) const;
+  /// `e` (N, CV unit) = y - y_sim of the nominal model: NaN where there is no sample; `inputs` (nu + nd x N)
+  /// with `initial` (nu + nd) before it.
+  CvEvidence of(const Eigen::Ref<const Eigen::RowVectorXd>& e,
+                const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                const Eigen::Ref<const Eigen::VectorXd>& initial) const;
 
  private:
+  ModelErrors model_;
   const CvPrior& prior_;
-  BaseNoise base_;
   double freedom_;
   bool starts_from_rest_;
   std::vector<MismatchResponses> responses_;  ///< one a mismatch of the prior

@@ -101,7 +101,7 @@ class DisturbanceScan {
         open.push_back(t);
     if (open.empty())
       return false;
-    const WhitenedProducts sums = whitened_products(models(open), series_);
+    const WhitenedProducts sums = whitened_products(models(open), series_.topRows(1));
     for (std::size_t place = 0; place < open.size(); ++place)
       for (Eigen::Index i = 0; i < kPoints; ++i) {
         const Eigen::Index node = static_cast<Eigen::Index>(place) * kPoints + i;
@@ -138,6 +138,14 @@ class DisturbanceScan {
                                          density(prior_[t].size, std::clamp(size, low, high)));
         nodes.log_likelihood(node) = grid.log_likelihood(i);
       }
+    return series_.rows() == 1 ? nodes : with_directions(nodes.within(kOutside));
+  }
+
+  WeighedModels with_directions(WeighedModels nodes) const {
+    const WhitenedProducts sums =
+        marginalised(whitened_products(nodes.models, series_), 1, series_.rows() - 1);
+    for (Eigen::Index node = 0; node < nodes.models.count(); ++node)
+      nodes.log_likelihood(node) = likelihood_(sums.log_determinant(node), sums.of(0, 0)(node));
     return nodes;
   }
 
@@ -174,8 +182,12 @@ double WeighedModels::log_evidence() const {
 }
 
 WeighedModels WeighedModels::main_ones() const {
+  return within(kNegligible);
+}
+
+WeighedModels WeighedModels::within(double margin) const {
   const Eigen::ArrayXd posterior = log_posterior();
-  const double least = posterior.maxCoeff() - kNegligible;
+  const double least = posterior.maxCoeff() - margin;
   std::vector<Eigen::Index> places;
   for (Eigen::Index i = 0; i < posterior.size(); ++i)
     if (posterior(i) >= least)

@@ -42,18 +42,20 @@ struct WeighedModels {
   Eigen::Index best() const;  ///< with the largest likelihood
   /// log of the sum of the posterior: the evidence.
   double log_evidence() const;
-  /// Those within a share of e^-15 of the largest.
+  /// Those within a share of e^-15 of the largest, or of e^-margin.
   WeighedModels main_ones() const;
+  WeighedModels within(double margin) const;
   WeighedModels only(Eigen::Index place) const;
 };
 
 /// The base noise alone.
 WeighedModels base_models(const BaseNoise& base, bool starts_from_rest);
 
-/// The evidence for a disturbance in `series` (1 x N, in standard deviations of the noise, NaN where there is
-/// no sample): the sum over the time constants of the prior and over a grid of sizes for each, which is made
-/// finer around the largest likelihood until neighbours on it differ by less than e. The variance of the base
-/// noise adds to that of the innovations of the disturbance.
+/// The evidence for a disturbance in the first row of `series` (1 + q x N, in standard deviations of the
+/// noise, NaN where there is no sample), to which the others are added with unknown coefficients ~ N(0, 1):
+/// the sum over the time constants of the prior and over a grid of sizes for each, which is made finer around
+/// the largest likelihood of the first row alone until neighbours on it differ by less than e. The variance
+/// of the base noise adds to that of the innovations of the disturbance.
 WeighedModels scan_disturbances(const std::vector<DisturbancePrior>& prior, const BaseNoise& base,
                                 bool starts_from_rest, const ScaleLikelihood& likelihood,
                                 const Eigen::Ref<const Eigen::MatrixXd>& series);

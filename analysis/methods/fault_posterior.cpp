@@ -13,9 +13,6 @@
 namespace mpm {
 namespace {
 
-/// Smallest noise against the size of the outputs: that of their rounding in a record without noise.
-constexpr double kLeastNoise = 1e-6;
-
 double log_weight(double prior, double evidence, double healthy) {
   return prior > 0.0 ? std::log(prior) + evidence - healthy : -kInfinity;
 }
@@ -95,27 +92,42 @@ bool noise_is_known(const Study& study) {
          (study.simulation.noise_standard_deviation.array() > 0.0).all();
 }
 
-std::vector<BaseNoise> base_noises(const AssessmentContext& context, FaultPriors priors) {
-  const Study& study = context.study;
-  const AssessedLoop& benchmark = *context.benchmark;
-  std::vector<BaseNoise> noises;
-  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
-    if (priors == FaultPriors::study && noise_is_known(study)) {
-      noises.push_back(
-          {study.simulation.noise_standard_deviation(cv), study.simulation.noise.autocorrelation});
-      continue;
-    }
-    const double least = kLeastNoise * (1.0 + benchmark.y_sim.row(cv).cwiseAbs().maxCoeff());
-    noises.push_back(
-        fitted_base_noise(without_outliers(benchmark.y.row(cv) - benchmark.y_sim.row(cv)), least));
-  }
-  return noises;
+/// Where the inputs of the model rest before a record that begins at the operating point.
+Eigen::VectorXd initial_inputs(const AssessmentContext& context) {
+  Eigen::VectorXd initial = Eigen::VectorXd::Zero(context.study.plant.G.cols());
+  initial.head(context.basis.point.u.size()) = context.basis.point.u;
+  return initial;
 }
 
-Eigen::VectorXd deviations(const std::vector<BaseNoise>& noises) {
-  Eigen::VectorXd all(static_cast<Eigen::Index>(noises.size()));
-  for (std::size_t i = 0; i < noises.size(); ++i)
-    all(static_cast<Eigen::Index>(i)) = noises[i].deviation;
+/// The model of each CV with its errors, as the benchmark shows them; the ceiling knows what they are drawn
+/// from.
+std::vector<ModelErrors> learnt_models(const AssessmentContext& context, FaultPriors priors) {
+  const Study& study = context.study;
+  const AssessedLoop& benchmark = *context.benchmark;
+  const bool drawn = priors == FaultPriors::study;
+  std::vector<ModelErrors> models;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
+    std::optional<BaseNoise> known;
+    if (drawn && noise_is_known(study))
+      known = {study.simulation.noise_standard_deviation(cv), study.simulation.noise.autocorrelation};
+    const double least = least_noise(benchmark.y_sim.row(cv));
+    const Eigen::RowVectorXd e = without_outliers(benchmark.y.row(cv) - benchmark.y_sim.row(cv));
+    const ModelErrorPrior errors = drawn ? drawn_errors(study, cv) : ModelErrorPrior{};
+    if (!drawn && context.learnt)
+      models.push_back(context.learnt->of(cv));
+    else if (errors.channels.empty())
+      models.emplace_back(study, cv, known ? *known : fitted_base_noise(e, least));
+    else
+      models.emplace_back(study, cv, errors, e, model_inputs(benchmark), initial_inputs(context), least,
+                          known);
+  }
+  return models;
+}
+
+Eigen::VectorXd deviations(const std::vector<ModelErrors>& models) {
+  Eigen::VectorXd all(static_cast<Eigen::Index>(models.size()));
+  for (std::size_t i = 0; i < models.size(); ++i)
+    all(static_cast<Eigen::Index>(i)) = models[i].noise().deviation;
   return all;
 }
 
@@ -159,8 +171,7 @@ bool draws_known_faults(const Study& study) {
 
 /// Samples may be missing, but what is there must be a number.
 void require_numbers(const AssessedLoop& loop) {
-  const Eigen::MatrixXd& u = loop.from_start().u;
-  if (!u.allFinite() || !loop.y_sim.allFinite() || loop.y.array().isInf().any())
+  if (!model_inputs(loop.from_start()).allFinite() || !loop.y_sim.allFinite() || loop.y.array().isInf().any())
     throw InputError("record of the loop", "a value that is not finite", "finite values, or missing CVs");
 }
 
@@ -168,22 +179,24 @@ class FaultPosterior final : public AssessmentMethod {
  public:
   FaultPosterior(const AssessmentContext& context, FaultPriors priors)
       : study_(context.study),
-        initial_u_(context.basis.point.u),
-        noises_(base_noises(context, priors)),
+        initial_(initial_inputs(context)),
+        models_(learnt_models(context, priors)),
         priors_(fault_priors(context.study, priors, context.study.assessment.likelihood.fault_probability,
-                             deviations(noises_))) {
+                             deviations(models_))) {
     if (priors == FaultPriors::study && !noise_is_known(study_))
       priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
     for_scores_ = priors == FaultPriors::study ? of_equal_kinds(study_, priors_) : priors_;
     if (priors == FaultPriors::study && !draws_known_faults(study_))
       priors_ = for_scores_;
-    for (std::size_t cv = 0; cv < noises_.size(); ++cv)
-      likelihoods_.push_back(std::make_unique<CvLikelihood>(study_, priors_.cvs[cv], noises_[cv],
-                                                            priors_.noise_freedom, priors_.starts_from_rest));
+    for (std::size_t cv = 0; cv < models_.size(); ++cv)
+      likelihoods_.push_back(std::make_unique<CvLikelihood>(models_[cv], study_.controller.sample_time,
+                                                            priors_.cvs[cv], priors_.noise_freedom,
+                                                            priors_.starts_from_rest));
   }
 
   Assessment assess(const AssessedLoop& loop) override {
     require_numbers(loop);
+    const Eigen::MatrixXd inputs = model_inputs(loop.from_start());
     std::vector<CvEvidence> evidence;
     for (std::size_t i = 0; i < likelihoods_.size(); ++i) {
       const auto cv = static_cast<Eigen::Index>(i);
@@ -193,7 +206,7 @@ class FaultPosterior final : public AssessmentMethod {
       e.tail(loop.samples()) = without_outliers(loop.y.row(cv) - loop.y_sim.row(cv));
       if (e.array().isNaN().all())
         return Assessment::failed("a CV has no sample");
-      evidence.push_back(likelihoods_[i]->of(e, loop.from_start().u.leftCols(e.size()), initial_u_));
+      evidence.push_back(likelihoods_[i]->of(e, inputs.leftCols(e.size()), initial_));
     }
     return answer(fault_probabilities(priors_, evidence), fault_probabilities(for_scores_, evidence),
                   evidence);
@@ -279,8 +292,8 @@ class FaultPosterior final : public AssessmentMethod {
   }
 
   const Study& study_;
-  Eigen::VectorXd initial_u_;
-  std::vector<BaseNoise> noises_;
+  Eigen::VectorXd initial_;
+  std::vector<ModelErrors> models_;
   FaultPriorSet priors_, for_scores_;
   std::vector<std::unique_ptr<CvLikelihood>> likelihoods_;
 };

@@ -80,10 +80,11 @@ Eigen::RowVectorXd channel_response(const DiscreteChannel& channel,
   return y;
 }
 
-MismatchResponses::MismatchResponses(const Study& study, const SizePrior& prior)
+MismatchResponses::MismatchResponses(const TransferFunction& nominal, double sample_time,
+                                     const SizePrior& prior)
     : prior_(prior),
-      nominal_(study.plant.G(prior.channel.cv, prior.channel.mv)),
-      sample_time_(study.controller.sample_time),
+      nominal_(nominal),
+      sample_time_(sample_time),
       nominal_channel_(discretise(nominal_, sample_time_)),
       sizes_(grid_of(prior, sample_time_)) {
   for (const double size : sizes_)

@@ -22,7 +22,8 @@ Eigen::RowVectorXd channel_response(const DiscreteChannel& channel,
 /// computed once.
 class MismatchResponses {
  public:
-  MismatchResponses(const Study& study, const SizePrior& prior);
+  /// `nominal` is the channel G0.
+  MismatchResponses(const TransferFunction& nominal, double sample_time, const SizePrior& prior);
 
   const SizePrior& prior() const { return prior_; }
   /// Ascending, over the whole range of possible sizes.

@@ -126,7 +126,8 @@ TEST_CASE("evidence of a CV: that of fine sums over the dense covariance, whatev
   const Study study = find_study("setpoint-methods");
   const CvPrior prior = small_prior();
   const BaseNoise base{0.1};
-  const CvLikelihood likelihood(study, prior, base, kInfinity, true);
+  const CvLikelihood likelihood(ModelErrors(study, 0, base), study.controller.sample_time, prior, kInfinity,
+                                true);
   const Eigen::MatrixXd u = moves(3, 60, 0.3, 1);
   const Eigen::RowVectorXd noise = 0.1 * testing::white_noise(60, 3).transpose();
   const Eigen::RowVectorXd disturbance = 0.1 * testing::autoregression(60, 0.95, 4).transpose();
@@ -137,7 +138,7 @@ TEST_CASE("evidence of a CV: that of fine sums over the dense covariance, whatev
         if (fault < 3)
           e += explained(study, prior.mismatches[fault], size, u);
         INFO(ud << " " << fault << " " << size);
-        const CvEvidence found = likelihood.of(e, u, Eigen::Vector3d::Zero());
+        const CvEvidence found = likelihood.of(e, u, Eigen::VectorXd::Zero(u.rows()));
         const DenseEvidence dense = dense_evidence(study, prior, base.deviation, e, u);
         CHECK(found.healthy == Approx(dense.healthy).margin(1e-6));
         // Cells in which m is straight, and the fine sums themselves: 3 % of a probability.
@@ -253,8 +254,8 @@ TEST_CASE("likelihood: with wide priors it flags few of the records without a fa
     FaultPriorSet priors =
         fault_priors(study, FaultPriors::wide, 0.5, Eigen::Vector3d::Constant(base.deviation));
     priors.cvs.resize(1);
-    const CvLikelihood likelihood(study, priors.cvs.front(), base, priors.noise_freedom,
-                                  priors.starts_from_rest);
+    const CvLikelihood likelihood(ModelErrors(study, 0, base), study.controller.sample_time,
+                                  priors.cvs.front(), priors.noise_freedom, priors.starts_from_rest);
     std::int64_t alarms = 0;
     for (std::uint64_t i = 0; i < kRecords; ++i) {
       const CvEvidence evidence = likelihood.of(noise(i, N), moves(3, N, 1.0, i), Eigen::Vector3d::Zero());
