@@ -28,6 +28,7 @@ struct PredictionErrorOptions {
   /// radius or tolerance
   ///   outside (0, 1)
   void validate() const;
+  bool operator==(const PredictionErrorOptions&) const = default;
 };
 
 }  // namespace mpm

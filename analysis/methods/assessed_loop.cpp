@@ -48,7 +48,6 @@ Eigen::MatrixXd after_rest(const Eigen::MatrixXd& signal, Eigen::Index samples) 
   return longer;
 }
 
-constexpr double kModelError = 0.05, kBias = 0.5;
 constexpr Eigen::Index kFewestLearnt = 30;  // samples of a CV
 
 /// Has it enough samples, and every input?
@@ -152,15 +151,24 @@ Eigen::MatrixXd recorded_basis(const AssessmentContext& context) {
   return recorded(context.study, basis_index(context.basis.world), context.basis.trajectory).y;
 }
 
+std::shared_ptr<const LearntModel> learnt_model(const Study& study, const OperatingPoint& point,
+                                                const AssessedLoop& benchmark) {
+  const AssessmentOptions& options = study.assessment;
+  const bool learns = options.model == AssessmentModel::automatic
+                          ? study.world.has_value()
+                          : options.model == AssessmentModel::benchmark;
+  if (!learns || !learns_from(benchmark))
+    return nullptr;
+  return std::make_shared<const LearntModel>(study, point.u, benchmark, options.model_error, options.bias);
+}
+
 AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory) {
   const std::int64_t index = basis_index(basis.world);
   AssessmentContext context{study, basis, std::move(factory),
                             assessed_loop(study, basis.point, recorded(study, index, basis.trajectory))};
   if (study.simulation.excitation == SignalSequence::each)
     context.benchmark_study = std::make_shared<const Study>(with_excitation(study, index));
-  if (study.world && learns_from(*context.benchmark))
-    context.learnt =
-        std::make_shared<const LearntModel>(study, basis.point.u, *context.benchmark, kModelError, kBias);
+  context.learnt = learnt_model(study, basis.point, *context.benchmark);
   return context;
 }
 

@@ -91,6 +91,11 @@ struct AssessmentContext {
 /// The CVs of the basis case as the historian keeps them, ny x N; a method knows no others.
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context);
 
+/// What the benchmark shows of the errors of the model, where the study wants it (AssessmentModel); null
+/// where it does not, or the benchmark has fewer than 30 samples of a CV or lacks some of an input.
+std::shared_ptr<const LearntModel> learnt_model(const Study& study, const OperatingPoint& point,
+                                                const AssessedLoop& benchmark);
+
 /// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault;
 /// errors of the model are learnt from it where the study has worlds.
 AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory);

@@ -4,10 +4,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment.hpp"
+#include "scenarios/study/assessment_options.hpp"
 
 // The one interface of all methods that assess a loop, the chain of the thesis among them. A method is one
 // file that implements AssessmentMethod and describes it by an AssessmentMethodInfo, and its function in the
@@ -85,6 +87,12 @@ struct MethodDescription {
   std::string fingerprint = {};
 };
 
+/// The options of a method, which `keys` ties to a value of them; `meaning` is for the manual.
+template <class Options>
+MethodOptionTable option_table(std::vector<OptionKey> (*keys)(Options&), std::string meaning) {
+  return {std::move(meaning), [keys](MethodOptions& options) { return keys(options.of<Options>()); }};
+}
+
 /// A method that this program has.
 struct AssessmentMethodInfo : MethodDescription {
   /// Further numbers on the loops of a study of named scenarios, in which every CV is looked at; may be
@@ -92,8 +100,10 @@ struct AssessmentMethodInfo : MethodDescription {
   std::function<std::vector<AssessmentNumberInfo>()> scenario_numbers;
   /// `context` must outlive the method. Throws InputError for options that do not fit the study.
   std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext& context)> make;
+  /// Its options, by option_table(); may be empty.
+  std::optional<MethodOptionTable> options = {};
   /// MethodDescription::stated_false_alarms with these options; may be empty.
-  std::function<std::optional<double>(const AssessmentOptions& options)> states_false_alarms = {};
+  std::function<std::optional<double>(const MethodOptions& options)> states_false_alarms = {};
 };
 
 /// The first requirement that the loop or its context does not meet, in one sentence; none if all are met.

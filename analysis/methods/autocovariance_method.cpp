@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,9 +18,31 @@
 #include "analysis/methods/mismatch_search.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+enum class UnexplainedLoop : std::int8_t { disturbance, mismatch };
+
+struct AutocovarianceOptions {
+  double alpha = 0.01;   ///< of the tests, over all CVs
+  int largest_lag = 32;  ///< samples; the lags are 0, 1, 2, 4, ... up to it
+  UnexplainedLoop unexplained = UnexplainedLoop::disturbance;
+
+  bool operator==(const AutocovarianceOptions&) const = default;
+};
+
+OptionKeys keys(AutocovarianceOptions& options) {
+  return {
+      key::number("alpha", options.alpha, NumberRule::inside(0, 1), "of the tests, over all CVs"),
+      key::whole("largest_lag", options.largest_lag, 0, 1000,
+                 "samples; the lags are 0, 1, 2, 4, ... up to it. Neighbours say nearly the same, and "
+                 "their covariance has hardly an inverse"),
+      key::choice("unexplained", options.unexplained, {"disturbance", "mismatch"},
+                  "source of a flagged loop that no mismatch of one number explains. `\"mismatch\"` is the "
+                  "paper's, in which nothing else can be wrong")};
+}
 
 /// Families of mismatches that are looked at a second time, and how far around, in steps of the grid.
 constexpr std::size_t kRefined = 3;
@@ -82,7 +105,7 @@ class Autocovariance final : public AssessmentMethod {
   explicit Autocovariance(const AssessmentContext& context)
       : context_(context),
         study_(context.study),
-        options_(context.study.assessment.autocovariance),
+        options_(context.study.assessment.of<AutocovarianceOptions>()),
         without_model_(why_not(context.study)) {
     lags_.push_back(0);
     for (Eigen::Index lag = 1; lag <= options_.largest_lag; lag *= 2)
@@ -337,7 +360,8 @@ AssessmentMethodInfo autocovariance_method() {
                        {"misfit", NumberScope::loop,
                         "that of all CVs from the best mismatch, over the one that chance exceeds"}}},
           {},
-          [](const AssessmentContext& context) { return std::make_unique<Autocovariance>(context); }};
+          [](const AssessmentContext& context) { return std::make_unique<Autocovariance>(context); },
+          option_table<AutocovarianceOptions>(keys, "of the autocovariances of a linear loop")};
 }
 
 }  // namespace mpm

@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/decorrelation.hpp"
-#include "analysis/methods/noise_filter.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
@@ -37,16 +35,6 @@ double single_confidence(const Badwe2009Options& options, std::size_t channels) 
   return 1.0 - (1.0 - options.confidence) / tests;
 }
 
-DecorrelationOptions decorrelation_options(const Badwe2009Options& options) {
-  DecorrelationOptions models;
-  models.model = options.model;
-  models.nb = options.nb;
-  models.nf = options.nf;
-  models.fir_length = options.fir_length;
-  models.fir_pole = options.fir_pole;
-  return models;
-}
-
 /// With fewer signals from outside than MVs their parts in the MVs cannot be told apart.
 NoiseFilter filter_of(const Badwe2009Record& record, const Badwe2009Options& options, std::size_t mvs) {
   if (options.filter != NoiseFilter::automatic)
@@ -64,12 +52,7 @@ class MvAssessment {
  public:
   MvAssessment(const Eigen::MatrixXd& e, const Eigen::MatrixXd& u, const Badwe2009Options& options,
                Badwe2009Result& result)
-      : e_(e),
-        u_(u),
-        options_(options),
-        models_(decorrelation_options(options)),
-        result_(result),
-        mvs_(evaluated(result.mv_use)) {}
+      : e_(e), u_(u), options_(options), result_(result), mvs_(evaluated(result.mv_use)) {}
 
   void assess_all() {
     const double confidence = single_confidence(options_, mvs_.size() * static_cast<std::size_t>(e_.rows()));
@@ -80,7 +63,7 @@ class MvAssessment {
  private:
   void assess(Eigen::Index mv, double confidence) {
     const Eigen::MatrixXd others = u_(without(mvs_, mv), Eigen::all);
-    const Decorrelator decorrelator(others, models_);
+    const Decorrelator decorrelator(others, options_.models);
     const Decorrelation own = decorrelator.decorrelate(u_.row(mv), 0);
     result_.unusable += own.unusable;
     if (mean_square(own.residuals) < options_.smallest_own_share * mean_square(u_.row(mv))) {
@@ -101,7 +84,6 @@ class MvAssessment {
   const Eigen::MatrixXd& e_;
   const Eigen::MatrixXd& u_;
   const Badwe2009Options& options_;
-  DecorrelationOptions models_;
   Badwe2009Result& result_;
   std::vector<Eigen::Index> mvs_;
 };
@@ -131,7 +113,6 @@ const ChannelAssessment& Badwe2009Result::channel(Eigen::Index cv, Eigen::Index 
 }
 
 Badwe2009Result assess_badwe2009(const Badwe2009Record& record, const Badwe2009Options& options) {
-  options.validate();
   record.validate();
   Badwe2009Result result;
   result.channels.resize(static_cast<std::size_t>(record.y.rows() * record.u.rows()));
@@ -142,7 +123,7 @@ Badwe2009Result assess_badwe2009(const Badwe2009Record& record, const Badwe2009O
   Eigen::MatrixXd u = noise_filtered(record.u, result.filter, options.filter_length);
   const Eigen::MatrixXd e = noise_filtered(record.y_sim - record.y, result.filter, options.filter_length);
   if (result.filter == NoiseFilter::external) {
-    u = externally_driven(record.u, record.external, decorrelation_options(options));
+    u = externally_driven(record.u, record.external, options.models);
     const std::vector<MvUse> driven = mv_uses(u, record.limits, 1.0, options.smallest_deviation);
     for (std::size_t i = 0; i < driven.size(); ++i)
       if (result.mv_use[i] == MvUse::evaluated)

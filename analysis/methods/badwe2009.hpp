@@ -5,11 +5,39 @@
 
 #include <Eigen/Core>
 
+#include "analysis/methods/decorrelation.hpp"
 #include "analysis/methods/mv_exclusion.hpp"
+#include "analysis/methods/noise_filter.hpp"
 #include "analysis/methods/partial_correlation.hpp"
-#include "scenarios/study/badwe2009_options.hpp"
 
 namespace mpm {
+
+/// Among how many correlations the confidence is shared out (Bonferroni): with each of m correlations tested
+/// at (1 - confidence)/m, independent signals give no false alarm among the m with at least `confidence`.
+enum class Multiplicity : std::int8_t {
+  none = 0,      ///< each lag by itself
+  lags = 1,      ///< the lags of a channel
+  channels = 2,  ///< the lags of all channels of the loop
+};
+
+/// What the method of Badwe et al. (2009) leaves open; docs/methods.md says how much each choice matters.
+struct Badwe2009Options {
+  NoiseFilter filter = NoiseFilter::automatic;
+  int filter_length = 5;  ///< samples, of the moving average and the first-order filter
+  DecorrelationOptions models;
+  /// Lags at which an effect of an MV on a prediction error is looked for. The first is 1, since u(k) acts
+  /// after y(k): at lag 0 there is only the answer of the controller to the noise of y(k).
+  int min_lag = 1, max_lag = 30;
+  double confidence = 0.95;
+  Multiplicity multiplicity = Multiplicity::channels;
+  double weakest_correlation = 0.0;  ///< those up to it are not "strong" (2.2.2), however significant
+  double saturated_share = 0.5;      ///< an MV at a limit for a larger share of the record is left out
+  double smallest_deviation = 1e-9;  ///< an MV that moves less, standard deviation in its unit, is left out
+  /// An MV whose eps1 has less than this share of its variance is left out: it does as the others do.
+  double smallest_own_share = 1e-6;
+
+  bool operator==(const Badwe2009Options&) const = default;
+};
 
 /// The record of a loop, and the output of the nominal model on it.
 ///
@@ -71,7 +99,7 @@ struct Badwe2009Result {
 /// Noise is removed by `options.filter` first. MVs that are saturated or stand still take part neither as
 /// u_i nor in U^i (2.4.2); one of which nothing is left by (2.5) is `dependent` and not evaluated.
 ///
-/// @throws InputError for an invalid record or options, and as `decorrelate` and `partial_correlation`
+/// @throws InputError for an invalid record, and as `noise_filtered`, `decorrelate` and `partial_correlation`
 Badwe2009Result assess_badwe2009(const Badwe2009Record& record, const Badwe2009Options& options = {});
 
 }  // namespace mpm

@@ -11,9 +11,36 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/designed_output.hpp"
 #include "analysis/statistics/variance.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+struct Badwe2010Options {
+  int smallest_order = 3, largest_order = 7;  ///< of the output-error models (3.3.2)
+  DesignedOrderCriterion criterion = DesignedOrderCriterion::record_fit;
+  int max_iterations = 20;  ///< of the search for each model
+
+  bool operator==(const Badwe2010Options&) const = default;
+};
+
+OptionKeys keys(Badwe2010Options& options) {
+  return {
+      key::whole("smallest_order", options.smallest_order, 1, 100,
+                 "smallest order of the output-error models that is tried (3.3.2)"),
+      key::whole_from("largest_order", options.largest_order, options.smallest_order, 100,
+                      "largest order n (3.3.2). A record of no more samples than the 2n + 1 coefficients of "
+                      "each CV with a setpoint is not assessed")
+          .allow("`smallest_order` to 100"),
+      key::choice(
+          "criterion", options.criterion, {"record-fit", "validation-fit", "bic"},
+          "how the order is chosen: the largest %Fit (3.32) over the record, which is the \"best model "
+          "fit\" that the thesis reports; the largest over the last 30 % by models of the first 70 %; "
+          "the smallest BIC"),
+      key::whole("max_iterations", options.max_iterations, 1, 100'000,
+                 "iterations of the search for each model; 20 is the default of `oe` in Matlab, with "
+                 "which the thesis worked")};
+}
 
 DesignedOutputOptions options_of(const Badwe2010Options& study) {
   DesignedOutputOptions options;
@@ -47,7 +74,7 @@ class Badwe2010 final : public AssessmentMethod {
   explicit Badwe2010(const AssessmentContext& context)
       : diagnosis_(context.study.diagnosis),
         y_basis_(recorded_basis(context)),
-        options_(options_of(context.study.assessment.badwe2010)) {}
+        options_(options_of(context.study.assessment.of<Badwe2010Options>())) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     const std::vector<Eigen::Index> cvs = loop.setpoint_cvs();
@@ -129,7 +156,8 @@ AssessmentMethodInfo badwe2010_method() {
                     "decay lag of the autocorrelation of y - y_set over that of y0 - y_set"},
                    {"oscillates", NumberScope::cv, "1 when y - y_set oscillates and y0 - y_set does not"}}},
       {},
-      [](const AssessmentContext& context) { return std::make_unique<Badwe2010>(context); }};
+      [](const AssessmentContext& context) { return std::make_unique<Badwe2010>(context); },
+      option_table<Badwe2010Options>(keys, "of the method of Badwe et al. (2010)")};
 }
 
 }  // namespace mpm

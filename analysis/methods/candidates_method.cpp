@@ -9,9 +9,20 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/error_regression.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+struct CandidatesOptions {
+  ErrorRegressionOptions regression;
+
+  bool operator==(const CandidatesOptions&) const = default;
+};
+
+OptionKeys keys(CandidatesOptions& options) {
+  return keys(options.regression);
+}
 
 /// Inputs that the model lacks (thesis, 8.2): do signals that are logged, and that the model does not know,
 /// help to predict the simulation errors? prewhitened_test() of e_i on each candidate alone; the candidate
@@ -20,7 +31,7 @@ namespace {
 class Candidates final : public AssessmentMethod {
  public:
   explicit Candidates(const AssessmentContext& context)
-      : options_(context.study.assessment.candidates.regression) {}
+      : options_(context.study.assessment.of<CandidatesOptions>().regression) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     if (loop.candidates.rows() == 0)
@@ -93,7 +104,9 @@ AssessmentMethodInfo candidates_method() {
                         "log10 p of this signal not helping to predict the error of the CV"}}},
           {},
           [](const AssessmentContext& context) { return std::make_unique<Candidates>(context); },
-          [](const AssessmentOptions& options) { return options.candidates.regression.alpha; }};
+          option_table<CandidatesOptions>(
+              keys, "of the test of the simulation errors against further logged signals"),
+          [](const MethodOptions& options) { return options.of<CandidatesOptions>().regression.alpha; }};
 }
 
 }  // namespace mpm

@@ -96,7 +96,7 @@ double CounterfactualLoop::distance(double ivar) const {
 /// v of each CV from the variances of the benchmark and of the same loop without noise.
 Eigen::VectorXd CounterfactualLoop::noise_variance(const Eigen::VectorXd& noisy,
                                                    const Eigen::VectorXd& quiet) const {
-  switch (study_.assessment.counterfactual.noise) {
+  switch (study_.assessment.of<CounterfactualOptions>().noise) {
     case NoiseVariance::difference:
       return noisy - quiet;
     case NoiseVariance::positive:

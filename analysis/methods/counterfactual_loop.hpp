@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,6 +11,21 @@
 #include "scenarios/loop/closed_loop.hpp"
 
 namespace mpm {
+
+/// What noise adds to the variance of a CV, of the method `counterfactual`: v of Ivar = var y / (var y0 + v).
+/// With var y_b that of the benchmark and var y0_b that of the same loop simulated without noise,
+enum class NoiseVariance : std::int8_t {
+  difference = 0,  ///< v = var y_b - var y0_b, which may be negative: noise also keeps CVs off their limits
+  positive = 1,    ///< v = max(0, var y_b - var y0_b): noise that adds to the variance or does nothing
+  none = 2,        ///< v = 0
+};
+
+/// Of the method `counterfactual`, analysis/methods/counterfactual_method.
+struct CounterfactualOptions {
+  NoiseVariance noise = NoiseVariance::difference;
+
+  bool operator==(const CounterfactualOptions&) const = default;
+};
 
 /// Simulates the nominal loop itself, in place of filtering by S0. With the model G0 and the simulation
 /// errors e = y - y_sim of the record,

@@ -2,9 +2,17 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/counterfactual_loop.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+OptionKeys keys(CounterfactualOptions& options) {
+  return {key::choice(
+      "noise", options.noise, {"difference", "positive", "none"},
+      "v of Ivar = var y / (var y0 + v), what noise adds to the variance: var y - var y0 of the benchmark, "
+      "of either sign, since noise also keeps CVs off their limits; the same and not below 0; or 0")};
+}
 
 /// The impact by CounterfactualLoop; of a flagged loop, that of each CV.
 class Counterfactual final : public AssessmentMethod {
@@ -45,7 +53,8 @@ AssessmentMethodInfo counterfactual_method() {
                     .estimates_ivar_basis = true},
                    {.name = "ivar_diag", .meaning = "var y / (var y0_diag + v), of flagged loops"}}},
       {},
-      [](const AssessmentContext& context) { return std::make_unique<Counterfactual>(context); }};
+      [](const AssessmentContext& context) { return std::make_unique<Counterfactual>(context); },
+      option_table<CounterfactualOptions>(keys, "of the simulated nominal loop")};
 }
 
 }  // namespace mpm

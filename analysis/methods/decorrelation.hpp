@@ -1,11 +1,18 @@
 #pragma once
 
+#include <cstdint>
+
 #include <Eigen/Core>
 
 #include "analysis/identification/prediction_error_options.hpp"
-#include "scenarios/study/badwe2009_options.hpp"
 
 namespace mpm {
+
+/// The model by which a signal is freed of the effect of others.
+enum class DecorrelationModel : std::int8_t {
+  output_error = 0,  ///< output-error models by search (2.5), (2.6)
+  fir = 1,           ///< regression on Laguerre filters, the finite impulse response for a pole of 0
+};
 
 /// Orders of the models of a `Decorrelator`.
 struct DecorrelationOptions {
@@ -23,6 +30,7 @@ struct DecorrelationOptions {
   /// @throws InputError for nb or fir_length below 1, nf below 0, a pole outside [0, 1) or invalid options of
   ///   the search
   void validate() const;
+  bool operator==(const DecorrelationOptions&) const = default;
 };
 
 /// What remains of signals when the effect of others is removed.

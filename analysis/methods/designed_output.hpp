@@ -8,9 +8,16 @@
 
 #include "analysis/identification/polynomial_model.hpp"
 #include "plants/non_finite.hpp"
-#include "scenarios/study/assessment_options.hpp"
 
 namespace mpm {
+
+/// By what the order of an output-error model of Badwe et al. (2010) is chosen.
+enum class DesignedOrderCriterion : std::int8_t {
+  record_fit = 0,      ///< largest %Fit (3.32) over the record that the models are fitted to
+  validation_fit = 1,  ///< largest %Fit over the end of the record, of models fitted to what is before it;
+                       ///< the order chosen is then fitted to the whole record
+  bic = 2,             ///< smallest n log V + p log n over the record
+};
 
 /// Options of `designed_output`.
 struct DesignedOutputOptions {

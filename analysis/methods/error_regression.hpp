@@ -7,12 +7,23 @@
 
 #include "analysis/identification/prewhitened_test.hpp"
 #include "analysis/methods/assessed_loop.hpp"
-#include "scenarios/study/assessment_options.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 // What the methods have in common that ask whether other signals help to predict the simulation errors of
 // the nominal model.
 
 namespace mpm {
+
+/// Of the methods that regress the simulation errors on other signals (analysis/methods/error_regression).
+struct ErrorRegressionOptions {
+  double alpha = 0.01;     ///< share of loops in which nothing is to be found that are flagged at most
+  int filters = 4;         ///< Laguerre filters a signal
+  double pole = 0.8;       ///< of these filters
+  int largest_order = 12;  ///< of the autoregression of an error
+
+  bool operator==(const ErrorRegressionOptions&) const = default;
+};
+OptionKeys keys(ErrorRegressionOptions& options);
 
 /// e = y - y_sim of each CV, ny x N; NaN where a sample is missing, 0 where y and y_sim differ by rounding.
 /// @throws InputError for an infinite value

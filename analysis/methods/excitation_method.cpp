@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -12,9 +13,32 @@
 #include "analysis/methods/noise_filter.hpp"
 #include "analysis/methods/outside_signals.hpp"
 #include "analysis/statistics/mutual_information.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+enum class DependenceMeasure : std::int8_t { f, mutual_information };
+
+struct ExcitationOptions {
+  ErrorRegressionOptions regression;
+  DependenceMeasure measure = DependenceMeasure::f;
+  int bins = 4;  ///< a signal, of the mutual information
+
+  bool operator==(const ExcitationOptions&) const = default;
+};
+
+OptionKeys keys(ExcitationOptions& options) {
+  OptionKeys all = keys(options.regression);
+  all.push_back(key::choice(
+      "measure", options.measure, {"f", "mutual-information"},
+      "what shows that the error follows a signal: the F test of a linear regression, or the mutual "
+      "information, which sees what is not linear, too, and needs more of it"));
+  all.push_back(
+      key::whole("bins", options.bins, 2, 100,
+                 "of each signal, of the mutual information. A record has 5 samples for each pair of them"));
+  return all;
+}
 
 /// Signals that act on the loop and upon which nothing in the loop acts: no unmeasured disturbance can know
 /// them, so that a simulation error that follows them shows a wrong model, in closed loop, too, and whatever
@@ -31,7 +55,7 @@ namespace {
 class Excitation final : public AssessmentMethod {
  public:
   explicit Excitation(const AssessmentContext& context)
-      : signals_(context.study), options_(context.study.assessment.excitation) {}
+      : signals_(context.study), options_(context.study.assessment.of<ExcitationOptions>()) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     const Eigen::MatrixXd signals = signals_.of(loop.from_start());
@@ -109,7 +133,9 @@ AssessmentMethodInfo excitation_method() {
                        {"autoregression", NumberScope::cv, "order of the autoregression of the error"}}},
           {},
           [](const AssessmentContext& context) { return std::make_unique<Excitation>(context); },
-          [](const AssessmentOptions& options) { return options.excitation.regression.alpha; }};
+          option_table<ExcitationOptions>(
+              keys, "of the test of the simulation errors against signals from outside"),
+          [](const MethodOptions& options) { return options.of<ExcitationOptions>().regression.alpha; }};
 }
 
 }  // namespace mpm

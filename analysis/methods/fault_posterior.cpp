@@ -181,7 +181,7 @@ class FaultPosterior final : public AssessmentMethod {
       : study_(context.study),
         initial_(initial_inputs(context)),
         models_(learnt_models(context, priors)),
-        priors_(fault_priors(context.study, priors, context.study.assessment.likelihood.fault_probability,
+        priors_(fault_priors(context.study, priors, context.study.assessment.of<LikelihoodOptions>().fault_probability,
                              deviations(models_))) {
     if (priors == FaultPriors::study && !noise_is_known(study_))
       priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
@@ -218,7 +218,7 @@ class FaultPosterior final : public AssessmentMethod {
 
   Assessment answer(const FaultProbabilities& probabilities, const FaultProbabilities& scores,
                     const std::vector<CvEvidence>& evidence) const {
-    const LikelihoodOptions& options = study_.assessment.likelihood;
+    const auto& options = study_.assessment.of<LikelihoodOptions>();
     Assessment assessment;
     assessment.flagged = 1.0 - probabilities.healthy > options.flag_probability;
     assessment.score = scores.log_odds;

@@ -9,6 +9,17 @@
 
 namespace mpm {
 
+/// Of the method `likelihood`, analysis/methods/likelihood_method.
+struct LikelihoodOptions {
+  FaultPriors priors = FaultPriors::wide;
+  double fault_probability = 0.5;  ///< of some fault in a loop, before the record is seen; of wide priors
+  double flag_probability = 0.5;   ///< a loop or a CV is flagged when a fault is more probable than this
+  /// A source is named when it is at least so probable, given that there is a fault; 0: always.
+  double source_probability = 0.0;
+
+  bool operator==(const LikelihoodOptions&) const = default;
+};
+
 /// How probable it is, given the record, that a CV has this fault, and how probable the faults of a loop are.
 struct FaultProbabilities {
   struct OfCv {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -7,12 +8,17 @@
 
 #include "analysis/methods/assessment.hpp"
 #include "scenarios/random/distribution.hpp"
-#include "scenarios/study/assessment_options.hpp"
 #include "scenarios/study/study.hpp"
 
 // What may be wrong in a loop, and how probable it is before the record is seen.
 
 namespace mpm {
+
+/// What the method `likelihood` takes for possible before it sees a record (analysis/methods/fault_priors).
+enum class FaultPriors : std::int8_t {
+  wide = 0,   ///< whatever a plant may have: one fault or several, of any size
+  study = 1,  ///< the faults that the study draws, as often and as large as it draws them
+};
 
 /// The density of a distribution at x. A constant c counts as uniform within 0.1 % of it (within 0.001 for
 /// c = 0), a normal distribution as cut off at four standard deviations.

@@ -7,6 +7,8 @@
 #include <fmt/ranges.h>
 
 #include "plants/error.hpp"
+#include "scenarios/study/assessment_options.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 
@@ -91,6 +93,16 @@ std::vector<std::string> known_methods(const std::vector<std::string>& names, co
       refuse(fmt::format("'{}' twice", *name));
   }
   return names;
+}
+
+std::vector<MethodOptionTable> method_option_tables() {
+  std::vector<MethodOptionTable> tables;
+  for (const AssessmentMethodInfo& method : assessment_methods())
+    if (method.options) {
+      tables.push_back(*method.options);
+      tables.back().name = method.name;
+    }
+  return tables;
 }
 
 std::vector<std::string> assessment_method_names() {

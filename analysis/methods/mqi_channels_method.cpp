@@ -11,9 +11,22 @@
 #include "analysis/methods/prewhitened_groups.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/non_finite.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+struct MqiChannelsOptions {
+  double tolerance = 0.85;  ///< a submodel with 1/rho below it is worse than none
+
+  bool operator==(const MqiChannelsOptions&) const = default;
+};
+
+OptionKeys keys(MqiChannelsOptions& options) {
+  return {
+      key::number("tolerance", options.tolerance, NumberRule::positive(),
+                  "a channel is named when 1/rho lies below it; that of the index of Sun et al. (2.4.2)")};
+}
 
 /// Model quality with one submodel left out (Li, Song, Zhang, Ye and Yang 2017), a reconstruction from the
 /// abstract: the submodel of channel (i, j) is moved to the disturbance channel, that is, what it says is no
@@ -26,10 +39,11 @@ namespace {
 ///
 /// because the disturbance innovations e^d of (2.4) stand in both indices. A submodel that is right predicts
 /// what no disturbance model can, and rho is below 1; above 1 the model is better without it. A channel is
-/// named when 1/rho lies below the tolerance of Sun's index, assessment.sun.tolerance.
+/// named when 1/rho lies below the tolerance.
 class MqiChannels final : public AssessmentMethod {
  public:
-  explicit MqiChannels(const AssessmentContext& context) : study_(context.study) {}
+  explicit MqiChannels(const AssessmentContext& context)
+      : study_(context.study), tolerance_(context.study.assessment.of<MqiChannelsOptions>().tolerance) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     if (const Eigen::Index fewest = fewest_prewhitened_samples(0); loop.samples() < fewest)
@@ -60,12 +74,12 @@ class MqiChannels final : public AssessmentMethod {
       if (!std::isfinite(rho))
         continue;
       assessment.numbers.push_back({"rho", rho, cv, mv});
-      if (rho * study_.assessment.sun.tolerance > 1.0)
+      if (rho * tolerance_ > 1.0)
         assessment.flagged_channels.push_back({cv, mv});
       said.score = std::isnan(said.score) ? rho : std::max(said.score, rho);
     }
     if (!std::isnan(said.score)) {
-      said.flagged = said.score * study_.assessment.sun.tolerance > 1.0;
+      said.flagged = said.score * tolerance_ > 1.0;
       said.source = *said.flagged ? FaultSource::mpm : FaultSource::none;
       assessment.flagged = assessment.flagged || *said.flagged;
     }
@@ -73,6 +87,7 @@ class MqiChannels final : public AssessmentMethod {
   }
 
   const Study& study_;
+  double tolerance_;
 };
 
 }  // namespace
@@ -89,7 +104,8 @@ AssessmentMethodInfo mqi_channels_method() {
            .numbers = {{"rho", NumberScope::channel,
                         "model quality index of the CV without this submodel over that with it"}}},
           {},
-          [](const AssessmentContext& context) { return std::make_unique<MqiChannels>(context); }};
+          [](const AssessmentContext& context) { return std::make_unique<MqiChannels>(context); },
+          option_table<MqiChannelsOptions>(keys, "of the model quality without a submodel")};
 }
 
 }  // namespace mpm

@@ -1,11 +1,23 @@
 #pragma once
 
+#include <cstdint>
+
 #include <Eigen/Core>
 
 #include "analysis/methods/decorrelation.hpp"
-#include "scenarios/study/badwe2009_options.hpp"
 
 namespace mpm {
+
+/// How noise is taken out of the signals before they are correlated (A1.2, step 1).
+enum class NoiseFilter : std::int8_t {
+  /// `external` where at least as many signals from outside move as there are MVs to be told apart, `none`
+  /// where fewer do.
+  automatic = 0,
+  none = 1,
+  moving_average = 2,  ///< the mean of the last n samples
+  first_order = 3,     ///< x_f(k) = a x_f(k-1) + (1 - a) x(k), a = exp(-1/n)
+  external = 4,        ///< of the MVs only what setpoints and measured disturbances make them do
+};
 
 /// Each row of a record (m x N) through the same filter of length n samples, from the steady state of the
 /// first column. The filters are linear and the same for all rows, so that e = Delta G u holds for the

@@ -10,9 +10,26 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/error_regression.hpp"
 #include "analysis/statistics/holm.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+struct OrderOptions {
+  ErrorRegressionOptions regression;
+  bool disturbances = true;  ///< an error that is coloured in another way than in the benchmark is flagged
+
+  bool operator==(const OrderOptions&) const = default;
+};
+
+OptionKeys keys(OrderOptions& options) {
+  OptionKeys all = keys(options.regression);
+  all.push_back(
+      key::flag("disturbances", options.disturbances,
+                "a simulation error that is coloured in another way than in the benchmark, or about another "
+                "mean, is flagged as a disturbance; false: a monitor of the model alone"));
+  return all;
+}
 
 /// The order from the MVs to the simulation errors: do past moves of the MVs help to predict e_i = y_i -
 /// y_sim,i once its own past is known? Where they do not (order 0) the model is right, and what e has of
@@ -28,7 +45,7 @@ namespace {
 /// the source mpm, another flagged one ud.
 class Order final : public AssessmentMethod {
  public:
-  explicit Order(const AssessmentContext& context) : options_(context.study.assessment.order) {
+  explicit Order(const AssessmentContext& context) : options_(context.study.assessment.of<OrderOptions>()) {
     if (options_.disturbances && context.benchmark)
       benchmark_ = model_errors(*context.benchmark);
   }
@@ -134,7 +151,8 @@ AssessmentMethodInfo order_method() {
                     "log10 p of this MV not helping when the others do"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<Order>(context); },
-      [](const AssessmentOptions& options) { return options.order.regression.alpha; }};
+      option_table<OrderOptions>(keys, "of the order test from the MVs to the simulation errors"),
+      [](const MethodOptions& options) { return options.of<OrderOptions>().regression.alpha; }};
 }
 
 }  // namespace mpm

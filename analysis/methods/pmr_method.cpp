@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "analysis/identification/prewhitened_test.hpp"
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/channel_regressors.hpp"
+#include "analysis/methods/decorrelation.hpp"
 #include "analysis/methods/error_regression.hpp"
 #include "analysis/methods/mismatch_profile.hpp"
 #include "analysis/methods/noise_filter.hpp"
@@ -19,9 +21,35 @@
 #include "analysis/methods/plant_model_ratio.hpp"
 #include "analysis/methods/prewhitened_groups.hpp"
 #include "analysis/statistics/signal_check.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+enum class RatioInstruments : std::int8_t { outside, setpoints };
+
+struct PmrOptions {
+  double alpha = 0.01;  ///< share of loops without mismatch that are flagged at most
+  RatioInstruments instruments = RatioInstruments::outside;
+  /// Of the regression of the MVs on the signals from outside.
+  DecorrelationOptions drive{.fir_length = 10, .fir_pole = 0.9};
+
+  bool operator==(const PmrOptions&) const = default;
+};
+
+OptionKeys keys(PmrOptions& options) {
+  return {key::number("alpha", options.alpha, NumberRule::inside(0, 1),
+                      "share of loops without mismatch that are flagged at most, shared out to the CVs"),
+          key::choice(
+              "instruments", options.instruments, {"outside", "setpoints"},
+              "signals that no disturbance can know, from which what they make of the MVs is computed: MDs, "
+              "setpoints, moving limits and test signals, or the setpoints alone, as the papers have it. "
+              "`\"outside\"` because a controller in ranges has no setpoints"),
+          key::whole("filters", options.drive.fir_length, 1, 100,
+                     "Laguerre filters of each of these signals, one of them direct, in the regression of "
+                     "the MVs. More follow the MVs better, and follow a part of the noise in them"),
+          key::number("pole", options.drive.fir_pole, NumberRule::below_one(), "of these filters")};
+}
 
 /// The plant-model ratio (Selvanathan and Tangirala 2010; Kaw, Tangirala and Karimi 2014; Mittermaier, le
 /// Roux and Craig 2024), a reconstruction from the abstracts: G(jw)/G0(jw) of each channel, estimated in
@@ -41,7 +69,7 @@ namespace {
 class PlantModelRatio final : public AssessmentMethod {
  public:
   explicit PlantModelRatio(const AssessmentContext& context)
-      : study_(context.study), options_(context.study.assessment.pmr), outside_(context.study) {}
+      : study_(context.study), options_(context.study.assessment.of<PmrOptions>()), outside_(context.study) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     const AssessedLoop& whole = loop.from_start();
@@ -53,7 +81,7 @@ class PlantModelRatio final : public AssessmentMethod {
                                             ? "no setpoint of the controller moves"
                                             : "no signal from outside moves the loop");
     const Eigen::Index fewest = std::max(fewest_prewhitened_samples(kChannelFilters * study_.plant.G.cols()),
-                                         2 * (1 + options_.filters * r.rows()));
+                                         2 * (1 + options_.drive.fir_length * r.rows()));
     if (loop.samples() < fewest)
       return Assessment::not_applicable(fmt::format("its regressions need {} samples or more", fewest));
     const Eigen::MatrixXd inputs = driven_inputs(loop, r);
@@ -67,11 +95,8 @@ class PlantModelRatio final : public AssessmentMethod {
   /// u_o, and after it the MDs, which come from outside: as inputs_until().
   Eigen::MatrixXd driven_inputs(const AssessedLoop& loop, const Eigen::MatrixXd& r) const {
     const AssessedLoop& whole = loop.from_start();
-    DecorrelationOptions drive;
-    drive.fir_length = options_.filters;
-    drive.fir_pole = options_.pole;
     Eigen::MatrixXd inputs = inputs_until(loop);
-    inputs.topRows(whole.u.rows()) = externally_driven(whole.u, r, drive).leftCols(inputs.cols());
+    inputs.topRows(whole.u.rows()) = externally_driven(whole.u, r, options_.drive).leftCols(inputs.cols());
     return inputs;
   }
 
@@ -162,7 +187,8 @@ AssessmentMethodInfo pmr_method() {
                    {"delay", NumberScope::channel, "-arg P / w at its corner", "time unit of the plant"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<PlantModelRatio>(context); },
-      [](const AssessmentOptions& options) { return options.pmr.alpha; }};
+      option_table<PmrOptions>(keys, "of the plant-model ratio"),
+      [](const MethodOptions& options) { return options.of<PmrOptions>().alpha; }};
 }
 
 }  // namespace mpm

@@ -6,9 +6,25 @@
 #include "analysis/statistics/signal_check.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/error.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+struct SseOptions {
+  double threshold =
+      1.5;  ///< a CV is flagged when its mean squared error is above so many times the benchmark's
+
+  bool operator==(const SseOptions&) const = default;
+};
+
+OptionKeys keys(SseOptions& options) {
+  return {key::number(
+      "threshold", options.threshold, NumberRule::positive(),
+      "a CV is flagged when its mean squared simulation error is above so many times that of the benchmark. "
+      "The thesis has no limit; the mean squares of white noise over 400 samples scatter by 0.1 around 1, so "
+      "that 1.5 is seldom met by chance and errors of 0.7 standard deviations of the noise are seen")};
+}
 
 /// The measured CVs without an error where a sample is missing.
 Eigen::MatrixXd without_gaps(const AssessedLoop& loop) {
@@ -43,7 +59,8 @@ class SimulationErrorMonitor final : public AssessmentMethod {
  public:
   /// The requirements of the method say that there is a benchmark.
   explicit SimulationErrorMonitor(const AssessmentContext& context)
-      : threshold_(context.study.assessment.sse.threshold), benchmark_(squares_of(*context.benchmark)) {}
+      : threshold_(context.study.assessment.of<SseOptions>().threshold),
+        benchmark_(squares_of(*context.benchmark)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     const Eigen::MatrixXd y = without_gaps(loop);
@@ -84,7 +101,8 @@ AssessmentMethodInfo sse_method() {
                        {"ratio", NumberScope::cv,
                         "mean square of y - y_sim over that of the benchmark; 1 for the same errors"}}},
           {},
-          [](const AssessmentContext& context) { return std::make_unique<SimulationErrorMonitor>(context); }};
+          [](const AssessmentContext& context) { return std::make_unique<SimulationErrorMonitor>(context); },
+          option_table<SseOptions>(keys, "of the monitor of the simulation errors")};
 }
 
 }  // namespace mpm

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -8,20 +11,66 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/model_quality.hpp"
 #include "plants/error.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
 
-OrderCriterion criterion_of(SunCriterion criterion) {
-  switch (criterion) {
-    case SunCriterion::aic:
-      return OrderCriterion::aic;
-    case SunCriterion::bic:
-      return OrderCriterion::bic;
-    case SunCriterion::validation:
-      break;
-  }
-  return OrderCriterion::validation_loss;
+enum class SunIndex : std::int8_t { imqi, mqi };
+enum class SunNoise : std::int8_t { integrated, benchmark, white };
+/// By what one of several orders of the ARX model is chosen.
+constexpr std::array kSunCriteria{OrderCriterion::aic, OrderCriterion::bic, OrderCriterion::validation_loss};
+
+struct SunOptions {
+  double tolerance = 0.85;  ///< MQI and iMQI below it show a poor model (2.4.2)
+  SunIndex index = SunIndex::imqi;
+  std::vector<int> orders{20};          ///< MO1 of (2.1); of several one is chosen for each CV
+  int setpoint_order = 0;               ///< MO2 of (2.1); 0: as MO1
+  std::size_t criterion = 0;            ///< place in kSunCriteria
+  bool own_outputs = false;             ///< AO of (2.1) is diagonal
+  bool measured_disturbances = false;   ///< they stand beside the setpoints in (2.1)
+  bool correct_for_parameters = false;  ///< sums of squares of e^d over n - p in place of n
+  SunNoise noise = SunNoise::integrated;
+  double noise_filter = 0.7;  ///< c of `integrated`
+  int noise_order = 10;       ///< highest order of `benchmark`
+
+  bool operator==(const SunOptions&) const = default;
+};
+
+OptionKeys keys(SunOptions& options) {
+  return {
+      key::number("tolerance", options.tolerance, NumberRule::positive(),
+                  "MQI and iMQI below it show a poor model; the limit of section 2.4.2. Chapter 4 says 0.8"),
+      key::choice("index", options.index, {"imqi", "mqi"},
+                  "what of a CV is held against it: (4.3), with its root, as in chapter 4, or "
+                  "(2.4) of the CV alone, without the root, as in figures 2.15 and 2.16"),
+      key::wholes("orders", options.orders, 1, 100,
+                  "MO1 of (2.1). Of several one is chosen for each CV. Open; 20 is above the dead times of "
+                  "all shipped plants and takes 14 % of the degrees of freedom of 900 samples of three CVs"),
+      key::whole("setpoint_order", options.setpoint_order, 0, 100,
+                 "MO2 of (2.1); 0: as MO1, since nothing is known of the difference"),
+      key::choice(
+          "criterion", options.criterion, {"aic", "bic", "validation"},
+          "by what one of several orders is chosen; validation: mean squared prediction error on the last 30 "
+          "%. AIC, because the loop of an offset-free controller is no ARX model of finite order, and the "
+          "best predictor is wanted"),
+      key::flag("own_outputs", options.own_outputs,
+                "the past of the CV alone, in place of that of all CVs. (2.1) has full matrices; for short "
+                "records of many CVs"),
+      key::flag("measured_disturbances", options.measured_disturbances,
+                "they stand beside the setpoints in (2.1), which has setpoints only"),
+      key::flag(
+          "correct_for_parameters", options.correct_for_parameters,
+          "sums of squares of e^d over n - p in place of n, p the coefficients fitted. (2.4) has plain sums"),
+      key::choice("noise", options.noise, {"integrated", "benchmark", "white"},
+                  "G_d0 of (2.2): the designed filter (1 - c q^-1)/(1 - q^-1), an autoregression "
+                  "identified in the benchmark, or 1. Integrated: a controller that holds its "
+                  "output error constant assumes it, with c = 0"),
+      key::number("noise_filter", options.noise_filter, NumberRule::below_one(),
+                  "c. White errors of a perfect model have MQI (1 + c)/2 under this filter: 0.7 is the c "
+                  "nearest to the controller's own at which the tolerance 0.85 does not flag them"),
+      key::whole("noise_order", options.noise_order, 0, 100,
+                 "highest order of the autoregression; BIC chooses")};
 }
 
 ModelQualityOptions quality_options(const SunOptions& sun) {
@@ -30,7 +79,7 @@ ModelQualityOptions quality_options(const SunOptions& sun) {
   options.arx.orders.assign(sun.orders.begin(), sun.orders.end());
   if (sun.setpoint_order > 0)
     options.arx.input_order = sun.setpoint_order;
-  options.arx.criterion = criterion_of(sun.criterion);
+  options.arx.criterion = kSunCriteria[sun.criterion];
   options.correct_for_parameters = sun.correct_for_parameters;
   return options;
 }
@@ -81,7 +130,7 @@ Eigen::MatrixXd references_of(const AssessedLoop& loop, bool measured_disturbanc
 class Sun final : public AssessmentMethod {
  public:
   explicit Sun(const AssessmentContext& context)
-      : sun_(context.study.assessment.sun),
+      : sun_(context.study.assessment.of<SunOptions>()),
         options_(quality_options(sun_)),
         weights_(weights_of(context.study.controller)),
         noise_(noise_models(sun_, context)) {}
@@ -156,7 +205,8 @@ AssessmentMethodInfo sun_method() {
                    {"mqi_cv", NumberScope::cv, "(2.4) of the CV alone, the square of iMQI"},
                    {"order", NumberScope::cv, "MO1 of its high-order ARX model (2.1)"}}},
       {},
-      [](const AssessmentContext& context) { return std::make_unique<Sun>(context); }};
+      [](const AssessmentContext& context) { return std::make_unique<Sun>(context); },
+      option_table<SunOptions>(keys, "of the method of Sun et al.")};
 }
 
 }  // namespace mpm

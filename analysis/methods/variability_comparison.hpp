@@ -21,6 +21,7 @@ struct VariabilityOptions {
 
   /// @throws InputError unless 0 < confidence < 1 and largest_lag >= 0
   void validate() const;
+  bool operator==(const VariabilityOptions&) const = default;
 };
 
 /// What became of the variability along a direction, or of a CV.

@@ -9,9 +9,31 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/variability_comparison.hpp"
 #include "plants/error.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
+
+struct YuQinOptions {
+  VariabilityOptions comparison;
+  int first_sample = 0;  ///< at which both periods begin; leaves out how a loop starts
+
+  bool operator==(const YuQinOptions&) const = default;
+};
+
+OptionKeys keys(YuQinOptions& options) {
+  return {
+      key::number("confidence", options.comparison.confidence, NumberRule::inside(0, 1),
+                  "confidence of the limits of eigenvalues and angles (2.4.1)"),
+      key::whole("largest_lag", options.comparison.largest_lag, 0, 1'000'000,
+                 "largest lag of the sum over squared autocorrelations (2.9), samples; 0: all lags, because "
+                 "the thesis prints the sum so. It overstates the sum, so that changes are called "
+                 "significant too rarely (`docs/methods.md`)"),
+      key::whole(
+          "first_sample", options.first_sample, 0, 1'000'000,
+          "sample at which the compared periods begin. 0: the whole record, as for every other method. A "
+          "loop whose plant is not its model starts with a transient, which the variances else are made of")};
+}
 
 /// Control errors of `cvs`, one row each, from sample `first` on.
 Eigen::MatrixXd control_errors(const AssessedLoop& loop, const std::vector<Eigen::Index>& cvs,
@@ -34,10 +56,8 @@ constexpr double kTieBreak = 1e-6;
 class YuQin final : public AssessmentMethod {
  public:
   /// The requirements of the method say that there is a benchmark.
-  explicit YuQin(const AssessmentContext& context)
-      : options_{context.study.assessment.yu_qin.confidence, context.study.assessment.yu_qin.largest_lag},
-        first_(context.study.assessment.yu_qin.first_sample),
-        benchmark_(*context.benchmark) {
+  YuQin(const YuQinOptions& options, const AssessmentContext& context)
+      : options_(options.comparison), first_(options.first_sample), benchmark_(*context.benchmark) {
     options_.validate();
     if (first_ + 2 > benchmark_.samples())
       throw InputError("assessment.yu-qin.first_sample", fmt::format("{}", first_),
@@ -107,9 +127,14 @@ AssessmentMethodInfo yu_qin_method() {
                    {"worse", NumberScope::cv, "1 when cos_worse is above beta, 0 when not"},
                    {"better", NumberScope::cv, "1 when cos_better is above beta, 0 when not"}}},
       {},
-      [](const AssessmentContext& context) { return std::make_unique<YuQin>(context); },
+      [](const AssessmentContext& context) {
+        return std::make_unique<YuQin>(context.study.assessment.of<YuQinOptions>(), context);
+      },
+      option_table<YuQinOptions>(keys, "of the method of Yu and Qin"),
       // A loop is flagged by the lower one of the two ends of an interval.
-      [](const AssessmentOptions& options) { return 0.5 * (1.0 - options.yu_qin.confidence); }};
+      [](const MethodOptions& options) {
+        return 0.5 * (1.0 - options.of<YuQinOptions>().comparison.confidence);
+      }};
 }
 
 }  // namespace mpm

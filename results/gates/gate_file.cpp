@@ -7,6 +7,7 @@
 
 #include "analysis/methods/method_table.hpp"
 #include "scenarios/toml/toml_file.hpp"
+#include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_text.hpp"
 
 namespace mpm {

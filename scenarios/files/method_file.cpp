@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "scenarios/toml/toml_file.hpp"
+#include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_text.hpp"
 #include "scenarios/toml/toml_values.hpp"
 

@@ -9,6 +9,7 @@
 #include "scenarios/study/study.hpp"
 #include "scenarios/toml/option_keys.hpp"
 #include "scenarios/toml/toml_draft.hpp"
+#include "scenarios/toml/toml_table.hpp"
 
 // The keys of the study file, one source file for each group of tables. They are read into `study`, in the
 // order of the top level, and may depend on what was read before. All refuse what they cannot take as

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "plants/non_finite.hpp"
+#include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_values.hpp"
 
 namespace mpm {

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "scenarios/toml/toml_literal.hpp"
+#include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {
 namespace {
@@ -39,6 +40,8 @@ std::string manual_text(const NumberRule& rule) {
                      rule.high_included ? (rule.low_included ? "to " : "and at most ") : "to below ",
                      rule.high);
 }
+
+constexpr std::size_t kLongestList = 100;  // of whole numbers
 
 std::string in_backquotes(const std::string& text) {
   return '`' + text + '`';
@@ -108,6 +111,17 @@ void read_keys(const TomlTable& table, const OptionKeys& keys) {
   for (const OptionKey& key : keys)
     if (key.reader)
       key.reader(table, key);
+}
+
+void read_list(const TomlTable& table, const OptionKey& key, std::size_t most,
+               const std::function<void(const TomlTable&)>& take) {
+  if (!key.is_required && !table.has(key.name))
+    return;
+  const std::vector<TomlTable> tables = table.tables(key.name, key_names(key.below()));
+  if (tables.size() > most)
+    table.refuse(key.name, "a list of " + std::to_string(tables.size()), "at most " + std::to_string(most));
+  for (const TomlTable& of_entry : tables)
+    take(of_entry);
 }
 
 std::vector<KeyTable> key_tables(const std::string& name, const OptionKeys& keys) {
@@ -204,6 +218,36 @@ OptionKey name(std::string name, std::string& value, std::string meaning) {
       .required()
       .allow("1 to 64 letters, digits, `_`, `-`")
       .read([&value](const TomlTable& table, const std::string& key) { value = read_name(table, key); });
+}
+
+OptionKey whole_from(std::string name, int& value, const int& least, std::int64_t high, std::string meaning) {
+  OptionKey made = whole(std::move(name), value, 0, high, std::move(meaning));
+  made.reader = [&value, &least, high](const TomlTable& table, const OptionKey& key) {
+    value = static_cast<int>(read_whole_or(table, key.name, least, high, std::max(least, value)));
+  };
+  return made;
+}
+
+OptionKey wholes(std::string name, std::vector<int>& value, int low, int high, std::string meaning) {
+  OptionKey made = option(std::move(name), "list of whole numbers", std::move(meaning));
+  made.fallback = in_backquotes(toml_literal(value));
+  made.allowed = fmt::format("{} to {} each", low, high);
+  made.reader = [&value, low, high](const TomlTable& table, const OptionKey& key) {
+    const NumberRule rule{.low = static_cast<double>(low),
+                          .high = static_cast<double>(high),
+                          .low_included = true,
+                          .high_included = true};
+    if (table.has(key.name)) {
+      value.clear();
+      for (const double number : read_numbers(table, key.name, rule, kLongestList)) {
+        if (number != std::floor(number))
+          table.refuse(key.name, fmt::format("{}", number), "whole numbers");
+        value.push_back(static_cast<int>(number));
+      }
+    }
+    table.record(key.name, value);  // as whole numbers
+  };
+  return made;
 }
 
 OptionKey texts(std::string name, std::vector<std::string>& value, std::string allowed, std::string meaning) {

@@ -10,7 +10,6 @@
 
 #include "scenarios/random/distribution.hpp"
 #include "scenarios/toml/number_rule.hpp"
-#include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_values.hpp"
 
 // Each key of a table is declared once, as an OptionKey that ties it to a member of the options. The reader,
@@ -18,6 +17,7 @@
 
 namespace mpm {
 
+class TomlTable;
 struct OptionKey;
 using OptionKeys = std::vector<OptionKey>;
 
@@ -63,6 +63,11 @@ OptionKeys described(OptionKeys keys);
 /// Reads every key, in their order, into the options. Errors: InputError.
 void read_keys(const TomlTable& table, const OptionKeys& keys);
 
+/// Calls `take` for each table of the list that is this key of a table. Errors: InputError, also for more
+/// than `most`.
+void read_list(const TomlTable& table, const OptionKey& key, std::size_t most,
+               const std::function<void(const TomlTable& of_entry)>& take);
+
 /// The options in a table, as the overload `keys(Options&)` declares them.
 template <class Options>
 Options read_options(const TomlTable& table) {
@@ -101,6 +106,10 @@ OptionKey flag(std::string name, bool& value, std::string meaning);
 OptionKey text(std::string name, std::string& value, std::string meaning);
 /// A text as read_name() takes it.
 OptionKey name(std::string name, std::string& value, std::string meaning);
+/// A whole number that is at least `least`, which is read before it; allow() says so in words.
+OptionKey whole_from(std::string name, int& value, const int& least, std::int64_t high, std::string meaning);
+/// A list of whole numbers from `low` to `high`.
+OptionKey wholes(std::string name, std::vector<int>& value, int low, int high, std::string meaning);
 /// A list of texts; `allowed` says what they are.
 OptionKey texts(std::string name, std::vector<std::string>& value, std::string allowed, std::string meaning);
 /// [low, high] with low < high.
@@ -174,16 +183,11 @@ OptionKey list(std::string name, std::size_t most, std::function<OptionKeys(Entr
   // The keys refer to the entry, and so may those of tables below it.
   made.below = [below, entry = std::make_shared<Entry>()] { return below(*entry); };
   made.reader = [below, take = std::move(take), most](const TomlTable& table, const OptionKey& key) {
-    if (!key.is_required && !table.has(key.name))
-      return;
-    const std::vector<TomlTable> tables = table.tables(key.name, key_names(key.below()));
-    if (tables.size() > most)
-      table.refuse(key.name, "a list of " + std::to_string(tables.size()), "at most " + std::to_string(most));
-    for (const TomlTable& of_entry : tables) {
+    read_list(table, key, most, [&](const TomlTable& of_entry) {
       Entry entry{};
       read_keys(of_entry, below(entry));
       take(of_entry, entry);
-    }
+    });
   };
   return made;
 }

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "plants/non_finite.hpp"
+#include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_text.hpp"
 
 namespace mpm {

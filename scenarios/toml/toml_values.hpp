@@ -11,13 +11,14 @@
 
 #include "scenarios/random/distribution.hpp"
 #include "scenarios/toml/number_rule.hpp"
-#include "scenarios/toml/toml_table.hpp"
 
 // Typed reading of the values of a TOML table. All functions refuse a value they cannot take as TomlTable
 // does. Those ending in `_or` return their last argument for a missing key; the others refuse it. What they
 // return is recorded (TomlTable::record()).
 
 namespace mpm {
+
+class TomlTable;
 
 /// Two numbers in a list; what they mean is up to the reader.
 using NumberPair = std::pair<double, double>;

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/findings/method_rates.hpp"
+#include "analysis/methods/badwe2009.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/random/random_stream.hpp"
@@ -199,9 +200,9 @@ TEST_CASE("false alarms are marked when their interval does not hold what the me
   Study other = study();
   CHECK(testing::form_of(other, "yu-qin")->method().stated_false_alarms == Approx(0.025));
   CHECK(testing::form_of(other, "badwe2009")->method().stated_false_alarms == Approx(0.05));
-  other.assessment.badwe2009.confidence = 0.99;
+  other.assessment.of<Badwe2009Options>().confidence = 0.99;
   CHECK(testing::form_of(other, "badwe2009")->method().stated_false_alarms == Approx(0.01));
-  other.assessment.badwe2009.multiplicity = Multiplicity::lags;
+  other.assessment.of<Badwe2009Options>().multiplicity = Multiplicity::lags;
   CHECK_FALSE(testing::form_of(other, "badwe2009")->method().stated_false_alarms.has_value());
   CHECK_FALSE(testing::form_of(other, "sse")->method().stated_false_alarms.has_value());
 }

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/methods/badwe2009.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "scenarios/files/study_file.hpp"
 #include "scenarios/files/study_library.hpp"
@@ -83,14 +84,14 @@ TEST_CASE("badwe2009: every option of a study file arrives") {
                              "confidence = 0.9\nmultiplicity = 'lags'\nweakest_correlation = 0.1\n"
                              "saturated_share = 0.2\nsmallest_deviation = 0.01\nsmallest_own_share = 0.02"),
                   "s.toml")
-          .assessment.badwe2009;
+          .assessment.of<Badwe2009Options>();
   CHECK(options.filter == NoiseFilter::first_order);
   CHECK(options.filter_length == 7);
-  CHECK(options.model == DecorrelationModel::output_error);
-  CHECK(options.nb == 3);
-  CHECK(options.nf == 4);
-  CHECK(options.fir_length == 9);
-  CHECK(options.fir_pole == 0.5);
+  CHECK(options.models.model == DecorrelationModel::output_error);
+  CHECK(options.models.nb == 3);
+  CHECK(options.models.nf == 4);
+  CHECK(options.models.fir_length == 9);
+  CHECK(options.models.fir_pole == 0.5);
   CHECK(options.min_lag == 2);
   CHECK(options.max_lag == 11);
   CHECK(options.confidence == 0.9);

@@ -9,6 +9,7 @@
 #include "analysis/statistics/variance.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
+#include "scenarios/files/study_change.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "tests/solvers/active_set_factory.hpp"
@@ -97,9 +98,11 @@ TEST_CASE("badwe2010: a CV without a setpoint gets no verdict, and a loop withou
 
 TEST_CASE("badwe2010: the options of the study are those of the models") {
   Study study = short_tank();
-  study.assessment.badwe2010.smallest_order = study.assessment.badwe2010.largest_order = 2;
-  study.assessment.badwe2010.max_iterations = 1;
-  study.assessment.badwe2010.criterion = DesignedOrderCriterion::bic;
+  const auto set = [&study](const std::string& options) {
+    const StudyChange change{"assessment.badwe2010", options};
+    study.assessment = changed_study(find_study("chapter3-tank"), {change}, "the test").assessment;
+  };
+  set("{smallest_order = 2, largest_order = 2, max_iterations = 1, criterion = 'bic'}");
   const BasisCase basis = run_basis_case(study, testing::kFactory);
   const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   const AssessedLoop loop = loop_of(study, basis, "MPM2");
@@ -113,7 +116,7 @@ TEST_CASE("badwe2010: the options of the study are those of the models") {
   CHECK(assessment.number("fit_sd", 0) ==
         designed_output(loop.y, loop.y_sim, loop.y_set, options).sensitivity[0].fit);
 
-  study.assessment.badwe2010.largest_order = 40;  // 4 x 81 coefficients
+  set("{largest_order = 40}");  // 4 x 81 coefficients
   const Assessment none = assess(context, loop);
   CHECK(none.status == AssessmentStatus::not_applicable);
   CHECK_THAT(none.reason, Catch::Contains("order 40 have 324 coefficients for 260 samples"));

@@ -7,6 +7,7 @@
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
+#include "scenarios/files/study_change.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "tests/analysis/signals.hpp"
 
@@ -41,6 +42,10 @@ class Setting {
   Assessment assess(const char* method, const AssessedLoop& loop) const {
     const mpm::AssessmentContext context{study, basis_, mpm::qp_solver_factory("active-set"), benchmark_};
     return mpm::Assessor(assessment_method(method), context).assess(loop);
+  }
+
+  void set(const char* key, const char* value) {
+    study = mpm::changed_study(study, {{key, value}}, "the test");
   }
 
   Study study = mpm::find_study("chapter2-shell");
@@ -172,12 +177,12 @@ TEST_CASE("yu-qin: first_sample leaves out how a loop starts") {
   loop.y.row(0).head(50).array() += 20.0;
   Setting setting(benchmark);
   CHECK(setting.assess("yu-qin", loop).flagged);
-  setting.study.assessment.yu_qin.first_sample = 50;
+  setting.set("assessment.yu-qin.first_sample", "50");
   const Assessment found = setting.assess("yu-qin", loop);
   CHECK_FALSE(found.flagged);
   CHECK(found.number("i_v") == Approx(1.0));
   CHECK(setting.assess("yu-qin", made_up_loop(51, 5)).status == AssessmentStatus::not_applicable);
-  setting.study.assessment.yu_qin.first_sample = 399;
+  setting.set("assessment.yu-qin.first_sample", "399");
   CHECK_THROWS_WITH(setting.assess("yu-qin", loop), Catch::Contains("398 or less"));
 }
 
@@ -206,7 +211,7 @@ TEST_CASE("sse: threshold, exact models, and no benchmark") {
   loop.y_sim = loop.y + 1.3 * (loop.y_sim - loop.y);  // 1.69 times the mean square
   Setting setting(benchmark);
   CHECK(setting.assess("sse", loop).flagged);
-  setting.study.assessment.sse.threshold = 1.7;
+  setting.set("assessment.sse.threshold", "1.7");
   CHECK_FALSE(setting.assess("sse", loop).flagged);
   AssessedLoop exact = benchmark;
   exact.y_sim = exact.y;

@@ -3,6 +3,7 @@
 #include "analysis/methods/channel_regressors.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/noise_model.hpp"
+#include "scenarios/files/study_change.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
@@ -22,6 +23,8 @@ TEST_CASE("mqi-channels: a submodel that is worse than none is named, one that i
   const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   Assessor method(assessment_method("mqi-channels"), context);
   CHECK_FALSE(method.assess(*context.benchmark).flagged);
+  const Study lenient = changed_study(study, {{"assessment.mqi-channels.tolerance", "0.01"}}, "the test");
+  const AssessmentContext of_lenient = assessment_context(lenient, basis, testing::kFactory);
   const TransferFunction& model = study.plant.G(4, 2);
   for (const double gain : {-1.0, 0.2, 0.8}) {
     AssessedLoop loop = *context.benchmark;
@@ -33,6 +36,7 @@ TEST_CASE("mqi-channels: a submodel that is worse than none is named, one that i
     CHECK(found.flagged == (gain < 0.5));
     if (found.flagged)
       CHECK(found.flagged_channels == std::vector<Channel>{{4, 2}});
+    CHECK_FALSE(Assessor(assessment_method("mqi-channels"), of_lenient).assess(loop).flagged);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <toml++/toml.h>
 
+#include "analysis/methods/badwe2009.hpp"
 #include "scenarios/files/resolved_study.hpp"
 #include "scenarios/files/study_file.hpp"
 #include "scenarios/files/study_file_keys.hpp"
@@ -347,6 +348,7 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
                            "assessment.order",
                            "assessment.excitation",
                            "assessment.candidates",
+                           "assessment.mqi-channels",
                            "assessment.pmr",
                            "assessment.autocovariance",
                            "aggregate"})
@@ -422,7 +424,7 @@ TEST_CASE("studies differ by each part, and by the length of a vector", "[resolv
   CHECK(differs([](Study& s) { s.simulation.noise_standard_deviation(0) = 0; }));
   CHECK(differs([](Study& s) { s.simulation.steps[0].level = 0; }));
   CHECK(differs([](Study& s) { s.mismatch.parameter_weight[2] = 0; }));
-  CHECK(differs([](Study& s) { s.assessment.badwe2009.nf = 3; }));
+  CHECK(differs([](Study& s) { s.assessment.of<Badwe2009Options>().models.nf = 3; }));
 }
 
 TEST_CASE("what is not the default is named with it, and nothing else", "[resolved_study]") {

@@ -119,16 +119,9 @@ TEST_CASE("the keys of s0_perturbation land in their place", "[study_file]") {
   CHECK(options.fixed_active_cvs == std::vector<Eigen::Index>{0});
 }
 
-TEST_CASE("the keys of assessment.badwe2010 land in their place", "[study_file]") {
+TEST_CASE("what a method cannot take is refused where it stands, whether or not it is asked",
+          "[study_file]") {
   const std::string table = "\n[assessment.badwe2010]\n";
-  const Badwe2010Options options =
-      small_and(table +
-                "smallest_order = 2\nlargest_order = 4\ncriterion = 'validation-fit'\nmax_iterations = 9\n")
-          .assessment.badwe2010;
-  CHECK(options.smallest_order == 2);
-  CHECK(options.largest_order == 4);
-  CHECK(options.criterion == DesignedOrderCriterion::validation_fit);
-  CHECK(options.max_iterations == 9);
   check_refusals({
       {"", table + "criterion = 'aic'\n", "criterion",
        "assessment.badwe2010.criterion: found 'aic' (nearest: 'bic'); allowed: record-fit, validation-fit, "

@@ -3,6 +3,7 @@
 #include "plants/error.hpp"
 #include "scenarios/toml/option_keys.hpp"
 #include "scenarios/toml/toml_draft.hpp"
+#include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_text.hpp"
 
 namespace {
