@@ -230,6 +230,8 @@ Eigen::MatrixXd ExperimentRunner::healthy_output(ExperimentRecord& record, const
 
 ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, const StepObserver& observer) {
   ExperimentRecord record;
+  record.repair =
+      repair_gains(study_of(record.draw), record.draw, study_.world->repair_loops, factory_, record.solver);
   record.draw = draw_experiment(study_, index);
   if (has_asked_impact(study_, record.draw))
     record.draw =

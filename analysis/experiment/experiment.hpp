@@ -16,6 +16,7 @@
 #include "analysis/basis/tuned_basis.hpp"
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/loop_conditions.hpp"
+#include "analysis/experiment/repair_gain.hpp"
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/method_panel.hpp"
 #include "analysis/sensitivity/loop_stability.hpp"
@@ -78,6 +79,7 @@ struct ExperimentRecord {
   Eigen::VectorXd ivar_basis;
   std::optional<FaultCost> cost = {};         ///< of the faults, of an experiment in a world with status ok
   std::vector<AssessmentRecord> assessments;  ///< by each method of the study, in their order
+  RepairGains repair = {};                    ///< of the channels, in a world; empty: not computed
   PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for, or
                             ///< its record has gaps
   SolverStatistics solver;  ///< of all loops of the experiment
