@@ -367,7 +367,7 @@ Flags stable_flags() {
   return {{-1, 0, 1}, {"not_known", "no", "yes"}};
 }
 
-/// What archives have since version 2.3.
+/// What archives of an earlier minor version lack.
 RecordVariable lately(RecordVariable variable) {
   variable.may_lack = true;
   return variable;
@@ -457,7 +457,9 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
            enum_flags(std::array{ExperimentStatus::ok, ExperimentStatus::infeasible, ExperimentStatus::failed,
                                  ExperimentStatus::unstable})},
           &Record::status),
-      plain<std::string>({"message", "why the experiment failed", "1", "empty unless the status is failed"},
+      plain<std::string>({"message", "why the experiment failed", "1",
+                          study.world ? "empty unless the status is failed, or unstable because of its world"
+                                      : "empty unless the status is failed"},
                          &Record::message),
       vector(
           {"ivar_basis", "Ivar_basis = var y / var y of the basis case", "1", "NaN unless the status is ok"},
