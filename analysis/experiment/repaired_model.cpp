@@ -1,7 +1,6 @@
 #include "analysis/experiment/repaired_model.hpp"
 
 #include <memory>
-#include <utility>
 
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/world.hpp"
@@ -15,7 +14,7 @@ TransferMatrix true_plant(const Study& study, const ExperimentDraw& draw) {
 Trajectory loop_with_model(const Study& study, const TransferMatrix& model, ExperimentDraw draw,
                            const QpSolverFactory& factory) {
   if (study.simulation.excitation == SignalSequence::each)
-    return loop_with_model(with_excitation(study, draw.index), model, std::move(draw), factory);
+    return loop_with_model(with_excitation(study, draw.index), model, draw, factory);
   draw.onset = {};
   const std::unique_ptr<Plant> plant = experiment_plant(study, draw);
   Study repaired = with_tuning(study, draw);

@@ -45,7 +45,7 @@ struct StudyForecast {
 };
 
 /// Of verdicts of one method on loops in one world, about: see docs/methods.md.
-inline constexpr double kWorldCorrelation = 0.2;
+inline constexpr double kWorldCorrelation = 0.3;
 
 /// `pilot` are the first experiments of the study, one at least.
 StudyForecast forecast(const Study& study, std::span<const ExperimentRecord> pilot);

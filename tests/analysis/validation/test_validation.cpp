@@ -173,12 +173,12 @@ TEST_CASE("of a study in worlds a pilot says how well its worlds let rates be kn
   }
   const StudyForecast found = forecast(study, pilot);
   CHECK(found.worlds == 8);
-  // 80 loops in 8 worlds with a correlation of 0.2: 80 / 2.8 (1.960 / 2.365)^2 = 19.6 independent ones.
-  const Interval expected = score_interval(0.5, 19.6, 0.95);
+  // 80 loops in 8 worlds with a correlation of 0.3: 80 / 3.7 (1.960 / 2.365)^2 = 14.85 independent ones.
+  const Interval expected = score_interval(0.5, 14.85, 0.95);
   CHECK(found.detection_width == Approx(expected.upper - expected.lower).epsilon(0.01));
   CHECK(found.detection_width > 1.5 * independent.detection_width);
-  // Ever more loops: 8 / 0.2 (1.960 / 2.365)^2 = 27.5.
-  const Interval best = score_interval(0.5, 27.5, 0.95);
+  // Ever more loops: 8 / 0.3 (1.960 / 2.365)^2 = 18.3.
+  const Interval best = score_interval(0.5, 18.3, 0.95);
   CHECK(found.detection_width_limit == Approx(best.upper - best.lower).epsilon(0.01));
   CHECK_THAT(to_string(forecast_warnings(study, found, pilot).front()),
              Contains("the 8 worlds are the limit") && Contains("world.count"));
