@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-constexpr int kLoops = 4;
+constexpr int kRepairLoops = 4;
 
 /// ogunnaike-ray in a world without errors.
 Study exact_world() {
@@ -24,7 +24,7 @@ Study exact_world() {
   return study;
 }
 
-ExperimentDraw gain_fault(const Study& study, double factor) {
+ExperimentDraw fault_of_gain(const Study& study, double factor) {
   ExperimentDraw draw;
   draw.index = 4;
   draw.world = study.world ? 0 : kExactWorld;
@@ -36,14 +36,14 @@ ExperimentDraw gain_fault(const Study& study, double factor) {
 /// Mean cost of the loops of `study` with the noise of the repairs.
 double mean_cost(const Study& study, const Study& of_noise, const ExperimentDraw& draw) {
   double sum = 0.0;
-  for (int loop = 0; loop < kLoops; ++loop) {
+  for (int loop = 0; loop < kRepairLoops; ++loop) {
     ExperimentDraw noisy = draw;
-    noisy.noise_index = pilot_noise(of_noise, draw, kLoops, loop);
+    noisy.noise_index = pilot_noise(of_noise, draw, kRepairLoops, loop);
     const Trajectory run = simulate_experiment(study, noisy, testing::kFactory);
     REQUIRE(run.status == ControlStatus::ok);
     sum += loop_cost(study, run).total();
   }
-  return sum / kLoops;
+  return sum / kRepairLoops;
 }
 
 }  // namespace
@@ -53,10 +53,11 @@ TEST_CASE(
     "that was designed for this plant, and the repair of another channel gives nothing",
     "[repair_gain]") {
   const Study study = exact_world();
-  const ExperimentDraw draw = gain_fault(study, 0.4);
+  const ExperimentDraw draw = fault_of_gain(study, 0.4);
   SolverStatistics pilots;
-  const RepairGains gains = repair_gains(study, draw, kLoops, testing::kFactory, pilots);
-  CHECK(pilots.steps == 3 * kLoops * study.simulation.samples);  // as it is, without the fault, one repair
+  const RepairGains gains = repair_gains(study, draw, kRepairLoops, testing::kFactory, pilots);
+  CHECK(pilots.steps ==
+        3 * kRepairLoops * study.simulation.samples);  // as it is, without the fault, one repair
   Study designed = study;  // an independent route: its model is the plant, and nothing is wrong
   designed.plant.G = true_plant(study, draw);
   const double without = mean_cost(study, study, draw.without_faults());
@@ -74,7 +75,7 @@ TEST_CASE(
   CHECK(gains.share_of(Channel{0, 0}) == 0.0);
   CHECK(gains.share_of({}) == 0.0);
   // The same noise as that of the cost of the fault.
-  const FaultCost cost = fault_cost(study, draw, kLoops, testing::kFactory, pilots);
+  const FaultCost cost = fault_cost(study, draw, kRepairLoops, testing::kFactory, pilots);
   CHECK(cost.loss_ratio == Approx(now / without).epsilon(1e-12));
 }
 
@@ -90,17 +91,17 @@ TEST_CASE(
   study.controller.move_suppression.setConstant(1e-4);
   study.controller.mv_hard.lower.setConstant(-1e3);
   study.controller.mv_hard.upper.setConstant(1e3);
-  ExperimentDraw draw = gain_fault(study, 1.0);
+  ExperimentDraw draw = fault_of_gain(study, 1.0);
   draw.mismatches.clear();
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)  // the actuator: its repair is that of its channels
     draw.mismatches.push_back({cv, 0, MismatchParameter::gain, 0.7});
   const double without = mean_cost(study, study, draw.without_faults());
   double repaired = 0.0;
-  for (int loop = 0; loop < kLoops; ++loop) {
+  for (int loop = 0; loop < kRepairLoops; ++loop) {
     ExperimentDraw noisy = draw;
-    noisy.noise_index = pilot_noise(study, draw, kLoops, loop);
+    noisy.noise_index = pilot_noise(study, draw, kRepairLoops, loop);
     const Trajectory run = loop_with_model(study, true_plant(study, draw), noisy, testing::kFactory);
-    repaired += loop_cost(study, run).total() / kLoops;
+    repaired += loop_cost(study, run).total() / kRepairLoops;
   }
   CHECK(repaired == Approx(without).epsilon(1e-3));
   CHECK(mean_cost(study, study, draw) > 1.02 * without);
