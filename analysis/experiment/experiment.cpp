@@ -4,6 +4,8 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/fault_scale.hpp"
 #include "analysis/experiment/judgement.hpp"
@@ -107,6 +109,7 @@ const ExperimentRunner::WorldCase& ExperimentRunner::case_of(const ExperimentDra
   if (known.panel || known.basis.world == draw.world)
     return known;
   known.basis = world_basis(study_, basis_, draw.world, factory_);
+  known.spectral_radius = stability_.spectral_radius(basis_draw(draw.world));
   if (known.basis.trajectory.status != ControlStatus::ok)
     return known;
   known.panel =
@@ -177,6 +180,16 @@ double ExperimentRunner::spectral_radius(const ExperimentDraw& draw) const {
                      : stability_.spectral_radius(draw);
 }
 
+void ExperimentRunner::exclude_unstable(ExperimentRecord& record) {
+  if (has_cause(record.conditions, NonlinearCause::unstable))
+    record.status = ExperimentStatus::unstable;
+  if (record.draw.world == kExactWorld || !(case_of(record.draw).spectral_radius >= 1.0))
+    return;
+  record.status = ExperimentStatus::unstable;
+  record.message = fmt::format("world {} is not stable without a fault: spectral radius {:.4f}",
+                               record.draw.world, case_of(record.draw).spectral_radius);
+}
+
 /// Runs the loops with one of two faults alone, without which the experiment is not complete.
 void ExperimentRunner::assess_alone(ExperimentRecord& record, const StepObserver& observer) {
   const FinishedLoop mpm_alone = simulate(record.draw.mismatch_alone(), observer);
@@ -217,6 +230,8 @@ void ExperimentRunner::add_truth(ExperimentRecord& record, const Trajectory& loo
   record.cost =
       fault_cost(study_of(record.draw), record.draw, study_.world->cost_loops, factory_, record.solver);
   record.ivar_basis = record.cost->variance_ratio;
+  record.repair =
+      repair_gains(study_of(record.draw), record.draw, study_.world->repair_loops, factory_, record.solver);
 }
 
 Eigen::MatrixXd ExperimentRunner::healthy_output(ExperimentRecord& record, const StepObserver& observer) {
@@ -244,9 +259,8 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
     record.solver.add(main.own->solver);
   record.conditions = loop_conditions(study_of(record.draw), basis_, main.trajectory);
   record.conditions.spectral_radius = spectral_radius(record.draw);
-  if (record.status == ExperimentStatus::ok && study_.diagnosis.unstable == UnstableLoops::exclude &&
-      has_cause(record.conditions, NonlinearCause::unstable))
-    record.status = ExperimentStatus::unstable;
+  if (record.status == ExperimentStatus::ok && study_.diagnosis.unstable == UnstableLoops::exclude)
+    exclude_unstable(record);
   if (record.status == ExperimentStatus::ok)
     record.assessments = assessed(record.draw, main);
   if (store == StorePolicy::truth) {

@@ -16,6 +16,7 @@
 #include "analysis/basis/tuned_basis.hpp"
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/loop_conditions.hpp"
+#include "analysis/experiment/repair_gain.hpp"
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/method_panel.hpp"
 #include "analysis/sensitivity/loop_stability.hpp"
@@ -30,7 +31,8 @@ enum class ExperimentStatus : std::int8_t {
   infeasible = 1,  ///< some MPC problem had no solution; the experiment is left out, as in the thesis
   failed = 2,      ///< the solver gave no answer, the plant could not be integrated or had no steady state to
                    ///< begin at, or the process that ran the experiment died
-  unstable = 3,    ///< the loop is not stable, and the study leaves such loops out (UnstableLoops)
+  unstable = 3,    ///< the loop is not stable, with its fault or as its world is without it, and the study
+                   ///< leaves such loops out (UnstableLoops)
 };
 
 /// "ok", "infeasible", "failed", "unstable"
@@ -72,11 +74,12 @@ struct LoopTruth {
 struct ExperimentRecord {
   ExperimentDraw draw;
   ExperimentStatus status = ExperimentStatus::failed;
-  std::string message;        ///< why it failed; empty otherwise
+  std::string message;        ///< why it failed, or that its world is not stable; empty otherwise
   LoopConditions conditions;  ///< of the loop that was assessed
   /// ny, basis_variance_indices(), in a world FaultCost::variance_ratio; empty unless the status is ok.
   Eigen::VectorXd ivar_basis;
   std::optional<FaultCost> cost = {};         ///< of the faults, of an experiment in a world with status ok
+  RepairGains repair = {};                    ///< of the channels, in a world; empty: not computed
   std::vector<AssessmentRecord> assessments;  ///< by each method of the study, in their order
   PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for, or
                             ///< its record has gaps
@@ -128,6 +131,7 @@ class ExperimentRunner {
   struct WorldCase {
     BasisCase basis;
     std::unique_ptr<MethodPanel> panel;  ///< null where the benchmark does not run to its end
+    double spectral_radius = kNaN;       ///< of its loops without a fault
   };
   /// One closed loop of an experiment, ready to be assessed.
   struct FinishedLoop {
@@ -141,6 +145,8 @@ class ExperimentRunner {
   FinishedLoop simulate(const ExperimentDraw& draw, const StepObserver& observer);
   FinishedLoop finished(const ExperimentDraw& draw, Trajectory trajectory);
   double spectral_radius(const ExperimentDraw& draw) const;
+  /// Leaves an experiment out that has run to its end, but whose loop, or whose world, is not stable.
+  void exclude_unstable(ExperimentRecord& record);
   FinishedLoop finished_again(const ExperimentRecord& record);
   void assess_alone(ExperimentRecord& record, const StepObserver& observer);
   /// Has the chain say how much the mismatch dominates, from the loops with one fault alone.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/indicators/diagnosis.hpp"
+#include "analysis/statistics/ratio_of_means.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/excitation.hpp"
@@ -14,9 +15,6 @@
 
 namespace mpm {
 namespace {
-
-/// Indices of the noise of pilot loops: below those of the benchmarks, none twice in a study.
-constexpr std::int64_t kFirstPilot = -(std::int64_t{1} << 32);
 
 double outside(double y, double lower, double upper) {
   return std::max({0.0, y - upper, lower - y});
@@ -43,25 +41,6 @@ struct Side {
     total.push_back(cost.total());
   }
 };
-
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values)
-    sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-/// The standard error of mean(a) / mean(b) over pairs.
-double error_of_ratio(const std::vector<double>& a, const std::vector<double>& b) {
-  const auto n = static_cast<double>(a.size());
-  if (a.size() < 2)
-    return kNaN;
-  const double ratio = mean_of(a) / mean_of(b);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    squares += std::pow(a[i] - ratio * b[i], 2);
-  return std::sqrt(squares / (n - 1.0) / n) / mean_of(b);
-}
 
 }  // namespace
 
@@ -99,6 +78,13 @@ bool FaultCost::has_impact(double upper) const {
                                            [upper](double ratio) { return ratio > upper; });
 }
 
+std::int64_t pilot_noise(const Study& study, const ExperimentDraw& draw, int loops, int loop) {
+  // Below those of the benchmarks.
+  constexpr std::int64_t kFirst = -(std::int64_t{1} << 32);
+  const int stride = study.world ? std::max(study.world->cost_loops, study.world->repair_loops) : loops;
+  return kFirst - draw.index * std::max(stride, loops) - loop;
+}
+
 FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
                      const QpSolverFactory& factory, SolverStatistics& pilots) {
   const Eigen::Index ny = study.cv_count();
@@ -109,7 +95,7 @@ FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
   Side with(ny), without(ny);
   for (int pair = 0; pair < pairs; ++pair) {
     ExperimentDraw faulty = draw;
-    faulty.noise_index = kFirstPilot - draw.index * pairs - pair;
+    faulty.noise_index = pilot_noise(study, draw, pairs, pair);
     const Trajectory a = simulate_experiment(moved, faulty, factory);
     const Trajectory b = simulate_experiment(moved, faulty.without_faults(), factory);
     pilots.add(a.solver);
@@ -127,8 +113,9 @@ FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
   cost.violation = (with.violation - without.violation) / n;
   cost.effort = (with.effort - without.effort) / n;
   cost.economics = (with.economics - without.economics) / n;
-  cost.loss_ratio = mean_of(with.total) / mean_of(without.total);
-  cost.error = error_of_ratio(with.total, without.total);
+  const RatioOfMeans ratio = ratio_of_means(with.total, without.total);
+  cost.loss_ratio = ratio.value;
+  cost.error = ratio.error;
   return cost;
 }
 

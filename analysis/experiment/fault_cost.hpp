@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include <Eigen/Core>
 
 #include "scenarios/loop/closed_loop.hpp"
@@ -46,6 +48,10 @@ struct FaultCost {
   /// Is the model worse than it was: does a variance or the cost of the loop rise above `upper` times itself?
   bool has_impact(double upper) const;
 };
+
+/// The index of the noise of pilot loop `loop` of `loops` of the experiment: none twice in a study, and the
+/// same for all numbers that are expectations over pilot loops of an experiment.
+std::int64_t pilot_noise(const Study& study, const ExperimentDraw& draw, int loops, int loop);
 
 /// The cost of the faults of `draw` from `pairs` pairs of loops with noise of their own; without a fault, and
 /// of a loop that does not run to its end, one of nothing (ratios of 1) and NaN.

@@ -147,10 +147,13 @@ FaultSource named_source(const AssessmentRecord& assessment) {
   return assessment.answered() && assessment.flagged ? assessment.predicted_source : FaultSource::none;
 }
 
+bool names_source(const ExperimentRecord& record, FaultSource named) {
+  const FaultSource truth = source_of(record.draw.kind);
+  return named == truth || (truth == FaultSource::other && named == FaultSource::none);
+}
+
 bool tells_fault(const ExperimentRecord& record, const AssessmentRecord& assessment) {
-  const FaultSource truth = source_of(record.draw.kind), named = named_source(assessment);
-  const bool no_other_word = truth == FaultSource::other && named == FaultSource::none;
-  return assessment.answered() && assessment.flagged && (named == truth || no_other_word);
+  return assessment.answered() && assessment.flagged && names_source(record, named_source(assessment));
 }
 
 bool to_be_flagged(const Study& study, const ExperimentRecord& record, FlagTruth truth) {

@@ -87,6 +87,10 @@ bool in_source_population(const Study& study, const AssessmentRecord& assessment
 /// None when the loop is not flagged, nothing is said, or the method tells no sources.
 FaultSource named_source(const AssessmentRecord& assessment);
 
+/// Is this the source of the fault of the loop, which must have one? Of a fault that is neither mismatch nor
+/// disturbance `other` is, and `none`.
+bool names_source(const ExperimentRecord& record, FaultSource named);
+
 /// Is the fault told from the others (mismatch, disturbance, both, another one)? The loop must have a fault.
 /// Nothing said is not right. Of a fault that is neither of them the right answer is a flagged loop with the
 /// source `other`, or, by a method that has no word for it, without a source.

@@ -1,24 +1,13 @@
 #include "analysis/experiment/repair.hpp"
 
+#include "analysis/experiment/repaired_model.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/signals.hpp"
-#include "scenarios/loop/world.hpp"
 
 namespace mpm {
 namespace {
-
-/// The experiment as a controller with another model sees it: the plant differs from this model in every
-/// channel in which it is not the same; in a world every channel is said, so that none gets its errors twice.
-ExperimentDraw against(const TransferMatrix& model, const TransferMatrix& plant, ExperimentDraw draw) {
-  draw.mismatches.clear();
-  for (Eigen::Index cv = 0; cv < plant.rows(); ++cv)
-    for (Eigen::Index input = 0; input < plant.cols(); ++input)
-      if (draw.world != kExactWorld || !(model(cv, input) == plant(cv, input)))
-        draw.mismatches.push_back({cv, input, MismatchParameter::channel, 1.0, plant(cv, input)});
-  return draw;
-}
 
 Eigen::VectorXd variances_of(const Study& study, const Trajectory& loop) {
   if (loop.status != ControlStatus::ok)
@@ -80,32 +69,26 @@ RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, cons
                       .predicted = {},
                       .repaired = {},
                       .perfect = {}};
-  ExperimentDraw from_the_start = draw;
-  from_the_start.onset = {};
-  Study repaired = study;
-  repaired.plant.G(channel.cv, channel.mv) = result.fit.channel;
-  const auto variances_with = [&](const Study& controller, const ExperimentDraw& seen) {
-    return variances_of(study, simulate_experiment(controller, seen, factory));
+  TransferMatrix repaired = study.plant.G;
+  repaired(channel.cv, channel.mv) = result.fit.channel;
+  Study with_repair = study;
+  with_repair.plant.G = repaired;
+  const auto variances_with = [&](const TransferMatrix& model, const ExperimentDraw& seen) {
+    return variances_of(study, loop_with_model(study, model, seen, factory));
   };
-  result.now = variances_with(study, from_the_start);
-  result.predicted = variances_of(study, promised(repaired, point, loop, factory));
-  if (study.nonlinear) {
-    result.repaired = variances_with(repaired, from_the_start);
-    result.perfect = variances_with(study, from_the_start.disturbance_alone());
-    return result;
-  }
-  const TransferMatrix plant =
-      with_world_mismatches(world_plant(study, draw_world(study, draw.world)), draw.mismatches);
-  result.repaired = variances_with(repaired, against(repaired.plant.G, plant, from_the_start));
-  Study perfect = study;
-  perfect.plant.G = plant;
-  result.perfect = variances_with(perfect, against(plant, plant, from_the_start));
+  result.now = variances_with(study.plant.G, draw);
+  result.predicted = variances_of(study, promised(with_repair, point, loop, factory));
+  result.repaired = variances_with(repaired, draw);
+  result.perfect = study.nonlinear ? variances_with(study.plant.G, draw.disturbance_alone())
+                                   : variances_with(true_plant(study, draw), draw);
   return result;
 }
 
 std::optional<Channel> channel_to_repair(const AssessmentRecord& said) {
-  if (!said.answered() || !said.flagged)
-    return std::nullopt;
+  return said.answered() && said.flagged ? named_channel(said) : std::nullopt;
+}
+
+std::optional<Channel> named_channel(const AssessmentRecord& said) {
   if (const std::optional<NamedMismatch> named = said.named_mismatch())
     return named->channel;
   const Eigen::MatrixXd flags = said.values("channel_flagged");

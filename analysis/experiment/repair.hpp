@@ -64,4 +64,7 @@ std::optional<PromisedRepair> promised_repair(const Study& study, const Operatin
 /// none the first channel that it flags. None of a loop that it does not flag.
 std::optional<Channel> channel_to_repair(const AssessmentRecord& said);
 
+/// The same, whether it flags the loop or not.
+std::optional<Channel> named_channel(const AssessmentRecord& said);
+
 }  // namespace mpm

@@ -49,13 +49,14 @@ JudgementChanges judgement_changes(const RecordRange& before, const RecordRange&
     if (pair.before == Correctness::not_judged && pair.now == Correctness::not_judged)
       return;
     ++changes.pairs;
-    if (pair.before == Correctness::right && pair.now != Correctness::right)
+    const bool was = pair.before == Correctness::right, is = pair.now == Correctness::right;
+    changes.worlds.add(record.draw.world, was, is);
+    if (was && !is)
       changes.lost.push_back(pair);
-    if (pair.before != Correctness::right && pair.now == Correctness::right)
+    if (is && !was)
       changes.gained.push_back(pair);
   });
-  changes.test = mcnemar_test(static_cast<std::int64_t>(changes.lost.size()),
-                              static_cast<std::int64_t>(changes.gained.size()));
+  changes.test = changes.worlds.mcnemar();
   return changes;
 }
 

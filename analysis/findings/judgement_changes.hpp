@@ -6,6 +6,7 @@
 
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/experiment/record_range.hpp"
+#include "analysis/findings/world_counts.hpp"
 #include "analysis/statistics/mcnemar.hpp"
 
 namespace mpm {
@@ -24,7 +25,8 @@ struct JudgementChanges {
   std::int64_t pairs = 0;             ///< experiments that are judged in one of the runs at least
   std::vector<JudgementPair> lost;    ///< right before and not now
   std::vector<JudgementPair> gained;  ///< right now and not before
-  McNemarTest test;                   ///< of these two numbers
+  WorldPairs worlds = {};             ///< all of them, world by world
+  McNemarTest test;                   ///< of these two numbers: clustered_mcnemar()
 };
 
 /// One question to an experiment, such as whether its CV is located.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 
 #include "analysis/findings/method_rates.hpp"
@@ -43,6 +44,7 @@ PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, doub
   PooledScores pooled;
   const auto infos = method_rate_infos();
   std::vector<std::vector<std::vector<ClusterCount>>> strata(infos.size());  // the worlds of each cell
+  std::vector<std::vector<std::vector<ClusterSum>>> of_estimates(method_estimate_infos().size());
   for (const CellScores& cell : cells) {
     if (!belongs(cell) || !cell.trouble.empty())
       continue;
@@ -56,9 +58,13 @@ PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, doub
       strata[i].push_back(scores.rates[i].clusters.empty()
                               ? std::vector<ClusterCount>{{scores.rates[i].hits, scores.rates[i].total}}
                               : scores.rates[i].clusters);
+    for (std::size_t i = 0; i < scores.estimates.size(); ++i)
+      of_estimates[i].push_back(scores.estimates[i].clusters);
   }
   for (std::size_t i = 0; i < infos.size(); ++i)
     pooled.rates.push_back(clustered_rate(strata[i], confidence));
+  for (const std::vector<std::vector<ClusterSum>>& cells_of_one : of_estimates)
+    pooled.estimates.push_back(clustered_mean(cells_of_one, confidence));
   return pooled;
 }
 
@@ -178,6 +184,47 @@ std::vector<LeaderboardScore> leaderboard_scores() {
     if (info_of(score.rate) != nullptr)
       known.push_back(score);
   return known;
+}
+
+bool Leaderboard::in_worlds() const {
+  const auto ran = [](const CellScores& cell) { return cell.trouble.empty(); };
+  return std::any_of(cells.begin(), cells.end(), ran) &&
+         std::all_of(cells.begin(), cells.end(),
+                     [&ran](const CellScores& cell) { return cell.in_worlds || !ran(cell); });
+}
+
+std::vector<RankedMethod> ranking(const Leaderboard& board) {
+  std::vector<RankedMethod> ranked;
+  if (!board.in_worlds())
+    return ranked;
+  for (std::size_t method = 0; method < board.methods.size(); ++method)
+    if (board.methods[method] != kReferenceMethod)
+      ranked.push_back({method});
+  const auto source = [&board](const RankedMethod& each) {
+    const Rate* const rate = board.overall[each.method].of(kRankingSource);
+    return rate != nullptr && rate->total > 0 ? rate->value : kNaN;
+  };
+  const auto repair = [&board](const RankedMethod& each) {
+    return board.overall[each.method].estimate(kRankingRepair).value;
+  };
+  const auto rank = [&ranked](const RankedMethod& one, const auto& value) -> std::optional<int> {
+    if (std::isnan(value(one)))
+      return std::nullopt;
+    return 1 + static_cast<int>(std::count_if(ranked.begin(), ranked.end(), [&](const RankedMethod& other) {
+             return value(other) > value(one);
+           }));
+  };
+  for (RankedMethod& each : ranked) {
+    each.source = rank(each, source);
+    each.repair = rank(each, repair);
+  }
+  const auto last = [](const std::optional<int>& place) {
+    return place.value_or(std::numeric_limits<int>::max());
+  };
+  std::stable_sort(ranked.begin(), ranked.end(), [&last](const RankedMethod& a, const RankedMethod& b) {
+    return std::pair(last(a.source), last(a.repair)) < std::pair(last(b.source), last(b.repair));
+  });
+  return ranked;
 }
 
 bool has_reference(const Leaderboard& board) {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +19,8 @@ namespace mpm {
 struct MethodScores {
   std::string reason;       ///< why there was no verdict on the first loop without one; empty: on every loop
   std::vector<Rate> rates;  ///< in the order of method_rate_infos()
-  /// In the order of method_estimate_infos(), of one cell only: medians cannot be added up.
+  /// In the order of method_estimate_infos(). Of several cells only means that keep their clusters: medians
+  /// cannot be added up.
   std::vector<Estimate> estimates = {};
 
   /// The rate of this name; null when there is none.
@@ -102,6 +103,11 @@ struct LeaderboardScore {
 /// Those that method_rate_infos() knows, in the order in which people read them.
 std::vector<LeaderboardScore> leaderboard_scores();
 
+/// What the methods of a suite of worlds are ranked by, at equal false alarms: at the threshold that is
+/// calibrated for 5 % of them.
+inline constexpr std::string_view kRankingSource = "source_05_impact";      ///< a rate
+inline constexpr std::string_view kRankingRepair = "repair_gain_share_05";  ///< an estimate
+
 /// All that a run of a suite found.
 struct Leaderboard {
   std::string suite;
@@ -117,7 +123,21 @@ struct Leaderboard {
   std::vector<std::vector<PooledScores>> by_family = {};  ///< [method][family]
   std::vector<std::vector<PooledScores>> by_plant = {};   ///< [method][plant]
   std::vector<PooledScores> overall = {};                 ///< [method]
+
+  /// All loops take place in worlds drawn at random: there are cells that were run, and all of them do.
+  bool in_worlds() const;
 };
+
+/// A method among the others, over all families of a suite of worlds.
+struct RankedMethod {
+  std::size_t method;              ///< place in Leaderboard::methods
+  std::optional<int> source = {};  ///< 1: the best; none: it tells no sources, or there is no threshold
+  std::optional<int> repair = {};  ///< the same; none: it names no channels
+};
+
+/// The methods of a suite of worlds but the reference, by kRankingSource, and those without it behind them by
+/// kRankingRepair; empty for another suite. Equal values have the same rank.
+std::vector<RankedMethod> ranking(const Leaderboard& board);
 
 /// Was the reference asked, on a family of its own?
 bool has_reference(const Leaderboard& board);

@@ -10,8 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "analysis/experiment/repair.hpp"
 #include "analysis/findings/monitored_loop.hpp"
-#include "analysis/statistics/clustered_rate.hpp"
+#include "analysis/findings/world_counts.hpp"
 #include "analysis/statistics/holm.hpp"
 #include "plants/non_finite.hpp"
 
@@ -20,32 +21,23 @@ namespace {
 
 constexpr double kNone = kNaN;
 
-/// Counts trials and hits in each world: the loops of one share its errors of the model and its benchmark.
-class Count {
+/// Counts trials and hits in each world.
+class Count : public WorldCount {
  public:
-  void add(int world, bool hit) {
-    const auto place = static_cast<std::size_t>(std::int64_t{world} + 1);  // that of the exact world first
-    if (place >= worlds_.size())
-      worlds_.resize(place + 1);
-    ++worlds_[place].total;
-    worlds_[place].hits += hit ? 1 : 0;
-  }
+  using WorldCount::add;
   void add(int world, Correctness correctness) {
     if (correctness != Correctness::not_judged)
       add(world, correctness == Correctness::right);
   }
-  Rate rate(double confidence) const { return clustered_rate(worlds_, confidence); }
-
- private:
-  std::vector<ClusterCount> worlds_;
 };
 
 struct Counts {
   Count answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
       false_alarm_healthy, false_alarm_tuning, located, source, channel, channel_impact, parameter_impact,
       size_covered, candidate, source_all, abstained;
-  Count false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
+  Count false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm, source_05_impact;
   Count monitored_impact;
+  WorldMean repair_gain_share, repair_gain_share_05;
   int world = 0;  ///< of the record at hand
   std::int64_t false_alarms = 0, verdicts_before = 0;
   std::vector<double> delays;
@@ -57,8 +49,10 @@ struct Counts {
   void add(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
     world = record.draw.world;
     answered.add(world, said.answered());
+    if (study.world)
+      add_repair(study, record, said);
     if (!is_faultless(record.draw.kind) && said.form->method().tells_sources)
-      add_source(record, said);
+      add_source(study, record, said);
     if (!said.answered())
       return;
     if (!std::isnan(said.milliseconds))  // it would break the order for the median
@@ -80,8 +74,28 @@ struct Counts {
       count.add(world, threshold.exceeded_by(score));
   }
 
-  void add_source(const ExperimentRecord& record, const AssessmentRecord& said) {
+  /// How much of the best repair's gain the channel that it names brings.
+  void add_repair(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
+    const MethodDescription& method = said.form->method();
+    if (!(method.names_channels || method.names_mismatches) || !has_impact(study.diagnosis, record) ||
+        !record.repair.best())
+      return;
+    repair_gain_share.add(world, record.repair.share_of(channel_to_repair(said)));
+    if (thresholds.at_05.value)
+      repair_gain_share_05.add(
+          world,
+          record.repair.share_of(is_above(thresholds.at_05, said) ? named_channel(said) : std::nullopt));
+  }
+
+  static bool is_above(const CalibratedThreshold& threshold, const AssessmentRecord& said) {
+    return said.answered() && threshold.exceeded_by(said.score);
+  }
+
+  void add_source(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
     source_all.add(world, tells_fault(record, said));
+    if (study.world && thresholds.at_05.value && has_impact(study.diagnosis, record))
+      source_05_impact.add(world,
+                           is_above(thresholds.at_05, said) && names_source(record, said.predicted_source));
     abstained.add(world, named_source(said) == FaultSource::none);
   }
 
@@ -140,7 +154,7 @@ struct Counts {
   }
 };
 
-constexpr std::array<MethodRateInfo, 23> kRates{{
+constexpr std::array<MethodRateInfo, 24> kRates{{
     {"answered", "answered", "of all loops those on which the method gave a verdict", &MethodRates::answered},
     {"detected", "detected", "of the loops with a fault those that are flagged", &MethodRates::detected},
     {"detected_mpm", "detected, mismatch", "of the loops with a mismatch alone those that are flagged",
@@ -209,13 +223,18 @@ constexpr std::array<MethodRateInfo, 23> kRates{{
      "of the loops with a mismatch alone those above the threshold that is calibrated for 5 % of false "
      "alarms among loops without a fault and with a disturbance alone",
      &MethodRates::power_05_mpm, StudyFeature::calibration},
+    {"source_05_impact", "at 5 %: fault with impact told",
+     "of the loops with a fault that has an impact, with or without verdict, those above the threshold that "
+     "is "
+     "calibrated for 5 % of false alarms and with the right source, as for source_all",
+     &MethodRates::source_05_impact, StudyFeature::calibrated_worlds},
     {"monitored_impact", "windows: with impact",
      "of the loops with a fault that has an impact those in which some window that ends after the onset is "
      "flagged",
      &MethodRates::monitored_impact, StudyFeature::monitoring},
 }};
 
-constexpr std::array<MethodEstimateInfo, 4> kEstimates{{
+constexpr std::array<MethodEstimateInfo, 6> kEstimates{{
     {"channels_named", "channels named, mean",
      "mean number of channels named, over the flagged loops with one mismatch of an MV",
      &MethodRates::channels_named, false},
@@ -224,6 +243,17 @@ constexpr std::array<MethodEstimateInfo, 4> kEstimates{{
      "with "
      "one mismatch of an MV whose channel and parameter are named",
      &MethodRates::size_error},
+    {"repair_gain_share", "share of the repair's gain, mean",
+     "mean share of the best repair's gain that the repair of the channel it names brings, over the loops "
+     "with "
+     "mismatches that have an impact and a repair with a gain, with or without verdict; 0 where the loop is "
+     "not "
+     "flagged, no channel is named, or the repair brings nothing",
+     &MethodRates::repair_gain_share, true, StudyFeature::worlds},
+    {"repair_gain_share_05", "at 5 %: share of the repair's gain",
+     "the same where the loop counts as flagged above the threshold that is calibrated for 5 % of false "
+     "alarms",
+     &MethodRates::repair_gain_share_05, true, StudyFeature::calibrated_worlds},
     {"detection_delay", "windows: delay, median",
      "median time from the onset to the end of the first flagged window, in the time unit of the plant, over "
      "the loops with a fault that has an impact; infinite where no window is flagged",
@@ -258,6 +288,10 @@ bool has(const Study& study, StudyFeature feature) {
       return study.calibration.has_value();
     case StudyFeature::monitoring:
       return study.monitoring.has_value();
+    case StudyFeature::worlds:
+      return study.world.has_value();
+    case StudyFeature::calibrated_worlds:
+      return study.world && study.calibration;
   }
   return false;
 }
@@ -323,6 +357,7 @@ class RateCounts {
                       .power_05 = counts_.power_05.rate(confidence),
                       .power_05_impact = counts_.power_05_impact.rate(confidence),
                       .power_05_mpm = counts_.power_05_mpm.rate(confidence),
+                      .source_05_impact = counts_.source_05_impact.rate(confidence),
                       .monitored_impact = counts_.monitored_impact.rate(confidence),
                       .detection_delay = median_estimate(std::move(counts_.delays), confidence),
                       .false_alarms_a_day = alarms_a_day(study_, counts_),
@@ -333,6 +368,8 @@ class RateCounts {
                       .roc_impact_area = {},
                       .channels_named = mean_estimate(counts_.channels_named),
                       .size_error = median_estimate(std::move(counts_.size_errors), confidence),
+                      .repair_gain_share = counts_.repair_gain_share.mean(confidence),
+                      .repair_gain_share_05 = counts_.repair_gain_share_05.mean(confidence),
                       .milliseconds = median_estimate(std::move(counts_.milliseconds), confidence).value};
     const SortedScores impact(std::move(counts_.impact_scores)),
         no_impact(std::move(counts_.no_impact_scores)), healthy(std::move(counts_.healthy_scores));
@@ -460,7 +497,7 @@ namespace {
 
 struct PairCounts {
   MethodPair pair;
-  std::int64_t lost = 0, gained = 0;
+  WorldPairs right_in = {};
 
   void add(const Study& study, const ExperimentRecord& record) {
     const AssessmentRecord& a = record.assessments[pair.first];
@@ -469,13 +506,12 @@ struct PairCounts {
       return;
     const bool right = to_be_flagged(study, record, pair.truth);
     ++pair.loops;
-    lost += a.flagged == right && b.flagged != right ? 1 : 0;
-    gained += a.flagged != right && b.flagged == right ? 1 : 0;
+    right_in.add(record.draw.world, a.flagged == right, b.flagged == right);
   }
 
   MethodPair result() const {
     MethodPair found = pair;
-    found.test = mcnemar_test(lost, gained);
+    found.test = right_in.mcnemar();
     return found;
   }
 };

@@ -27,6 +27,7 @@ struct MethodRates {
       size_covered, candidate, source_all, abstained;
   // At calibrated thresholds; nothing is counted without one.
   Rate false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
+  Rate source_05_impact;  // in worlds alone
   // On moving windows; nothing is counted in a study that does not monitor.
   Rate monitored_impact;
   Estimate detection_delay, false_alarms_a_day;
@@ -37,11 +38,19 @@ struct MethodRates {
       roc_impact;  ///< loops with a fault that has an impact against those with another one and healthy ones
   Interval roc_impact_area;
   Estimate channels_named, size_error;
+  Estimate repair_gain_share, repair_gain_share_05;  // in worlds alone
   double milliseconds;  ///< median processor time a loop, of those answered; NaN without
 };
 
 /// Which studies have a number.
-enum class StudyFeature : std::int8_t { any, candidates, calibration, monitoring };
+enum class StudyFeature : std::int8_t {
+  any,
+  candidates,
+  calibration,
+  monitoring,
+  worlds,
+  calibrated_worlds,
+};
 
 /// A rate of a method under the name that text, JSON, archive, report and gates have for it. All are shares
 /// of loops.
@@ -124,7 +133,7 @@ inline constexpr double kUsualFalseAlarms = 0.05;
 FalseAlarmMark false_alarm_mark(const MethodDescription& method, const MethodRates& rates);
 
 /// Two methods on the same loops: is one right where the other is wrong? Counted are the loops that both gave
-/// a verdict on.
+/// a verdict on. In worlds the test is clustered_mcnemar(), worlds being the clusters.
 struct MethodPair {
   FlagTruth truth;
   std::size_t first, second;  ///< places in the assessments of each record

@@ -106,16 +106,14 @@ class PairedRates {
  public:
   PairedRates() : sums_(method_rate_infos().size()) {}
 
-  void add(const MethodRates& before, const MethodRates& now) {
+  void add(int world, const MethodRates& before, const MethodRates& now) {
     const std::span<const MethodRateInfo> infos = method_rate_infos();
     for (std::size_t i = 0; i < infos.size(); ++i) {
       const Rate &was = before.*infos[i].rate, &is = now.*infos[i].rate;
-      sums_[i].hits_before += was.hits;
-      sums_[i].before += was.total;
-      sums_[i].hits_now += is.hits;
-      sums_[i].now += is.total;
+      sums_[i].before.add(world, {was.hits, was.total});
+      sums_[i].now.add(world, {is.hits, is.total});
       if (was.total == 1 && is.total == 1)
-        sums_[i].both.add(was.hits == 1, is.hits == 1);
+        sums_[i].both.add(world, was.hits == 1, is.hits == 1);
     }
   }
 
@@ -123,16 +121,15 @@ class PairedRates {
     const std::span<const MethodRateInfo> infos = method_rate_infos();
     std::vector<RateChange> changes;
     for (std::size_t i = 0; i < infos.size(); ++i)
-      changes.push_back({&infos[i], rate(sums_[i].hits_before, sums_[i].before, confidence),
-                         rate(sums_[i].hits_now, sums_[i].now, confidence), sums_[i].both,
-                         paired_difference(sums_[i].both, confidence)});
+      changes.push_back({&infos[i], sums_[i].before.rate(confidence), sums_[i].now.rate(confidence),
+                         sums_[i].both.sum(), sums_[i].both.difference(confidence)});
     return changes;
   }
 
  private:
   struct Sums {
-    std::int64_t hits_before = 0, before = 0, hits_now = 0, now = 0;
-    PairedCounts both;
+    WorldCount before, now;
+    WorldPairs both;
   };
 
   std::vector<Sums> sums_;
@@ -165,12 +162,13 @@ std::vector<RateChange> corrected(std::vector<RateChange> changes) {
 // --- Verdicts ---
 
 /// One more loop for a question.
-void add_verdict(VerdictChange& verdict, const JudgementPair& pair) {
+void add_verdict(VerdictChange& verdict, int world, const JudgementPair& pair) {
   JudgementChanges& changes = verdict.changes;
   if (pair.before == Correctness::not_judged && pair.now == Correctness::not_judged)
     return;
   ++changes.pairs;
   const bool was = pair.before == Correctness::right, is = pair.now == Correctness::right;
+  changes.worlds.add(world, was, is);
   verdict.right_in_both += was && is ? 1 : 0;
   if (was && !is)
     changes.lost.push_back(pair);
@@ -182,8 +180,7 @@ void add_verdict(VerdictChange& verdict, const JudgementPair& pair) {
 std::vector<VerdictChange> tested(std::vector<VerdictChange> verdicts) {
   std::erase_if(verdicts, [](const VerdictChange& verdict) { return verdict.changes.pairs == 0; });
   for (VerdictChange& verdict : verdicts)
-    verdict.changes.test = mcnemar_test(static_cast<std::int64_t>(verdict.changes.lost.size()),
-                                        static_cast<std::int64_t>(verdict.changes.gained.size()));
+    verdict.changes.test = verdict.changes.worlds.mcnemar();
   return verdicts;
 }
 
@@ -288,10 +285,12 @@ class MethodComparison {
   /// An experiment that both have; only of paired runs.
   void add_pair(const ExperimentRecord& before, const ExperimentRecord& now) {
     const AssessmentRecord &was = before_.said(before), &is = now_.said(now);
-    rates_.add(before_.rates().of(std::span(&before, 1)), now_.rates().of(std::span(&now, 1)));
+    rates_.add(now.draw.world, before_.rates().of(std::span(&before, 1)),
+               now_.rates().of(std::span(&now, 1)));
     for (VerdictChange& verdict : verdicts_)
-      add_verdict(verdict, {now.draw.index, verdict.question->ask(before_.run.study, before, was),
-                            verdict.question->ask(now_.run.study, now, is)});
+      add_verdict(verdict, now.draw.world,
+                  {now.draw.index, verdict.question->ask(before_.run.study, before, was),
+                   verdict.question->ask(now_.run.study, now, is)});
     numbers_.add(now.draw.index, was, is);
   }
 

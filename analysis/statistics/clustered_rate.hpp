@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
 
 namespace mpm {
@@ -30,5 +31,13 @@ Rate clustered_rate(std::span<const std::vector<ClusterCount>> strata, double co
 
 /// The same of one stratum. The rate keeps its clusters.
 Rate clustered_rate(std::vector<ClusterCount> clusters, double confidence = 0.95);
+
+/// The mean of values between 0 and 1 in strata of clusters, with the same interval: a value x counts as x
+/// hits in one trial. Of nothing: NaN.
+/// @throws InputError unless 0 <= sum <= count in each cluster and 0 < confidence < 1
+Estimate clustered_mean(std::span<const std::vector<ClusterSum>> strata, double confidence = 0.95);
+
+/// The same of one stratum. The estimate keeps its clusters.
+Estimate clustered_mean(std::vector<ClusterSum> clusters, double confidence = 0.95);
 
 }  // namespace mpm

@@ -8,11 +8,18 @@
 
 namespace mpm {
 
+/// Values within one cluster: values that share what is drawn once for all of them.
+struct ClusterSum {
+  double sum = 0.0;
+  std::int64_t count = 0;
+};
+
 /// A number that was found, with its uncertainty.
 struct Estimate {
-  double value = kNaN;            ///< NaN: of nothing
-  Interval interval{kNaN, kNaN};  ///< NaN: none
-  std::int64_t count = 0;         ///< values behind it
+  double value = kNaN;                    ///< NaN: of nothing
+  Interval interval{kNaN, kNaN};          ///< NaN: none
+  std::int64_t count = 0;                 ///< values behind it
+  std::vector<ClusterSum> clusters = {};  ///< of a clustered_mean(): its values
 };
 
 /// The mean of values, without an interval.

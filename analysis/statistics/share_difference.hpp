@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "analysis/statistics/interval.hpp"
+#include "analysis/statistics/mcnemar.hpp"
 
 namespace mpm {
 
@@ -37,9 +39,40 @@ struct ShareDifference {
 /// @throws InputError for a negative number, or unless 0 < confidence < 1
 ShareDifference paired_difference(const PairedCounts& counts, double confidence = 0.95);
 
+/// Of two shares of the same cases, which lie in clusters that are drawn at random. With first_w and second_w
+/// cases of the n_w in cluster w that count one time alone, D the difference and n all cases, D has the
+/// variance
+///
+///     v = W / (W - 1) sum_w (second_w - first_w - D n_w)^2 / n^2,    W clusters with a case,
+///
+/// where independent cases have v_0 = ((first + second) / n - D^2) / n. The interval is that of
+/// paired_difference() for the same shares of
+///
+///     min(n, n (v_0 / v) (z / t)^2)
+///
+/// cases, as clustered_rate() has it, t with W - 1 degrees of freedom. p is that of clustered_mcnemar(). Of
+/// one cluster, it is paired_difference().
+/// @throws InputError for a negative number, or unless 0 < confidence < 1
+ShareDifference clustered_difference(std::span<const PairedCounts> clusters, double confidence = 0.95);
+
+/// McNemar's test of cases in clusters that are drawn at random: with lost_w and gained_w of them in cluster
+/// w,
+///
+///     t = sum_w d_w / sqrt(W / (W - 1) sum_w (d_w - mean d)^2),    d_w = lost_w - gained_w,
+///
+/// has Student's distribution with W - 1 degrees of freedom if neither is likelier. Each p-value is that of t
+/// or that of mcnemar_test(), whichever is larger: clusters never make it more certain than independent
+/// cases. PairedCounts::first are lost, second gained; of one cluster, it is mcnemar_test().
+McNemarTest clustered_mcnemar(std::span<const PairedCounts> clusters);
+
+/// The sum of all clusters.
+PairedCounts pooled_counts(std::span<const PairedCounts> clusters);
+
 /// Of shares of different cases: Newcombe's interval (1998, Statistics in Medicine 17:873, method 10), which
 /// is the one above with phi = 0, and p of Fisher's exact test, the probability of all tables with these
-/// margins that are no likelier than the one found. All NaN when one of them has no trials.
+/// margins that are no likelier than the one found. Of shares with clusters (Rate::clusters) the intervals
+/// are those of clustered_rate(), and p at least that of a normal difference whose variances are as much
+/// larger as the squares of these intervals. All NaN when one of them has no trials.
 /// @throws InputError for a negative number, or unless 0 < confidence < 1
 ShareDifference independent_difference(const Rate& first, const Rate& second, double confidence = 0.95);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/statistics/student.hpp"
 
 namespace mpm {
 namespace {
@@ -20,6 +21,38 @@ double interval_width(double p, double loops, double confidence) {
   const auto hits = static_cast<std::int64_t>(std::llround(p * static_cast<double>(total)));
   const Interval interval = wilson_interval(hits, total, confidence);
   return interval.upper - interval.lower;
+}
+
+/// Of the interval of a rate over so many loops in several worlds, and what it comes down to with ever more.
+struct WorldWidths {
+  double now, limit;
+};
+
+WorldWidths world_widths(double p, double loops, int worlds, double confidence) {
+  const double W = std::min(static_cast<double>(worlds), loops);
+  const auto width = [&](double trials) {
+    const Interval interval = score_interval(p, trials, confidence);
+    return interval.upper - interval.lower;
+  };
+  if (W < 2.0)
+    return {1.0, 1.0};
+  const double t = two_sided_student_quantile(confidence, static_cast<std::int64_t>(W) - 1);
+  const double shrink = std::pow(two_sided_normal_quantile(confidence) / t, 2);
+  const double design = 1.0 + (loops / W - 1.0) * kWorldCorrelation;
+  return {width(std::min(loops, loops / design * shrink)),
+          width(static_cast<double>(worlds) / kWorldCorrelation * shrink)};
+}
+
+/// Puts the widths of the intervals of worlds in the place of those of independent loops.
+void widen_for_worlds(const Study& study, StudyForecast& forecast) {
+  forecast.worlds = study.world->count;
+  const double confidence = study.aggregate.confidence;
+  const WorldWidths detection = world_widths(0.5, forecast.loops_with_impact, forecast.worlds, confidence);
+  const WorldWidths alarms = world_widths(0.05, forecast.loops_without_fault, forecast.worlds, confidence);
+  forecast.detection_width = std::max(forecast.detection_width, detection.now);
+  forecast.detection_width_limit = detection.limit;
+  forecast.false_alarm_width = std::max(forecast.false_alarm_width, alarms.now);
+  forecast.false_alarm_width_limit = alarms.limit;
 }
 
 double median_cost(std::span<const ExperimentRecord> pilot, std::size_t method) {
@@ -86,6 +119,8 @@ StudyForecast forecast(const Study& study, std::span<const ExperimentRecord> pil
   forecast.loops_without_fault = scale * static_cast<double>(without_fault);
   forecast.detection_width = interval_width(0.5, forecast.loops_with_impact, confidence);
   forecast.false_alarm_width = interval_width(0.05, forecast.loops_without_fault, confidence);
+  if (study.world)
+    widen_for_worlds(study, forecast);
   forecast.bytes_of_a_loop = loop_bytes(study);
   for (std::size_t m = 0; m < pilot.front().assessments.size(); ++m)
     forecast.methods.push_back({pilot.front().assessments[m].form->method().name, median_cost(pilot, m)});
@@ -119,7 +154,11 @@ std::vector<StudyWarning> forecast_warnings(const Study& study, const StudyForec
         {"experiments",
          fmt::format("about {:.0f} loops with impact: a rate of 0.5 over them is known to +- {:.2f}",
                      forecast.loops_with_impact, forecast.detection_width / 2.0),
-         "four times as many experiments halve the interval"});
+         forecast.worlds == 0
+             ? "four times as many experiments halve the interval"
+             : fmt::format("the {} worlds are the limit: more experiments in them bring it to "
+                           "+- {:.2f} at best, four times as many worlds (world.count) halve it",
+                           forecast.worlds, forecast.detection_width_limit / 2.0)});
   return warnings;
 }
 

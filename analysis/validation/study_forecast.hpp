@@ -13,6 +13,13 @@ namespace mpm {
 
 /// What a study will be, by its first experiments (a pilot): any first N of them keep the proportions of the
 /// whole.
+///
+/// The loops of a world share its errors of the model and its benchmark. With the correlation rho of two
+/// verdicts in one world (kWorldCorrelation), n loops spread over W worlds are worth
+///
+///     min(n, n / (1 + (n / W - 1) rho) (z / t)^2)
+///
+/// independent ones, t with W - 1 degrees of freedom (clustered_rate()), and W / rho (z / t)^2 at most.
 struct StudyForecast {
   std::int64_t experiments = 0;  ///< of the whole study
   Rate feasible;                 ///< of the pilot: status ok
@@ -25,6 +32,9 @@ struct StudyForecast {
   /// without a fault: how well the study will know what it is for. 1 without a loop.
   double detection_width = 1;
   double false_alarm_width = 1;
+  int worlds = 0;  ///< drawn at random, of which the intervals are; 0: none
+  /// In worlds: what the two widths come down to with ever more loops in the same worlds.
+  double detection_width_limit = 1, false_alarm_width_limit = 1;
   std::int64_t bytes_of_a_loop = 0;  ///< its data in an archive, before compression
   /// Median processor time of an assessment by each method of the study, ms.
   struct MethodCost {
@@ -33,6 +43,9 @@ struct StudyForecast {
   };
   std::vector<MethodCost> methods;
 };
+
+/// Of verdicts of one method on loops in one world, about: see docs/methods.md.
+inline constexpr double kWorldCorrelation = 0.3;
 
 /// `pilot` are the first experiments of the study, one at least.
 StudyForecast forecast(const Study& study, std::span<const ExperimentRecord> pilot);

@@ -5,12 +5,15 @@
 #include <cstddef>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "analysis/sensitivity/active_limit.hpp"
+#include "analysis/sensitivity/loop_stability.hpp"
 #include "plants/linear/settling_time.hpp"
 #include "plants/non_finite.hpp"
+#include "scenarios/loop/draw.hpp"
 
 namespace mpm {
 namespace {
@@ -273,6 +276,25 @@ void check_mvs(const Study& study, const BasisCase& basis, Warnings& warnings) {
   }
 }
 
+void check_worlds(const Study& study, const BasisCase& basis, Warnings& warnings) {
+  const LoopStability stability(study, basis.point);
+  std::vector<int> unstable;
+  for (int world = 0; study.world && world < study.world->count; ++world)
+    if (stability.spectral_radius(basis_draw(world)) >= 1.0)
+      unstable.push_back(world);
+  if (unstable.empty())
+    return;
+  const bool excluded = study.diagnosis.unstable == UnstableLoops::exclude;
+  warnings.push_back(
+      {"world",
+       fmt::format("{} of {} worlds are not stable without a fault, the first of them number {}",
+                   unstable.size(), study.world->count, unstable.front()),
+       excluded ? "their experiments are left out; draw smaller errors, or detune the controller"
+                : "their benchmarks are those of a loop that nobody would leave in operation: "
+                  "diagnosis.unstable = "
+                  "\"exclude\" leaves them out"});
+}
+
 }  // namespace
 
 std::string to_string(const StudyWarning& warning) {
@@ -296,6 +318,7 @@ std::vector<StudyWarning> basis_warnings(const Study& study, const BasisCase& ba
     return warnings;
   check_noise_share(study, basis, warnings);
   check_mvs(study, basis, warnings);
+  check_worlds(study, basis, warnings);
   return warnings;
 }
 

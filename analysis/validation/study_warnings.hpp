@@ -35,7 +35,7 @@ std::string to_string(const StudyWarning& warning);
 std::vector<StudyWarning> study_warnings(const Study& study);
 
 /// What its basis case shows: a self-check that fails or passes at the edge of its band, CVs whose variance
-/// is mostly noise, MVs that are at a hard limit.
+/// is mostly noise, MVs that are at a hard limit, worlds whose loop is not stable without a fault.
 std::vector<StudyWarning> basis_warnings(const Study& study, const BasisCase& basis);
 
 }  // namespace mpm

@@ -89,11 +89,30 @@ std::string json_text(const Validation& found, int jobs) {
             {"seconds", found.pilot.seconds},
             {"megabytes",
              {{"flagged", megabytes(forecast, forecast.to_keep.value)}, {"all", megabytes(forecast, 1.0)}}}};
+  if (forecast.worlds > 0) {
+    json["worlds"] = forecast.worlds;
+    json["detection_width_limit"] = forecast.detection_width_limit;
+    json["false_alarm_width_limit"] = forecast.false_alarm_width_limit;
+  }
   for (const StudyWarning& warning : found.warnings)
     json["warnings"].push_back({{"key", warning.key}, {"found", warning.found}, {"advice", warning.advice}});
   for (const StudyForecast::MethodCost& method : forecast.methods)
     json["methods"].push_back({{"name", method.method}, {"milliseconds", method.milliseconds}});
   return json.dump(2) + "\n";
+}
+
+/// How far the number of worlds lets rates be known.
+std::string worlds_text(const StudyForecast& forecast) {
+  std::string limits;
+  if (forecast.loops_with_impact > 0)
+    limits += fmt::format(", the first to +- {:.3f}", forecast.detection_width_limit / 2.0);
+  if (forecast.loops_without_fault > 0)
+    limits += fmt::format(", that of false alarms to +- {:.3f}", forecast.false_alarm_width_limit / 2.0);
+  return fmt::format(
+      "worlds: {}; more experiments in the same worlds bring these intervals at best{}; more worlds "
+      "(world.count) "
+      "bring them further\n",
+      forecast.worlds, limits.empty() ? " to where they are" : limits);
 }
 
 std::string text_of(const Validation& found, int jobs) {
@@ -119,6 +138,8 @@ std::string text_of(const Validation& found, int jobs) {
     text += fmt::format(
         "no fault: about {:.0f} loops, over which a false alarm rate of 0.05 is known to +- {:.3f}\n",
         forecast.loops_without_fault, forecast.false_alarm_width / 2.0);
+  if (forecast.worlds > 0)
+    text += worlds_text(forecast);
   text += fmt::format("cost: {:.1f} ms a loop, {} for the study with {} at once; per loop",
                       found.pilot.milliseconds_of_a_loop, duration_text(found.pilot.seconds), jobs);
   for (const StudyForecast::MethodCost& method : forecast.methods)

@@ -367,7 +367,7 @@ Flags stable_flags() {
   return {{-1, 0, 1}, {"not_known", "no", "yes"}};
 }
 
-/// What archives have since version 2.3.
+/// What archives of an earlier minor version lack.
 RecordVariable lately(RecordVariable variable) {
   variable.may_lack = true;
   return variable;
@@ -427,6 +427,23 @@ std::vector<RecordVariable> fault_costs(const Study& study) {
               &FaultCost::economics)};
 }
 
+/// What repairs of the model would bring in the worlds of a study (RepairGains), since version 2.5.
+std::vector<RecordVariable> repair_gain_variables(const Study& study) {
+  const auto of = [&](VariableText text, Eigen::MatrixXd RepairGains::*member) {
+    return lately(matrix(
+        std::move(text), {"cv", "mv"}, study.cv_count(),
+        study.mv_count(), [member](auto& record) -> auto& { return record.repair.*member; }));
+  };
+  return {
+      of({"repair_gain",
+          "what the loop costs less once the controller's model has the true channel, over what it costs "
+          "without the fault",
+          "1", "0: plant and model agree; NaN: not computed, or the repaired loop does not run to its end"},
+         &RepairGains::gain),
+      of({"repair_gain_error", "standard error of repair_gain", "1", "NaN: of one loop, or as repair_gain"},
+         &RepairGains::error)};
+}
+
 RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
   RecordTable table;
   table.dimension = "experiment";
@@ -440,7 +457,9 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
            enum_flags(std::array{ExperimentStatus::ok, ExperimentStatus::infeasible, ExperimentStatus::failed,
                                  ExperimentStatus::unstable})},
           &Record::status),
-      plain<std::string>({"message", "why the experiment failed", "1", "empty unless the status is failed"},
+      plain<std::string>({"message", "why the experiment failed", "1",
+                          study.world ? "empty unless the status is failed, or unstable because of its world"
+                                      : "empty unless the status is failed"},
                          &Record::message),
       vector(
           {"ivar_basis", "Ivar_basis = var y / var y of the basis case", "1", "NaN unless the status is ok"},
@@ -501,8 +520,9 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
     table.variables.push_back(of_column(
         column, [](auto& record) -> auto& { return record.solver; }));
   if (study.world)
-    for (RecordVariable& variable : fault_costs(study))
-      table.variables.push_back(std::move(variable));
+    for (auto* const variables : {&fault_costs, &repair_gain_variables})
+      for (RecordVariable& variable : variables(study))
+        table.variables.push_back(std::move(variable));
   return table;
 }
 
@@ -675,8 +695,9 @@ RecordTable perturbed(const Study& study) {
 [[maybe_unused]] void every_member_is_in_a_table(const Record& record, const AssessmentRecord& assessment,
                                                  const LoopRecord& loop, const LoopTruth& truth,
                                                  const SolverStatistics& statistics) {
-  [[maybe_unused]] const auto& [draw, status, message, conditions, ivar_basis, cost, assessments, perturbed,
-                                solver, kept, known] = record;
+  [[maybe_unused]] const auto& [draw, status, message, conditions, ivar_basis, cost, repair, assessments,
+                                perturbed, solver, kept, known] = record;
+  [[maybe_unused]] const auto& [gain, gain_error] = repair;
   if (cost) {
     [[maybe_unused]] const auto& [ratio, loss, violation, loss_ratio, error, effort, economics] = *cost;
   }

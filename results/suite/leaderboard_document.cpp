@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -106,9 +109,7 @@ void add_legend(Section& section, const Leaderboard& board) {
         fmt::format("The reference is the method {}, which knows what the study draws. It is shown in the "
                     "families that draw exactly what it knows of; above 100 % of it chance was kinder.",
                     code(kReferenceMethod)));
-  section.say(whose_intervals(std::all_of(board.cells.begin(), board.cells.end(), [](const CellScores& cell) {
-    return cell.in_worlds || !cell.trouble.empty();
-  })));
+  section.say(whose_intervals(board.in_worlds()));
 }
 
 Section passed_section(const Leaderboard& board) {
@@ -116,6 +117,65 @@ Section passed_section(const Leaderboard& board) {
   section.add(axis_table(board, "Passed: D detection, L location, S source", board.families, board.by_family,
                          passed_cell));
   add_legend(section, board);
+  return section;
+}
+
+Cell estimate_cell(const Estimate& estimate) {
+  if (estimate.count == 0)
+    return Number{};
+  Cell cell = Number{estimate.value, NumberForm::whole_percent, estimate.interval};
+  cell.hover = fmt::format("{} loops", estimate.count);
+  cell.ground = estimate.value;
+  return cell;
+}
+
+/// Of a suite of worlds: who tells the source of a fault, and who names the channel whose repair pays.
+Section ranking_section(const Leaderboard& board) {
+  Section section{"ranking", "Who is right in worlds"};
+  const std::vector<RankedMethod> ranked = ranking(board);
+  if (ranked.empty())
+    return section;
+  const auto place = [](const std::optional<int>& rank) -> Cell {
+    return rank ? Cell(fmt::to_string(*rank)) : Cell(Number{});
+  };
+  Table table(
+      fmt::format("Ranks at equal false alarms, all families: at the threshold that is calibrated for 5 % "
+                  "of them; % with {:g} % interval",
+                  100 * board.confidence),
+      {{"Method", Table::Align::left},
+       {"Rank, source"},
+       {"Right source of the faults with an impact"},
+       {"Rank, repair"},
+       {"Share of the best repair's gain"},
+       {"Healthy loops, flagged"}});
+  for (const RankedMethod& each : ranked) {
+    const PooledScores& scores = board.overall[each.method];
+    const auto rate = [&scores](std::string_view name, bool low) {
+      return score_cell(scores, {name, "", low});
+    };
+    table.row({as_label(label_of(board.methods[each.method])), place(each.source),
+               rate(kRankingSource, false), place(each.repair),
+               estimate_cell(scores.estimate(kRankingRepair)), rate("false_alarm_calibrated", true)});
+  }
+  section.add(std::move(table));
+  section.add(
+      axis_table(board,
+                 fmt::format("Faults with an impact at 5 % false alarms, the right source named, % of loops "
+                             "with {:g} % interval",
+                             100 * board.confidence),
+                 board.families, board.by_family, [](const PooledScores& scores) {
+                   return score_cell(scores, {kRankingSource, "", false});
+                 }));
+  for (const auto& [name, words] :
+       {std::pair(kRankingRepair, "at 5 % false alarms"), {"repair_gain_share", "at its own threshold"}})
+    section.add(axis_table(
+        board,
+        fmt::format(
+            "Share of the best repair's gain that the named channel brings, {}, mean in % with {:g} % "
+            "interval",
+            words, 100 * board.confidence),
+        board.families, board.by_family,
+        [name = name](const PooledScores& scores) { return estimate_cell(scores.estimate(name)); }));
   return section;
 }
 
@@ -256,7 +316,7 @@ Document leaderboard_document(const Leaderboard& board) {
   Section by_plant =
       scores_section(board, "by-plant", "By plant, pooled over the families", board.plants, board.by_plant);
   by_plant.shown = Shown::page;
-  for (Section section : {passed_section(board), std::move(figure),
+  for (Section section : {ranking_section(board), passed_section(board), std::move(figure),
                           scores_section(board, "by-family", "By family, pooled over the plants",
                                          board.families, board.by_family),
                           std::move(by_plant), delays_section(board), reference_section(board),

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -19,11 +20,19 @@ SuiteJson axis_json(const std::vector<SuiteAxis>& axis) {
   return list;
 }
 
-SuiteJson scores_json(const PooledScores& scores) {
+/// Can a board have the number? Those of worlds stand in the boards of worlds alone.
+bool has_number(const Leaderboard& board, StudyFeature of) {
+  return board.in_worlds() || (of != StudyFeature::worlds && of != StudyFeature::calibrated_worlds);
+}
+
+SuiteJson scores_json(const Leaderboard& board, const PooledScores& scores) {
   SuiteJson rates = SuiteJson::object(), passed = SuiteJson::object();
   std::size_t place = 0;
-  for (const MethodRateInfo& info : method_rate_infos())
-    rates[info.name] = rate_json(scores.rates[place++]);
+  for (const MethodRateInfo& info : method_rate_infos()) {
+    const Rate& rate = scores.rates[place++];
+    if (has_number(board, info.of))
+      rates[info.name] = rate_json(rate);
+  }
   for (const LeaderboardTask task : kLeaderboardTasks)
     passed[std::string(to_string(task))] = passes(scores, task);
   SuiteJson shares = SuiteJson::object();
@@ -31,20 +40,38 @@ SuiteJson scores_json(const PooledScores& scores) {
   for (std::size_t i = 0; i < scores.shares_of_ceiling.size(); ++i)
     if (!std::isnan(scores.shares_of_ceiling[i]))
       shares[std::string(known[i].rate)] = scores.shares_of_ceiling[i];
-  return {{"cells", scores.cells},
-          {"answering_cells", scores.answering_cells},
-          {"reason", proper_utf8(scores.reason)},
-          {"too_many_false_alarms", scores.too_many_false_alarms()},
-          {"answers_in_part", scores.answers_in_part()},
-          {"passes", passed},
-          {"shares_of_ceiling", shares},
-          {"rates", rates}};
+  SuiteJson json{{"cells", scores.cells},
+                 {"answering_cells", scores.answering_cells},
+                 {"reason", proper_utf8(scores.reason)},
+                 {"too_many_false_alarms", scores.too_many_false_alarms()},
+                 {"answers_in_part", scores.answers_in_part()},
+                 {"passes", passed},
+                 {"shares_of_ceiling", shares},
+                 {"rates", rates}};
+  if (board.in_worlds())
+    for (const char* const name : {"repair_gain_share", "repair_gain_share_05"})
+      json["estimates"][name] = estimate_json(scores.estimate(name));
+  return json;
 }
 
-SuiteJson along(const std::vector<SuiteAxis>& axis, const std::vector<PooledScores>& scores) {
+SuiteJson along(const Leaderboard& board, const std::vector<SuiteAxis>& axis,
+                const std::vector<PooledScores>& scores) {
   SuiteJson json = SuiteJson::object();
   for (std::size_t i = 0; i < axis.size(); ++i)
-    json[axis[i].name] = scores_json(scores[i]);
+    json[axis[i].name] = scores_json(board, scores[i]);
+  return json;
+}
+
+/// Null where a method has no rank.
+SuiteJson ranking_json(const Leaderboard& board) {
+  SuiteJson json = SuiteJson::array();
+  const auto rank = [](const std::optional<int>& place) {
+    return place ? SuiteJson(*place) : SuiteJson(nullptr);
+  };
+  for (const RankedMethod& each : ranking(board))
+    json.push_back({{"method", board.methods[each.method]},
+                    {kRankingSource, rank(each.source)},
+                    {kRankingRepair, rank(each.repair)}});
   return json;
 }
 
@@ -79,25 +106,28 @@ std::string leaderboard_json(const Leaderboard& board) {
   SuiteJson methods = SuiteJson::array(), meanings = SuiteJson::object(), nobody = SuiteJson::object();
   for (std::size_t method = 0; method < board.methods.size(); ++method)
     methods.push_back({{"name", board.methods[method]},
-                       {"all", scores_json(board.overall[method])},
-                       {"families", along(board.families, board.by_family[method])},
-                       {"plants", along(board.plants, board.by_plant[method])}});
+                       {"all", scores_json(board, board.overall[method])},
+                       {"families", along(board, board.families, board.by_family[method])},
+                       {"plants", along(board, board.plants, board.by_plant[method])}});
   for (const MethodRateInfo& info : method_rate_infos())
-    meanings[info.name] = info.meaning;
+    if (has_number(board, info.of))
+      meanings[info.name] = info.meaning;
   for (const LeaderboardTask task : kLeaderboardTasks)
     nobody[std::string(to_string(task))] = passed_by_nobody(board, task);
-  const SuiteJson json{{"suite", board.suite},
-                       {"version", board.version},
-                       {"title", proper_utf8(board.title)},
-                       {"seed", board.seed},
-                       {"mpmbench_version", board.program},
-                       {"confidence", board.confidence},
-                       {"plants", axis_json(board.plants)},
-                       {"families", axis_json(board.families)},
-                       {"rates", meanings},
-                       {"passed_by_nobody", nobody},
-                       {"cells", cells_json(board)},
-                       {"methods", methods}};
+  SuiteJson json{{"suite", board.suite},
+                 {"version", board.version},
+                 {"title", proper_utf8(board.title)},
+                 {"seed", board.seed},
+                 {"mpmbench_version", board.program},
+                 {"confidence", board.confidence},
+                 {"plants", axis_json(board.plants)},
+                 {"families", axis_json(board.families)},
+                 {"rates", meanings},
+                 {"passed_by_nobody", nobody},
+                 {"cells", cells_json(board)},
+                 {"methods", methods}};
+  if (board.in_worlds())
+    json["ranking"] = ranking_json(board);
   return json.dump(1) + "\n";
 }
 

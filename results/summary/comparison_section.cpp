@@ -128,13 +128,12 @@ void add_unanswered(Section& section, const Study& study, const Methods& methods
     section.add(std::move(sentences));
 }
 
-void add_pairs(Section& section, const StudyFindings& findings) {
+void add_pairs(Section& section, bool in_worlds, const StudyFindings& findings) {
   Table table(
-      "Two methods on the loops that both gave a verdict on. Right is to flag the loops with a fault, or "
-      "those "
-      "with one that has an impact, and no others; p is that of McNemar's exact test, two-sided, and "
-      "corrected "
-      "by Holm for all pairs of a truth.",
+      fmt::format("Two methods on the loops that both gave a verdict on. Right is to flag the loops with a "
+                  "fault, or those with one that has an impact, and no others; p is that of McNemar's {}, "
+                  "two-sided, and corrected by Holm for all pairs of a truth.",
+                  in_worlds ? "test of worlds drawn at random" : "exact test"),
       {{"Pair", Table::Align::left},
        {"Truth", Table::Align::left},
        {"Loops"},
@@ -170,7 +169,7 @@ Section comparison_section(const Campaign& campaign, const StudyFindings& findin
   if (campaign.study.calibration)
     add_calibration(section, campaign, findings.methods);
   add_unanswered(section, campaign.study, findings.methods);
-  add_pairs(section, findings);
+  add_pairs(section, campaign.study.world.has_value(), findings);
   return section;
 }
 

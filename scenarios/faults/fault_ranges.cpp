@@ -12,6 +12,8 @@ std::string_view to_string(MismatchExtent extent) {
       return "cv";
     case MismatchExtent::mv:
       return "mv";
+    case MismatchExtent::plant:
+      return "plant";
   }
   return "unknown";
 }

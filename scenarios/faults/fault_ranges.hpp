@@ -23,12 +23,13 @@ enum class MismatchExtent : std::int8_t {
   channel = 1,    ///< gain, time constant and dead time of one channel
   cv = 2,         ///< one parameter of every channel of a CV, each by its own amount
   mv = 3,         ///< the gain of every channel of an MV, all by the same factor: its actuator
+  plant = 4,      ///< one parameter of every channel from an MV, each by its own amount
 };
 
 inline constexpr std::array kMismatchExtents{MismatchExtent::parameter, MismatchExtent::channel,
-                                             MismatchExtent::cv, MismatchExtent::mv};
+                                             MismatchExtent::cv, MismatchExtent::mv, MismatchExtent::plant};
 
-/// "parameter", "channel", "cv", "mv"
+/// "parameter", "channel", "cv", "mv", "plant"
 std::string_view to_string(MismatchExtent extent);
 
 /// The parameters that random mismatches change.
@@ -50,7 +51,7 @@ struct MismatchRanges {
   /// Relative frequency of each of kRandomMismatchParameters; they need not sum to one.
   std::array<double, kRandomMismatchParameters.size()> parameter_weight{1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
   /// Relative frequency of each of kMismatchExtents.
-  std::array<double, kMismatchExtents.size()> extent_weight{1.0, 0.0, 0.0, 0.0};
+  std::array<double, kMismatchExtents.size()> extent_weight{1.0, 0.0, 0.0, 0.0, 0.0};
   Distribution gain_factor = Distribution::uniform(0.3, 1.5);
   Distribution time_constant_factor = Distribution::uniform(0.3, 3.0);
   /// Added to the dead time, in the time unit of the plant. Where the sum would be negative the draw is

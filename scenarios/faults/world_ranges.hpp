@@ -47,6 +47,8 @@ struct WorldRanges {
   std::vector<WorldParameter> plant_parameters = {};        ///< of a nonlinear plant, in place of channels
   BackgroundRanges background = {};
   int cost_loops = 8;  ///< pairs of loops over whose noise the cost of a fault is an expectation
+  /// Loops over whose noise the gain of repairing a channel is an expectation; 0: it is not computed.
+  int repair_loops = 4;
 
   bool operator==(const WorldRanges&) const = default;
 };

@@ -127,7 +127,8 @@ OptionKeys mismatch_ranges_keys(Study& study) {
                       {"relative frequency of one parameter of one channel",
                        "of gain, time constant and dead time of one channel, each drawn",
                        "of one parameter of every channel from an MV to one CV, each by its own amount",
-                       "of the gain of every channel of an MV, all by one factor: its actuator"},
+                       "of the gain of every channel of an MV, all by one factor: its actuator",
+                       "of one parameter of every channel from an MV, each by its own amount: a drift"},
                       "how often a mismatch reaches how far")
               .otherwise("`parameter` alone"),
           refuse_no_weight("extent_weights", ranges.extent_weight),

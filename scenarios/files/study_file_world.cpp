@@ -118,6 +118,10 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
       key::whole(
           "cost_loops", ranges.cost_loops, 1, kMostCostLoops,
           "pairs of loops, with the fault and without it, over whose noise its cost is an expectation"),
+      key::whole(
+          "repair_loops", ranges.repair_loops, 0, kMostCostLoops,
+          "loops over whose noise the gain of repairing a channel is an expectation, each run once for "
+          "every channel that differs from the model; 0: `repair_gain` is not computed"),
       key::list<WorldParameter>(
           "plant_parameter", kMostParameters,
           [&study](WorldParameter& parameter) { return parameter_keys(parameter, study); }, take,

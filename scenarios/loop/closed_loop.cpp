@@ -150,21 +150,6 @@ Eigen::VectorXd shares(const Onset& onset, Eigen::Index samples) {
   return a;
 }
 
-/// The plant of the experiment.
-std::unique_ptr<Plant> plant_of(const Study& study, const ExperimentDraw& draw) {
-  const double Ts = study.controller.sample_time;
-  const World world = draw_world(study, draw.world);
-  if (study.nonlinear)
-    return nonlinear_plant(with_parameters(study.nonlinear->model, world.parameters), Ts,
-                           study.nonlinear->integration, with_world_parameters(study, world, draw.parameters),
-                           draw.onset.sample);
-  const TransferMatrix healthy = world_plant(study, world);
-  const TransferMatrix plant = with_world_mismatches(healthy, draw.mismatches);
-  if (draw.onset.from_the_start() || draw.mismatches.empty())
-    return std::make_unique<LinearPlant>(plant, Ts);
-  return std::make_unique<ChangingPlant>(healthy, plant, Ts, shares(draw.onset, study.simulation.samples));
-}
-
 }  // namespace
 
 std::string_view to_string(LoopFailure failure) {
@@ -276,6 +261,20 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
   return run_closed_loop(study, plant, signals, factory, observer);
 }
 
+std::unique_ptr<Plant> experiment_plant(const Study& study, const ExperimentDraw& draw) {
+  const double Ts = study.controller.sample_time;
+  const World world = draw_world(study, draw.world);
+  if (study.nonlinear)
+    return nonlinear_plant(with_parameters(study.nonlinear->model, world.parameters), Ts,
+                           study.nonlinear->integration, with_world_parameters(study, world, draw.parameters),
+                           draw.onset.sample);
+  const TransferMatrix healthy = world_plant(study, world);
+  const TransferMatrix plant = with_world_mismatches(healthy, draw.mismatches);
+  if (draw.onset.from_the_start() || draw.mismatches.empty())
+    return std::make_unique<LinearPlant>(plant, Ts);
+  return std::make_unique<ChangingPlant>(healthy, plant, Ts, shares(draw.onset, study.simulation.samples));
+}
+
 LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw) {
   const World world = draw_world(study, draw.world);
   const std::int64_t noise = draw.noise_index.value_or(draw.index);
@@ -309,7 +308,7 @@ Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, c
     rest.tuning.reset();
     return simulate_experiment(with_tuning(study, draw), rest, factory, observer);
   }
-  const std::unique_ptr<Plant> plant = plant_of(study, draw);
+  const std::unique_ptr<Plant> plant = experiment_plant(study, draw);
   return run_closed_loop(study, *plant, experiment_signals(study, draw), factory, observer);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -123,6 +124,10 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
 /// The same on the linear plant with these transfer functions.
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
                            const QpSolverFactory& factory, const StepObserver& observer = {});
+
+/// The plant of one experiment: that of its world, with its mismatches or changed parameters from the onset
+/// on.
+std::unique_ptr<Plant> experiment_plant(const Study& study, const ExperimentDraw& draw);
 
 /// The signals that act on the loop of one experiment, from (study, draw) alone; `y_d` with the errors of its
 /// sensors.

@@ -105,6 +105,12 @@ std::vector<Mismatch> reaching(const Study& study, MismatchExtent extent, const 
           mismatches.push_back(
               place.second == first.input ? first : mismatch_of(study, place, first.parameter, stream));
       return mismatches;
+    case MismatchExtent::plant:
+      for (const ChannelPlace& place : mv_channels(study))
+        mismatches.push_back(place == ChannelPlace{first.cv, first.input}
+                                 ? first
+                                 : mismatch_of(study, place, first.parameter, stream));
+      return mismatches;
     case MismatchExtent::mv: {
       const double factor = study.mismatch.gain_factor.sample(stream);
       for (const auto& [cv, mv] : mv_channels(study))

@@ -18,6 +18,8 @@ import subprocess
 import sys
 import tempfile
 
+from worlds_board import percents, with_blocks
+
 PAGES = ["README.md", "docs/tutorial.md", "docs/gates.md"]
 RUN_ELSEWHERE = {"docs/file_format.md"}  # by tests/results/archive/check_reading_page.py, which checks its numbers
 # What a program of docs/own_plant.md is asked.
@@ -115,24 +117,11 @@ def check_python(program, sources):
     assert {"docs/methods_thesis.md", "docs/own_plant.md"} <= set(ran), ran
 
 
-def percents(rate):
-    """A rate as the tables show it; None where nothing was counted."""
-    return "{value} ({lower} to {upper})".format(**{key: round(100 * value) for key, value in rate.items()}) if rate else None
-
-
 def check_worlds(sources):
-    """Each row of the table of the suite worlds has the shares of its method."""
-    columns = [("exact", "false_alarm_healthy"), ("worlds", "false_alarm_healthy")]
-    columns += [(family, "power_05_impact") for family in ("exact", "errors", "worlds", "inputs", "growing")]
-    columns += [(family, "source_all") for family in ("exact", "errors", "worlds")]
-    page = (sources / "docs/suite.md").read_text(encoding="utf-8").split("## The suite of worlds")[1].split("\n## ")[0]
-    rows = {line.split("`")[1]: [cell.strip() for cell in line.strip("|").split("|")][1:]
-            for line in re.findall(r"^\| `[\w-]+` \| \d.*", page, flags=re.MULTILINE)}
-    methods = json.loads((sources / "docs/leaderboard_worlds.json").read_text())["methods"]
-    assert list(rows) == [method["name"] for method in methods], rows
-    for method in methods:
-        expected = [percents(method["families"][family]["rates"].get(rate)) or "names none" for family, rate in columns]
-        assert rows[method["name"]] == expected, (method["name"], rows[method["name"]], expected)
+    """The tables of the suite worlds have the shares of its board."""
+    page = (sources / "docs/suite.md").read_text(encoding="utf-8")
+    board = json.loads((sources / "docs/leaderboard_worlds.json").read_text())
+    assert page == with_blocks(page, board), "docs/suite.md: run tests/bench/worlds_board.py"
 
 
 def check_board(sources):

@@ -71,6 +71,14 @@ affected = ["y"]
 parameter = [{name = "gain", factor = 1.3}]
 """
 
+WORLD = """
+[world]
+count = 2
+cost_loops = 2
+plant_parameter = [{name = "gain", factor = {uniform = [0.9, 1.1]}}, {name = "lag", factor = {uniform = [0.9, 1.1]}}]
+background = {cv_size = {uniform = [0.25, 0.5]}, time_constant = {constant = 5}}
+"""
+
 PLANT = """
 import json, math, os, sys, time
 for line in sys.stdin:
@@ -140,6 +148,30 @@ def main(program):
             assert (file["status"][:] == 0).all() and (file["impact"][:] == 1).any()
         for index in 0, 17:
             assert "bit-identical" in run("replay", reference, index, "--trust-programs")
+
+        # In worlds: threads, processes and replay the same bits; the program has the parameters of its world.
+        (folder / "worlds.toml").write_text(text + RANDOM + WORLD)
+        worlds, again = folder / "worlds.h5", folder / "worlds-threads.h5"
+        run("run", "worlds.toml", "-o", worlds, "--jobs", 2, "--store", "all", "--quiet")
+        run("run", "worlds.toml", "-o", again, "--jobs", 2, "--parallel", "threads", "--store", "all", "--quiet")
+        check_same(again, worlds)
+        assert "bit-identical" in run("replay", worlds, 3, "--trust-programs")
+        with h5py.File(worlds) as file:
+            assert (file["status"][:] == 0).all()
+            assert numpy.isfinite(file["loss_ratio"][:]).all()
+            assert numpy.isnan(file["repair_gain"][:]).all()  # it has parameters, and no channels to repair
+        healthy = RANDOM.replace("mpm = 10", "mpm = 0").replace("ud = 4", "ud = 0")
+        (folder / "one.toml").write_text(text + healthy + """
+[world]
+count = 1
+plant_parameter = [{name = "gain", factor = {constant = 1.25}}]
+""")
+        (folder / "other.toml").write_text(text.replace('"gain", value = 2', '"gain", value = 2.5') + healthy)
+        for name in "one", "other":
+            run("run", f"{name}.toml", "-o", folder / f"{name}.h5", "--store", "all", "--quiet", "--allow-unhealthy-basis")
+        with h5py.File(folder / "one.h5") as one, h5py.File(folder / "other.h5") as other, h5py.File(reference) as nominal:
+            assert (one["trajectories/y"][:] == other["trajectories/y"][:]).all()
+            assert not (one["trajectories/y"][0] == nominal["trajectories/y"][0]).all()
 
         # What it does wrong costs one experiment, and says so.
         wrong = {1: "out of ideas", 2: "dry", 3: "ended by signal 11", 4: "no JSON object", 5: None, 6: "in time"}

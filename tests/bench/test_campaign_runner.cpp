@@ -105,6 +105,10 @@ TEST_CASE("campaign: loops in worlds with excitations of their own are those of 
     CHECK(record.draw.world == world_of(of_file, record.draw.index));
     const ExperimentRecord same = again.run(record.draw.index, StorePolicy::none);
     CHECK(same.ivar_basis == record.ivar_basis);
+    if (same.repair.gain.size() > 0)
+      CHECK((same.repair.gain == record.repair.gain && same.repair.error == record.repair.error));
+    else
+      CHECK_FALSE(record.repair.best());
     CHECK(again.assess(record).front().score == record.assessments.front().score);
   }
 }

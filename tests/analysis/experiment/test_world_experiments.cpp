@@ -2,6 +2,7 @@
 
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/sensitivity/loop_stability.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "tests/solvers/active_set_factory.hpp"
@@ -76,6 +77,38 @@ TEST_CASE(
   REQUIRE(faulty.cost);
   CHECK(faulty.cost->variance_ratio == faulty.ivar_basis);
   CHECK(has_impact(study.diagnosis, faulty) == faulty.cost->has_impact(study.diagnosis.impact_upper));
+}
+
+TEST_CASE(
+    "worlds: the experiments of a world that is not stable are left out by its stability, whether they run "
+    "to "
+    "their end or not, and say so",
+    "[worlds]") {
+  // Errors of 5 % leave a third of the worlds of the column unstable, and its hard limits keep their loops
+  // finite.
+  Study study = find_study("suite-column");
+  study.world = WorldRanges{.count = 12,
+                            .gain_factor = Distribution::uniform(0.95, 1.05),
+                            .time_constant_factor = Distribution::uniform(0.95, 1.05),
+                            .cost_loops = 1,
+                            .repair_loops = 0};
+  study.experiments = {.healthy = 12};
+  study.diagnosis.unstable = UnstableLoops::exclude;
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const LoopStability stability(study, basis.point);
+  ExperimentRunner runner(study, basis, {"sse"}, testing::kFactory);
+  int unstable = 0;
+  for (std::int64_t index = 0; index < 12; ++index) {
+    const ExperimentRecord record = runner.run(index, StorePolicy::none);
+    const bool stable = stability.spectral_radius(basis_draw(record.draw.world)) < 1.0;
+    CHECK((record.status == ExperimentStatus::ok) == stable);
+    if (record.status != ExperimentStatus::unstable)
+      continue;
+    ++unstable;
+    CHECK_THAT(record.message, Catch::Contains("is not stable without a fault: spectral radius 1."));
+    CHECK(record.assessments.front().status == AssessmentStatus::not_assessed);
+  }
+  CHECK(unstable > 0);
 }
 
 TEST_CASE("worlds: calibration has worlds of its own", "[worlds]") {

@@ -9,6 +9,7 @@
 
 #include "analysis/findings/leaderboard.hpp"
 #include "analysis/findings/method_rates.hpp"
+#include "analysis/statistics/clustered_rate.hpp"
 
 namespace mpm {
 namespace {
@@ -128,6 +129,43 @@ TEST_CASE("a cell that was not run counts nowhere, and keeps its place", "[leade
   CHECK(board.cells[1].trouble == "the basis case fails");
   CHECK(board.by_plant[0][1].cells == 0);
   CHECK(board.by_plant[0][1].of("answered")->total == 0);
+}
+
+TEST_CASE("a suite of worlds ranks its methods by source and by the gain of repairs at equal false alarms",
+          "[leaderboard]") {
+  const auto scores = [](std::int64_t told, std::int64_t of, double gain) {
+    MethodScores made = scores_with({{"source_05_impact", {told, of}}, {"answered", {10, 10}}});
+    for (const MethodEstimateInfo& info : method_estimate_infos())
+      made.estimates.push_back(std::string_view(info.name) == kRankingRepair && gain >= 0.0
+                                   ? clustered_mean(std::vector<ClusterSum>{{gain, 2}, {gain, 2}})
+                                   : Estimate{});
+    return made;
+  };
+  std::vector<CellScores> cells{
+      {.plant = 0,
+       .family = 0,
+       .in_worlds = true,
+       .methods = {scores(3, 10, 1.0), scores(0, 0, -1.0), scores(8, 10, 0.5), scores(0, 0, 1.5)}},
+      {.plant = 1,
+       .family = 0,
+       .in_worlds = true,
+       .methods = {scores(3, 10, 0.0), scores(0, 0, -1.0), scores(8, 10, 0.5), scores(0, 0, 0.5)}}};
+  const Leaderboard board =
+      make_leaderboard(two_families(), {"a", "silent", "best", "channels"}, "1.0", cells);
+  CHECK(board.in_worlds());
+  const Estimate pooled = board.overall[0].estimate(kRankingRepair);
+  CHECK(pooled.value == Approx(2.0 / 8.0));
+  CHECK(pooled.count == 8);
+  CHECK(board.by_plant[0][1].estimate(kRankingRepair).value == 0.0);
+  const std::vector<RankedMethod> ranked = ranking(board);
+  REQUIRE(ranked.size() == 4);
+  CHECK((ranked[0].method == 2 && ranked[0].source == 1 && ranked[0].repair == 2));
+  CHECK(
+      (ranked[1].method == 0 && ranked[1].source == 2 && ranked[1].repair == 2));  // as good at repairs as it
+  CHECK((ranked[2].method == 3 && !ranked[2].source && ranked[2].repair == 1));
+  CHECK((ranked[3].method == 1 && !ranked[3].source && !ranked[3].repair));
+  cells[1].in_worlds = false;
+  CHECK(ranking(make_leaderboard(two_families(), {"a", "silent", "best", "channels"}, "1.0", cells)).empty());
 }
 
 TEST_CASE("a task is passed at its limits, and not below one of them", "[leaderboard]") {

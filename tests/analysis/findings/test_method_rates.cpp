@@ -456,6 +456,74 @@ TEST_CASE("rates of a method: why there was no verdict is that of the first loop
   CHECK(made.rates().reason == "the first");
 }
 
+TEST_CASE(
+    "rates of a method in worlds: the share of the best repair's gain, and the source at 5 % false alarms",
+    "[method_rates]") {
+  Study worlds = study();
+  worlds.world.emplace();
+  worlds.calibration = CalibrationOptions{.healthy = 40, .ud = 0};
+  const auto form = testing::form_of(worlds, "lasso");
+  // The repair of (1, 0) brings 0.4, that of (1, 1) a quarter of it, that of (2, 0) does harm.
+  RepairGains gains{Eigen::MatrixXd::Zero(7, 3), Eigen::MatrixXd::Zero(7, 3)};
+  gains.gain(1, 0) = 0.4;
+  gains.gain(1, 1) = 0.1;
+  gains.gain(2, 0) = -0.2;
+  gains.error.setConstant(0.01);
+  const auto says = [&](bool flagged, double score, const std::vector<Channel>& channels) {
+    Assessment said;
+    said.flagged = flagged;
+    said.score = score;
+    said.flagged_channels = channels;
+    AssessmentRecord record = kept(form, said);
+    record.predicted_cv = 1;
+    record.predicted_source = FaultSource::mpm;
+    return record;
+  };
+  std::vector<ExperimentRecord> records;
+  const auto add = [&](const AssessmentRecord& said, ExperimentKind kind = kMpm) {
+    ExperimentRecord record = made_up_record(static_cast<std::int64_t>(records.size()), kind, 1, 0.2);
+    record.draw.world = static_cast<int>(records.size()) % 2;
+    record.cost.emplace();
+    record.cost->variance_ratio = record.ivar_basis;
+    if (kind != kUd)
+      record.repair = gains;
+    record.assessments = {said};
+    records.push_back(record);
+  };
+  add(says(true, 50.0, {{1, 0}}));          // the best: 1
+  add(says(true, 50.0, {{1, 1}, {2, 0}}));  // the first that it names: 1/4
+  add(says(true, 50.0, {{2, 0}}));          // harm: 0
+  add(says(true, 5.0, {{1, 0}}));           // 1, but 0 below the threshold of 5 %
+  add(says(false, 50.0, {{1, 0}}));         // 0, but 1 above it
+  add(says(true, 50.0, {}));                // names none: 0
+  AssessmentRecord silent;
+  silent.form = form;
+  silent.status = AssessmentStatus::failed;
+  add(silent);  // no verdict: 0
+  add(says(true, 50.0, {{1, 0}}), kUd);
+  records.push_back(records.front());
+  records.back().repair.error.setConstant(1.0);  // no repair has a gain beyond chance: not counted
+  Calibration calibration;
+  for (int loop = 0; loop < 40; ++loop) {
+    CalibrationLoop& healthy = calibration.loops.emplace_back();
+    healthy.kind = ExperimentKind::healthy;
+    healthy.scores = {static_cast<double>(loop)};
+  }
+  const MethodRates rates = rate_collector(worlds, 0, calibration).of(records);
+  REQUIRE(rates.thresholds.at_05.value);
+  CHECK(rates.repair_gain_share.count == 7);
+  CHECK(rates.repair_gain_share.value == Approx(2.25 / 7.0));
+  CHECK(rates.repair_gain_share.clusters.size() == 3);  // that of the exact world first
+  CHECK(rates.repair_gain_share.interval.contains(rates.repair_gain_share.value));
+  CHECK(rates.repair_gain_share_05.value == Approx(2.25 / 7.0));
+  // Above the threshold with `mismatch`: all but the fourth, the one without a verdict, and the disturbance.
+  check_rate(rates.source_05_impact, 6, 9);
+  const std::vector<Finding> rows = rows_of(worlds, rates, form->method());
+  CHECK(std::any_of(rows.begin(), rows.end(), [](const Finding& row) {
+    return row.name == "compare.lasso.repair_gain_share_05" && row.value > 0.3 && row.interval.upper < 1.0;
+  }));
+}
+
 TEST_CASE("the rates have one list: every rate once, and a finding of its own", "[method_rates]") {
   std::set<std::string> names;
   std::set<const Rate*> members;
@@ -498,6 +566,7 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   calibrated.calibration.emplace();
   calibrated.monitoring.emplace();
   calibrated.record.candidates = 1;
+  calibrated.world.emplace();
   CHECK(rows_of(calibrated, rates, testing::chain_form()->method()).size() ==
         method_rate_infos().size() + 2 + method_estimate_infos().size() + threshold_infos().size());
 }

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,27 @@ TEST_CASE("clustered rate: strata that differ add no variance of their own", "[c
   // A stratum of one cluster counts as independent trials, and all such ones as rate().
   const std::vector<std::vector<ClusterCount>> single{{{3, 10}}, {{7, 10}}};
   CHECK(clustered_rate(single).interval.lower == rate(10, 20).interval.lower);
+}
+
+TEST_CASE("clustered mean: of zeros and ones it is the clustered rate, and of nothing there is none",
+          "[clustered_rate]") {
+  const std::vector<std::vector<ClusterCount>> counts{{{7, 10}, {2, 9}, {5, 5}}, {{1, 4}, {3, 3}}};
+  std::vector<std::vector<ClusterSum>> sums;
+  for (const std::vector<ClusterCount>& stratum : counts) {
+    sums.emplace_back();
+    for (const ClusterCount& count : stratum)
+      sums.back().push_back({static_cast<double>(count.hits), count.total});
+  }
+  const Rate share = clustered_rate(counts);
+  const Estimate mean = clustered_mean(sums);
+  CHECK(mean.value == share.value);
+  CHECK(mean.count == share.total);
+  CHECK(mean.interval.lower == share.interval.lower);
+  CHECK(mean.interval.upper == share.interval.upper);
+  CHECK(std::isnan(clustered_mean(std::vector<ClusterSum>{}).value));
+  CHECK(clustered_mean(std::vector<ClusterSum>{{0.5, 2}, {1.5, 2}}).clusters.size() == 2);
+  CHECK_THROWS(clustered_mean(std::vector<ClusterSum>{{2.5, 2}}));
+  CHECK_THROWS(clustered_mean(std::vector<ClusterSum>{{-0.5, 2}}));
 }
 
 TEST_CASE(

@@ -4,12 +4,14 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/experiment/experiment.hpp"
 #include "analysis/validation/benchmark_period.hpp"
 #include "analysis/validation/study_forecast.hpp"
 #include "analysis/validation/study_warnings.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/random/random_stream.hpp"
+#include "tests/solvers/active_set_factory.hpp"
 
 // What is implausible in a study, one slip at a time, and what its first experiments say of the others.
 
@@ -155,6 +157,50 @@ TEST_CASE("a pilot says how many loops with impact there will be, and how well r
   std::vector<ExperimentRecord> few(10, made_up(study, ExperimentKind::mpm, 1.5));
   CHECK_THAT(to_string(forecast_warnings(small, forecast(small, few), few).front()),
              Contains("about 20 loops with impact: a rate of 0.5 over them is known to +- 0.20"));
+}
+
+TEST_CASE("of a study in worlds a pilot says how well its worlds let rates be known", "[validation]") {
+  Study study = find_study("false-alarms");
+  study.experiments = {.mpm = 80, .healthy = 80};
+  std::vector<ExperimentRecord> pilot(10, made_up(study, ExperimentKind::mpm, 1.5));
+  pilot.resize(20, made_up(study, ExperimentKind::healthy, 1.0));
+  const StudyForecast independent = forecast(study, pilot);
+  CHECK(independent.worlds == 0);
+  study.world = WorldRanges{.count = 8};
+  for (ExperimentRecord& record : pilot) {
+    record.cost.emplace();
+    record.cost->variance_ratio = record.ivar_basis;
+  }
+  const StudyForecast found = forecast(study, pilot);
+  CHECK(found.worlds == 8);
+  // 80 loops in 8 worlds with a correlation of 0.3: 80 / 3.7 (1.960 / 2.365)^2 = 14.85 independent ones.
+  const Interval expected = score_interval(0.5, 14.85, 0.95);
+  CHECK(found.detection_width == Approx(expected.upper - expected.lower).epsilon(0.01));
+  CHECK(found.detection_width > 1.5 * independent.detection_width);
+  // Ever more loops: 8 / 0.3 (1.960 / 2.365)^2 = 18.3.
+  const Interval best = score_interval(0.5, 18.3, 0.95);
+  CHECK(found.detection_width_limit == Approx(best.upper - best.lower).epsilon(0.01));
+  CHECK_THAT(to_string(forecast_warnings(study, found, pilot).front()),
+             Contains("the 8 worlds are the limit") && Contains("world.count"));
+  study.world->count = 100;
+  CHECK(forecast(study, pilot).detection_width < 1.1 * independent.detection_width);
+}
+
+TEST_CASE("a world whose loop is not stable is warned of", "[validation]") {
+  Study study = find_study("suite-ogunnaike-ray");
+  study.world = WorldRanges{.count = 2};
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const auto found = [&] {
+    std::string all;
+    for (const StudyWarning& warning : basis_warnings(study, basis))
+      all += to_string(warning) + "\n";
+    return all;
+  };
+  CHECK_THAT(found(), !Contains("not stable"));
+  study.world->gain_factor = Distribution::constant(8.0);
+  CHECK_THAT(found(), Contains("2 of 2 worlds are not stable without a fault") && Contains("\"exclude\""));
+  study.diagnosis.unstable = UnstableLoops::exclude;
+  CHECK_THAT(found(), Contains("their experiments are left out"));
 }
 
 /// Two CVs of 300 samples, whose simulation errors are white with these deviations in three thirds.

@@ -138,7 +138,7 @@ TEST_CASE("random disturbances: places are one CV, an MV with its CVs, or severa
   CHECK(places[3] > 15);
 }
 
-TEST_CASE("random mismatches: extents are a channel, a CV or the actuator of an MV") {
+TEST_CASE("random mismatches: extents are a channel, a CV, the actuator of an MV or the whole plant") {
   Study study = find_study("chapter6");
   study.experiments = {.mpm = 1};
   const auto draws_with = [&](MismatchExtent extent) {
@@ -159,6 +159,14 @@ TEST_CASE("random mismatches: extents are a channel, a CV or the actuator of an 
   for (const Mismatch& mismatch : mv)
     CHECK((mismatch.input == one[0].input && mismatch.value == mv[0].value &&
            mismatch.parameter == MismatchParameter::gain));
+  const std::vector<Mismatch> plant = draws_with(MismatchExtent::plant);
+  CHECK(plant.size() == 21);
+  std::set<double> values;
+  for (const Mismatch& mismatch : plant) {
+    CHECK(mismatch.parameter == one[0].parameter);
+    values.insert(mismatch.value);
+  }
+  CHECK(values.size() == 21);  // each by its own amount
 }
 
 TEST_CASE("mismatches: a further lag, an inverse response and a sign, by their step responses") {

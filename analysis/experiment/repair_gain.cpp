@@ -1,0 +1,101 @@
+#include "analysis/experiment/repair_gain.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "analysis/experiment/fault_cost.hpp"
+#include "analysis/experiment/repaired_model.hpp"
+#include "analysis/statistics/ratio_of_means.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/loop/excitation.hpp"
+
+namespace mpm {
+namespace {
+
+/// A gain is one beyond chance when it is above so many of its standard errors.
+constexpr double kErrors = 2.0;
+
+/// The costs of the loops of one experiment under a model, loop by loop; empty when one does not run to its
+/// end.
+class RepairLoops {
+ public:
+  RepairLoops(const Study& study, int loops, const QpSolverFactory& factory, SolverStatistics& pilots)
+      : study_(study), loops_(loops), factory_(factory), pilots_(pilots) {}
+
+  std::vector<double> costs(const TransferMatrix& model, const ExperimentDraw& draw) const {
+    std::vector<double> costs;
+    for (int loop = 0; loop < loops_; ++loop) {
+      ExperimentDraw noisy = draw;
+      noisy.noise_index = pilot_noise(study_, draw, loops_, loop);
+      const Trajectory run = loop_with_model(study_, model, noisy, factory_);
+      pilots_.add(run.solver);
+      if (run.status != ControlStatus::ok)
+        return {};
+      costs.push_back(loop_cost(study_, run).total());
+    }
+    return costs;
+  }
+
+ private:
+  const Study& study_;
+  int loops_;
+  const QpSolverFactory& factory_;
+  SolverStatistics& pilots_;
+};
+
+/// Of the repair after which the loops cost `after`.
+RatioOfMeans gain_of(const std::vector<double>& now, const std::vector<double>& after,
+                     const std::vector<double>& without) {
+  if (after.empty())
+    return {kNaN, kNaN};
+  std::vector<double> saved;
+  for (std::size_t loop = 0; loop < now.size(); ++loop)
+    saved.push_back(now[loop] - after[loop]);
+  return ratio_of_means(saved, without);
+}
+
+}  // namespace
+
+std::optional<double> RepairGains::best() const {
+  std::optional<double> best;
+  for (Eigen::Index i = 0; i < gain.size(); ++i)
+    if (const double each = gain.data()[i]; each > 0.0 && each > kErrors * error.data()[i])
+      best = std::max(best.value_or(each), each);
+  return best;
+}
+
+double RepairGains::share_of(const std::optional<Channel>& channel) const {
+  if (!channel)
+    return 0.0;
+  const double found = gain(channel->cv, channel->mv);
+  return found > 0.0 ? std::min(1.0, found / best().value()) : 0.0;  // not that of a NaN
+}
+
+RepairGains repair_gains(const Study& study, const ExperimentDraw& draw, int loops,
+                         const QpSolverFactory& factory, SolverStatistics& pilots) {
+  if (draw.mismatches.empty() || study.nonlinear || loops == 0)
+    return {};
+  const Study moved = with_excitation(study, draw.index);
+  const RepairLoops runs(moved, loops, factory, pilots);
+  const std::vector<double> now = runs.costs(moved.plant.G, draw);
+  const std::vector<double> without = runs.costs(moved.plant.G, draw.without_faults());
+  if (now.empty() || without.empty())
+    return {};
+  const TransferMatrix plant = true_plant(moved, draw);
+  const Eigen::Index ny = moved.cv_count(), nu = moved.mv_count();
+  RepairGains gains{Eigen::MatrixXd::Zero(ny, nu), Eigen::MatrixXd::Zero(ny, nu)};
+  for (Eigen::Index cv = 0; cv < ny; ++cv)
+    for (Eigen::Index mv = 0; mv < nu; ++mv) {
+      if (plant(cv, mv) == moved.plant.G(cv, mv))
+        continue;
+      TransferMatrix repaired = moved.plant.G;
+      repaired(cv, mv) = plant(cv, mv);
+      const RatioOfMeans gain = gain_of(now, runs.costs(repaired, draw), without);
+      gains.gain(cv, mv) = gain.value;
+      gains.error(cv, mv) = gain.error;
+    }
+  return gains;
+}
+
+}  // namespace mpm

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/assessment.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/study/study.hpp"
+#include "solvers/qp_solver.hpp"
+
+namespace mpm {
+
+/// What the repair of each channel of the model would bring, by simulation: the truth for methods that name a
+/// channel. With J = LoopCost::total() of the loop of an experiment, its fault there from the first sample
+/// on,
+///
+///     gain(i, j) = (E J - E J(i, j)) / E J_0
+///
+/// J is that of the loop as it is, J(i, j) that of the same loop under the controller whose model has the
+/// true channel from MV j to CV i (loop_with_model()), J_0 that of the same loop without the fault. The
+/// expectation is over noise and background; the loops of one noise are compared with each other. 0.3: the
+/// repair takes away 30 % of what the loop costs without the fault. A gain below 0 is a repair that does
+/// harm.
+///
+/// | member | shape   | meaning                                                                           |
+/// |--------|---------|-----------------------------------------------------------------------------------|
+/// | gain   | ny x nu | 0 where plant and model agree; NaN where the repaired loop does not run to its end |
+/// | error  | ny x nu | its standard error (ratio_of_means()); NaN of a single loop                       |
+///
+/// Both are empty, or NaN out of an archive, where nothing was computed.
+struct RepairGains {
+  Eigen::MatrixXd gain, error;
+
+  /// What the best repair brings; none where no gain is positive beyond chance: above twice its error.
+  std::optional<double> best() const;
+  /// The share of it that the repair of this channel brings, at least 0; 0 of no channel. There must be a
+  /// best one.
+  double share_of(const std::optional<Channel>& channel) const;
+};
+
+/// The gains of an experiment with mismatches of a linear plant, in expectation over `loops` loops with noise
+/// of their own. Empty without a mismatch, of a nonlinear plant, for 0 loops, and where the loop as it is or
+/// without the fault does not run to its end.
+RepairGains repair_gains(const Study& study, const ExperimentDraw& draw, int loops,
+                         const QpSolverFactory& factory, SolverStatistics& pilots);
+
+}  // namespace mpm

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "plants/linear/transfer_matrix.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/study/study.hpp"
+#include "solvers/qp_solver.hpp"
+
+// What every repair of a model rests on, whether it is the true one or was identified.
+
+namespace mpm {
+
+/// The transfer functions of the linear plant of an experiment, after its onset.
+TransferMatrix true_plant(const Study& study, const ExperimentDraw& draw);
+
+/// The loop of the experiment under the controller of the study with another model: `model` in the place of
+/// Study::plant. The plant, its faults, which are there from the first sample on, the noise and all other
+/// signals are those of the experiment.
+Trajectory loop_with_model(const Study& study, const TransferMatrix& model, ExperimentDraw draw,
+                           const QpSolverFactory& factory);
+
+}  // namespace mpm
