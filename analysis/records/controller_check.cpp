@@ -73,20 +73,20 @@ double correlation(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b, double& cou
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
-/// Do moves of some MV follow changes of the errors of some CV? Both are nearly white in a loop, and
-/// independent where nothing feeds the CVs back.
+/// Do moves of some MV follow errors of some CV? Where nothing feeds the CVs back both are independent, and
+/// the moves are nearly white.
 bool answers(const Eigen::MatrixXd& u, const Eigen::MatrixXd& e) {
   const Eigen::Index N = u.cols();
   if (N < kFewestMoves + kAnswerLags)
     return true;
   const Eigen::MatrixXd moves = u.rightCols(N - 1) - u.leftCols(N - 1);
-  const Eigen::MatrixXd changes = e.rightCols(N - 1) - e.leftCols(N - 1);
+  const Eigen::MatrixXd errors = e.rightCols(N - 1);
   for (Eigen::Index mv = 0; mv < u.rows(); ++mv)
     for (Eigen::Index cv = 0; cv < e.rows(); ++cv)
       for (Eigen::Index lag = 0; lag < kAnswerLags; ++lag) {
         double count = 0.0;
         const double r = correlation(moves.row(mv).tail(N - 1 - lag).transpose().array(),
-                                     changes.row(cv).head(N - 1 - lag).transpose().array(), count);
+                                     errors.row(cv).head(N - 1 - lag).transpose().array(), count);
         if (count < static_cast<double>(kFewestMoves) || std::abs(r) * std::sqrt(count) > kAnswer)
           return true;
       }
@@ -131,6 +131,7 @@ ControllerCheck check_controller(const RecordFrame& frame, const PlantRecord& re
     check.agreement(mv) = 1.0 - (there - own).square().mean() / (spread * spread);
     check.pull(mv) = (own - there).mean() / spread;
   }
+  check.is_closed_loop = check.is_closed_loop || (check.worst_mv() >= 0 && check.is_alike());
   return check;
 }
 

@@ -20,7 +20,7 @@ struct ControllerCheck {
   Eigen::VectorXd agreement;
   /// mean (u_c - u) in standard deviations of u, nu: a steady pull, as of costs that differ.
   Eigen::VectorXd pull;
-  /// Is some MV correlated with the errors of some CV, as feedback makes it?
+  /// Is it that controller, or is some MV correlated with the errors of some CV, as feedback makes it?
   bool is_closed_loop = true;
   /// The CVs with a setpoint of the study, of which none was recorded, that stay away from it.
   std::vector<Eigen::Index> away;

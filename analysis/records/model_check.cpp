@@ -19,7 +19,7 @@
 namespace mpm {
 namespace {
 
-constexpr double kFarTooLarge = 2.0;  ///< a score that is flagged without simulated records
+constexpr double kFarTooLarge = 1.5;  ///< a score that is flagged without simulated records
 constexpr double kUsual = 2.0;        ///< the largest of some errors of the model, standard deviations
 constexpr double kStep = 0.01;        ///< relative, of differences that stand for derivatives
 

@@ -37,7 +37,7 @@ RecordVerdict record_verdict(const RecordAnswers& answers, const ControllerCheck
     return RecordVerdict::none;
   if (answers.has_fault())
     return RecordVerdict::fault;
-  if (!answers.model_explains() || !answers.said.flagged || !is_above(answers.said, answers.trial_of_said))
+  if (!answers.model_explains() || !is_above(answers.said, answers.trial_of_said))
     return RecordVerdict::nothing;
   return controller.is_alike() ? RecordVerdict::unexplained_cost : RecordVerdict::other_controller;
 }

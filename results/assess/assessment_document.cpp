@@ -60,7 +60,8 @@ std::vector<double> as_recorded(const RecordAssessment& of, const std::string& n
 /// Time with stamps in place of numbers, one at each whole number; what all stamps share at their end (":00")
 /// is left out.
 Axis stamps_axis(const std::vector<std::string>& stamps, int steps) {
-  Axis axis{.label = "", .lower = 0.0, .upper = static_cast<double>(steps)};
+  constexpr double kRoom = 1.15;  // for the end of the last stamp
+  Axis axis{.label = "", .lower = 0.0, .upper = kRoom * static_cast<double>(steps)};
   const bool to_the_minute = std::all_of(stamps.begin(), stamps.end(), [](const std::string& stamp) {
     return stamp.size() == 19 && stamp.ends_with(":00");
   });
@@ -83,14 +84,13 @@ Figure worst_figure(const RecordAssessment& of) {
   const auto tag = of.data.tags.find(variable.name);
   const std::string name =
       as_label(variable.name) + (tag == of.data.tags.end() ? "" : ", " + as_label(tag->second));
-  const std::string unit = variable.unit == "1" || of.data.scale.contains(variable.name)
-                               ? ""
-                               : " (" + as_label(variable.unit) + ")";
+  const std::string unit =
+      variable.unit == "1" || of.data.scale.contains(variable.name) ? "" : as_label(variable.unit);
   std::vector<double> time;
   const auto last = static_cast<double>(std::max<Eigen::Index>(1, of.record.samples() - 1));
   for (Eigen::Index k = 0; k < of.record.samples(); ++k)
     time.push_back(kSteps * static_cast<double>(k) / last);
-  PanelScript panel("worst", name, stamps_axis(of.record.stamps, kSteps), {.label = name + unit});
+  PanelScript panel("worst", name, stamps_axis(of.record.stamps, kSteps), {.label = unit});
   panel.line(time, as_recorded(of, variable.name, of.record.y.row(cv)), measured);
   Eigen::RowVectorXd y_sim = of.loop.y_sim.row(cv);
   y_sim.head(of.unjudged).setConstant(kNaN);  // nobody knows what the MVs did before

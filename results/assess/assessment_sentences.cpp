@@ -39,8 +39,10 @@ std::string flag_sentence(const RecordAssessment& of) {
       return fmt::format("The model is good; the controller in the study is not the one that ran{}.",
                          costs_text(of));
     case RecordVerdict::unexplained_cost:
-      return fmt::format("The model is good, and the variances are not those of the nominal loop{}.",
-                         costs_text(of));
+      return fmt::format(
+          "The model is good: it explains the record. Only the variances are not those of the "
+          "nominal loop{}.",
+          costs_text(of));
     case RecordVerdict::fault:
       break;
   }
@@ -155,20 +157,18 @@ void add_repair(const RecordAssessment& of, Texts& sentences) {
                                         fmt::join(changes, ", ")));
 }
 
-/// "2.31, with a threshold of 0.85: 3 of 100 simulated records without a fault have a score as high".
+/// "2.31, and the threshold 0.85: 3 of 100 simulated records without a fault score as high".
 std::string score_text(const AssessmentRecord& said, const TrialFindings& found) {
   return fmt::format(
-      "{:.3g}, with a threshold of {:.3g}: {} of {} simulated records without a fault have a "
-      "score as high",
+      "{:.3g}, and the threshold {:.3g}: {} of {} simulated records without a fault score as "
+      "high",
       said.score, found.threshold, found.as_high.hits, found.as_high.total);
 }
 
 /// What the simulated records have in common with this one.
 std::string worlds_text(const RecordAssessment& of) {
   return of.model_error > 0.0
-             ? fmt::format(
-                   "a model that is {:.3g} % off in gain, time constants and dead time of every channel",
-                   100.0 * of.model_error)
+             ? fmt::format("models that are {:.3g} % off in every channel", 100.0 * of.model_error)
              : std::string("an exact model");
 }
 
@@ -182,13 +182,14 @@ void add_trust(const RecordAssessment& of, Texts& sentences) {
   const std::string& name = of.verdict().form->method().name;
   if (of.model.answered() && of.model_error > 0.0)
     sentences.push_back(
-        fmt::format("The simulation errors have a score of {}. A fault is named above this threshold only.",
+        fmt::format("The score of the simulation errors is {}. A fault is named above it only.",
                     score_text(of.model, of.trial->model)));
   if (of.verdict().answered())
     sentences.push_back(fmt::format("The score of {} is {}.", name, score_text(of.verdict(), found)));
   std::string text = fmt::format(
-      "On {} simulated records of this controller, excitation and length, with {}, {} "
-      "flagged {} of those without a fault and {} of those with one ({} where it had an impact)",
+      "Of {} simulated records like this one, with {}, {} flagged {} of those without a fault and {} of "
+      "those "
+      "with one ({} where it had an impact)",
       of.trial->loops, worlds_text(of), name, share_text(rates.false_alarm_healthy),
       share_text(rates.detected), share_text(rates.detected_impact));
   if (rates.source.total > 0)
@@ -222,7 +223,8 @@ void add_to_do(const RecordAssessment& of, Texts& sentences) {
       return;
     case RecordVerdict::unexplained_cost:
       sentences.emplace_back(
-          "Look at setpoints, limits and the operating point of that time; leave the model as it is.");
+          "Look at tuning, setpoints, limits and the operating point of that time; leave the model as it "
+          "is.");
       return;
     case RecordVerdict::fault:
       break;
@@ -245,8 +247,8 @@ std::string difference_sentence(const RecordAssessment& of) {
     for (const Eigen::Index cv : check.away)
       names.push_back(cv_name(of.study, cv));
     return fmt::format(
-        "The record has no setpoints, and {} stays away from that of the study: name their "
-        "columns (data.setpoint).",
+        "The record has no setpoints, and those of the study are not the ones of {}: name their columns "
+        "(data.setpoint).",
         fmt::join(names, ", "));
   }
   if (!check.is_closed_loop)
