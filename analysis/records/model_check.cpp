@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -103,10 +104,12 @@ class ModelCheck final : public AssessmentMethod {
     for (Eigen::Index input = 0; delta_ > 0.0 && input < G.cols(); ++input) {
       const Eigen::RowVectorXd signal =
           input < loop.u.rows() ? loop.u.row(input) : loop.d.row(input - loop.u.rows());
+      const std::size_t gain = S.size();
       S.push_back(response(G, Ts, input, signal));
-      for (const TransferMatrix* const other : {&slower_, &later_})
-        S.push_back((response(*other, Ts, input, signal) - S[S.size() - (other == &slower_ ? 1 : 2)]) /
-                    kStep);
+      for (const TransferMatrix* const other : {&slower_, &later_}) {
+        Eigen::MatrixXd slope = (response(*other, Ts, input, signal) - S[gain]) / kStep;
+        S.push_back(std::move(slope));
+      }
     }
     return S;
   }

@@ -94,8 +94,8 @@ AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record) {
 JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* healthy) {
   JudgedRecord judged{.loop = judged_loop(frame_, record), .said = {}};
   judged.benchmark = benchmark_of(frame_, record, judged.loop);
-  const auto [first, end] = judged.benchmark;
-  const bool has_benchmark = end > first;
+  const Eigen::Index first = judged.benchmark.first, count = judged.benchmark.second - first;
+  const bool has_benchmark = count > 0;
   std::optional<AssessedLoop> good;
   if (has_benchmark)
     good = healthy == nullptr ? judged.loop : judged_loop(frame_, *healthy);
@@ -110,7 +110,7 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
     const auto panel_with = [&](const AssessedLoop* of_benchmark) {
       AssessmentContext context = assessment_context(study, frame_.basis, frame_.factory);
       if (of_benchmark != nullptr)
-        context.benchmark = window_of(*of_benchmark, first, end - first);
+        context.benchmark = window_of(*of_benchmark, first, count);
       return std::make_unique<MethodPanel>(study, std::move(context), std::vector{name});
     };
     if (has_benchmark) {
