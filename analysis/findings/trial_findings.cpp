@@ -1,30 +1,56 @@
 #include "analysis/findings/trial_findings.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/statistics/conformal_threshold.hpp"
+#include "plants/non_finite.hpp"
 
 namespace mpm {
+namespace {
+
+bool has_answer(const ExperimentRecord& record, std::size_t method) {
+  return record.status == ExperimentStatus::ok && record.assessments[method].answered();
+}
+
+double threshold_of(const std::vector<double>& healthy) {
+  if (healthy.empty())
+    return kNaN;
+  return conformal_threshold(healthy, kTrialFalseAlarms)
+      .value_or(*std::max_element(healthy.begin(), healthy.end()));
+}
+
+}  // namespace
 
 TrialFindings trial_findings(const Study& trial, std::size_t method, const RecordRange& records,
-                             const AssessmentRecord& said) {
-  const FaultSource named = named_source(said);
-  std::int64_t healthy = 0, as_high = 0, same = 0, right = 0;
-  const Collector<MethodRates> rates = rate_collector(trial, method);
+                             const AssessmentRecord& said, const std::optional<TrialGuard>& guard) {
+  std::vector<double> scores;  // of healthy loops
   records.each([&](const ExperimentRecord& record) {
+    if (has_answer(record, method) && record.draw.kind == ExperimentKind::healthy)
+      scores.push_back(record.assessments[method].score);
+  });
+  const double threshold = threshold_of(scores);
+  const FaultSource named = named_source(said);
+  std::int64_t same = 0, right = 0;
+  const Collector<MethodRates> rates = rate_collector(trial, method);
+  records.each([&](ExperimentRecord record) {
+    AssessmentRecord& of_loop = record.assessments[method];
+    const double decisive = guard ? record.assessments[guard->method].score : of_loop.score;
+    of_loop.flagged = of_loop.flagged && !(decisive <= (guard ? guard->threshold : threshold));
     rates.add(record);
-    const AssessmentRecord& of_loop = record.assessments[method];
-    if (record.status != ExperimentStatus::ok || !of_loop.answered())
+    if (!has_answer(record, method) || !of_loop.flagged)
       return;
-    if (record.draw.kind == ExperimentKind::healthy) {
-      ++healthy;
-      as_high += of_loop.score >= said.score ? 1 : 0;
-    }
     if (named != FaultSource::none && named_source(of_loop) == named) {
       ++same;
       right += source_of(record.draw.kind) == named ? 1 : 0;
     }
   });
+  const auto as_high =
+      std::count_if(scores.begin(), scores.end(), [&said](double score) { return score >= said.score; });
   const double confidence = trial.aggregate.confidence;
-  return {rates.result(), rate(as_high, healthy, confidence), rate(right, same, confidence)};
+  return {threshold, rates.result(), rate(as_high, std::ssize(scores), confidence),
+          rate(right, same, confidence)};
 }
 
 }  // namespace mpm

@@ -200,17 +200,12 @@ bool stays_away(const Eigen::RowVectorXd& y, double level) {
 }
 
 void check_setpoints(const Study& study, const PlantRecord& record, std::vector<std::string>& warnings) {
-  for (Eigen::Index cv = 0; cv < record.y.rows(); ++cv) {
-    if (!study.controller.has_setpoint(cv) || !std::isnan(record.y_set(cv, 0)))
-      continue;
-    const double setpoint = study.simulation.initial_setpoint(cv);
-    if (stays_away(record.y.row(cv), setpoint))
-      warnings.push_back(
-          fmt::format("{} does not follow its setpoint {:g}, which is that of the study, since the record "
-                      "has none: name its "
-                      "column (data.setpoint), or else whatever moved the setpoint counts as a fault",
-                      study.plant.cvs[static_cast<std::size_t>(cv)].name, setpoint));
-  }
+  for (const Eigen::Index cv : cvs_away_from_setpoints(study, record))
+    warnings.push_back(fmt::format(
+        "{} does not follow its setpoint {:g}, which is that of the study, since the record "
+        "has none: name its "
+        "column (data.setpoint), or else whatever moved the setpoint counts as a fault",
+        study.plant.cvs[static_cast<std::size_t>(cv)].name, study.simulation.initial_setpoint(cv)));
 }
 
 // --- Exchanged columns ---
@@ -283,10 +278,13 @@ class ExchangeSearch {
   }
 
  private:
+  /// Of the whole record and of its second half, in which an unknown past is over.
   bool explains_nothing() const {
-    for (Eigen::Index cv = 0; cv < record_.y.rows(); ++cv)
-      if (explained(Eigen::RowVectorXd(record_.y.row(cv)), Eigen::RowVectorXd(y_sim_.row(cv))) >= kNothing)
-        return false;
+    for (const Eigen::Index samples : {record_.samples(), record_.samples() / 2})
+      for (Eigen::Index cv = 0; cv < record_.y.rows(); ++cv)
+        if (explained(Eigen::RowVectorXd(record_.y.row(cv).tail(samples)),
+                      Eigen::RowVectorXd(y_sim_.row(cv).tail(samples))) >= kNothing)
+          return false;
     return true;
   }
 
@@ -322,6 +320,15 @@ std::vector<std::string> check_record(const Study& study, const PlantRecord& rec
   for (std::string& finding : ExchangeSearch(study, record).findings())
     warnings.push_back(std::move(finding));
   return warnings;
+}
+
+std::vector<Eigen::Index> cvs_away_from_setpoints(const Study& study, const PlantRecord& record) {
+  std::vector<Eigen::Index> away;
+  for (Eigen::Index cv = 0; cv < record.y.rows(); ++cv)
+    if (study.controller.has_setpoint(cv) && std::isnan(record.y_set(cv, 0)) &&
+        stays_away(record.y.row(cv), study.simulation.initial_setpoint(cv)))
+      away.push_back(cv);
+  return away;
 }
 
 }  // namespace mpm

@@ -23,4 +23,8 @@ namespace mpm {
 /// to be pasted as data.operating_point; a variable that has one there is warned of only.
 std::vector<std::string> check_record(const Study& study, const PlantRecord& record);
 
+/// The CVs with a setpoint that stay away from it for most of the time, by more than they move meanwhile,
+/// where the record has no setpoint: that of the study is not the one that was there.
+std::vector<Eigen::Index> cvs_away_from_setpoints(const Study& study, const PlantRecord& record);
+
 }  // namespace mpm

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -12,9 +14,13 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/trial_findings.hpp"
-#include "analysis/methods/method_panel.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "analysis/validation/benchmark_period.hpp"
+#include "analysis/records/column_lags.hpp"
+#include "analysis/records/controller_check.hpp"
+#include "analysis/records/model_check.hpp"
+#include "analysis/records/record_panel.hpp"
+#include "analysis/records/trial_record.hpp"
+#include "analysis/records/untold_part.hpp"
 #include "analysis/validation/record_check.hpp"
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
@@ -24,6 +30,7 @@
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
+#include "bench/files/outside_files.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
 #include "results/assess/record_assessment.hpp"
@@ -32,9 +39,7 @@
 #include "results/records/plant_record_file.hpp"
 #include "scenarios/files/recorded_study.hpp"
 #include "scenarios/files/study_library.hpp"
-#include "scenarios/loop/historian.hpp"
 #include "scenarios/loop/signals.hpp"
-#include "scenarios/study/window_scan.hpp"
 
 namespace mpm {
 namespace {
@@ -47,6 +52,7 @@ struct AssessArguments {
   std::string page;         ///< none when empty
   std::string calibration;  ///< archive; beside the data when empty
   int trials = 200;
+  double model_error = 5.0;  ///< percent
   std::optional<int> window, stride;
   RunOptions run;
   bool json = false;
@@ -104,10 +110,12 @@ BasisCase basis_of(const Study& study, const QpSolverFactory& factory) {
 }
 
 /// Puts what the identified channel promises into the assessment, when the verdict names one.
-void add_repair_to(RecordAssessment& assessment, const BasisCase& basis, const QpSolverFactory& factory) {
+void add_repair(RecordAssessment& assessment, const RecordFrame& frame) {
+  if (assessment.found() != RecordVerdict::fault)
+    return;
   try {
-    assessment.repair =
-        promised_repair(assessment.study, basis.point, assessment.loop, assessment.verdict(), factory);
+    assessment.repair = promised_repair(assessment.study, frame.basis.point, assessment.loop,
+                                        assessment.verdict(), frame.factory);
   } catch (const InputError& error) {
     assessment.no_repair = error.what();
   }
@@ -125,89 +133,104 @@ void require_own_archive(const std::filesystem::path& archive) {
                      "another name for the calibration run (--calibration)");
 }
 
+/// The gaps of the record, which those of the simulated ones are.
+std::string shape_text(const PlantRecord& record) {
+  std::string shape;
+  for (Eigen::Index k = 0; k < record.samples(); ++k)
+    for (Eigen::Index cv = 0; cv < record.y.rows(); ++cv)
+      shape += std::isnan(record.y(cv, k)) ? '-' : 'y';
+  return shape;
+}
+
+/// What decides on the answers on simulated records beside their study.
+std::string judged_text(const RecordFrame& frame, const TrialFrame& made, std::string_view seen) {
+  return fmt::format(
+      "judged as the record {} is: {} samples before it, {} not judged, {:g} of the noise as "
+      "bias, {} % of errors, benchmark {} to {}{}",
+      digest_of(seen), made.lead, frame.unjudged, made.bias, 100.0 * frame.model_error,
+      made.record.benchmark.first, made.record.benchmark.second, frame.finds_benchmark ? ", found" : "");
+}
+
+/// From what simulated records are made: with a model that may be wrong they begin midway where the record
+/// does.
+TrialFrame trial_frame(const RecordAssessment& assessment, const RecordFrame& frame, const Study& study,
+                       int trials) {
+  constexpr Eigen::Index kLongLead = 2;  // settling times
+  TrialFrame made{.record = assessment.record, .study = {}};
+  if (frame.finds_benchmark)
+    made.record.benchmark = {0, 0};
+  if (frame.model_error > 0.0) {
+    made.bias = kTrialBias;
+    made.lead = std::min(kLongLead * frame.unjudged, assessment.record.samples() - 1);
+  }
+  const Study longer =
+      recorded_study(study, with_lead(assessment.record, made.lead), frame.methods, std::nullopt);
+  const int faulty = trials / 2;
+  made.study = trial_study(longer, {.healthy = trials - faulty,
+                                    .faulty = faulty,
+                                    .model_error = frame.model_error,
+                                    .judged = judged_text(frame, made, shape_text(assessment.record))});
+  return made;
+}
+
 /// Runs the loops like the record, or takes those that are kept, and puts what they say into the assessment.
-void add_trial(RecordAssessment& assessment, const AssessArguments& options, Progress& progress,
-               const std::string& command) {
+void add_trial(RecordAssessment& assessment, const Study& study,
+               const std::shared_ptr<const RecordFrame>& frame, const AssessArguments& options,
+               Progress& progress, const std::string& command) {
   if (options.trials == 0) {
     assessment.no_trial = "no calibration run was asked for (--trials)";
     return;
   }
   const std::filesystem::path archive = calibration_archive(options);
   require_own_archive(archive);
-  RunOptions run = options.run;
-  run.methods = options.methods;
-  run.store = StorePolicy::none;
-  run.audit_share = 0.0;
-  run.allow_unhealthy_basis = true;
-  const int faulty = options.trials / 2;
   const CampaignHooks hooks = hooks_of(progress);
   try {
-    const Study study = trial_study(assessment.study, options.trials - faulty, faulty);
-    std::optional<Campaign> campaign = kept_campaign(archive, study, run, hooks.on_warning);
+    const auto made = std::make_shared<TrialFrame>(trial_frame(assessment, *frame, study, options.trials));
+    const auto alike = std::make_shared<RecordFrame>(*frame);
+    alike->as_kept.monitoring.reset();
+    alike->closed.monitoring.reset();
+    RunOptions run = options.run;
+    run.methods = frame->methods;
+    run.store = StorePolicy::none;
+    run.audit_share = 0.0;
+    run.allow_unhealthy_basis = true;
+    run.assessor = [alike, made] { return trial_assessor(alike, made); };
+    std::optional<Campaign> campaign = kept_campaign(archive, made->study, run, hooks.on_warning);
     if (!campaign) {
       require_output_archive(archive, "calibration run");
-      campaign = run_and_keep(archive, study, run, hooks, command);
+      campaign = run_and_keep(archive, made->study, run, hooks, command);
     }
-    RecordTrial trial{
-        archive.filename().string(), static_cast<std::int64_t>(records_of(*campaign).size()), {}};
-    for (std::size_t method = 0; method < assessment.said.size(); ++method)
+    const RecordRange records = records_of(*campaign);
+    const std::size_t last = assessment.said.size();
+    RecordTrial trial{archive.filename().string(),
+                      static_cast<std::int64_t>(records.size()),
+                      {},
+                      trial_findings(campaign->study, last, records, assessment.model)};
+    std::optional<TrialGuard> guard;
+    if (frame->model_error > 0.0)
+      guard = {last, trial.model.threshold};
+    for (std::size_t method = 0; method < last; ++method)
       trial.methods.push_back(
-          trial_findings(campaign->study, method, records_of(*campaign), assessment.said[method]));
+          trial_findings(campaign->study, method, records, assessment.said[method], guard));
     assessment.trial = std::move(trial);
   } catch (const InputError& error) {
     assessment.no_trial = fmt::format("no loop like this one can be simulated: {}", error.what());
   }
 }
 
-/// Does the method not apply to a record with gaps?
-bool needs_every_sample(const std::string& method) {
-  return assessment_method(method).requirements.complete_record;
-}
-
-/// The loop with the gaps of its CVs closed, from the first sample that is judged on.
-AssessedLoop without_gaps(AssessedLoop loop, Eigen::Index unjudged, GapFill fill) {
-  auto judged = loop.y.rightCols(loop.samples() - unjudged);
-  for (Eigen::Index cv = 0; cv < judged.rows(); ++cv)
-    judged.row(cv) = filled(judged.row(cv), fill);
-  return loop;
-}
-
-/// The period of the record that data.benchmark = "found" asks for: a quarter of it, or what windows need.
-void find_benchmark(const Study& study, RecordAssessment& assessment) {
-  if (study.data.benchmark.size() != 1)
+/// Names the benchmark that was found.
+void tell_benchmark(const RecordFrame& frame, RecordAssessment& assessment) {
+  if (!frame.finds_benchmark)
     return;
-  PlantRecord& record = assessment.record;
-  const Eigen::Index fewest = window_scan(assessment.study).longest + kFewestCorrelatedPairs;
-  record.benchmark = quietest_period(assessment.loop, std::max(record.samples() / 4, fewest));
+  const PlantRecord& record = assessment.record;
   const auto [first, end] = record.benchmark;
-  if (first == end)
-    throw InputError("data.benchmark", "\"found\", and no period with enough samples of a CV",
-                     "two time stamps, or a longer record");
   assessment.warnings.push_back(fmt::format(
       "the benchmark is the period of the record in which the model is best, {} to {}: look whether the loop "
       "ran well then (data.benchmark)",
       record.stamps[static_cast<std::size_t>(first)], record.stamps[static_cast<std::size_t>(end - 1)]));
 }
 
-RecordAssessment assessed(const AssessArguments& options, const Study& study) {
-  RecordAssessment assessment;
-  assessment.file = std::filesystem::path(options.data).filename().string();
-  assessment.version = mpmbench_version();
-  assessment.record = load_plant_record(study, options.data);
-  assessment.warnings = check_record(study, assessment.record);
-  const auto monitoring = monitoring_of(options, study, assessment.record);
-  const GapFill fill = study.data.fill;
-  const auto study_with = [&](GapFill gaps) {
-    Study of = study;
-    of.data.fill = gaps;
-    return recorded_study(of, assessment.record, options.methods, monitoring);
-  };
-  // The calibration run has the gaps as the method of the verdict has them.
-  const bool closed_verdict = needs_every_sample(options.methods.front());
-  assessment.study = study_with(closed_verdict ? fill : GapFill::none);
-  const QpSolverFactory factory = qp_solver_factory(options.run.solver);
-  const BasisCase basis = basis_of(assessment.study, factory);
-  assessment.unjudged = samples_to_settle(assessment.study, basis.point, assessment.record, study.data.start);
+void tell_unjudged(RecordAssessment& assessment) {
   if (2 * assessment.unjudged > assessment.record.samples())
     throw InputError(
         "record",
@@ -219,23 +242,57 @@ RecordAssessment assessed(const AssessArguments& options, const Study& study) {
         fmt::format("the record does not begin at rest at the operating point: its first {} samples are not "
                     "judged, until the slowest channel has settled (data.start)",
                     assessment.unjudged));
-  assessment.loop = assessed_loop(assessment.study, basis.point, assessment.record, assessment.unjudged);
-  find_benchmark(study, assessment);
-  const auto [first, end] = assessment.record.benchmark;
-  const Study as_kept = study_with(GapFill::none), closed = study_with(fill);
-  for (const std::string& name : options.methods) {
-    const bool closes = needs_every_sample(name);
-    const AssessedLoop loop =
-        closes ? without_gaps(assessment.loop, assessment.unjudged, fill) : assessment.loop;
-    const Study& of_method = closes ? closed : as_kept;
-    AssessmentContext context = assessment_context(of_method, basis, factory);
-    if (end > first)
-      context.benchmark = window_of(loop, first, end - first);
-    MethodPanel panel(of_method, std::move(context), {name});
-    assessment.said.push_back(panel.assess(loop).front());
-  }
-  assessment.y0 = nominal_loop(assessment.study, assessment.loop, factory);
-  add_repair_to(assessment, basis, factory);
+}
+
+/// How the record is judged: its study, the nominal loop, and what of it nobody knows.
+std::shared_ptr<const RecordFrame> frame_of(const AssessArguments& options, const Study& study,
+                                            RecordAssessment& assessment) {
+  const auto monitoring = monitoring_of(options, study, assessment.record);
+  const auto frame = std::make_shared<RecordFrame>();
+  frame->methods = options.methods;
+  frame->methods.emplace_back(kModelCheck);
+  const auto study_with = [&](GapFill gaps) {
+    Study of = study;
+    of.data.fill = gaps;
+    return recorded_study(of, assessment.record, frame->methods, monitoring);
+  };
+  frame->fill = study.data.fill;
+  frame->as_kept = study_with(GapFill::none);
+  frame->closed = study_with(frame->fill);
+  frame->factory = qp_solver_factory(options.run.solver);
+  frame->model_error = 0.01 * options.model_error;
+  frame->finds_benchmark = study.data.benchmark.size() == 1;
+  assessment.study = frame->study_of(options.methods.front());
+  frame->basis = basis_of(assessment.study, frame->factory);
+  frame->unjudged = assessment.unjudged =
+      samples_to_settle(assessment.study, frame->basis.point, assessment.record, study.data.start);
+  frame->settling = settling_samples(study);
+  tell_unjudged(assessment);
+  return frame;
+}
+
+/// The record as it is judged, without the simulated ones beside it.
+RecordAssessment assessed(const AssessArguments& options, const Study& study,
+                          std::shared_ptr<const RecordFrame>& frame) {
+  RecordAssessment assessment;
+  assessment.file = std::filesystem::path(options.data).filename().string();
+  assessment.version = mpmbench_version();
+  assessment.data = study.data;
+  assessment.model_error = 0.01 * options.model_error;
+  assessment.record = load_plant_record(study, options.data);
+  assessment.warnings = check_record(study, assessment.record);
+  frame = frame_of(options, study, assessment);
+  JudgedRecord judged = RecordPanel(*frame).judge(assessment.record);
+  assessment.record.benchmark = judged.benchmark;
+  assessment.loop = std::move(judged.loop);
+  assessment.model = std::move(judged.said.back());
+  judged.said.pop_back();
+  assessment.said = std::move(judged.said);
+  tell_benchmark(*frame, assessment);
+  for (std::string& warning : column_lags(*frame, assessment.record))
+    assessment.warnings.push_back(std::move(warning));
+  assessment.y0 = nominal_loop(assessment.study, assessment.loop, frame->factory);
+  assessment.controller = check_controller(*frame, assessment.record, assessment.loop);
   assessment.warnings.insert(assessment.warnings.begin(), assessment.record.warnings.begin(),
                              assessment.record.warnings.end());
   return assessment;
@@ -251,12 +308,15 @@ ExitCode assess(AssessArguments options, const std::string& command) {
     require_output_folder(options.page, "page");
   }
   Progress progress(options.quiet);
-  RecordAssessment assessment = assessed(options, study);
+  add_assessment_method(model_check_method(0.01 * options.model_error));
+  std::shared_ptr<const RecordFrame> frame;
+  RecordAssessment assessment = assessed(options, study, frame);
   try {
-    add_trial(assessment, options, progress, command);
+    add_trial(assessment, study, frame, options, progress, command);
   } catch (const Interrupted& error) {
     throw std::runtime_error(progress.explain(error) + "; the same command goes on with the calibration run");
   }
+  add_repair(assessment, *frame);
   if (!options.page.empty())
     write_text(options.page, document_html(assessment_document(assessment)));
   print_result(options.json ? assessment_json(assessment) : document_text(assessment_document(assessment)));
@@ -281,6 +341,12 @@ void add_assess(CommandSet& commands) {
   app.add_option("--trials", options->trials,
                  "Number of simulated loops like the record that show how far to trust the verdict; 0: none")
       ->check(whole_number(0, 1000000))
+      ->capture_default_str();
+  app.add_option(
+         "--model-error", options->model_error,
+         "Errors that a healthy model may have, in gain, time constants and dead time of every channel: "
+         "their standard deviation in percent; 0: an exact model")
+      ->check(number_between(0.0, 50.0))
       ->capture_default_str();
   add_path(app, "--calibration", options->calibration,
            "Archive of these loops, made if it does not exist (default: DATA.calibration.h5)");

@@ -1,7 +1,9 @@
 #include "bench/execution/experiment_work.hpp"
 
 #include <exception>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "analysis/methods/method_table.hpp"
 #include "plants/system/thread_clock.hpp"
@@ -11,20 +13,32 @@ ExperimentWork::ExperimentWork(const Study& study, const Study& basis_study, con
                                const RunOptions& options, const QpSolverFactory& factory)
     : study_(study),
       options_(options),
-      runner_(study, assessment_context(basis_study, basis, factory), study_methods(study)) {}
+      runner_(study, assessment_context(basis_study, basis, factory),
+              options.assessor ? std::vector<std::string>{} : study_methods(study)),
+      assessor_(options.assessor ? options.assessor() : LoopAssessor{}) {}
 
 ExperimentOutcome ExperimentWork::run(std::int64_t index) {
   ExperimentOutcome outcome;
   try {
     AuditSampler sampler(study_.seed, index, audited_share(study_, options_));
-    outcome.record = runner_.run(index, options_.store,
+    outcome.record = runner_.run(index, assessor_ ? StorePolicy::all : options_.store,
                                  [&](const Controller& controller) { sampler.observe(controller); });
+    if (assessor_)
+      assess(outcome.record);
     outcome.samples = sampler.take();
   } catch (const std::exception& error) {
     outcome = {};
     outcome.record = lost_record(study_, index, error.what());
   }
   return outcome;
+}
+
+void ExperimentWork::assess(ExperimentRecord& record) const {
+  record.assessments = record.status == ExperimentStatus::ok
+                           ? assessor_(record)
+                           : unassessed(assessment_forms(study_, study_methods(study_)));
+  if (options_.store == StorePolicy::none)
+    record.loop.reset();
 }
 
 void ExperimentWork::audit(ExperimentOutcome& outcome) {

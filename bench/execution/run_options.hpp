@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/records/trial_record.hpp"
 
 namespace mpm {
 
@@ -35,6 +37,9 @@ struct RunOptions {
   StorePolicy store = StorePolicy::flagged;      ///< which loops are kept
   bool allow_unhealthy_basis = false;            ///< run although the basis case fails its self-check
   std::string archive = {};  ///< digest of the archive whose loops are assessed; empty: they are run
+  /// Makes for each worker what assesses its loops in the place of the methods of the study, which must have
+  /// the same; what it does stands in the study (TrialPlan::judged). Empty: the methods see the whole loop.
+  std::function<LoopAssessor()> assessor = {};
 
   // These change no number.
   int jobs = 1;  ///< how many experiments run at once

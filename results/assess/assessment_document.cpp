@@ -1,9 +1,13 @@
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "analysis/experiment/judgement.hpp"
+#include "plants/non_finite.hpp"
 #include "results/assess/record_assessment.hpp"
+#include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/trajectory_figure.hpp"
 #include "results/text/experiment_text.hpp"
@@ -19,13 +23,100 @@ std::string source_words(FaultSource source) {
   return source == FaultSource::none ? "-" : source_name(source);
 }
 
-Section words_section(const char* id, const char* title, const std::vector<std::string>& sentences) {
-  Section section{id, title};
-  Sentences words;
+std::string paragraph_of(const std::vector<std::string>& sentences) {
+  std::string words;
   for (const std::string& sentence : sentences)
-    words.words.push_back(as_label(sentence));
-  if (!sentences.empty())
-    section.add(std::move(words));
+    words += (words.empty() ? "" : " ") + as_label(sentence);
+  return words;
+}
+
+/// What stays behind its count until a reader opens it.
+Section warnings_section(const RecordAssessment& of) {
+  Section section{"warnings", "Look at these"};
+  if (of.warnings.empty())
+    return section;
+  Sentences words;
+  for (const std::string& warning : of.warnings)
+    words.words.push_back(as_label(warning));
+  section.add(fmt::format("<details class=\"fold\"><summary>{} warning{}</summary>\n", of.warnings.size(),
+                          of.warnings.size() == 1 ? "" : "s"));
+  section.add(std::move(words));
+  section.add("</details>\n");
+  return section;
+}
+
+/// In the unit of the column, and as it was before the operating point was taken off.
+std::vector<double> as_recorded(const RecordAssessment& of, const std::string& name,
+                                const Eigen::RowVectorXd& values) {
+  const auto look = [&name](const DataOptions::Numbers& numbers, double fallback) {
+    const auto found = numbers.find(name);
+    return found == numbers.end() ? fallback : found->second;
+  };
+  const Eigen::RowVectorXd columns =
+      values.array() / look(of.data.scale, 1.0) + look(of.data.operating_point, 0.0);
+  return {columns.begin(), columns.end()};
+}
+
+/// Time with stamps in place of numbers, one at each whole number; what all stamps share at their end (":00")
+/// is left out.
+Axis stamps_axis(const std::vector<std::string>& stamps, int steps) {
+  constexpr double kRoom = 1.15;  // for the end of the last stamp
+  Axis axis{.label = "", .lower = 0.0, .upper = kRoom * static_cast<double>(steps)};
+  const bool to_the_minute = std::all_of(stamps.begin(), stamps.end(), [](const std::string& stamp) {
+    return stamp.size() == 19 && stamp.ends_with(":00");
+  });
+  for (int i = 0; i <= steps; ++i) {
+    const std::string& stamp =
+        stamps[(stamps.size() - 1) * static_cast<std::size_t>(i) / static_cast<std::size_t>(steps)];
+    axis.words.push_back(as_label(to_the_minute ? stamp.substr(0, 16) : stamp));
+  }
+  return axis;
+}
+
+/// What an engineer looks at first: the worst CV as it was measured, and what the model makes of the MVs.
+Figure worst_figure(const RecordAssessment& of) {
+  constexpr int kSteps = 2;
+  constexpr double kHeight = 260;
+  const Pen measured{colour::kBlack, Dash::solid, Mark::none, 1.0};
+  const Pen model{colour::kVermillion, Dash::solid, Mark::none, 2.0};
+  const Eigen::Index cv = worst_cv(of);
+  const PlantModel::Variable& variable = of.study.plant.cvs[static_cast<std::size_t>(cv)];
+  const auto tag = of.data.tags.find(variable.name);
+  const std::string name =
+      as_label(variable.name) + (tag == of.data.tags.end() ? "" : ", " + as_label(tag->second));
+  const std::string unit =
+      variable.unit == "1" || of.data.scale.contains(variable.name) ? "" : as_label(variable.unit);
+  std::vector<double> time;
+  const auto last = static_cast<double>(std::max<Eigen::Index>(1, of.record.samples() - 1));
+  for (Eigen::Index k = 0; k < of.record.samples(); ++k)
+    time.push_back(kSteps * static_cast<double>(k) / last);
+  PanelScript panel("worst", name, stamps_axis(of.record.stamps, kSteps), {.label = unit});
+  panel.line(time, as_recorded(of, variable.name, of.record.y.row(cv)), measured);
+  Eigen::RowVectorXd y_sim = of.loop.y_sim.row(cv);
+  y_sim.head(of.unjudged).setConstant(kNaN);  // nobody knows what the MVs did before
+  panel.line(time, as_recorded(of, variable.name, y_sim), model);
+  Figure figure;
+  figure.name = "measured-and-model";
+  figure.caption =
+      fmt::format("{}: measured, and what the model makes of the recorded MVs and disturbances{}",
+                  as_label(variable.name), of.model_error > 0.0 ? ", but for a constant" : "");
+  figure.legend = {{"measured", measured}, {"model", model}};
+  figure.panels.push_back(panel.finish(
+      fmt::format("{} as measured and as the model has it, over time.", variable.name), kHeight));
+  figure.columns = 1;
+  return figure;
+}
+
+Section verdict_section(const RecordAssessment& of) {
+  const AssessmentText text = verdict_text(of);
+  Section section{"verdict", "The verdict"};
+  Facts box;
+  box.add("Asked", paragraph_of(text.asked));
+  box.add("Found", paragraph_of(text.found));
+  box.add("To do", paragraph_of(text.to_do));
+  box.add("How sure", paragraph_of(text.sure));
+  section.add(std::move(box));
+  section.add(worst_figure(of));
   return section;
 }
 
@@ -83,17 +174,19 @@ Section trust_section(const RecordAssessment& of) {
                : "What each method says of this record",
       {{"method", Table::Align::left}, {"flagged"}, {"score"}, {"CV"}, {"source"}});
   if (of.trial)
-    for (const char* const title : {"false alarms", "power", "right CV", "right source"})
+    for (const char* const title : {"threshold", "false alarms", "power", "right CV", "right source"})
       table.columns.push_back({title});
   Sentences reasons;
   for (std::size_t m = 0; m < of.said.size(); ++m) {
     const AssessmentRecord& said = of.said[m];
     const std::string name = as_label(said.form->method().name);
-    const bool flagged = said.answered() && said.flagged;
+    const bool flagged = of.answers_of(m).has_fault();
     std::vector<Cell> cells{
-        name, said.answered() ? word(said.flagged ? 1.0 : 0.0) : Cell(std::string(to_string(said.status))),
+        name, said.answered() ? word(flagged ? 1.0 : 0.0) : Cell(std::string(to_string(said.status))),
         Number{said.score}, flagged ? as_label(cv_name(of.study, said.predicted_cv)) : "-",
         flagged ? source_words(named_source(said)) : "-"};
+    if (of.trial)
+      cells.emplace_back(Number{of.trial->methods[m].threshold});
     if (of.trial)
       for (const Rate MethodRates::*const rate : {&MethodRates::false_alarm_healthy, &MethodRates::detected,
                                                   &MethodRates::located, &MethodRates::source})
@@ -141,9 +234,8 @@ Document assessment_document(const RecordAssessment& of) {
       .footer = fmt::format("Made by {} from {}. Intervals have a confidence level of {:g} %.",
                             code("mpmbench assess"), file, 100.0 * of.study.aggregate.confidence),
       .version = of.version};
-  for (Section section : {words_section("warnings", "Look at these first", of.warnings),
-                          words_section("verdict", "The verdict", verdict_sentences(of)), cvs_section(of),
-                          repair_section(of), windows_section(of), trust_section(of), record_section(of)})
+  for (Section section : {verdict_section(of), warnings_section(of), cvs_section(of), repair_section(of),
+                          windows_section(of), trust_section(of), record_section(of)})
     if (!section.content.empty())
       document.sections.push_back(std::move(section));
   return document;

@@ -56,8 +56,10 @@ Json trust_json(const TrialFindings& found) {
   for (const MethodRateInfo& info : method_rate_infos())
     if (info.of == StudyFeature::any)
       rates[info.name] = rate_json(found.rates.*info.rate);
-  return {
-      {"rates", rates}, {"as_high", rate_json(found.as_high)}, {"same_source", rate_json(found.same_source)}};
+  return {{"threshold", found.threshold},
+          {"rates", rates},
+          {"as_high", rate_json(found.as_high)},
+          {"same_source", rate_json(found.same_source)}};
 }
 
 Json method_json(const RecordAssessment& of, std::size_t m) {
@@ -65,9 +67,11 @@ Json method_json(const RecordAssessment& of, std::size_t m) {
   Json json{{"name", said.form->method().name}, {"status", to_string(said.status)}, {"reason", said.reason}};
   if (!said.answered())
     return json;
-  json["flagged"] = said.flagged;
+  json["flagged"] = of.answers_of(m).has_fault();
   json["score"] = said.score;
-  json["cv"] = said.flagged && said.predicted_cv >= 0 ? Json(cv_name(of.study, said.predicted_cv)) : Json();
+  json["cv"] = of.answers_of(m).has_fault() && said.predicted_cv >= 0
+                   ? Json(cv_name(of.study, said.predicted_cv))
+                   : Json();
   json["source"] = to_string(named_source(said));
   const auto named = said.named_mismatch();
   json["mismatch"] = named ? named_json(of.study, *named) : Json();
@@ -95,15 +99,45 @@ Json repair_json(const Study& study, const PromisedRepair& repair) {
           {"variance", {{"now", variances(repair.now)}, {"predicted", variances(repair.predicted)}}}};
 }
 
+/// Numbers of the MVs; null where there is none.
+Json of_mvs(const Study& study, const Eigen::VectorXd& numbers) {
+  Json json = Json::object();
+  for (Eigen::Index mv = 0; mv < numbers.size(); ++mv)
+    json[mv_name(study, mv)] = std::isnan(numbers(mv)) ? Json() : Json(numbers(mv));
+  return json;
+}
+
+Json model_json(const RecordAssessment& of) {
+  const bool is_known = of.model.answered();
+  return {{"error", of.model_error},
+          {"score", is_known ? Json(of.model.score) : Json()},
+          {"flagged", is_known ? Json(is_above(of.model, of.trial ? &of.trial->model : nullptr)) : Json()},
+          {"trust", of.trial ? trust_json(of.trial->model) : Json()}};
+}
+
+Json controller_json(const RecordAssessment& of) {
+  return {{"alike", of.controller.is_alike()},
+          {"agreement", of_mvs(of.study, of.controller.agreement)},
+          {"closed_loop", of.controller.is_closed_loop},
+          {"says", controller_sentences(of)}};
+}
+
 }  // namespace
 
 std::string assessment_json(const RecordAssessment& assessment) {
-  Json json{{"study", assessment.study.name},           {"file", assessment.file},
-            {"from", assessment.record.stamps.front()}, {"to", assessment.record.stamps.back()},
-            {"samples", assessment.record.samples()},   {"unjudged", assessment.unjudged},
-            {"verdict", verdict_sentences(assessment)}, {"methods", Json::array()}};
+  Json json{{"study", assessment.study.name},
+            {"file", assessment.file},
+            {"from", assessment.record.stamps.front()},
+            {"to", assessment.record.stamps.back()},
+            {"samples", assessment.record.samples()},
+            {"unjudged", assessment.unjudged},
+            {"found", to_string(assessment.found())},
+            {"verdict", verdict_sentences(assessment)},
+            {"methods", Json::array()}};
   for (std::size_t m = 0; m < assessment.said.size(); ++m)
     json["methods"].push_back(method_json(assessment, m));
+  json["model"] = model_json(assessment);
+  json["controller"] = controller_json(assessment);
   json["repair"] = assessment.repair ? repair_json(assessment.study, *assessment.repair) : Json();
   json["trial"] = assessment.trial
                       ? Json{{"loops", assessment.trial->loops}, {"archive", assessment.trial->archive}}

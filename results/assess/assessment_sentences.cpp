@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,11 +30,23 @@ std::string costs_text(const RecordAssessment& of) {
 
 std::string flag_sentence(const RecordAssessment& of) {
   const std::string& name = of.verdict().form->method().name;
-  if (!of.verdict().answered())
-    return fmt::format("No verdict: {} says nothing of this record: {}.", name, of.verdict().reason);
-  return of.verdict().flagged
-             ? fmt::format("Something is wrong with this loop, says {}{}.", name, costs_text(of))
-             : fmt::format("{} finds nothing in this record that is worth a repair{}.", name, costs_text(of));
+  switch (of.found()) {
+    case RecordVerdict::none:
+      return fmt::format("No verdict: {} says nothing of this record: {}.", name, of.verdict().reason);
+    case RecordVerdict::nothing:
+      return fmt::format("{} finds nothing in this record that is worth a repair{}.", name, costs_text(of));
+    case RecordVerdict::other_controller:
+      return fmt::format("The model is good; the controller in the study is not the one that ran{}.",
+                         costs_text(of));
+    case RecordVerdict::unexplained_cost:
+      return fmt::format(
+          "The model is good: it explains the record. Only the variances are not those of the "
+          "nominal loop{}.",
+          costs_text(of));
+    case RecordVerdict::fault:
+      break;
+  }
+  return fmt::format("Something is wrong with this loop, says {}{}.", name, costs_text(of));
 }
 
 /// The mismatch without its size where the repair beside it says that: the same record gives one number.
@@ -86,7 +100,7 @@ void add_other_cvs(const RecordAssessment& of, Texts& sentences) {
                                    source_of_cv(of.verdict(), cv) == FaultSource::none
                                        ? "source not told"
                                        : source_name(source_of_cv(of.verdict(), cv))));
-  if (of.verdict().flagged && !others.empty())
+  if (!others.empty())
     sentences.push_back(fmt::format("Flagged as well: {}.", fmt::join(others, ", ")));
 }
 
@@ -143,6 +157,21 @@ void add_repair(const RecordAssessment& of, Texts& sentences) {
                                         fmt::join(changes, ", ")));
 }
 
+/// "2.31, and the threshold 0.85: 3 of 100 simulated records without a fault score as high".
+std::string score_text(const AssessmentRecord& said, const TrialFindings& found) {
+  return fmt::format(
+      "{:.3g}, and the threshold {:.3g}: {} of {} simulated records without a fault score as "
+      "high",
+      said.score, found.threshold, found.as_high.hits, found.as_high.total);
+}
+
+/// What the simulated records have in common with this one.
+std::string worlds_text(const RecordAssessment& of) {
+  return of.model_error > 0.0
+             ? fmt::format("models that are {:.3g} % off in every channel", 100.0 * of.model_error)
+             : std::string("an exact model");
+}
+
 void add_trust(const RecordAssessment& of, Texts& sentences) {
   if (!of.trial) {
     sentences.push_back(fmt::format("How far to trust this is not known: {}.", of.no_trial));
@@ -150,26 +179,88 @@ void add_trust(const RecordAssessment& of, Texts& sentences) {
   }
   const TrialFindings& found = of.trial->methods.front();
   const MethodRates& rates = found.rates;
+  const std::string& name = of.verdict().form->method().name;
+  if (of.model.answered() && of.model_error > 0.0)
+    sentences.push_back(
+        fmt::format("The score of the simulation errors is {}. A fault is named above it only.",
+                    score_text(of.model, of.trial->model)));
+  if (of.verdict().answered())
+    sentences.push_back(fmt::format("The score of {} is {}.", name, score_text(of.verdict(), found)));
   std::string text = fmt::format(
-      "On {} simulated loops of this controller, excitation and length, {} flagged {} of those without a "
-      "fault "
-      "and {} of those with one ({} where it had an impact)",
-      of.trial->loops, of.verdict().form->method().name, share_text(rates.false_alarm_healthy),
+      "Of {} simulated records like this one, with {}, {} flagged {} of those without a fault and {} of "
+      "those "
+      "with one ({} where it had an impact)",
+      of.trial->loops, worlds_text(of), name, share_text(rates.false_alarm_healthy),
       share_text(rates.detected), share_text(rates.detected_impact));
   if (rates.source.total > 0)
     text += fmt::format("; of one fault alone it named the right source in {}", share_text(rates.source));
   if (rates.located.total > 0)
     text += fmt::format(", the right CV in {}", share_text(rates.located));
   sentences.push_back(text + ".");
-  if (of.verdict().answered() && of.verdict().flagged) {
-    std::string record =
-        fmt::format("A score as high as that of this record had {} of the {} loops without a fault",
-                    found.as_high.hits, found.as_high.total);
-    if (found.same_source.total > 0)
-      record += fmt::format("; of the loops of which it said the same of the source, it was right in {}",
-                            share_text(found.same_source));
-    sentences.push_back(record + ".");
+  if (of.found() == RecordVerdict::fault && found.same_source.total > 0)
+    sentences.push_back(
+        fmt::format("Of the simulated records of which it said the same of the source, it was right in {}.",
+                    share_text(found.same_source)));
+}
+
+/// Would the repaired model make the loop worse in the sum over the CVs?
+bool raises_variances(const PromisedRepair& repair) {
+  return repair.now.size() > 0 && repair.predicted.size() > 0 &&
+         (repair.predicted.array() / repair.now.array()).mean() > 1.0;
+}
+
+void add_to_do(const RecordAssessment& of, Texts& sentences) {
+  switch (of.found()) {
+    case RecordVerdict::none:
+    case RecordVerdict::nothing:
+      sentences.emplace_back(of.warnings.empty() ? "Nothing." : "Look at the warnings; otherwise nothing.");
+      return;
+    case RecordVerdict::other_controller:
+      sentences.emplace_back(
+          "Bring the controller of the study to what ran (setpoints, limits, costs, tuning), and assess "
+          "again; "
+          "leave the model as it is.");
+      return;
+    case RecordVerdict::unexplained_cost:
+      sentences.emplace_back(
+          "Look at tuning, setpoints, limits and the operating point of that time; leave the model as it "
+          "is.");
+      return;
+    case RecordVerdict::fault:
+      break;
   }
+  add_repair(of, sentences);
+  if (of.repair && raises_variances(*of.repair))
+    sentences.emplace_back("Do not put this channel into the controller: the loop would vary more with it.");
+  else if (of.repair)
+    sentences.emplace_back("Test this channel on the plant, and put it into the model if the test agrees.");
+  else if (named_source(of.verdict()) == FaultSource::ud && of.verdict().predicted_cv >= 0)
+    sentences.push_back(fmt::format("Look for what disturbs {} from outside of the loop.",
+                                    cv_name(of.study, of.verdict().predicted_cv)));
+}
+
+/// By what the controller that ran may differ.
+std::string difference_sentence(const RecordAssessment& of) {
+  const ControllerCheck& check = of.controller;
+  if (!check.away.empty()) {
+    Texts names;
+    for (const Eigen::Index cv : check.away)
+      names.push_back(cv_name(of.study, cv));
+    return fmt::format(
+        "The record has no setpoints, and those of the study are not the ones of {}: name their columns "
+        "(data.setpoint).",
+        fmt::join(names, ", "));
+  }
+  if (!check.is_closed_loop)
+    return "No MV answers the CVs: this looks like an open-loop test.";
+  const Eigen::Index mv = check.worst_mv();
+  constexpr double kSteadyPull = 1.0;  // standard deviations
+  if (mv >= 0 && of.study.controller.has_targets() && std::abs(check.pull(mv)) > kSteadyPull)
+    return fmt::format(
+        "It pulls {} {} throughout: look at the costs of the target optimizer "
+        "(controller.mv.NAME.cost) and at the limits.",
+        mv_name(of.study, mv), check.pull(mv) > 0.0 ? "up" : "down");
+  return "Look at its tuning, setpoints and limits.";
 }
 
 }  // namespace
@@ -237,14 +328,58 @@ std::string window_text(const RecordAssessment& assessment, int window) {
   return fmt::format("{} to {}", stamp(monitoring.begin(window)), stamp(monitoring.end(window) - 1));
 }
 
+RecordAnswers RecordAssessment::answers_of(std::size_t method) const {
+  return {.said = said[method],
+          .trial_of_said = trial_of(method),
+          .model = model,
+          .trial_of_model = trial ? &trial->model : nullptr,
+          .allows_errors = model_error > 0.0};
+}
+
+Eigen::Index worst_cv(const RecordAssessment& of) {
+  if (of.found() == RecordVerdict::fault && of.verdict().predicted_cv >= 0)
+    return of.verdict().predicted_cv;
+  return std::max<Eigen::Index>(0, of.model.predicted_cv);
+}
+
+std::vector<std::string> controller_sentences(const RecordAssessment& of) {
+  const ControllerCheck& check = of.controller;
+  if (check.is_alike())
+    return {};
+  const Eigen::Index mv = check.worst_mv();
+  return {
+      check.failure.empty()
+          ? fmt::format("On what was measured, the controller of the study would have moved {} otherwise "
+                        "(agreement {:.2f}, and 1 if it had run).",
+                        mv_name(of.study, mv), check.agreement(mv))
+          : fmt::format("The controller of the study does not run on what was measured: {}.", check.failure),
+      difference_sentence(of)};
+}
+
+AssessmentText verdict_text(const RecordAssessment& of) {
+  AssessmentText text;
+  text.asked.push_back(
+      fmt::format("Does the model of {} still explain what {} shows, and does its loop run as "
+                  "designed?",
+                  of.study.plant.title, of.file));
+  text.found.push_back(flag_sentence(of));
+  if (of.found() == RecordVerdict::fault) {
+    add_source(of, text.found);
+    add_other_cvs(of, text.found);
+  }
+  for (std::string& sentence : controller_sentences(of))
+    text.found.push_back(std::move(sentence));
+  add_candidates(of, text.found);
+  add_to_do(of, text.to_do);
+  add_trust(of, text.sure);
+  return text;
+}
+
 std::vector<std::string> verdict_sentences(const RecordAssessment& assessment) {
-  Texts sentences{flag_sentence(assessment)};
-  if (assessment.verdict().answered() && assessment.verdict().flagged)
-    add_source(assessment, sentences);
-  add_other_cvs(assessment, sentences);
-  add_candidates(assessment, sentences);
-  add_repair(assessment, sentences);
-  add_trust(assessment, sentences);
+  const AssessmentText text = verdict_text(assessment);
+  Texts sentences = text.found;
+  sentences.insert(sentences.end(), text.to_do.begin(), text.to_do.end());
+  sentences.insert(sentences.end(), text.sure.begin(), text.sure.end());
   return sentences;
 }
 

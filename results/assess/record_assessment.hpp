@@ -10,6 +10,8 @@
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_record.hpp"
+#include "analysis/records/controller_check.hpp"
+#include "analysis/records/record_verdict.hpp"
 #include "results/document/document.hpp"
 #include "scenarios/loop/plant_record.hpp"
 #include "scenarios/study/study.hpp"
@@ -21,6 +23,7 @@ struct RecordTrial {
   std::string archive;  ///< where it is kept
   std::int64_t loops = 0;
   std::vector<TrialFindings> methods;  ///< in the order of the answers
+  TrialFindings model;                 ///< of RecordAssessment::model
 };
 
 /// What the methods say of a record of a plant, and what a person needs to judge it.
@@ -33,6 +36,10 @@ struct RecordAssessment {
   Eigen::MatrixXd y0;                  ///< ny x N, the nominal loop under the recorded disturbances
   Eigen::Index unjudged = 0;           ///< samples at the start that only fill the memory of the model
   std::vector<AssessmentRecord> said;  ///< by each method; the first one is the verdict
+  AssessmentRecord model;              ///< model_check_method()
+  ControllerCheck controller;
+  double model_error = 0.0;  ///< RecordFrame::model_error
+  DataOptions data;          ///< of the study, by which the record was read
   std::optional<PromisedRepair> repair;
   std::string no_repair;  ///< why there is none, of a verdict that names a channel; otherwise empty
   std::optional<RecordTrial> trial;
@@ -40,11 +47,29 @@ struct RecordAssessment {
   std::vector<std::string> warnings;
 
   const AssessmentRecord& verdict() const { return said.front(); }
+  /// What the method in this place made of the simulated records; null without any.
+  const TrialFindings* trial_of(std::size_t method) const {
+    return trial ? &trial->methods[method] : nullptr;
+  }
+  RecordAnswers answers_of(std::size_t method) const;
+  RecordVerdict found() const { return record_verdict(answers_of(0), controller); }
 };
 
-/// The verdict in sentences: what it costs and where, what it is, which channel and parameter, what a repair
-/// brings, and how far to trust it.
+/// The verdict in sentences.
+struct AssessmentText {
+  std::vector<std::string> asked;
+  std::vector<std::string> found;  ///< what it costs and where, what it is, which channel and parameter
+  std::vector<std::string> to_do;
+  std::vector<std::string> sure;  ///< how far to trust it
+};
+
+AssessmentText verdict_text(const RecordAssessment& assessment);
+/// All of them but what was asked, in their order.
 std::vector<std::string> verdict_sentences(const RecordAssessment& assessment);
+/// Is the controller of the study the one that ran? Empty: it is.
+std::vector<std::string> controller_sentences(const RecordAssessment& assessment);
+/// The CV that a person looks at first: that of the verdict, or the one that the model explains least.
+Eigen::Index worst_cv(const RecordAssessment& assessment);
 
 /// The verdict, what it costs, what each method says and how far to trust it.
 Document assessment_document(const RecordAssessment& assessment);

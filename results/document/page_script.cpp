@@ -29,6 +29,9 @@ function sort(table, column, heading) {
   body.append(...rows.map(([, row]) => row));
 }
 
+// What is folded is printed.
+addEventListener("beforeprint", () => document.querySelectorAll("details").forEach(fold => fold.open = true));
+
 function makeSortable(table) {
   [...table.tHead.rows[0].cells].forEach((heading, column) => {
     if (!heading.textContent.trim()) return;

@@ -40,6 +40,9 @@ nav li span { color: var(--soft); min-width: 1.3em; text-align: right; font-vari
 .facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(14.5rem, 1fr)); gap: 1.1rem 2rem; margin: 0 0 1.5rem; }
 .facts dt { color: var(--soft); font-size: 0.8rem; letter-spacing: 0.04em; text-transform: uppercase; }
 .facts dd { margin: 0.1rem 0 0; line-height: 1.4; }
+#verdict > .facts { grid-template-columns: 1fr; max-width: 50rem; padding: 0.9rem 1.2rem;
+  border-left: 4px solid var(--blue); background: var(--wash); }
+.fold summary { cursor: pointer; font-weight: 500; }
 .verdict { max-width: 50rem; margin: 1.2rem 0; padding: 0.9rem 1.2rem; border-left: 4px solid var(--blue);
   background: var(--wash); font-size: 1.05rem; }
 .verdict p { margin: 0 0 0.5rem; max-width: none; }

@@ -22,6 +22,8 @@ namespace {
 constexpr std::size_t kMostMoves = 10000;
 constexpr double kFirstTolerance = 0.01;  // of the standard deviation of an MD
 constexpr double kFewestMissing = 0.001;
+constexpr double kMostBackground = 0.5;      // standard deviations of the noise
+constexpr double kLongestBackground = 20.0;  // samples
 constexpr std::string_view kTrialTitle = "Calibration run: ";
 
 /// The table under `key`, made when it is not there.
@@ -127,6 +129,23 @@ toml::table missing_of(const Eigen::MatrixXd& y, GapFill fill) {
       {"fill", word_of(fill)}};
 }
 
+toml::table spread(double low, double high) {
+  return toml::table{{"uniform", toml::array{low, high}}};
+}
+
+/// A world for every loop of a kind. Uniform errors with the standard deviation e end at e sqrt 3.
+toml::table imperfect_worlds(const Study& study, const TrialPlan& plan) {
+  toml::table world{{"count", std::max({1, plan.healthy, plan.faulty})}, {"cost_loops", 1}};
+  if (!study.nonlinear)
+    for (const char* key : {"gain_factor", "time_constant_factor", "dead_time_factor"})
+      world.insert(key,
+                   spread(1.0 - std::sqrt(3.0) * plan.model_error, 1.0 + std::sqrt(3.0) * plan.model_error));
+  if ((study.simulation.noise_standard_deviation.array() > 0.0).all())
+    world.insert("background", toml::table{{"cv_size", spread(0.0, kMostBackground)},
+                                           {"time_constant", spread(1.0, kLongestBackground)}});
+  return world;
+}
+
 void refuse_short_record(const Study& study, const PlantRecord& record) {
   const Eigen::Index fewest = window_scan(study).longest + kFewestCorrelatedPairs;
   if (record.samples() < fewest)
@@ -186,21 +205,27 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
   return study_of(text, name);
 }
 
-Study trial_study(const Study& recorded, int healthy, int faulty) {
+Study trial_study(const Study& recorded, const TrialPlan& plan) {
   toml::table text = parse_toml(recorded.source, recorded.name);
   const ExperimentCounts& counts = recorded.experiments;
   const int total = counts.mpm + counts.ud + counts.mpm_ud;
-  const auto share = [&](int count) { return total == 0 ? faulty / 2 : faulty * count / total; };
+  const auto share = [&](int count) { return total == 0 ? plan.faulty / 2 : plan.faulty * count / total; };
   const int ud = share(counts.ud);
   const int mpm_ud = total == 0 ? 0 : share(counts.mpm_ud);
   text.insert_or_assign(
       "experiments",
-      toml::table{{"mpm", faulty - ud - mpm_ud}, {"ud", ud}, {"mpm_ud", mpm_ud}, {"healthy", healthy}});
+      toml::table{
+          {"mpm", plan.faulty - ud - mpm_ud}, {"ud", ud}, {"mpm_ud", mpm_ud}, {"healthy", plan.healthy}});
   text.erase("monitoring");
+  table_in(text, "record").erase("missing");
+  if (plan.model_error > 0.0)
+    text.insert_or_assign("world", imperfect_worlds(recorded, plan));
   const std::uint64_t seed = (recorded.seed ^ kCalibrationBits) &
                              static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   table_in(text, "study").insert_or_assign("seed", static_cast<std::int64_t>(seed));
-  table_in(text, "study").insert_or_assign("title", fmt::format("{}{}", kTrialTitle, recorded.title));
+  table_in(text, "study")
+      .insert_or_assign("title", fmt::format("{}{}{}{}", kTrialTitle, recorded.title,
+                                             plan.judged.empty() ? "" : ", ", plan.judged));
   return study_of(text, recorded.name + ", calibration run");
 }
 

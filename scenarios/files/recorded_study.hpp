@@ -29,10 +29,20 @@ namespace mpm {
 Study recorded_study(const Study& study, const PlantRecord& record, const std::vector<std::string>& methods,
                      const std::optional<MonitoringOptions>& monitoring);
 
-/// The study of a calibration run: `healthy` loops of recorded_study() without a fault, and `faulty` ones
-/// with the faults of the study, its kinds as often as there, under the seed of the study with the bits of
-/// kCalibrationBits flipped. Errors: as parse_study().
-Study trial_study(const Study& recorded, int healthy, int faulty);
+/// The loops of a calibration run.
+struct TrialPlan {
+  int healthy = 0, faulty = 0;
+  /// Standard deviation of the errors of the model: of gain, time constants and dead time of every channel,
+  /// drawn anew for each loop, beside disturbances that never stop, of up to half of the noise of a CV. 0:
+  /// the model is exact.
+  double model_error = 0.0;
+  std::string judged = {};  ///< how these loops are judged, for people and to know them again
+};
+
+/// The study of a calibration run: loops of recorded_study() without a fault, and others with the faults of
+/// the study, its kinds as often as there, under the seed of the study with the bits of kCalibrationBits
+/// flipped, in the worlds of `plan`. No sample is missing in them. Errors: as parse_study().
+Study trial_study(const Study& recorded, const TrialPlan& plan);
 
 /// Is this the study of a calibration run? Its title says so.
 bool is_trial_study(const Study& study);

@@ -58,7 +58,8 @@ def check_dirt(path):
 
 
 def assess(program, path, methods):
-    result = subprocess.run([program, "assess", "coker", path, "--methods", methods, "--trials", "0", "--json", "--quiet"],
+    result = subprocess.run([program, "assess", "coker", path, "--methods", methods, "--trials", "0", "--model-error", "0", "--json",
+                             "--quiet"],
                             capture_output=True, text=True, timeout=600)
     assert result.returncode == 0, result.stderr
     return {method["name"]: method for method in json.loads(result.stdout)["methods"]}

@@ -30,7 +30,8 @@ class Files(Bench):
 
     def assess(self, record, data="", code=0, options=()):
         (self.folder / "f.toml").write_text(f"{self.text}\n[data]\n{data}\n")
-        result = self.run("assess", "f.toml", record, "--trials", 0, "--json", "--quiet", *options, code=code)
+        result = self.run("assess", "f.toml", record, "--trials", 0, "--model-error", 0, "--json", "--quiet", *options,
+                          code=code)
         return json.loads(result.stdout) if code == 0 else result.stderr
 
     def write(self, name, units="minutes since 2024-03-01 12:00:00", start=0.0, change=None):
@@ -243,7 +244,8 @@ def check_several_faults(files):
     said = files.assess("both.csv", options=["--methods", "likelihood"])["methods"][0]
     assert [(cv["cv"], cv["flagged"], cv["source"]) for cv in said["cvs"]] == [
         ("xD", True, "ud"), ("xB", True, "mpm")], said["cvs"]
-    text = files.run("assess", "f.toml", "both.csv", "--methods", "likelihood", "--trials", 0, "--quiet").stdout
+    text = files.run("assess", "f.toml", "both.csv", "--methods", "likelihood", "--trials", 0, "--model-error", 0,
+                     "--quiet").stdout
     assert "Flagged as well: x" in text, text
     closed = files.assess("both.csv", "fill = 'linear'", options=["--methods", "botelho"])["methods"][0]
     gaps = files.assess("both.csv", options=["--methods", "botelho"])["methods"][0]

@@ -16,7 +16,7 @@ FOLDERS = {
                "nonlinear", "outside", "models"],
     "scenarios": ["random", "toml", "faults", "controller", "study", "loop", "files"],
     "analysis": ["statistics", "identification", "sensitivity", "indicators", "basis", "methods", "experiment",
-                 "findings", "reproduction", "validation"],
+                 "findings", "reproduction", "validation", "records"],
     "results": ["files", "archive", "records", "blind", "text", "plot", "document", "summary", "gates", "report", "assess",
                 "reproduction", "suite"],
     "bench": ["version.hpp", "files", "outcome", "execution", "shards", "parts", "campaign", "console", "commands", "perf"],

@@ -81,7 +81,8 @@ TEST_CASE("without moves of its signals a recorded study has no excitation", "[r
 
 TEST_CASE("a trial study draws the faults of the study under another seed", "[recorded_study]") {
   const Study recorded = recorded_study(study_with(), moving_record(), {"order"}, MonitoringOptions{40, 10});
-  const Study trial = trial_study(recorded, 7, 12);  // the small study has 3, 2 and 1 of 6
+  const Study trial =
+      trial_study(recorded, {.healthy = 7, .faulty = 12});  // the small study has 3, 2 and 1 of 6
   CHECK(trial.experiments == ExperimentCounts{.mpm = 6, .ud = 4, .mpm_ud = 2, .healthy = 7});
   CHECK(trial.seed == (recorded.seed ^ kCalibrationBits));
   CHECK(trial.seed <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()));

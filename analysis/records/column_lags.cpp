@@ -1,0 +1,119 @@
+#include "analysis/records/column_lags.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "plants/non_finite.hpp"
+#include "scenarios/faults/fault.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr Eigen::Index kMostShift = 3;
+constexpr double kWorthNaming = 0.1;  // of the variance of the errors, in each CV
+constexpr Eigen::Index kFewestErrors = 50;
+
+/// The row `shift` samples later; its ends keep the nearest value, or are missing.
+void shift_row(Eigen::MatrixXd& signals, Eigen::Index row, Eigen::Index shift, bool is_cv) {
+  const Eigen::RowVectorXd before = signals.row(row);
+  const Eigen::Index N = before.size();
+  for (Eigen::Index k = 0; k < N; ++k) {
+    const Eigen::Index from = k - shift;
+    const bool inside = from >= 0 && from < N;
+    signals(row, k) = inside ? before(from) : is_cv ? kNaN : before(std::clamp<Eigen::Index>(from, 0, N - 1));
+  }
+}
+
+/// log var(y - y_sim) of each CV, ny; 0 of one with too few samples.
+Eigen::VectorXd log_errors(const RecordFrame& frame, const PlantRecord& record) {
+  const AssessedLoop loop = judged_loop(frame, record);
+  const Eigen::ArrayXXd e = loop.y - loop.y_sim;
+  const auto there = !e.isNaN();
+  const Eigen::ArrayXd count = there.cast<double>().rowwise().sum();
+  const Eigen::ArrayXd mean = there.select(e, 0.0).rowwise().sum() / count.max(1.0);
+  const Eigen::ArrayXd variance =
+      there.select((e.colwise() - mean).square(), 0.0).rowwise().sum() / count.max(1.0);
+  return (count >= static_cast<double>(kFewestErrors) && variance > 0.0)
+      .select(variance.max(std::numeric_limits<double>::min()).log(), 0.0);
+}
+
+struct Shifted {
+  std::string name;
+  bool is_cv = false;
+  Eigen::Index place = 0;  ///< row of G0, or column
+  Eigen::Index shift = 0;
+  double gain = 0.0;   ///< for each CV that it can change
+  double total = 0.0;  ///< over all CVs
+};
+
+/// Does another dead time of one channel alone do as well?
+bool is_one_channel(const RecordFrame& frame, const PlantRecord& record, const Eigen::VectorXd& as_recorded,
+                    const Shifted& column) {
+  constexpr double kAsWell = 0.8;
+  const TransferMatrix& G = frame.as_kept.plant.G;
+  const double change =
+      static_cast<double>(column.is_cv ? -column.shift : column.shift) * frame.as_kept.controller.sample_time;
+  for (Eigen::Index cv = 0; cv < G.rows(); ++cv)
+    for (Eigen::Index input = 0; input < G.cols(); ++input) {
+      if ((column.is_cv ? cv : input) != column.place || G(cv, input).is_zero())
+        continue;
+      RecordFrame other = frame;
+      const double shift = std::max(change, -G(cv, input).dead_time());
+      other.as_kept.plant.G = with_mismatches(G, {{cv, input, MismatchParameter::dead_time, shift}});
+      if ((as_recorded - log_errors(other, record)).sum() > kAsWell * column.total)
+        return true;
+    }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> column_lags(const RecordFrame& frame, const PlantRecord& record) {
+  const Study& study = frame.as_kept;
+  const Eigen::VectorXd as_recorded = log_errors(frame, record);
+  Shifted best, second;
+  const auto look = [&](const std::vector<PlantModel::Variable>& variables,
+                        Eigen::MatrixXd PlantRecord::*signals, bool is_cv, Eigen::Index first) {
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      Shifted own{.name = variables[i].name, .is_cv = is_cv, .place = first + static_cast<Eigen::Index>(i)};
+      for (Eigen::Index shift = -kMostShift; shift <= kMostShift; ++shift) {
+        if (shift == 0)
+          continue;
+        PlantRecord moved = record;
+        shift_row(moved.*signals, static_cast<Eigen::Index>(i), shift, is_cv);
+        const Eigen::VectorXd gains = as_recorded - log_errors(frame, moved);
+        const double changed = (gains.array() != 0.0).cast<double>().sum();
+        // What is better for one CV and worse for another is one channel, or none.
+        const double gain = gains.minCoeff() < -kWorthNaming || changed == 0.0 ? 0.0 : gains.sum() / changed;
+        if (gain > own.gain) {
+          own.gain = gain;
+          own.total = gains.sum();
+          own.shift = shift;
+        }
+      }
+      if (own.gain > best.gain) {
+        second = best;
+        best = own;
+      } else if (own.gain > second.gain) {
+        second = own;
+      }
+    }
+  };
+  look(study.plant.cvs, &PlantRecord::y, true, 0);
+  look(study.plant.mvs, &PlantRecord::u, false, 0);
+  look(study.plant.mds, &PlantRecord::d, false, study.mv_count());
+  if (best.gain < kWorthNaming || second.gain > 0.9 * best.gain ||
+      is_one_channel(frame, record, as_recorded, best))
+    return {};
+  return {
+      fmt::format("the column of {} seems to be {} sample{} too {}: the model explains the record better "
+                  "when it is shifted (errors {:.0f} % smaller); look at how the historian stamps it",
+                  best.name, std::abs(best.shift), std::abs(best.shift) == 1 ? "" : "s",
+                  best.shift < 0 ? "late" : "early", 100.0 * (1.0 - std::exp(-0.5 * best.gain)))};
+}
+
+}  // namespace mpm

@@ -1,0 +1,128 @@
+#include "analysis/records/record_panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/QR>
+
+#include "analysis/methods/method_table.hpp"
+#include "analysis/records/untold_part.hpp"
+#include "analysis/validation/benchmark_period.hpp"
+#include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/loop/historian.hpp"
+#include "scenarios/study/window_scan.hpp"
+
+namespace mpm {
+namespace {
+
+bool needs_every_sample(const std::string& method) {
+  return assessment_method(method).requirements.complete_record;
+}
+
+/// Takes out the samples of the CVs whose past is unknown.
+void leave_out_unknown(const RecordFrame& frame, const std::vector<bool>& unknown, Eigen::MatrixXd& y) {
+  Eigen::Index known = frame.settling;  // samples since the last unknown one
+  for (std::size_t k = 0; k < unknown.size(); ++k) {
+    known = unknown[k] ? -1 : known + 1;
+    if (known < frame.settling)
+      y.col(static_cast<Eigen::Index>(k)).setConstant(kNaN);
+  }
+}
+
+/// What no record can tell of the errors of a CV, by least squares over the samples that are there.
+Eigen::VectorXd untold(const Eigen::VectorXd& e, const Eigen::MatrixXd& columns) {
+  const auto is_there = !e.array().isNaN();
+  if (is_there.count() <= 2 * columns.cols())
+    return Eigen::VectorXd::Zero(e.size());
+  const Eigen::VectorXd right = is_there.select(e.array(), 0.0);
+  const Eigen::MatrixXd left = columns.array().colwise() * is_there.cast<double>();
+  return columns * left.completeOrthogonalDecomposition().solve(right);
+}
+
+/// The loop with the gaps of its CVs closed, from the first sample that is judged on.
+AssessedLoop without_gaps(AssessedLoop loop, Eigen::Index unjudged, GapFill fill) {
+  auto judged = loop.y.rightCols(loop.samples() - unjudged);
+  for (Eigen::Index cv = 0; cv < judged.rows(); ++cv)
+    judged.row(cv) = filled(judged.row(cv), fill);
+  return loop;
+}
+
+std::pair<Eigen::Index, Eigen::Index> benchmark_of(const RecordFrame& frame, const PlantRecord& record,
+                                                   const AssessedLoop& loop) {
+  if (!frame.finds_benchmark)
+    return record.benchmark;
+  const Eigen::Index fewest = window_scan(frame.as_kept).longest + kFewestCorrelatedPairs;
+  const auto found = quietest_period(loop, std::max(record.samples() / 4, fewest));
+  if (found.first == found.second)
+    throw InputError("data.benchmark", "\"found\", and no period with enough samples of a CV",
+                     "two time stamps, or a longer record");
+  return found;
+}
+
+}  // namespace
+
+const Study& RecordFrame::study_of(const std::string& method) const {
+  return needs_every_sample(method) ? closed : as_kept;
+}
+
+std::vector<bool> unknown_samples(const PlantRecord& record) {
+  std::vector<bool> unknown(static_cast<std::size_t>(record.samples()), false);
+  for (Eigen::Index k = 1; k < record.samples(); ++k)
+    unknown[static_cast<std::size_t>(k)] = record.y.col(k).array().isNaN().all() &&
+                                           record.u.col(k) == record.u.col(k - 1) &&
+                                           record.d.col(k) == record.d.col(k - 1);
+  return unknown;
+}
+
+AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record) {
+  const Study& study = frame.as_kept;
+  AssessedLoop loop = assessed_loop(study, frame.basis.point, record, frame.unjudged);
+  const std::vector<bool> unknown = unknown_samples(record);
+  leave_out_unknown(frame, unknown, loop.y);
+  if (frame.model_error == 0.0)
+    return loop;
+  const std::vector<Eigen::Index> starts = starts_after_unknown(loop.y, frame.settling);
+  for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
+    const Eigen::VectorXd e = (loop.y.row(cv) - loop.y_sim.row(cv)).transpose();
+    loop.y_sim.row(cv) += untold(e, untold_columns(study, cv, starts, e.size())).transpose();
+  }
+  return loop;
+}
+
+JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* healthy) {
+  JudgedRecord judged{.loop = judged_loop(frame_, record), .said = {}};
+  judged.benchmark = benchmark_of(frame_, record, judged.loop);
+  const Eigen::Index first = judged.benchmark.first, count = judged.benchmark.second - first;
+  const bool has_benchmark = count > 0;
+  std::optional<AssessedLoop> good;
+  if (has_benchmark)
+    good = healthy == nullptr ? judged.loop : judged_loop(frame_, *healthy);
+  for (std::size_t m = 0; m < frame_.methods.size(); ++m) {
+    const std::string& name = frame_.methods[m];
+    const Study& study = frame_.study_of(name);
+    const bool closes = needs_every_sample(name);
+    const auto seen = [&](const AssessedLoop& loop) {
+      return closes ? without_gaps(loop, frame_.unjudged, frame_.fill) : loop;
+    };
+    const AssessedLoop loop = seen(judged.loop);
+    const auto panel_with = [&](const AssessedLoop* of_benchmark) {
+      AssessmentContext context = assessment_context(study, frame_.basis, frame_.factory);
+      if (of_benchmark != nullptr)
+        context.benchmark = window_of(*of_benchmark, first, count);
+      return std::make_unique<MethodPanel>(study, std::move(context), std::vector{name});
+    };
+    if (has_benchmark) {
+      const AssessedLoop of_benchmark = seen(*good);
+      judged.said.push_back(panel_with(&of_benchmark)->assess(loop).front());
+      continue;
+    }
+    if (m == panels_.size())
+      panels_.push_back(panel_with(nullptr));
+    judged.said.push_back(panels_[m]->assess(loop).front());
+  }
+  return judged;
+}
+
+}  // namespace mpm

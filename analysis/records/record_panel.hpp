@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/basis/basis_case.hpp"
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/assessment_record.hpp"
+#include "analysis/methods/method_panel.hpp"
+#include "scenarios/loop/plant_record.hpp"
+#include "scenarios/study/study.hpp"
+
+// How a record of a plant is judged, and the simulated records beside it in the same way.
+
+namespace mpm {
+
+/// The samples of which nothing was recorded: every CV is missing, and MVs and MDs stay where they were.
+/// Nobody knows what the inputs did there; one that stayed in truth does no harm.
+std::vector<bool> unknown_samples(const PlantRecord& record);
+
+/// What is fixed before a record of this loop is judged.
+struct RecordFrame {
+  Study as_kept;  ///< recorded_study(), gaps as they are
+  Study closed;   ///< the same with gaps as [data] fills them, for methods that need every sample
+  std::vector<std::string> methods;
+  BasisCase basis;
+  QpSolverFactory factory;
+  GapFill fill = GapFill::none;  ///< of those methods
+  Eigen::Index unjudged = 0;     ///< samples at the start that only fill the memory of the model
+  Eigen::Index settling = 0;     ///< samples after a gap of the inputs that do the same
+  double model_error = 0.0;      ///< errors that the model may have, a standard deviation; 0: it is exact
+  bool finds_benchmark = false;  ///< data.benchmark = "found"
+
+  const Study& study_of(const std::string& method) const;
+};
+
+/// A record with what the methods of the frame say of it.
+struct JudgedRecord {
+  AssessedLoop loop;
+  std::pair<Eigen::Index, Eigen::Index> benchmark{0, 0};  ///< as PlantRecord::benchmark; chosen or found
+  std::vector<AssessmentRecord> said;
+};
+
+/// The record as the methods see it. Samples in whose past inputs are unknown (before the record, and after
+/// unknown_samples()) are not judged until the slowest channel has settled. With a model error y_sim also
+/// has what no record can tell from it, by least squares over the judged samples of each CV i:
+///
+///   y - y_sim ~ c_i + sum_m a_im exp(-(k - k_m) Ts / T_im),   k >= k_m,
+///
+/// a constant (the operating point is never known exactly), and what is left of the unknown past from sample
+/// k_m on, T_im the time constants of the channels of the CV.
+AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record);
+
+/// The methods of a frame with what they have learnt. Each thread has its own; an answer depends on the
+/// record only.
+class RecordPanel {
+ public:
+  /// The frame must outlive the panel. Throws InputError for options of a method that do not fit.
+  explicit RecordPanel(const RecordFrame& frame) : frame_(frame) {}
+
+  /// `healthy` is the same loop without its fault, from which a chosen benchmark is taken; null: the record
+  /// itself. Throws InputError when no benchmark is found.
+  JudgedRecord judge(const PlantRecord& record, const PlantRecord* healthy = nullptr);
+
+ private:
+  const RecordFrame& frame_;
+  std::vector<std::unique_ptr<MethodPanel>> panels_;  ///< without a benchmark of the record; made when needed
+};
+
+}  // namespace mpm

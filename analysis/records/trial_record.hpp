@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "analysis/experiment/experiment.hpp"
+#include "analysis/records/record_panel.hpp"
+
+// Simulated records like that of a plant: what nobody knows of the record, nobody knows of them.
+
+namespace mpm {
+
+/// Standard deviations of the noise of a CV by which its operating point is off at most, up or down; an MV is
+/// off by what moves a CV as far.
+inline constexpr double kTrialBias = 0.25;
+
+/// From what the simulated records are made.
+struct TrialFrame {
+  PlantRecord record;     ///< that of the plant
+  Study study;            ///< trial_study() of the record with what comes before it
+  Eigen::Index lead = 0;  ///< samples before the record, which are simulated and cut off
+  double bias = 0.0;      ///< kTrialBias, or 0
+};
+
+/// The record with `lead` samples before its first one, in which MDs, setpoints and limits move as they do
+/// after it, in the reverse order: nobody knows how they moved. At most as many as the record has less one.
+PlantRecord with_lead(const PlantRecord& record, Eigen::Index lead);
+
+/// The loop of an experiment of the study as the record of the plant is: without what was before it, with
+/// biases, and with its gaps, of MVs and MDs as well.
+PlantRecord trial_record(const TrialFrame& frame, const ExperimentDraw& draw, const Trajectory& loop);
+
+/// What the methods say of an experiment that ran to its end, whose loop is kept.
+using LoopAssessor = std::function<std::vector<AssessmentRecord>(const ExperimentRecord& record)>;
+
+/// Judges trial_record() of each experiment as the record of the plant is judged. Each thread needs its own.
+LoopAssessor trial_assessor(const std::shared_ptr<const RecordFrame>& judged,
+                            const std::shared_ptr<const TrialFrame>& made);
+
+}  // namespace mpm

@@ -1,0 +1,222 @@
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/basis/basis_case.hpp"
+#include "analysis/records/column_lags.hpp"
+#include "analysis/records/controller_check.hpp"
+#include "analysis/records/model_check.hpp"
+#include "analysis/records/record_panel.hpp"
+#include "analysis/records/record_verdict.hpp"
+#include "analysis/records/trial_record.hpp"
+#include "analysis/records/untold_part.hpp"
+#include "analysis/sensitivity/nominal_output.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/faults/fault.hpp"
+#include "scenarios/files/recorded_study.hpp"
+#include "scenarios/files/study_library.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/signals.hpp"
+#include "solvers/qp_solver.hpp"
+
+// A record of the plant is judged for what it is: of this controller, explained by the model or not.
+
+namespace mpm {
+namespace {
+
+/// Every channel is off by this factor of its gain.
+TransferMatrix with_gains(const TransferMatrix& G, double factor) {
+  std::vector<Mismatch> errors;
+  for (Eigen::Index cv = 0; cv < G.rows(); ++cv)
+    for (Eigen::Index input = 0; input < G.cols(); ++input)
+      errors.push_back({cv, input, MismatchParameter::gain, factor});
+  return with_mismatches(G, errors);
+}
+
+/// A loop of wood-berry with noise on this plant, from sample `first` on.
+PlantRecord recorded_loop(const Study& study, const TransferMatrix& plant, Eigen::Index first) {
+  const Trajectory loop =
+      run_closed_loop(study, plant, experiment_signals(study, basis_draw()), qp_solver_factory("auto"));
+  const Eigen::Index N = loop.y.cols() - first;
+  PlantRecord record;
+  record.y = loop.y.rightCols(N);
+  record.u = loop.u.rightCols(N);
+  record.d = loop.d.rightCols(N);
+  record.u_target = Eigen::MatrixXd::Constant(record.u.rows(), N, kNaN);
+  record.y_set = record.lower = record.upper = record.y_sim =
+      Eigen::MatrixXd::Constant(record.y.rows(), N, kNaN);
+  record.stamps.assign(static_cast<std::size_t>(N), "");
+  return record;
+}
+
+RecordFrame frame_of(const PlantRecord& record, bool begins_at_rest, double model_error) {
+  RecordFrame frame;
+  frame.as_kept = frame.closed = recorded_study(find_study("wood-berry"), record, {"order"}, {});
+  frame.methods = {"order"};
+  frame.factory = qp_solver_factory("auto");
+  frame.basis = run_basis_case(frame.as_kept, frame.factory);
+  frame.settling = settling_samples(frame.as_kept);
+  frame.unjudged = begins_at_rest ? 0 : frame.settling;
+  frame.model_error = model_error;
+  return frame;
+}
+
+/// Variance of the errors of a CV about 0, over that of the noise of the study.
+double excess(const RecordFrame& frame, const PlantRecord& record, Eigen::Index cv) {
+  const AssessedLoop loop = judged_loop(frame, record);
+  const Eigen::ArrayXd e = (loop.y.row(cv) - loop.y_sim.row(cv)).transpose();
+  const auto there = !e.isNaN();
+  const double noise = frame.as_kept.simulation.noise_standard_deviation(cv);
+  return there.select(e.square(), 0.0).sum() / there.cast<double>().sum() / (noise * noise);
+}
+
+double model_score(const RecordFrame& frame, const PlantRecord& record) {
+  const AssessmentContext context = assessment_context(frame.as_kept, frame.basis, frame.factory);
+  return model_check_method(frame.model_error).make(context)->assess(judged_loop(frame, record)).score;
+}
+
+TEST_CASE("a bias and an unknown past are no errors of the model", "[records]") {
+  const Study study = find_study("wood-berry");
+  PlantRecord record = recorded_loop(study, study.plant.G, 50);
+  record.y.row(1).array() += 0.5 * study.simulation.noise_standard_deviation(1);
+  const RecordFrame exact = frame_of(record, false, 0.0), allowed = frame_of(record, false, 0.05);
+  CHECK(excess(exact, record, 1) > 1.2);
+  // Some 300 samples of white noise: a standard error of 8 %.
+  CHECK(excess(allowed, record, 0) == Approx(1.0).epsilon(0.25));
+  CHECK(excess(allowed, record, 1) == Approx(1.0).epsilon(0.25));
+  CHECK(model_score(allowed, record) < 1.2);
+}
+
+TEST_CASE("errors of some percent explain a record, a wrong gain does not", "[records]") {
+  const Study study = find_study("wood-berry");
+  const PlantRecord healthy = recorded_loop(study, with_gains(study.plant.G, 1.04), 0);
+  const TransferMatrix wrong = with_mismatches(study.plant.G, {{1, 1, MismatchParameter::gain, 1.5}});
+  const PlantRecord faulty = recorded_loop(study, wrong, 0);
+  CHECK(model_score(frame_of(healthy, true, 0.05), healthy) < 1.3);
+  CHECK(model_score(frame_of(faulty, true, 0.05), faulty) > 2.0);
+}
+
+TEST_CASE("the controller of a record is known by its moves", "[records]") {
+  const Study study = find_study("wood-berry");
+  const PlantRecord own = recorded_loop(study, study.plant.G, 50);
+  const RecordFrame frame = frame_of(own, false, 0.05);
+  const ControllerCheck check = check_controller(frame, own, judged_loop(frame, own));
+  CHECK(check.agreement.minCoeff() > 0.99);
+  CHECK(check.is_alike());
+  CHECK(check.is_closed_loop);
+
+  SECTION("of an open-loop test the MVs answer no CV") {
+    PlantRecord test = own;
+    for (Eigen::Index k = 0; k < test.samples(); ++k)
+      test.u.col(k) << (k / 60 % 2 == 0 ? 0.02 : -0.02), (k / 45 % 2 == 0 ? 0.015 : -0.015);
+    const Eigen::MatrixXd noise = measurement_noise(study, 3).rightCols(test.samples());
+    test.y = noise + simulated_output(study.plant.G, study.controller.sample_time, Eigen::VectorXd::Zero(2),
+                                      test.u, test.d);
+    const ControllerCheck said = check_controller(frame, test, judged_loop(frame, test));
+    CHECK_FALSE(said.is_alike());
+    CHECK_FALSE(said.is_closed_loop);
+  }
+}
+
+TEST_CASE("a column that is late is named, and no other", "[records]") {
+  const Study study = find_study("wood-berry");
+  const PlantRecord record = recorded_loop(study, study.plant.G, 0);
+  const RecordFrame frame = frame_of(record, true, 0.05);
+  CHECK(column_lags(frame, record).empty());
+  PlantRecord late = record;
+  late.u.row(1).tail(late.samples() - 2) = record.u.row(1).head(late.samples() - 2);
+  const std::vector<std::string> said = column_lags(frame, late);
+  REQUIRE(said.size() == 1);
+  CHECK(said.front().starts_with("the column of S seems to be 2 samples too late"));
+}
+
+TEST_CASE("after a gap in all columns the memory of the model fills again", "[records]") {
+  const Study study = find_study("wood-berry");
+  PlantRecord record = recorded_loop(study, study.plant.G, 0);
+  const RecordFrame frame = frame_of(record, true, 0.05);
+  record.y.middleCols(100, 30).setConstant(kNaN);
+  CHECK_FALSE(judged_loop(frame, record).y.col(130).hasNaN());  // the MVs are known
+  for (Eigen::Index k = 100; k < 130; ++k) {
+    record.u.col(k) = record.u.col(99);
+    record.d.col(k) = record.d.col(99);
+  }
+  const AssessedLoop loop = judged_loop(frame, record);
+  CHECK(loop.y.middleCols(100, 30 + frame.settling).array().isNaN().all());
+  CHECK_FALSE(loop.y.col(130 + frame.settling).hasNaN());
+}
+
+TEST_CASE("a simulated record begins where the record does, with its gaps", "[records]") {
+  const Study study = find_study("wood-berry");
+  PlantRecord record = recorded_loop(study, study.plant.G, 0);
+  record.y.row(0).segment(40, 5).setConstant(kNaN);
+  const PlantRecord longer = with_lead(record, 60);
+  CHECK(longer.samples() == record.samples() + 60);
+  CHECK(longer.d.rightCols(record.samples()) == record.d);
+  CHECK(longer.d.col(59) == record.d.col(1));
+  TrialFrame made{.record = record, .study = {}, .lead = 60, .bias = kTrialBias};
+  made.study = trial_study(recorded_study(study, longer, {"order"}, {}),
+                           {.healthy = 2, .faulty = 2, .model_error = 0.05});
+  REQUIRE(made.study.world);
+  CHECK(made.study.world->count == 2);
+  const ExperimentDraw draw = draw_experiment(made.study, 0);
+  const Trajectory loop = simulate_experiment(made.study, draw, qp_solver_factory("auto"));
+  const PlantRecord trial = trial_record(made, draw, loop);
+  CHECK(trial.samples() == record.samples());
+  CHECK(trial.y.row(0).segment(40, 5).array().isNaN().all());
+  CHECK(trial.y.row(0).array().isNaN().count() == 5);
+  const Eigen::RowVectorXd off = trial.y.row(1) - loop.y.row(1).tail(record.samples());
+  CHECK((off.array() - off(0)).abs().maxCoeff() < 1e-12);  // rounding
+  CHECK(std::abs(off(0)) <= kTrialBias * study.simulation.noise_standard_deviation(1));
+}
+
+AssessmentRecord answer(bool flagged, double score) {
+  AssessmentRecord record;
+  record.status = AssessmentStatus::ok;
+  record.flagged = flagged;
+  record.score = score;
+  return record;
+}
+
+TEST_CASE("a record that the model explains has no fault", "[records]") {
+  const AssessmentRecord costly = answer(true, 9.0), cheap = answer(false, 0.1);
+  const AssessmentRecord explained = answer(false, 1.0), unexplained = answer(true, 3.0);
+  ControllerCheck own{.agreement = Eigen::Vector2d(0.99, 0.9), .pull = Eigen::Vector2d::Zero(), .away = {}};
+  ControllerCheck other = own;
+  other.agreement(1) = -2.0;
+  const auto verdict = [](const AssessmentRecord& said, const AssessmentRecord& model,
+                          const ControllerCheck& controller, bool allows_errors = true) {
+    return record_verdict({said, nullptr, model, nullptr, allows_errors}, controller);
+  };
+  CHECK(verdict(costly, unexplained, own) == RecordVerdict::fault);
+  CHECK(verdict(costly, unexplained, other) == RecordVerdict::fault);
+  CHECK(verdict(costly, explained, other) == RecordVerdict::other_controller);
+  CHECK(verdict(costly, explained, own) == RecordVerdict::unexplained_cost);
+  CHECK(verdict(cheap, unexplained, other) == RecordVerdict::nothing);
+  CHECK(verdict(costly, explained, own, false) == RecordVerdict::fault);
+  AssessmentRecord silent = costly;
+  silent.status = AssessmentStatus::failed;
+  CHECK(verdict(silent, unexplained, own) == RecordVerdict::none);
+  other.failure = "it has no move";
+  CHECK_FALSE(other.is_alike());
+}
+
+TEST_CASE("the threshold decides where there are simulated records", "[records]") {
+  const AssessmentRecord said = answer(true, 9.0), model = answer(true, 3.0);
+  TrialFindings of_said{.threshold = 12.0, .rates = {}, .as_high = {}, .same_source = {}};
+  TrialFindings of_model{.threshold = 3.5, .rates = {}, .as_high = {}, .same_source = {}};
+  const ControllerCheck own{
+      .agreement = Eigen::Vector2d::Ones(), .pull = Eigen::Vector2d::Zero(), .away = {}};
+  const RecordAnswers answers{said, &of_said, model, &of_model, true};
+  CHECK(record_verdict(answers, own) == RecordVerdict::nothing);
+  of_model.threshold = 2.5;
+  CHECK(record_verdict(answers, own) == RecordVerdict::fault);
+  of_model.threshold = 3.5;
+  of_said.threshold = 8.0;
+  CHECK(record_verdict(answers, own) == RecordVerdict::unexplained_cost);
+}
+
+}  // namespace
+}  // namespace mpm
