@@ -112,7 +112,7 @@ WhitenedProducts whitened_products(const NoiseModels& models,
     sums.log_determinant = Eigen::ArrayXd::Constant(1, log_determinant);
     for (Eigen::Index i = 0; i < p; ++i)
       for (Eigen::Index j = 0; j <= i; ++j)
-        sums.products.push_back(Eigen::ArrayXd::Constant(1, products(i, j)));
+        sums.products.emplace_back(Eigen::ArrayXd::Constant(1, products(i, j)));
     return sums;
   }
   Gains gains(models);

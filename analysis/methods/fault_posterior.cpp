@@ -181,7 +181,8 @@ class FaultPosterior final : public AssessmentMethod {
       : study_(context.study),
         initial_(initial_inputs(context)),
         models_(learnt_models(context, priors)),
-        priors_(fault_priors(context.study, priors, context.study.assessment.of<LikelihoodOptions>().fault_probability,
+        priors_(fault_priors(context.study, priors,
+                             context.study.assessment.of<LikelihoodOptions>().fault_probability,
                              deviations(models_))) {
     if (priors == FaultPriors::study && !noise_is_known(study_))
       priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
