@@ -52,7 +52,7 @@ constexpr Eigen::Index kFewestLearnt = 30;  // samples of a CV
 
 /// Has it enough samples, and every input?
 bool learns_from(const AssessedLoop& benchmark) {
-  return model_inputs(benchmark).allFinite() &&
+  return model_inputs(benchmark.from_start()).allFinite() &&
          ((!benchmark.y.array().isNaN()).rowwise().count() >= kFewestLearnt).all();
 }
 

@@ -221,10 +221,15 @@ LearntModel::LearntModel(const Study& study, const Eigen::Ref<const Eigen::Vecto
                          const AssessedLoop& benchmark, double share, double bias)
     : initial_(Eigen::VectorXd::Zero(study.plant.G.cols())) {
   initial_.head(initial_u.size()) = initial_u;
-  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    cvs_.emplace_back(study, cv, relative_errors(study, cv, share, bias),
-                      without_outliers(benchmark.y.row(cv) - benchmark.y_sim.row(cv)),
-                      model_inputs(benchmark), initial_, least_noise(benchmark.y_sim.row(cv)));
+  // Of a window the inputs before it are known, too.
+  const AssessedLoop& whole = benchmark.from_start();
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
+    Eigen::RowVectorXd e = Eigen::RowVectorXd::Constant(whole.samples(), kNaN);
+    e.segment(benchmark.first, benchmark.samples()) =
+        without_outliers(benchmark.y.row(cv) - benchmark.y_sim.row(cv));
+    cvs_.emplace_back(study, cv, relative_errors(study, cv, share, bias), e, model_inputs(whole), initial_,
+                      least_noise(benchmark.y_sim.row(cv)));
+  }
 }
 
 TransferMatrix LearntModel::plant() const {

@@ -109,8 +109,12 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
     const AssessedLoop loop = seen(judged.loop);
     const auto panel_with = [&](const AssessedLoop* of_benchmark) {
       AssessmentContext context = assessment_context(study, frame_.basis, frame_.factory);
-      if (of_benchmark != nullptr)
+      // Of a simulated benchmark nothing is to be learnt.
+      context.learnt = nullptr;
+      if (of_benchmark != nullptr) {
         context.benchmark = window_of(*of_benchmark, first, count);
+        context.learnt = learnt_model(study, frame_.basis.point, *context.benchmark);
+      }
       return std::make_unique<MethodPanel>(study, std::move(context), std::vector{name});
     };
     if (has_benchmark) {

@@ -175,6 +175,11 @@ TEST_CASE("a loop is corrected by what its benchmark shows, a fault is not") {
   CHECK(deviation(window) == Approx(kNoise).epsilon(0.15));
   CHECK(window.whole == &whole);
 
+  // Learnt from a period of a record, before which the inputs moved as well.
+  const AssessedLoop record = loop(plant, 4);
+  const LearntModel of_period(study, initial_u, window_of(record, 100, 300), kShare, 0.5);
+  CHECK(deviation(of_period.corrected(healthy, whole)) == Approx(kNoise).epsilon(0.15));
+
   plant = with_mismatches(plant, {{0, 0, MismatchParameter::gain, 0.6}});
   const AssessedLoop faulty = loop(plant, 3);
   CHECK(deviation(model.corrected(faulty, whole)) > 0.8 * deviation(faulty));
