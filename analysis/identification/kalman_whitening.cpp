@@ -105,7 +105,7 @@ WhitenedProducts whitened_products(const NoiseModels& models,
                                    const Eigen::Ref<const Eigen::MatrixXd>& series) {
   const Eigen::Index p = series.rows();
   WhitenedProducts sums;
-  if (models.count() == 1) {
+  if (models.count() == 1) {  // abreast there is nothing to gain, and products of whole rows are faster
     double log_determinant = 0.0;
     const Eigen::MatrixXd white = whitened(models, series, log_determinant);
     const Eigen::MatrixXd products = white * white.transpose();

@@ -19,15 +19,6 @@ namespace {
 
 constexpr double kAtRest = 0.5;  // of a standard deviation
 
-/// Settling time of the slowest channel, samples.
-Eigen::Index slowest_settling(const Study& study) {
-  double slowest = 0.0;
-  for (Eigen::Index cv = 0; cv < study.plant.G.rows(); ++cv)
-    for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input)
-      slowest = std::max(slowest, settling_time(study.plant.G(cv, input)));
-  return static_cast<Eigen::Index>(std::ceil(slowest / study.controller.sample_time));
-}
-
 /// Each row begins near `rest`, as it moves.
 bool begins_at(const Eigen::VectorXd& rest, const Eigen::MatrixXd& signals) {
   const Eigen::VectorXd deviation = ((signals.colwise() - signals.rowwise().mean()).rowwise().squaredNorm() /
@@ -48,15 +39,24 @@ Eigen::MatrixXd after_rest(const Eigen::MatrixXd& signal, Eigen::Index samples) 
   return longer;
 }
 
-constexpr Eigen::Index kFewestLearnt = 30;  // samples of a CV
+/// Samples of a CV, a round number: fewer hardly tell the noise from a dozen errors.
+constexpr Eigen::Index kFewestLearnt = 30;
 
-/// Has it enough samples, and every input?
+/// Does it have enough samples, and every input?
 bool learns_from(const AssessedLoop& benchmark) {
   return model_inputs(benchmark.from_start()).allFinite() &&
          ((!benchmark.y.array().isNaN()).rowwise().count() >= kFewestLearnt).all();
 }
 
 }  // namespace
+
+Eigen::Index slowest_settling(const Study& study) {
+  double slowest = 0.0;
+  for (Eigen::Index cv = 0; cv < study.plant.G.rows(); ++cv)
+    for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input)
+      slowest = std::max(slowest, settling_time(study.plant.G(cv, input)));
+  return static_cast<Eigen::Index>(std::ceil(slowest / study.controller.sample_time));
+}
 
 bool AssessedLoop::has_setpoint(Eigen::Index cv) const {
   return y_set.cols() > 0 && !std::isnan(y_set(cv, 0));

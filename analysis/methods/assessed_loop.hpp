@@ -53,6 +53,9 @@ struct AssessedLoop {
 /// optimizer, optimizer_steady_state(); NaN when it does not, or when the controller has no targets.
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop);
 
+/// Samples until the slowest channel of the model has settled (settling_time()).
+Eigen::Index slowest_settling(const Study& study);
+
 /// The number of first samples of a plant record that only initialise the model: 0 for a record that begins
 /// at rest at the operating point, otherwise the settling time of the slowest channel. With
 /// RecordStart::automatic a record begins at rest when each MV and MD begins within half of its standard
@@ -92,7 +95,7 @@ struct AssessmentContext {
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context);
 
 /// What the benchmark shows of the errors of the model, where the study wants it (AssessmentModel); null
-/// where it does not, or the benchmark has fewer than 30 samples of a CV or lacks some of an input.
+/// where it does not, or the benchmark has too few samples of a CV or lacks some of an input.
 std::shared_ptr<const LearntModel> learnt_model(const Study& study, const OperatingPoint& point,
                                                 const AssessedLoop& benchmark);
 

@@ -198,7 +198,7 @@ class RecordLikelihood {
   }
 
   /// The whitened series without the directions: of each the part that they cannot explain, in N + q numbers,
-  /// so that products of them are those of Marginalised. Adds log |I + Z Z'|.
+  /// so that their products are those of marginalised(). Adds log |I + Z Z'|.
   Eigen::MatrixXd whitened_series(const NoiseModels& models, double& log_determinant) const {
     Eigen::MatrixXd white = whitened(models, series_, log_determinant);
     const Eigen::Index q = directions_.rows(), rows = white.rows() - q;

@@ -34,14 +34,13 @@ struct CvEvidence {
 ///   ud           e = x + n,               x the disturbance, a first-order lag of white noise
 ///   both         e = m(theta) + x + n
 ///
-/// each with S delta of the errors that every model has (ModelErrors) added and integrated out, G0 corrected
-/// by what is known of them,
-///
-/// exactly, in closed loop, too: u(k) is made of what y was up to sample k, so that the probability of the
-/// record is the product of the probabilities of each y(k) given those before it and u, which the Kalman
-/// filter has. The sizes theta are integrated: between neighbours on a grid m is taken as a straight line,
-/// which makes the integral a closed one; the best parameters are looked at again around their best size,
-/// with the exact m and its slope. The disturbance is summed over scan_disturbances().
+/// Where errors of the model are learnt (ModelErrors), G0 is the corrected model, and what is unknown of them
+/// is added to each hypothesis and integrated out. This is exact in closed loop, too: u(k) is made of what y
+/// was up to sample k, so that the probability of the record is the product of the probabilities of each y(k)
+/// given those before it and u, which the Kalman filter has. The sizes theta are integrated: between
+/// neighbours on a grid m is taken as a straight line, which makes the integral a closed one; the best
+/// parameters are looked at again around their best size, with the exact m and its slope. The disturbance is
+/// summed over scan_disturbances().
 class CvLikelihood {
  public:
   /// `prior` must outlive the likelihood.

@@ -60,6 +60,21 @@ Eigen::MatrixXd strong(const Eigen::MatrixXd& Z) {
   return eigen.eigenvectors().rightCols(Z.rows() - faint).transpose() * Z;
 }
 
+/// Of the coefficients z ~ N(0, I) of the rows Z below the first one of `series`, e = Z' z + noise.
+struct Coefficients {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+};
+
+Coefficients coefficients(const BaseNoise& noise, const Eigen::Ref<const Eigen::MatrixXd>& series) {
+  double log_determinant = 0.0;
+  const Eigen::MatrixXd white =
+      whitened(base_models(noise, false).models, series / noise.deviation, log_determinant);
+  const auto Z = white.bottomRows(white.rows() - 1);
+  Eigen::MatrixXd covariance = (Z * Z.transpose() + Eigen::MatrixXd::Identity(Z.rows(), Z.rows())).inverse();
+  return {covariance * (Z * white.row(0).transpose()), std::move(covariance)};
+}
+
 }  // namespace
 
 ModelErrorPrior relative_errors(const Study& study, Eigen::Index cv, double share, double bias) {
@@ -114,28 +129,23 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
   const auto p = static_cast<Eigen::Index>(errors_.size());
   Eigen::MatrixXd unknown(p + (bias_ > 0.0 ? 1 : 0), e.size());
   unknown.bottomRows(unknown.rows() - p).setConstant(bias_ * std::max(deviation_of_steps(e), least));
-  Eigen::MatrixXd series(1 + unknown.rows(), e.size()), covariance;
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(unknown.rows());
+  Eigen::MatrixXd series(1 + unknown.rows(), e.size());
+  Coefficients known_errors{Eigen::VectorXd::Zero(unknown.rows()), {}};
   take(nominal_);
   // Gauss and Newton: where outputs move by a hundred times the noise, a slope is not enough.
   for (int step = 0; step < kGaussNewtonSteps; ++step) {
     unknown.topRows(p) = slopes(inputs, initial);
     const Eigen::RowVectorXd left =
-        e - correction(inputs, initial) + mean.head(p).transpose() * unknown.topRows(p);
+        e - correction(inputs, initial) + known_errors.mean.head(p).transpose() * unknown.topRows(p);
     if (!known && step + 1 < kGaussNewtonSteps)
       noise_.best = {std::max(deviation_of_steps(left), least)};
     else if (!known)
       noise_ = noise_posterior(left, noise_.best.deviation * strong(unknown / noise_.best.deviation), least);
     series << left, unknown;
-    double log_determinant = 0.0;
-    const Eigen::MatrixXd white =
-        whitened(base_models(noise_.best, false).models, series / noise_.best.deviation, log_determinant);
-    const auto Z = white.bottomRows(unknown.rows());
-    covariance = (Z * Z.transpose() + Eigen::MatrixXd::Identity(Z.rows(), Z.rows())).inverse();
-    mean = covariance * (Z * white.row(0).transpose());
-    take(with_errors(mean.head(p)));
+    known_errors = coefficients(noise_.best, series);
+    take(with_errors(known_errors.mean.head(p)));
   }
-  factor_ = covariance.topLeftCorner(p, p).llt().matrixL();
+  factor_ = known_errors.covariance.topLeftCorner(p, p).llt().matrixL();
 }
 
 ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const BaseNoise& noise)
@@ -148,11 +158,8 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const BaseNoise& n
 Eigen::RowVectorXd ModelErrors::correction(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                            const Eigen::Ref<const Eigen::VectorXd>& initial) const {
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(inputs.cols());
-  for (Eigen::Index input = 0; input < inputs.rows(); ++input)
-    if (!(model_(0, input) == nominal_(0, input)))
-      sum +=
-          channel_response(discretise(model_(0, input), sample_time_), inputs.row(input), initial(input)) -
-          channel_response(discretise(nominal_(0, input), sample_time_), inputs.row(input), initial(input));
+  for (const Slope& change : corrected_)
+    sum += change.response(inputs, initial);
   return sum;
 }
 
@@ -210,8 +217,13 @@ TransferMatrix ModelErrors::with_errors(const Eigen::Ref<const Eigen::VectorXd>&
   return model;
 }
 
-void ModelErrors::take(const TransferMatrix& model) {
-  model_ = model;
+void ModelErrors::take(TransferMatrix model) {
+  model_ = std::move(model);
+  corrected_.clear();
+  for (Eigen::Index input = 0; input < model_.cols(); ++input)
+    if (!(model_(0, input) == nominal_(0, input)))
+      corrected_.push_back({input, discretise(model_(0, input), sample_time_),
+                            discretise(nominal_(0, input), sample_time_), 1.0});
   slopes_.clear();
   for (const ChannelError& error : errors_)
     slopes_.push_back(slope_of(model_, error));
@@ -271,13 +283,7 @@ Eigen::MatrixXd LearntModel::explained(const AssessedLoop& loop) const {
     // Under the noise that this record shows, so that a disturbance is not taken for errors of the model.
     const BaseNoise noise =
         noise_posterior(series.row(0), series.bottomRows(Z.rows()), least_noise(whole.y_sim.row(cv))).best;
-    double log_determinant = 0.0;
-    const Eigen::MatrixXd white =
-        whitened(base_models(noise, false).models, series / noise.deviation, log_determinant);
-    const auto of_Z = white.bottomRows(Z.rows());
-    const Eigen::VectorXd z = (of_Z * of_Z.transpose() + Eigen::MatrixXd::Identity(Z.rows(), Z.rows()))
-                                  .llt()
-                                  .solve(of_Z * white.row(0).transpose());
+    const Eigen::VectorXd z = coefficients(noise, series).mean;
     sum.row(cv) += z.transpose() * series.bottomRows(Z.rows());
   }
   return sum;

@@ -31,7 +31,8 @@ struct ModelErrorPrior {
 /// dead time shorter than a sample is off by this part of a sample.
 ModelErrorPrior relative_errors(const Study& study, Eigen::Index cv, double share, double bias);
 
-/// The errors that the worlds of the study draw, as normal ones of their variance; none without worlds.
+/// The errors of gain, time constant and dead time that the worlds of the study draw, as normal ones of their
+/// variance; none without worlds. Further lags and the background are not among them.
 ModelErrorPrior drawn_errors(const Study& study, Eigen::Index cv);
 
 /// The inputs of the model, (nu + nd) x N.
@@ -45,12 +46,12 @@ Eigen::MatrixXd model_inputs(const AssessedLoop& loop);
 ///
 /// in closed loop, too, because S of a sample is made of inputs before it. The benchmark gives the sizes of n
 /// by their marginal likelihood, and delta a mean, with which the model is corrected, and a covariance.
-/// Mesbah et al. (2012) have the same posterior for the question whether a model is good enough.
 class ModelErrors {
  public:
   /// `e` (N) are the simulation errors of the benchmark, NaN where there is no sample, `inputs` (nu + nd x N)
   /// with `initial` (nu + nd) before them what moved the model. The noise is that which is `known`, or is
-  /// learnt with a deviation of `least` or more. Throws InputError for fewer than 10 samples.
+  /// learnt with a deviation of `least` or more. Throws InputError for fewer than
+  /// kFewestNoiseSamples samples.
   ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPrior& prior,
               const Eigen::Ref<const Eigen::RowVectorXd>& e, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
               const Eigen::Ref<const Eigen::VectorXd>& initial, double least,
@@ -78,7 +79,7 @@ class ModelErrors {
   Eigen::MatrixXd directions(const Eigen::Ref<const Eigen::MatrixXd>& slopes) const;
 
  private:
-  /// The response to one error, by a difference over one standard deviation to either side.
+  /// The response to a change of one channel: of an error, over one standard deviation to either side.
   struct Slope {
     Eigen::Index input;
     DiscreteChannel above, below;
@@ -91,14 +92,14 @@ class ModelErrors {
   Slope slope_of(const TransferMatrix& model, const ChannelError& error) const;
   /// The model with these errors, in their standard deviations.
   TransferMatrix with_errors(const Eigen::Ref<const Eigen::VectorXd>& z) const;
-  void take(const TransferMatrix& model);
+  void take(TransferMatrix model);
 
   double sample_time_, bias_ = 0.0;
   std::vector<ChannelError> errors_;
   TransferMatrix nominal_, model_;  ///< 1 x (nu + nd)
   NoisePosterior noise_;
   Eigen::MatrixXd factor_;  ///< p x p: factor factor' is the covariance of the errors over their D
-  std::vector<Slope> slopes_;
+  std::vector<Slope> slopes_, corrected_;  ///< of each error; of each channel that is corrected
 };
 
 /// The model of all CVs with its errors, as the benchmark of a loop shows them.

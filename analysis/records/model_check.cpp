@@ -82,7 +82,7 @@ class ModelCheck final : public AssessmentMethod {
   Assessment assess(const AssessedLoop& loop) override {
     const AssessedLoop& whole = loop.from_start();
     const std::vector<Eigen::MatrixXd> S = responses(whole);
-    const std::vector<Eigen::Index> starts = starts_after_unknown(loop.y, settling_samples(study_));
+    const std::vector<Eigen::Index> starts = starts_after_unknown(loop.y, slowest_settling(study_));
     Assessment assessment;
     assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {

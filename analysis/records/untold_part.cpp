@@ -26,15 +26,6 @@ std::vector<double> memories_of(const Study& study, Eigen::Index cv) {
 
 }  // namespace
 
-Eigen::Index settling_samples(const Study& study) {
-  const TransferMatrix& G = study.plant.G;
-  double slowest = 0.0;
-  for (Eigen::Index cv = 0; cv < G.rows(); ++cv)
-    for (Eigen::Index input = 0; input < G.cols(); ++input)
-      slowest = std::max(slowest, settling_time(G(cv, input)));
-  return static_cast<Eigen::Index>(std::ceil(slowest / study.controller.sample_time));
-}
-
 std::vector<Eigen::Index> starts_after_unknown(const Eigen::MatrixXd& y, Eigen::Index settling) {
   std::vector<Eigen::Index> starts;
   Eigen::Index without = 0;

@@ -10,9 +10,6 @@
 
 namespace mpm {
 
-/// Settling time of the slowest channel of the model.
-Eigen::Index settling_samples(const Study& study);
-
 /// The first samples after so many without any CV: what moved the CVs before them is not known. y is ny x N.
 std::vector<Eigen::Index> starts_after_unknown(const Eigen::MatrixXd& y, Eigen::Index settling);
 

@@ -266,7 +266,7 @@ std::shared_ptr<const RecordFrame> frame_of(const AssessArguments& options, cons
   frame->basis = basis_of(assessment.study, frame->factory);
   frame->unjudged = assessment.unjudged =
       samples_to_settle(assessment.study, frame->basis.point, assessment.record, study.data.start);
-  frame->settling = settling_samples(study);
+  frame->settling = slowest_settling(study);
   tell_unjudged(assessment);
   return frame;
 }

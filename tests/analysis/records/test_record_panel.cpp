@@ -58,7 +58,7 @@ RecordFrame frame_of(const PlantRecord& record, bool begins_at_rest, double mode
   frame.methods = {"order"};
   frame.factory = qp_solver_factory("auto");
   frame.basis = run_basis_case(frame.as_kept, frame.factory);
-  frame.settling = settling_samples(frame.as_kept);
+  frame.settling = slowest_settling(frame.as_kept);
   frame.unjudged = begins_at_rest ? 0 : frame.settling;
   frame.model_error = model_error;
   return frame;
