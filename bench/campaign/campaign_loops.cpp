@@ -145,7 +145,7 @@ ShardStore CampaignLoops::open(const std::filesystem::path& folder, const ShardS
     store.clear();
   else if (!found.empty())
     throw InputError("--experiments", fmt::format("{}", experiments_),
-                     fmt::format("{} or more, since {} holds experiment {}; or --discard to start anew",
+                     fmt::format("{} or more, since {} holds experiment {}; or --discard to start again",
                                  most + 1, found, most));
   return store;
 }
@@ -184,7 +184,7 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
     }
     outcome = bytes(key).from_bytes(begun);
     if (warn)
-      warn(fmt::format("the audit of {} steps of experiment {} was lost: {}; they are {}",
+      warn(fmt::format("the audit of {} steps of experiment {} was lost: {}; the steps are {}",
                        outcome.samples.size(), key, why, again ? "left out of the audit" : "audited again"));
     if (!again)
       return std::nullopt;
@@ -259,9 +259,10 @@ void CampaignLoops::require_one_result(const ShardStore& store) const {
     if (names.empty())
       names = audit_differences(one, other);
     if (!names.empty())
-      throw InputError(fmt::format("{}: experiment {}", entry->shard->string(), entry->key),
-                       fmt::format("another {} than in {}", fmt::join(names, ", "), first.shard->string()),
-                       "the same, bit for bit: they were run by one build on processors of one kind");
+      throw InputError(
+          fmt::format("{}: experiment {}", entry->shard->string(), entry->key),
+          fmt::format("{} that differ from those in {}", fmt::join(names, ", "), first.shard->string()),
+          "bit-identical values: one build must run all shards on processors of one kind");
   }
 }
 

@@ -2,22 +2,20 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <numeric>
-#include <type_traits>
+#include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "bench/campaign/revisited_loops.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
-#include "plants/error.hpp"
-#include "plants/system/program_trust.hpp"
 #include "results/files/byte_stream.hpp"
 #include "scenarios/loop/calibration.hpp"
-#include "solvers/qp_solver.hpp"
 
 namespace mpm {
 namespace {
@@ -51,18 +49,6 @@ std::vector<std::size_t> places_of_others(const Campaign& campaign, const Assess
         }))
       places.push_back(place);
   return places;
-}
-
-/// Where somebody else simulates the plant, its processes have to be prepared before threads are at work. Its
-/// file may be gone, or not be trusted: that matters to the loops that are run again, which then say so.
-void prepare_plant(const Study& study) {
-  if (!study.nonlinear || !study.nonlinear->model.foreign)
-    return;
-  try {
-    study.nonlinear->model.foreign->load();
-  } catch (const InputError&) {
-  } catch (const UntrustedProgram&) {
-  }
 }
 
 /// What further methods say of a record, one after the other in the order of the index; nothing of a loop
@@ -135,65 +121,6 @@ std::vector<CampaignMethod> methods_of(const Study& study, const std::string& co
 
 namespace {
 
-/// Methods that assess the loops of a study in threads, by what they have learnt in the campaign: by the
-/// active-set method, and one loop at a time by the solver of the campaign where that is Ipopt, whose linear
-/// solver does not bear two threads.
-class ThreadedRunners {
- public:
-  ThreadedRunners(const Campaign& campaign, const Study& study, const std::vector<std::string>& methods,
-                  int threads)
-      : solver_(campaign.info.solver), by_campaign_solver_(runner_of(campaign, study, methods, solver_)) {
-    for (int thread = 0; thread < threads; ++thread)
-      by_active_set_.push_back(runner_of(campaign, study, methods, "active-set"));
-  }
-
-  /// What they say of an experiment that was run.
-  std::vector<AssessmentRecord> assess(const ExperimentRecord& record, std::size_t thread) {
-    return with_runner(record, thread, [&](ExperimentRunner& runner) { return runner.assess(record); });
-  }
-
-  /// What they see of it.
-  AssessedLoop loop_of(const ExperimentRecord& record, std::size_t thread) {
-    return with_runner(record, thread, [&](ExperimentRunner& runner) { return runner.loop_of(record); });
-  }
-
-  /// An experiment, run as a campaign runs it.
-  ExperimentRecord run(std::int64_t index, std::size_t thread, StorePolicy store = StorePolicy::none) {
-    if (solver_ != "ipopt") {
-      ExperimentRecord record = by_active_set_[thread]->run(index, store);
-      if (solver_ == "active-set" || !needs_ipopt(record))
-        return record;
-    }
-    const std::lock_guard alone(ipopt_);
-    return by_campaign_solver_->run(index, store);
-  }
-
- private:
-  using Runner = std::unique_ptr<ExperimentRunner>;
-
-  /// Calls `work` with the runner by which this experiment is assessed.
-  template <class Work>
-  std::invoke_result_t<Work, ExperimentRunner&> with_runner(const ExperimentRecord& record,
-                                                            std::size_t thread, Work work) {
-    const bool needs_ipopt = solver_ == "ipopt" || record.solver.fallbacks > 0;
-    if (!needs_ipopt || !by_campaign_solver_->runs_loops(record))
-      return work(*by_active_set_[thread]);
-    const std::lock_guard alone(ipopt_);
-    return work(*by_campaign_solver_);
-  }
-
-  static Runner runner_of(const Campaign& campaign, const Study& study,
-                          const std::vector<std::string>& methods, const std::string& solver) {
-    return std::make_unique<ExperimentRunner>(
-        study, assessment_context(campaign.study, campaign.basis, qp_solver_factory(solver)), methods);
-  }
-
-  std::string solver_;
-  Runner by_campaign_solver_;
-  std::vector<Runner> by_active_set_;
-  std::mutex ipopt_;  // no critical region: an exception must not leave one
-};
-
 /// The study of an archive, as the further methods have it.
 Study study_with(Study study, const std::vector<std::string>& methods) {
   study.methods = methods;
@@ -211,32 +138,6 @@ RunOptions run_options(const Campaign& campaign, const ComparedLoops& loops,
           .leftovers = options.kept.leftovers,
           .shard_interval = options.kept.interval};
 }
-
-/// Records for threads, each of which asks for the next one or one soon after it: they are read one after the
-/// other, and in memory are those that others will ask for in a moment.
-class RecordsInTurn {
- public:
-  /// Those with these indices, in ascending order, which there are and which must outlive it.
-  RecordsInTurn(const RecordRange& records, const std::vector<std::int64_t>& indices)
-      : next_(records.one_by_one()), wanted_(indices.begin()) {}
-
-  /// Each once.
-  ExperimentRecord take(std::int64_t index) {
-    const std::lock_guard one_at_a_time(mutex_);
-    while (read_.count(index) == 0) {
-      const ExperimentRecord& record = *next_();
-      if (record.draw.index == *wanted_)
-        read_.emplace(*wanted_++, record);
-    }
-    return std::move(read_.extract(index).mapped());
-  }
-
- private:
-  RecordRange::Next next_;
-  std::vector<std::int64_t>::const_iterator wanted_;
-  std::map<std::int64_t, ExperimentRecord> read_;
-  std::mutex mutex_;
-};
 
 /// The numbers of blind loops in the order in which they are made: that of the records, and then the
 /// calibration loops.
@@ -259,21 +160,6 @@ void transfer_loop(Stream& stream, Loop& loop) {
     transfer(stream, loop.*signal.member);
 }
 
-/// Has threads do `make(key, thread)`.
-template <class Make>
-LoopWork threaded_work(int jobs, const CampaignHooks& hooks, Make make) {
-  const auto made = std::make_shared<std::size_t>(0);
-  return {.jobs = jobs,
-          .thread =
-              [make, made] {
-                return
-                    [make, thread = (*made)++](std::int64_t key) -> LoopResult { return make(key, thread); };
-              },
-          .stop = hooks.stop,
-          .on_start = hooks.on_start,
-          .on_done = hooks.on_done};
-}
-
 }  // namespace
 
 Comparison::Comparison(const Campaign& campaign, const ComparedLoops& loops, const ComparisonOptions& options)
@@ -290,29 +176,46 @@ Comparison::Comparison(const Campaign& campaign, const ComparedLoops& loops, con
     store_.take_stock(shards_in(part), options.kept.warn);
 }
 
+template <class Assess>
+LoopResult Comparison::kept_answers(std::int64_t key, ExperimentRecord record, const Assess& assess) const {
+  if (key < kCalibrationKeys) {
+    record.assessments = assess(record);
+    record.loop.reset();  // the archive has them
+    record.truth.reset();
+  }
+  return loops_.result(key, {.record = std::move(record), .samples = {}, .audited = {}});
+}
+
+std::vector<AssessmentRecord> Comparison::lost_answers(const std::string& why) const {
+  std::vector<AssessmentRecord> answers =
+      unassessed(assessment_forms(loops_.study(), loops_.study().methods));
+  for (AssessmentRecord& answer : answers) {
+    answer.status = AssessmentStatus::failed;
+    answer.reason = why;
+  }
+  return answers;
+}
+
 void Comparison::run(const CampaignHooks& hooks) {
-  prepare_plant(campaign_.study);
-  const std::vector<std::string>& methods = loops_.study().methods;
-  const int jobs = loops_.options().jobs;
-  ThreadedRunners runners(campaign_, loops_.study(), methods, jobs);
-  std::optional<ThreadedRunners> calibrating;
-  if (!campaign_.calibration.loops.empty())
-    calibrating.emplace(campaign_, loops_.calibration(), methods, jobs);
-  const std::vector<std::int64_t> missing = store_.missing(keys_);
-  RecordsInTurn records(records_of(campaign_), missing);
-  const auto assess = [&](std::int64_t key, std::size_t thread) {
-    ExperimentOutcome outcome;
-    if (key >= kCalibrationKeys) {
-      outcome.record = calibrating->run(key - kCalibrationKeys, thread);
-    } else {
-      outcome.record = records.take(key);
-      outcome.record.assessments = runners.assess(outcome.record, thread);
-      outcome.record.loop.reset();  // the archive has them
-      outcome.record.truth.reset();
-    }
-    return loops_.result(key, outcome);
-  };
-  run_missing(store_, keys_, threaded_work(jobs, hooks, assess));
+  const RevisitedLoops revisited{
+      .campaign = campaign_,
+      .study = loops_.study(),
+      .calibration = campaign_.calibration.loops.empty() ? nullptr : &loops_.calibration(),
+      .methods = loops_.study().methods,
+      .calibration_store = StorePolicy::none,
+      .place =
+          [](std::int64_t key) {
+            return LoopPlace{key % kCalibrationKeys, key >= kCalibrationKeys};
+          },
+      .make =
+          [this](std::int64_t key, ExperimentRunner& runner, ExperimentRecord record) {
+            return kept_answers(key, std::move(record), [&](const auto& of) { return runner.assess(of); });
+          },
+      .lost =
+          [this](std::int64_t key, ExperimentRecord record, const std::string& why) {
+            return kept_answers(key, std::move(record), [&](const auto&) { return lost_answers(why); });
+          }};
+  run_revisited(store_, keys_, revisited, loops_.options().jobs, hooks);
 }
 
 void Comparison::add_to(Campaign& campaign, const std::string& command, const StopRequest& stop) {
@@ -330,32 +233,35 @@ void Comparison::add_to(Campaign& campaign, const std::string& command, const St
 
 void run_blind_loops(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
                      const CampaignHooks& hooks, ShardStore& store) {
-  const int threads = std::max(1, jobs);
-  prepare_plant(campaign.study);
-  ThreadedRunners runners(campaign, campaign.study, {}, threads);
-  const Study calibration = campaign.study.calibration ? calibration_study(campaign.study) : campaign.study;
-  ThreadedRunners calibrating(campaign, calibration, {}, threads);
-  const std::vector<std::int64_t> numbers = store.missing(numbers_in_turn(order));
-  std::vector<std::int64_t> indices;
-  for (const std::int64_t number : numbers)
-    if (const BlindLoop& loop = order[static_cast<std::size_t>(number)]; !loop.of_calibration)
-      indices.push_back(loop.index);
-  RecordsInTurn records(records_of(campaign), indices);
-  const auto make = [&](std::int64_t number, std::size_t thread) {
-    const BlindLoop& blind = order[static_cast<std::size_t>(number)];
-    AssessedLoop loop;
-    if (!blind.of_calibration) {
-      loop = runners.loop_of(records.take(blind.index), thread);
-    } else {
-      const ExperimentRecord record = calibrating.run(blind.index, thread, StorePolicy::all);
-      if (record.status == ExperimentStatus::ok)
-        loop = calibrating.loop_of(record, thread);
-    }
+  std::optional<Study> calibration;
+  if (campaign.study.calibration)
+    calibration = calibration_study(campaign.study);
+  const auto place = [&](std::int64_t number) {
+    const BlindLoop& loop = order[static_cast<std::size_t>(number)];
+    return LoopPlace{loop.index, loop.of_calibration};
+  };
+  const auto make = [](std::int64_t, ExperimentRunner& runner, const ExperimentRecord& record) {
+    const AssessedLoop loop = record.status == ExperimentStatus::ok ? runner.loop_of(record) : AssessedLoop();
     ByteWriter writer;
-    transfer_loop(writer, std::as_const(loop));
+    transfer_loop(writer, loop);
     return LoopResult{.bytes = writer.take()};
   };
-  run_missing(store, numbers, threaded_work(threads, hooks, make));
+  const auto lost = [&](std::int64_t number, const ExperimentRecord& record,
+                        const std::string& why) -> LoopResult {
+    throw std::runtime_error(fmt::format("{} {}: {}",
+                                         place(number).of_calibration ? "calibration loop" : "experiment",
+                                         record.draw.index, why));
+  };
+  run_revisited(store, numbers_in_turn(order),
+                {.campaign = campaign,
+                 .study = campaign.study,
+                 .calibration = calibration ? &*calibration : nullptr,
+                 .methods = {},
+                 .calibration_store = StorePolicy::all,
+                 .place = place,
+                 .make = make,
+                 .lost = lost},
+                jobs, hooks);
 }
 
 BlindLoops blind_loops_in(const ShardStore& store, std::size_t count) {

@@ -24,7 +24,7 @@ std::vector<CampaignMethod> methods_of(const Study& study, const std::string& co
 
 struct ComparisonOptions {
   std::vector<std::string> methods;                  ///< names of assessment_methods(), each once
-  int jobs = 1;                                      ///< threads
+  int jobs = 1;                                      ///< how many loops are assessed at once
   std::optional<PartNumber> part = {};               ///< which part of the loops is assessed; none: all
   std::string archive = {};                          ///< digest of the archive whose loops are assessed
   std::optional<std::filesystem::path> shards = {};  ///< where the answers wait; none: in memory
@@ -43,10 +43,9 @@ struct ComparedLoops {
 ComparedLoops compared_loops(const Campaign& campaign, const std::vector<std::string>& asked,
                              const std::optional<std::int64_t>& experiments);
 
-/// Methods that assess the experiments with status ok, and the calibration loops, in threads; the same answer
-/// for any number of them, and however often it was stopped, but for the processor times. A loop that was not
-/// stored is run again by the solver of the campaign, where that is Ipopt one at a time: its linear solver
-/// does not bear two threads.
+/// Methods that assess the experiments with status ok, and the calibration loops; the same answer for any
+/// number of jobs, and however often it was stopped, but for the processor times. A loop that was not stored
+/// is run again by the solver of the campaign (run_revisited).
 class Comparison {
  public:
   /// On these loops of the campaign, which must outlive run(). Errors: as CampaignLoops::open().
@@ -57,8 +56,9 @@ class Comparison {
   /// How many loops are wanted.
   std::int64_t count() const { return std::ssize(keys_); }
 
-  /// Assesses those that are missing. Throws Interrupted, and InputError for an unknown method, or options
-  /// that do not fit the study: that of its first loop.
+  /// Assesses those that are missing. An experiment over which worker processes die has failed answers, with
+  /// the reason. Throws Interrupted, and InputError for an unknown method, or options that do not fit the
+  /// study: that of its first loop.
   void run(const CampaignHooks& hooks);
 
   /// Makes as few shards as there can be.
@@ -71,6 +71,11 @@ class Comparison {
   void add_to(Campaign& campaign, const std::string& command, const StopRequest& stop = {});
 
  private:
+  /// The bytes of an experiment with the answers that assess(record) gives, or of a calibration loop.
+  template <class Assess>
+  LoopResult kept_answers(std::int64_t key, ExperimentRecord record, const Assess& assess) const;
+  std::vector<AssessmentRecord> lost_answers(const std::string& why) const;
+
   const Campaign& campaign_;
   CampaignLoops loops_;  ///< with the methods of the comparison
   ShardStore store_;

@@ -54,7 +54,7 @@ std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& stud
     return campaign;
   } catch (const ArchiveError& error) {
     if (warn)
-      warn(fmt::format("{}; it is made anew", error.what()));
+      warn(fmt::format("{}; it is made again", error.what()));
     return std::nullopt;
   }
 }

@@ -1,6 +1,7 @@
 #include "bench/campaign/loop_farm.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <deque>
@@ -10,6 +11,7 @@
 
 #include "bench/execution/thread_loop.hpp"
 #include "bench/execution/worker_pool.hpp"
+#include "plants/error.hpp"
 #include "results/files/byte_stream.hpp"
 
 namespace mpm {
@@ -19,6 +21,8 @@ namespace {
 /// so that waiting for the last one is little, and no more than a killed run may lose.
 constexpr std::chrono::seconds kRound(2);
 constexpr std::int64_t kMostInRound = 100'000;
+/// How many loops may wait for worker processes: each may hold a record.
+constexpr std::size_t kMostWaiting = 1000;
 
 /// A loop for a worker process.
 struct BegunLoop {
@@ -31,9 +35,15 @@ std::string answer(const LoopWork& work, const std::string& request) {
   ByteReader reader(request);
   BegunLoop task;
   transfer_all(reader, task.key, task.begun);
-  const LoopResult result = work.process(task.key, task.begun);
+  LoopResult result;
+  std::string refused;
+  try {
+    result = work.process(task.key, task.begun);
+  } catch (const InputError& error) {
+    refused = error.what();
+  }
   ByteWriter writer;
-  transfer_all(writer, result.failed, result.bytes);
+  transfer_all(writer, std::as_const(refused), std::as_const(result.failed), std::as_const(result.bytes));
   return writer.take();
 }
 
@@ -72,6 +82,7 @@ class LoopFarm {
       run_round(threads, static_cast<std::size_t>(pool_ ? std::min(kMostInRound, left()) : left()));
       if (pool_)
         work_off([] { return std::optional<BegunLoop>(); });
+      count_waiting_ = waiting_.size();
     }
   }
 
@@ -81,7 +92,7 @@ class LoopFarm {
     const RoundClock::time_point end = pool_ ? RoundClock::now() + kRound : RoundClock::time_point::max();
     std::vector<char> is_left_out(count, 0);
     for_each_in_threads(count, work_.jobs, [&](std::size_t i, std::size_t thread) {
-      if (requested(work_.stop) || RoundClock::now() >= end) {
+      if (requested(work_.stop) || RoundClock::now() >= end || count_waiting_ >= kMostWaiting) {
         is_left_out[i] = 1;
         return;
       }
@@ -92,6 +103,7 @@ class LoopFarm {
         waiting_.push_back({key, std::move(result.bytes)});
       else
         deliver(key, std::move(result));
+      count_waiting_ = waiting_.size();
     });
     std::vector<std::int64_t> left_out;
     for (std::size_t i = 0; i < count; ++i)
@@ -133,7 +145,10 @@ class LoopFarm {
     if (!result.crashed) {
       ByteReader reader(result.bytes);
       LoopResult done;
-      transfer_all(reader, done.failed, done.bytes);
+      std::string refused;
+      transfer_all(reader, refused, done.failed, done.bytes);
+      if (!refused.empty())
+        throw InputError(refused);
       deliver(task.key, std::move(done));
     } else if (std::optional<LoopResult> lost = work_.lost(task.key, task.begun, result.bytes, task.again)) {
       deliver(task.key, *std::move(lost));
@@ -159,6 +174,7 @@ class LoopFarm {
   std::size_t next_ = 0;  ///< of the missing ones
   std::mutex delivery_;
   std::deque<BegunLoop> waiting_;  ///< for worker processes
+  std::atomic<std::size_t> count_waiting_ = 0;
   std::optional<WorkerPool> pool_;
 };
 

@@ -51,7 +51,8 @@ struct LoopWork {
 ///
 /// When a stop is requested, no more are given out, and those in worker processes, which may take minutes,
 /// are given up. Throws Interrupted when not all are done, and otherwise what the first loop in a thread
-/// throws; ArchiveError of the store; std::system_error when no worker process can be made.
+/// throws; InputError that a worker process throws; ArchiveError of the store; std::system_error when no
+/// worker process can be made.
 void run_missing(ShardStore& store, const std::vector<std::int64_t>& keys, const LoopWork& work);
 
 }  // namespace mpm

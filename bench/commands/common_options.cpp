@@ -139,15 +139,14 @@ std::vector<std::string> with_programs(const std::vector<std::string>& named,
 void add_part_of(CLI::App& app, std::string& shard, const std::string& what) {
   add_part_option(
       app, "--shard", shard, "I/N, auto or auto/N",
-      fmt::format(
-          "Do part I/N of the {}: every Nth, from the Ith on; auto and auto/N as for `run`. Without it, "
-          "the command does what the parts have left and shows everything",
-          what));
+      fmt::format("Do part I/N of the {}: every Nth, from the Ith on; auto and auto/N as for `run`. Without "
+                  "it, the command does what the parts have left and shows everything",
+                  what));
 }
 
 void add_shard_interval(CLI::App& app, double& interval) {
   app.add_option("--shard-interval", interval,
-                 "Seconds between two saves of finished experiments: what a killed run can lose")
+                 "Seconds between saves of finished experiments, the most that a killed run can lose")
       ->check(number_between(0.0, 1e9))
       ->capture_default_str();
 }

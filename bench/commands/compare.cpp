@@ -33,6 +33,8 @@
 #include "plants/system/temporary_folder.hpp"
 #include "results/archive/archive.hpp"
 #include "results/blind/verdict_file.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_text.hpp"
 #include "results/summary/comparison.hpp"
 
 namespace mpm {
@@ -104,10 +106,10 @@ std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std
       throw InputError("--verdicts", fmt::format("'{}' twice", name), "each name once");
     OutsideVerdicts verdicts = read_verdicts(path, name, campaign);
     if (!verdicts.says_which_loops)
-      print_note(fmt::format(
-          "mpmbench: {} does not say which loops it is of; that they are those of the archive is taken on "
-          "trust\n",
-          path.string()));
+      print_note(
+          fmt::format("mpmbench: warning: {} does not say which loops it is of; they are assumed to be those "
+                      "of the archive\n",
+                      path.string()));
     add_verdicts(campaign, std::move(verdicts), command_line);
     names.push_back(name);
   }
@@ -139,8 +141,9 @@ void require_unchanged(const CompareArguments& options, const std::string& diges
   std::error_code no_status;
   if (std::filesystem::equivalent(options.output, options.archive, no_status) &&
       digest_of_archive(options.archive) != digest)
-    throw InputError(options.archive, "another content than a moment ago",
-                     "an archive that no other command writes; the same command again takes it as it is now");
+    throw InputError(
+        options.archive, "content that has just changed",
+        "an archive that no other command writes; run the same command again to use it as it is now");
 }
 
 /// The parts that others have left, or none when all is to begin anew: they are deleted then.
@@ -205,7 +208,7 @@ auto advised(const ComparisonTask& task, const Progress& progress, const Work& w
 /// A part of the loops, whose answers wait for the comparison of all of them.
 std::string compare_part(const ComparisonTask& task, Progress& progress) {
   if (task.comparison.methods.empty())
-    return "every loop is assessed already\n";
+    return "every loop has been assessed already\n";
   const PartNumber& part = *task.comparison.part;
   const std::filesystem::path folder = kept_parts(task.options.output) / part_name("", part);
   make_output_folder(folder.parent_path(), "parts");
@@ -221,7 +224,8 @@ std::string compare_part(const ComparisonTask& task, Progress& progress) {
 std::string found_text(const ComparisonTask& task) {
   const CompareArguments& options = task.options;
   const auto text = [&](const Campaign& shown, const StudyFindings& findings) {
-    return options.json ? comparison_json(shown, findings) : comparison_text(shown, findings);
+    const Document document = comparison_document(shown, findings);
+    return options.json ? document_json(document) : document_text(document);
   };
   const bool shows_all = task.asked == method_names(task.campaign) && !options.experiments;
   std::string found;
@@ -275,9 +279,8 @@ std::string intended_text(const ComparisonTask& task) {
                      calibration = std::ssize(task.campaign.calibration.loops);
   return fmt::format(
       "methods: {}\nloops: {} of {} ({} experiments, {} calibration loops) to be assessed, {} at "
-      "once\nfiles: "
-      "{}\nnothing was assessed, nothing was written\n",
-      methods.empty() ? "none that the archive lacks" : fmt::to_string(fmt::join(methods, ", ")),
+      "once\nfiles: {}\nnothing was assessed, nothing was written\n",
+      methods.empty() ? "none: the archive has them all" : fmt::to_string(fmt::join(methods, ", ")),
       methods.empty() ? 0 : Comparison(task.campaign, task.loops, task.comparison).count(),
       experiments + calibration, experiments, calibration, options.jobs,
       options.output.empty() ? "none"
@@ -290,7 +293,7 @@ std::string intended_text(const ComparisonTask& task) {
 void require_output(const CompareArguments& options) {
   if (options.output.empty()) {
     if (!options.shard.empty())
-      throw InputError("--shard", "no --output", "with --output, beside which the parts wait");
+      throw InputError("--shard", "no --output", "an --output, beside which the parts are kept");
     return;
   }
   std::vector<std::string> inputs = options.method_files;
@@ -351,10 +354,10 @@ void add_compare(CommandSet& commands) {
   add_method_files(app, options->method_files);
   app.add_option("--verdicts", options->verdicts,
                  "CSV file of verdicts on the loops of `export --blind`, FILE or NAME=FILE; compared like a "
-                 "method. May be given several times");
+                 "method (repeatable)");
   add_path(app, "-o,--output", options->output,
-           "Archive to write, with the comparison in it (HDF5); may be ARCHIVE itself. Until then finished "
-           "work waits beside it, and the same command resumes it");
+           "Archive to write, with the comparison in it (HDF5); may be ARCHIVE itself. Finished work is kept "
+           "beside it until then, and the same command resumes it");
   add_experiments(app, options->experiments, "Compare only the first N experiments");
   add_part_of(app, options->shard, "loops");
   app.add_flag("--discard", options->discard,

@@ -43,17 +43,15 @@ std::string leftovers_text(const std::filesystem::path& shards, Leftovers leftov
   if (count == 0)
     return "";
   return fmt::format("found: {} shards of an interrupted run in {}, {}\n", count, shards.string(),
-                     leftovers == Leftovers::refuse
-                         ? "so that the run is refused without --resume or --discard"
+                     leftovers == Leftovers::refuse    ? "the run is refused without --resume or --discard"
                      : leftovers == Leftovers::discard ? "which are deleted"
-                                                       : "with which the run goes on: it takes less time");
+                                                       : "which the run resumes: it takes less time");
 }
 
 const char* basis_verdict(bool healthy, const RunOptions& options) {
-  return healthy ? "passed"
-         : options.allow_unhealthy_basis
-             ? "FAILED"
-             : "FAILED, so that the run is refused without --allow-unhealthy-basis";
+  return healthy                         ? "passed"
+         : options.allow_unhealthy_basis ? "FAILED"
+                                         : "FAILED: the run is refused without --allow-unhealthy-basis";
 }
 
 std::string loops_text(const Study& study, std::int64_t experiments) {
@@ -81,7 +79,7 @@ std::string together_time(const std::vector<const IntendedStudy*>& studies, cons
     }
   }
   if (timed == 0)
-    return "time: not known, none of the studies that were tried can be run\n";
+    return "time: unknown, none of the studies that were tried can be run\n";
   return fmt::format(
       "time: about {}, from the first loops of {} of them\n",
       duration_text(seconds / static_cast<double>(timed) * static_cast<double>(studies.size())), timed);
@@ -91,7 +89,7 @@ std::string together_time(const std::vector<const IntendedStudy*>& studies, cons
 
 void add_dry_run(CLI::App& app, bool& dry_run) {
   app.add_flag("--dry-run", dry_run,
-               "List what would be run and written, and how long it takes; write nothing");
+               "List what would be run and written and how long it takes; write nothing");
 }
 
 void add_untimed_dry_run(CLI::App& app, bool& dry_run) {
@@ -167,7 +165,7 @@ std::string dry_run_text(const IntendedRun& intended, const CampaignHooks& hooks
       "time: about {} (basis case {:.2f} s; {:.3g} ms a loop, from {:g} loops that were timed{})\n",
       duration_text(pilot.basis_seconds + (pilot.seconds - pilot.basis_seconds) * share), pilot.basis_seconds,
       pilot.milliseconds_of_a_loop, timed, audited_share(study, options) > 0 ? ", without the audit" : "");
-  text += fmt::format("memory: about {:.0f} MB, of which {:.1f} MB are loop data that is kept\n",
+  text += fmt::format("memory: about {:.0f} MB, including {:.1f} MB of stored loop data\n",
                       peak_megabytes() + kept, kept);
   text += fmt::format("files: {}\n", intended.part != nullptr
                                          ? part_text(intended.output)

@@ -49,10 +49,9 @@ ExitCode export_blind(const ExportArguments& options) {
   if (options.parts.windows && !campaign.study.monitoring)
     throw InputError("--windows", "a study without a table `monitoring`", "a study with one");
   if (campaign.study.world || campaign.study.simulation.excitation == SignalSequence::each)
-    throw InputError(
-        "--blind", "a study with worlds, or with an excitation of its own for each loop",
-        "one whose loops share a benchmark: a blind export has one; a program (--method-file) is told "
-        "that of each loop");
+    throw InputError("--blind", "a study with worlds, or with an excitation of its own for each loop",
+                     "one whose loops share a benchmark, since a blind export has only one; a program "
+                     "(--method-file) gets the benchmark of each loop");
   const std::vector<BlindLoop> order = blind_order(campaign, options.parts.calibration);
   if (order.empty())
     throw InputError(options.archive, "no loop that ran to its end", "one or more to export");
@@ -72,7 +71,7 @@ ExitCode export_blind(const ExportArguments& options) {
   try {
     run_blind_loops(campaign, order, options.jobs, hooks_of(progress), *loops);
   } catch (const Interrupted& error) {
-    throw std::runtime_error(progress.explain(error) + "; the same command goes on");
+    throw std::runtime_error(progress.explain(error) + "; run the same command again to go on");
   }
   const AssessmentContext context =
       assessment_context(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver));
@@ -100,7 +99,7 @@ ExitCode export_table(const ExportArguments& options) {
     campaign.records = {experiment_of(campaign, *options.index)};
     campaign.streamed.reset();
     if (options.table == "loops" && !campaign.records.front().loop)
-      throw InputError("--index", fmt::format("{}, whose loop was not kept", *options.index),
+      throw InputError("--index", fmt::format("{}, whose loop was not stored", *options.index),
                        "an experiment whose loop is in the archive (run --store)");
   }
   bool heading_only = true;
@@ -117,8 +116,8 @@ ExitCode export_table(const ExportArguments& options) {
   else
     write_text(options.output, write_table);
   if (heading_only)
-    print_note(fmt::format("warning: the table {} has a heading only: {} has no such data\n", options.table,
-                           options.archive));
+    print_note(
+        fmt::format("warning: the table {} is empty: {} has no such data\n", options.table, options.archive));
   return ExitCode::done;
 }
 
@@ -142,13 +141,13 @@ void add_export(CommandSet& commands) {
                "With --blind: mix the calibration loops with the others")
       ->needs(blind);
   app.add_flag("--windows", options->parts.windows,
-               "With --blind: ask for verdicts on the moving windows of each loop too")
+               "With --blind: also ask for verdicts on the moving windows of each loop")
       ->needs(blind);
   add_path(app, "--key", options->key,
            "With --blind: CSV file to write that maps each loop to its experiment, to train a method")
       ->needs(blind);
   add_path(app, "-o,--output", options->output, "File to write, with --blind a folder (default: stdout)");
-  add_jobs(app, options->jobs, "With --blind: how many of the loops that were not kept run at once");
+  add_jobs(app, options->jobs, "With --blind: how many loops that were not stored run at once");
   add_quiet(app, options->quiet);
 }
 

@@ -124,8 +124,8 @@ std::string doubt_of(const StepResponseFit& fit, double last) {
     return fmt::format("only {:.1f} % of the step response is explained", 100.0 * fit.explained);
   const double gain = fit.channel.static_gain();
   if (std::abs(last - gain) > kUnfinished * std::abs(gain))
-    return fmt::format("the response ends at {:.3g} where the model goes on to {:.3g}: more --samples", last,
-                       gain);
+    return fmt::format("the response ends at {:.3g} while the model goes on to {:.3g}: use more --samples",
+                       last, gain);
   return "";
 }
 
@@ -185,7 +185,7 @@ void require_channels(const Study& study, const std::vector<IdentifiedChannel>& 
   for (std::size_t i = 0; i < inputs.size(); ++i)
     steps.push_back(fmt::format("{}={:.4g}", inputs[i].name, sizes(static_cast<Eigen::Index>(i))));
   throw InputError("--step", fmt::format("no channel: {} move no CV", fmt::join(steps, ", ")),
-                   "steps that move a CV, larger ones where valves stick");
+                   "steps that move a CV; use larger ones where valves stick");
 }
 
 /// A sentence for each CV that nothing moves, and for each input that moves nothing.
@@ -197,10 +197,10 @@ std::vector<std::string> unconnected(const Study& study, const std::vector<Ident
   };
   for (const PlantModel::Variable& cv : study.plant.cvs)
     if (none_has(&IdentifiedChannel::cv, cv.name))
-      sentences.push_back(fmt::format("no step moves {}: it has no channel", cv.name));
+      sentences.push_back(fmt::format("no step moves {}, so it has no channel", cv.name));
   for (const PlantModel::Variable& input : all_inputs(study))
     if (none_has(&IdentifiedChannel::input, input.name))
-      sentences.push_back(fmt::format("the step of {} moves no CV: larger steps with --step", input.name));
+      sentences.push_back(fmt::format("the step of {} moves no CV: use a larger step (--step)", input.name));
   return sentences;
 }
 

@@ -18,6 +18,7 @@
 #include "bench/parts/loop_ranges.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "results/archive/archive.hpp"
+#include "results/document/document_text.hpp"
 #include "results/summary/summary.hpp"
 
 namespace mpm {
@@ -71,7 +72,7 @@ void write_merged(const MergeArguments& options, const PartMerge& parts, Progres
     const StudyFindings findings = findings_of(campaign);
     write_archive(options.output, campaign, findings);
     if (!options.quiet && !options.json)
-      print_result(summary_text(campaign, findings, options.output));
+      print_result(document_text(summary_document(campaign, findings, options.output)));
   } catch (const Interrupted& error) {
     throw std::runtime_error(progress.explain(error));
   }

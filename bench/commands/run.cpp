@@ -31,6 +31,7 @@
 #include "bench/shards/shard_identity.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
+#include "results/document/document_text.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/files/study_change.hpp"
 #include "scenarios/files/study_library.hpp"
@@ -83,7 +84,7 @@ void run_whole(const RunArguments& options, const Study& study, const RunOptions
     const StudyFindings findings = findings_of(campaign);
     write_archive(options.output, campaign, findings);
     if (!options.quiet)
-      summary = summary_text(campaign, findings, options.output);
+      summary = document_text(summary_document(campaign, findings, options.output));
   };
   stream_campaign(study, run_options, narrator.with_stages(std::move(hooks)),
                   shard_folder_of(options.output));

@@ -19,6 +19,8 @@
 #include "bench/files/archive_input.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard_folder.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_text.hpp"
 
 namespace mpm {
 namespace {
@@ -55,8 +57,8 @@ std::string archive_of(const std::string& named) {
 std::string summary_of(const SummaryArguments& options, const Campaign& campaign,
                        const std::optional<Unfinished>& unfinished) {
   const StudyFindings findings = findings_of(campaign);
-  return options.json ? summary_json(campaign, findings, unfinished)
-                      : summary_text(campaign, findings, archive_of(options.archive), unfinished);
+  const Document document = summary_document(campaign, findings, archive_of(options.archive), unfinished);
+  return options.json ? document_json(document) : document_text(document);
 }
 
 std::string partial_summary(const SummaryArguments& options, const std::vector<std::string>& folders) {

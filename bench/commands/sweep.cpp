@@ -19,7 +19,9 @@
 #include "bench/files/output_file.hpp"
 #include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
-#include "results/summary/sweep_table.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_markdown.hpp"
+#include "results/summary/sweep_document.hpp"
 #include "scenarios/files/sweep_file.hpp"
 
 namespace mpm {
@@ -34,6 +36,7 @@ struct SweepArguments {
   RunOptions run;
   bool overwrite = false;
   bool dry_run = false;
+  bool json = false;
   bool quiet = false;
 };
 
@@ -100,9 +103,10 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
                              sweep.variants.size(), part->number, part->of));
     return ExitCode::done;
   }
-  const std::string table = sweep_table(rows);
+  const Document document = sweep_document(sweep.title, rows);
+  const std::string table = document_markdown(document);
   write_text(folder / "sweep.md", table);
-  print_result(fmt::format("{}\n{}", sweep.title, table));
+  print_result(options.json ? document_json(document) : fmt::format("{}\n{}", sweep.title, table));
   return ExitCode::done;
 }
 
@@ -126,6 +130,7 @@ void add_sweep(CommandSet& commands) {
   add_solver(app, options->run.solver);
   add_overwrite(app, options->overwrite);
   add_dry_run(app, options->dry_run);
+  add_json(app, options->json);
   add_quiet(app, options->quiet);
 }
 

@@ -109,9 +109,8 @@ std::string worlds_text(const StudyForecast& forecast) {
   if (forecast.loops_without_fault > 0)
     limits += fmt::format(", that of false alarms to +- {:.3f}", forecast.false_alarm_width_limit / 2.0);
   return fmt::format(
-      "worlds: {}; more experiments in the same worlds bring these intervals at best{}; more worlds "
-      "(world.count) "
-      "bring them further\n",
+      "worlds: {}; more experiments in the same worlds narrow these intervals at best{}; more worlds "
+      "(world.count) narrow them further\n",
       forecast.worlds, limits.empty() ? " to where they are" : limits);
 }
 

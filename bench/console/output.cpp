@@ -22,7 +22,7 @@ void print_note(std::string_view text) {
 }
 
 std::string how_to_go_on(std::string_view where, std::string_view command) {
-  return fmt::format("\nWhat is done is kept {}. To go on with it:\n  {}", where, command);
+  return fmt::format("\nFinished work is kept {}. To go on with it:\n  {}", where, command);
 }
 
 std::string without_discard(std::string command_line) {
@@ -41,7 +41,8 @@ std::string duration_text(double seconds) {
 bool results_arrived() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
     return true;
-  print_note("mpmbench: stdout: not all could be written (disk full, closed, or a reader that is gone)\n");
+  print_note(
+      "mpmbench: stdout: the output is incomplete (disk full, stdout closed, or the reader is gone)\n");
   return false;
 }
 

@@ -31,9 +31,8 @@ void note(int signal) {
 
 void give_up(int /*signal*/) {
   constexpr char kWords[] =
-      "\nmpmbench: stopped; what was under way did not end in time and is given up, what was kept before it "
-      "is "
-      "still there\n";
+      "\nmpmbench: stopped; work under way did not end in time and is lost, everything kept before is still "
+      "there\n";
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kWords, sizeof kWords - 1);
   ::_exit(static_cast<int>(ExitCode::not_finished));
 }

@@ -26,8 +26,8 @@ void require_threads(int threads) {
   } catch (const std::system_error& error) {
     closed.unlock();
     throw std::runtime_error(
-        fmt::format("{} of {} threads could be made ({}): fewer --jobs, or a higher limit", others.size() + 1,
-                    threads, error.code().message()));
+        fmt::format("{} of {} threads could be started ({}): use fewer --jobs, or raise the limit",
+                    others.size() + 1, threads, error.code().message()));
   }
   closed.unlock();
 }

@@ -35,8 +35,8 @@ class WatchedFile {
     if (status.st_size != then_.st_size || status.st_mtim.tv_sec != then_.st_mtim.tv_sec ||
         status.st_mtim.tv_nsec != then_.st_mtim.tv_nsec)
       throw ArchiveError(path_ +
-                         ": another content than a moment ago; allowed: an archive into which nobody "
-                         "writes; the same command again takes it as it is now");
+                         ": found content that has just changed; allowed: an archive that nobody writes; run "
+                         "the same command again to use it as it is now");
   }
 
  private:

@@ -38,7 +38,7 @@ void require_no_input(const std::string& option, const std::filesystem::path& ou
   for (const std::string& input : inputs)
     if (std::filesystem::equivalent(output, input, error) && !is_stream(output))
       throw InputError(option, fmt::format("{}, which the command reads", output.string()),
-                       "another file: this one would be lost");
+                       "another file: this one would be overwritten");
 }
 
 void require_output_archive(const std::filesystem::path& output, std::string_view what) {
@@ -46,7 +46,7 @@ void require_output_archive(const std::filesystem::path& output, std::string_vie
   const auto status = std::filesystem::status(output, error);
   if (is_stream(output) || std::filesystem::is_block_file(status) || std::filesystem::is_socket(status))
     throw InputError("--output", fmt::format("{}, a device or a pipe", output.string()),
-                     fmt::format("a file: the {} is read again", what));
+                     fmt::format("a regular file: the {} is read again", what));
   require_output_folder(output, what);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& output, const std::string& found,
                          const std::string& allowed) {
-  throw InputError(output.string(), found, allowed + ", another output, or --overwrite, which replaces it");
+  throw InputError(output.string(), found, allowed + ", another output, or --overwrite to replace it");
 }
 
 }  // namespace
@@ -28,12 +28,12 @@ void require_replaceable(const std::filesystem::path& output, const Study& study
     there = stream_archive(output).study;
   } catch (const std::exception&) {  // also a study whose files are gone
     if (unreadable == Unreadable::kept)
-      refuse(output, "a file that is no archive of this program", "no file");
+      refuse(output, "a file that is not an archive of this program", "no file");
     return;
   }
   if (there.source != study.source)
     refuse(output,
-           there.name == study.name ? fmt::format("an archive of {} with another study text", there.name)
+           there.name == study.name ? fmt::format("an archive of {} with a different study text", there.name)
                                     : fmt::format("the archive of another study, {}", there.name),
            fmt::format("an archive of {} as it is now", study.name));
   if (there.seed != study.seed)

@@ -74,8 +74,8 @@ std::optional<PartNumber> job_of(const Environment& environment, const std::opti
                                                  : std::nullopt;
     if (!size || (!given && size != number_of(environment, "SLURM_ARRAY_TASK_COUNT")))
       throw InputError("--shard auto",
-                       fmt::format("{} = {}, and not how many there are", launcher.number, *number),
-                       "sbatch --array=1-N as a whole; or --shard auto/N with the number of tasks or the "
+                       fmt::format("{} = {}, without the number of tasks", launcher.number, *number),
+                       "a whole array, sbatch --array=1-N; or --shard auto/N with the number of tasks or the "
                        "`completions` of the job");
     return part_by(launcher, *number, *size);
   }

@@ -101,8 +101,8 @@ PartFolder read_part(const fs::path& folder) {
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
-    throw InputError(file, fmt::format("no description of a part ({})", error.what()),
-                     "what `mpmbench run` writes into a folder of shards");
+    throw InputError(file, fmt::format("a file that does not describe a part ({})", error.what()),
+                     "the description that `mpmbench run` writes into a folder of shards");
   }
 }
 
@@ -126,8 +126,8 @@ std::vector<fs::path> find_parts(const std::vector<std::string>& folders) {
     std::set<fs::path> parts = parts_in(folder);
     if (parts.empty())
       throw InputError(
-          folder, "no part of a campaign",
-          fmt::format("folders with {}, which `mpmbench run --shard` makes", kCampaignDescription));
+          folder, "a folder without parts of a campaign",
+          fmt::format("folders with {}, as `mpmbench run --shard` makes them", kCampaignDescription));
     found.merge(parts);
   }
   return {found.begin(), found.end()};

@@ -35,13 +35,13 @@ void require_version(ByteReader& reader, const std::string& file) {
 }  // namespace
 
 ShardGone::ShardGone(const std::filesystem::path& shard)
-    : ArchiveError(fmt::format("{}: gone meanwhile, its run is at work; the same command again finds what is "
-                               "there",
-                               shard.string())) {}
+    : ArchiveError(
+          fmt::format("{}: the file has gone, since its run is still at work; run the same command again",
+                      shard.string())) {}
 
 UnreadableShard::UnreadableShard(const std::filesystem::path& shard, const std::string& why)
     : InputError(shard.string(), fmt::format("a whole shard with unreadable content ({})", why),
-                 "what mpmbench writes; or --discard to start anew") {}
+                 "a shard as mpmbench writes it; or --discard to start again") {}
 
 void ShardBytes::add(std::int64_t key, const std::string& bytes) {
   ByteWriter writer;

@@ -46,7 +46,7 @@ ShardFolder::ShardFolder(fs::path folder) : path_(std::move(folder)) {
   fs::create_directory(path_, error);
   if (error)
     throw ArchiveError(
-        fmt::format("{}: the folder of the shards cannot be made: {}", path_.string(), error.message()));
+        fmt::format("{}: cannot make the folder of shards: {}", path_.string(), error.message()));
   lock();
   for (const fs::path& shard : shards())
     last_ = std::max(last_, number_of(shard));
@@ -76,8 +76,8 @@ void ShardFolder::lock() {
     return;  // locked, or on a file system that knows no locks
   ::fcntl(lock_, F_GETLK, &region);
   ::close(lock_);
-  throw InputError(path_.string(), fmt::format("another run at work, process {}", region.l_pid),
-                   "one run an output at a time");
+  throw InputError(path_.string(), fmt::format("another run in progress, process {}", region.l_pid),
+                   "one run per output at a time");
 }
 
 std::vector<fs::path> ShardFolder::shards() const {

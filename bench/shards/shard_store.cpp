@@ -125,7 +125,7 @@ ShardStore::ShardStore(const std::filesystem::path& folder, ShardIdentity identi
   const std::vector<std::filesystem::path> shards = folder_->shards();
   if (options.leftovers == Leftovers::refuse && !shards.empty())
     throw InputError(folder.string(), fmt::format("{} shards of an earlier run", shards.size()),
-                     "--resume to go on with it, or --discard to delete what it has done");
+                     "--resume to go on with it, or --discard to delete its finished work");
   try {
     take_stock(shards, options.warn);
   } catch (const InputError&) {
@@ -148,7 +148,7 @@ void ShardStore::take_stock(const std::vector<std::filesystem::path>& shards, co
     const std::optional<ShardContent> content = read_shard(path, identity_);
     if (!content) {
       if (warn)
-        warn(fmt::format("{}: cut off or damaged, its checksum does not fit; what it holds is run again",
+        warn(fmt::format("{}: cut off or damaged, since its checksum does not match; its loops are run again",
                          path.string()));
       continue;
     }

@@ -60,7 +60,8 @@ void write_groups(const std::filesystem::path& path, const std::string& name, co
 }
 
 [[noreturn]] void refuse_size(const std::filesystem::path& path) {
-  throw ArchiveError(fmt::format("{}: it, or a variable in it, does not fit into the memory", path.string()));
+  throw ArchiveError(
+      fmt::format("{}: not enough memory for the file or one of its variables", path.string()));
 }
 
 Campaign read_archive(const std::filesystem::path& path, RecordPlace place) {

@@ -21,7 +21,7 @@ constexpr const char* kConventions = "CF-1.8";
 std::string how_to_make_anew(const Hdf5Group& root, const std::vector<std::int32_t>& version) {
   if (version.empty() || version.front() >= kArchiveMajorVersion)
     return "";
-  return fmt::format("; this program makes it anew by: {}", root.attribute<std::string>("command"));
+  return fmt::format("; to make it again with this program: {}", root.attribute<std::string>("command"));
 }
 
 void require_archive(const Hdf5Group& root, const std::string& file) {

@@ -49,7 +49,7 @@ struct Campaign {
   std::vector<CampaignMethod> methods;
   std::vector<ExperimentRecord> records;
   /// In place of `records`, when these are too many for the memory: findings_of(), write_archive() and
-  /// summary_text() take them from here. Never in a study of named scenarios.
+  /// summary_document() take them from here. Never in a study of named scenarios.
   std::optional<RecordRange> streamed = {};
   /// What the methods say of the calibration loops, none of them kept; no loops unless the study asks for
   /// them.

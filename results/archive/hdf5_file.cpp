@@ -74,7 +74,8 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
   const hdf5::Handle access = disk_access(place, *disk);  // until the error is read: its end would clear it
   const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (file.get() < 0)
-    throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one{}", place.file, hdf5::last_error()));
+    throw ArchiveError(
+        fmt::format("{}: not an HDF5 file, or not a whole one{}", place.file, hdf5::last_error()));
   return Hdf5File(Hdf5Group::State::root_of(file, place, std::move(disk)));
 }
 
@@ -84,7 +85,7 @@ Hdf5File Hdf5File::open_unsealed(std::vector<std::byte> content, const std::stri
   constexpr unsigned kReadOnlyCopy = 0;
   const hdf5::Handle file(H5LTopen_file_image(content.data(), content.size(), kReadOnlyCopy), H5Fclose);
   if (file.get() < 0)
-    throw ArchiveError(fmt::format("{}: no HDF5 file, or not a whole one{}", name, hdf5::last_error()));
+    throw ArchiveError(fmt::format("{}: not an HDF5 file, or not a whole one{}", name, hdf5::last_error()));
   return Hdf5File(Hdf5Group::State::root_of(file, place));
 }
 

@@ -262,7 +262,7 @@ MethodDescription description_of(const VerdictText& text, const std::string& nam
   MethodDescription method;
   method.name = name;
   method.title = fmt::format("{} (verdicts from outside)", name);
-  method.verdict = "as whoever made the file of verdicts means it";
+  method.verdict = "as the author of the file of verdicts defines it";
   method.requirements.complete_record = false;
   method.tells_sources = text.uses("source") || text.uses("cv_source");
   method.locates_cvs = text.uses("cv") || method.tells_sources;

@@ -2,20 +2,23 @@
 
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json_fwd.hpp>
 
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "plants/non_finite.hpp"
 #include "results/plot/figure.hpp"
 
-// What a result says, once: sections of sentences, tables of typed cells, and figures. The writers make a
-// text for a terminal (document_text.hpp) and a page (document_html.hpp) of it.
+// What a result says, once: sections of sentences, tables of typed cells, and figures. The writers make of it
+// a text for a terminal (document_text.hpp), a page (document_html.hpp), Markdown (document_markdown.hpp) and
+// JSON (document_json.hpp).
 //
 // Words are labels (results/plot/plot_text.hpp: `_{...}` is a subscript, foreign text goes through
 // as_label()), with further marks that these functions make. A terminal shows the words alone.
@@ -155,6 +158,9 @@ struct Section {
   std::string answer = {};                ///< words: a sentence below the title
   std::vector<Figure> file_figures = {};  ///< drawn into files only: the page shows a table in their place
   Shown shown = Shown::everywhere;
+  /// Adds what programs read of the section to the object of the document, with every number that people see
+  /// and those for which a text has no room. Called when JSON is written; empty: nothing.
+  std::function<void(nlohmann::ordered_json&)> data = {};
 
   void add(std::string html) { content.emplace_back(Html{std::move(html)}); }
   void add(const char* html) { add(std::string(html)); }

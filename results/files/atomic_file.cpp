@@ -210,7 +210,7 @@ void write_atomically(const std::filesystem::path& path, const Write& write) {
   std::error_code error;  // what cannot be looked at cannot be written either, which is said below
   if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error))
     throw ArchiveError(
-        fmt::format("{}: cannot be replaced: no regular file, but a {}", path.string(),
+        fmt::format("{}: cannot be replaced: it is a {}, not a regular file", path.string(),
                     std::filesystem::is_directory(target, error) ? "folder" : "device or a pipe"));
   remove_abandoned_files(target);
   TemporaryFile file(target);

@@ -25,7 +25,7 @@ std::string_view without_blanks(std::string_view text) {
 void refuse_bytes(std::string_view text, const std::string& file) {
   const bool utf16 = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
   if (utf16 || text.find('\0') != std::string_view::npos)
-    throw InputError(file, utf16 ? "a text in UTF-16" : "bytes that are no text",
+    throw InputError(file, utf16 ? "a text in UTF-16" : "bytes that are not text",
                      "a CSV file in UTF-8 or ASCII: export it again, or save the sheet as \"CSV UTF-8\"");
 }
 
@@ -134,7 +134,8 @@ bool CsvReader::next(std::vector<std::string>& fields) {
   cells_ += fields.size();
   if (cells_ > form_.most_cells)
     throw InputError(place(), fmt::format("more than {} cells", form_.most_cells),
-                     "so many (rows times columns): a shorter period, fewer columns, or fewer rows a sample");
+                     "at most this many (rows times columns): use a shorter period, fewer columns, or fewer "
+                     "rows per sample");
   return true;
 }
 

@@ -32,7 +32,7 @@ class InputFile {
     if (!std::filesystem::exists(path, error))
       refuse("no such file");
     if (!std::filesystem::is_regular_file(path, error))
-      refuse("no HDF5 file, but a folder or a device");
+      refuse("a folder or a device, not an HDF5 file");
     size_ = static_cast<std::size_t>(std::filesystem::file_size(path, error));
     file_.open(path, std::ios::binary);
     if (error || !file_)
@@ -73,7 +73,7 @@ std::string seal_of(const std::string& hash) {
 }
 
 constexpr const char* kDamaged =
-    "the file is damaged: its SHA-256 differs from the one at its end; take a copy of it, or run its study "
+    "the file is damaged: its SHA-256 differs from the one at its end; restore a copy, or run the study "
     "again";
 
 /// The hash in the seal at the end of the file.
@@ -83,10 +83,10 @@ std::string read_seal(InputFile& file) {
   if (is_seal(seal))
     return seal.substr(kSealBegin.size(), kHashDigits);
   if (file.read<std::string>(0, kHdf5Signature.size()) != kHdf5Signature)
-    file.refuse("no HDF5 file, or not a whole one");
+    file.refuse("not an HDF5 file, or not a whole one");
   file.refuse(
-      "no checksum at its end: the file is not a whole one, was changed by another program, or comes from an "
-      "early version of mpmbench; take a copy of it, or run its study again");
+      "no checksum at its end: the file is incomplete, was changed by another program, or comes from an "
+      "early version of mpmbench; restore a copy, or run the study again");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ std::string foreign_content(const std::filesystem::path& path, const std::string
   std::ifstream file = open_input(path, allowed);
   if (const std::uintmax_t bytes = std::filesystem::file_size(path); bytes > kMostBytes)
     throw InputError(path.string(), fmt::format("a file of {} bytes", bytes),
-                     fmt::format("at most {} bytes: a shorter period, or fewer columns", kMostBytes));
+                     fmt::format("at most {} bytes: use a shorter period, or fewer columns", kMostBytes));
   return content_of(file);
 }
 

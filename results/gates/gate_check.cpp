@@ -30,7 +30,7 @@ constexpr double kNoLimit = kInfinity;
 void judge_campaign(const Campaign& campaign, const StudyFindings& total, const GateFile& file,
                     std::vector<GateResult>& results) {
   const Finding healthy =
-      plain_value("self_check", "1: the basis case is healthy; otherwise no number means anything",
+      plain_value("self_check", "1: the basis case is healthy; otherwise no number has a meaning",
                   campaign.basis.healthy ? 1.0 : 0.0, 1);
   const Finding experiments = plain_value("experiments", "number of experiments",
                                           static_cast<double>(total.experiments), total.experiments);

@@ -35,10 +35,10 @@ void require_assessed(const TomlTable& table, const std::vector<Finding>& findin
         std::none_of(findings.begin(), findings.end(),
                      [&](const Finding& f) { return f.method == method.name; }))
       table.refuse(
-          "aggregate", fmt::format("'{}', and the method has not assessed the archive", name->get()),
-          fmt::format("this number for an archive that `mpmbench compare ARCHIVE --methods {} -o OUT.h5` has "
-                      "written",
-                      method.name));
+          "aggregate", fmt::format("'{}', of a method that has not assessed the archive", name->get()),
+          fmt::format(
+              "this number of an archive written by `mpmbench compare ARCHIVE --methods {} -o OUT.h5`",
+              method.name));
 }
 
 const Finding& finding_of(const TomlTable& table, const std::vector<Finding>& findings) {
@@ -77,8 +77,8 @@ OptionKeys gate_keys(Gate& gate, const std::vector<Finding>& findings) {
                      "[methods](#gates-on-methods) too")
               .read(read_finding)
               .after([&findings](const TomlTable& table) { require_assessed(table, findings); }),
-          limit("minimum", gate.minimum, "least value that is allowed"),
-          limit("maximum", gate.maximum, "largest value that is allowed").also("at least `minimum`"),
+          limit("minimum", gate.minimum, "smallest allowed value"),
+          limit("maximum", gate.maximum, "largest allowed value").also("at least `minimum`"),
           key::check(check_limits),
           key::flag("with_confidence", gate.with_confidence, "judge the interval instead of the value")
               .allow("`true` only for numbers with an interval"),
@@ -100,7 +100,7 @@ OptionKeys baseline_keys(BaselineLimits& limits, const std::filesystem::path& fo
               .allow("a path, relative to the gate file")
               .read(read_archive),
           key::number("significance", limits.significance, NumberRule::inside(0, 1),
-                      "least p-value that is no regression"),
+                      "smallest p-value that does not count as a regression"),
           key::option("maximum_lost", "whole number", "verdicts of each kind that may be lost")
               .otherwise("no limit")
               .allow("0 to 2147483647")
@@ -123,7 +123,7 @@ OptionKeys gate_file_keys(GateFile& file, const std::vector<Finding>& findings,
       document.require("gate", "a list of tables, one or more");
   };
   return {key::choice("inconclusive", file.inconclusive, {"fail", "pass"},
-                      "what an inconclusive gate does to the check"),
+                      "whether an inconclusive gate fails the check"),
           key::option("confidence", "number", "confidence of all intervals")
               .otherwise("that of the study")
               .allow("between 0 and 1")
@@ -131,7 +131,7 @@ OptionKeys gate_file_keys(GateFile& file, const std::vector<Finding>& findings,
                 file.confidence = read_number(document, key, NumberRule::inside(0, 1));
               }),
           key::whole("maximum_failed", file.maximum_failed, 0, kMaxCount,
-                     "experiments that may be without a result (not infeasible ones)"),
+                     "number of experiments that may lack a result (infeasible ones do not count)"),
           key::whole("minimum_experiments", file.minimum_experiments, 1, kMaxCount,
                      "experiments that the campaign must have"),
           key::list<Gate>(

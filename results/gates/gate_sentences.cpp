@@ -35,12 +35,12 @@ std::string outcome_sentence(const GateResult& result, double confidence) {
     case GateDoubt::no_value:
       return "nothing was measured";
     case GateDoubt::too_few:
-      return fmt::format("{} experiments or pairs behind the number where {} are asked for",
+      return fmt::format("{} experiments or pairs behind the number, and the gate asks for {}",
                          result.measured.count, result.gate.minimum_count);
     case GateDoubt::no_interval:
       return fmt::format("too few experiments or pairs for an interval ({})", result.measured.count);
     case GateDoubt::straddles:
-      return fmt::format("{} keeps to {} in part only: one end is {} beyond it", judged, limit,
+      return fmt::format("{} lies only partly within {}: one end is {} beyond it", judged, limit,
                          distance_text(result));
     case GateDoubt::none:
       break;

@@ -50,7 +50,7 @@ FigureFormat figure_format_of(const std::filesystem::path& file) {
     if (extension == fmt::format(".{}", to_string(format)))
       return format;
   throw InputError("file of a figure", fmt::format("'{}'", file.string()),
-                   fmt::format("a name that ends with .{}", fmt::join(figure_format_names(), ", .")));
+                   fmt::format("a name that ends in .{}", fmt::join(figure_format_names(), ", .")));
 }
 
 }  // namespace mpm

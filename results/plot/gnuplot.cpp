@@ -102,7 +102,7 @@ int end_of(pid_t child, const std::string& program, std::chrono::milliseconds pa
   ::kill(child, SIGKILL);
   while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
   }
-  throw GnuplotError(fmt::format("{} had not drawn a figure after {} s", program,
+  throw GnuplotError(fmt::format("{} did not draw a figure within {} s", program,
                                  std::chrono::duration<double>(patience).count()));
 }
 
@@ -116,9 +116,9 @@ int run(std::string program, std::string script, const Redirection& streams,
   const int failure =
       ::posix_spawnp(&child, program.c_str(), streams.get(), nullptr, words.data(), environment.data());
   if (failure != 0)
-    throw GnuplotError(fmt::format(
-        "cannot start {}: {}; figures need it: install gnuplot (Debian: apt-get install gnuplot-nox)",
-        program, error_text(failure)));
+    throw GnuplotError(
+        fmt::format("cannot start {}: {}; figures need gnuplot (Debian: apt-get install gnuplot-nox)",
+                    program, error_text(failure)));
   return end_of(child, program, patience);
 }
 
@@ -141,7 +141,7 @@ std::string run_gnuplot(const std::string& script, const std::string& program,
   write(script_file, script);
   const int status = run(program, script_file, Redirection(out, error), patience);
   if (!WIFEXITED(status))
-    throw GnuplotError(fmt::format("{} was ended by signal {}", program, WTERMSIG(status)));
+    throw GnuplotError(fmt::format("{} was killed by signal {}", program, WTERMSIG(status)));
   std::string drawing = content(out);
   if (WEXITSTATUS(status) != 0 || drawing.empty())
     throw GnuplotError(fmt::format("{} could not draw a figure (exit code {}): {}", program,

@@ -111,36 +111,23 @@ void PanelScript::points(const std::vector<NamedPoint>& points, const Pen& pen) 
   draw_marks(rows, pen);
 }
 
-void PanelScript::upright_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen) {
+void PanelScript::draw(const std::vector<Whisker>& whiskers, const Pen& pen, bool level) {
   std::string bars, marks;
   for (const Whisker& w : whiskers) {
-    if (!shows(w.at, w.value))
+    const auto place = [&](double value) { return level ? std::pair(value, w.at) : std::pair(w.at, value); };
+    const auto is_shown = [&](double value) { return shows(place(value).first, place(value).second); };
+    const auto text = [&](double value) {
+      return fmt::format("{} {}", plot_number(place(value).first), plot_number(place(value).second));
+    };
+    if (!is_shown(w.value))
       continue;
-    for (const double y : {w.value, w.lower, w.upper})
-      see(y_, y_extent_, y);
-    see(x_, x_extent_, w.at);
-    if (shows(w.at, w.lower) && shows(w.at, w.upper))
-      bars +=
-          fmt::format("{0} {1}\n{0} {2}\n\n", plot_number(w.at), plot_number(w.lower), plot_number(w.upper));
-    marks += fmt::format("{} {} {}\n", plot_number(w.at), plot_number(w.value), name_point(w.name));
-  }
-  if (!bars.empty())
-    plot(fmt::format("{} using 1:2 with lines {} notitle", block(bars), line_words(pen)));
-  draw_marks(marks, pen);
-}
-
-void PanelScript::level_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen) {
-  std::string bars, marks;
-  for (const Whisker& w : whiskers) {
-    if (!shows(w.value, w.at))
-      continue;
-    for (const double x : {w.value, w.lower, w.upper})
-      see(x_, x_extent_, x);
-    see(y_, y_extent_, w.at);
-    if (shows(w.lower, w.at) && shows(w.upper, w.at))
-      bars +=
-          fmt::format("{1} {0}\n{2} {0}\n\n", plot_number(w.at), plot_number(w.lower), plot_number(w.upper));
-    marks += fmt::format("{} {} {}\n", plot_number(w.value), plot_number(w.at), name_point(w.name));
+    for (const double value : {w.value, w.lower, w.upper}) {
+      see(x_, x_extent_, place(value).first);
+      see(y_, y_extent_, place(value).second);
+    }
+    if (is_shown(w.lower) && is_shown(w.upper))
+      bars += fmt::format("{}\n{}\n\n", text(w.lower), text(w.upper));
+    marks += fmt::format("{} {}\n", text(w.value), name_point(w.name));
   }
   if (!bars.empty())
     plot(fmt::format("{} using 1:2 with lines {} notitle", block(bars), line_words(pen)));

@@ -39,9 +39,9 @@ class PanelScript {
   /// Of more than kMostPoints points every n-th is drawn, so that a page of a large study stays readable.
   void points(const std::vector<NamedPoint>& points, const Pen& pen);
   /// Values at x = at with upright intervals.
-  void upright_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen);
+  void upright_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen) { draw(whiskers, pen, false); }
   /// Values at y = at with intervals along x.
-  void level_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen);
+  void level_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen) { draw(whiskers, pen, true); }
   /// A line across the panel at this y, or at this x.
   void across(double y, const Pen& pen);
   void upright(double x, const Pen& pen);
@@ -60,6 +60,7 @@ class PanelScript {
 
   void see(const Axis& axis, Extent& extent, double value) const;
   bool shows(double x, double y) const;
+  void draw(const std::vector<Whisker>& whiskers, const Pen& pen, bool level);
   std::string block(const std::string& rows);
   void curve(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen, const char* style);
   std::string name_point(const std::string& name, const std::string& anchor = {});

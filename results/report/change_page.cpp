@@ -53,8 +53,7 @@ std::string pairing_words(const Change& change) {
       std::ssize(records_of(change.before)) + std::ssize(records_of(change.now)) - 2 * loops;
   return fmt::format(
       "Compared experiment by experiment: both ran the same {} with seed {}, each with the same fault{}. In "
-      "{} of these "
-      "loops the end or Ivar_{{basis}} is not the same, to the last bit.",
+      "{} of these loops the outcome or Ivar_{{basis}} differs, if only in the last bit.",
       loops, change.now.study.seed,
       left_out == 0 ? "" : fmt::format("; the {} that only one of them has are left out", left_out),
       loops - change.pairing.same_loops);
@@ -81,17 +80,16 @@ void add_paired(Section& section, const Change& change) {
     }
   if (std::none_of(change.methods.begin(), change.methods.end(), [](const auto& m) { return m.changed(); }))
     return section.say(strong("Nothing changed.") +
-                           " Every verdict and every number of the methods that both have is "
-                           "the same in all of these experiments.",
+                           " Every verdict and every number of the methods in both archives is the same in "
+                           "all of these experiments.",
                        Paragraph::Kind::passed);
-  std::string words = fmt::format(
-      "{} answers that were right in A are not in B, and {} that were not are now. ", lost, gained);
+  std::string words = fmt::format("{} answers are right in A only, and {} in B only. ", lost, gained);
   if (!worse.empty())
     words += fmt::format("{} at {}. ", strong("B is worse beyond chance"), worse);
   if (!better.empty())
     words += fmt::format("{} at {}. ", strong("B is better beyond chance"), better);
   if (worse.empty() && better.empty())
-    words += strong("No question has so many more of the one than of the other that chance is ruled out.");
+    words += strong("For no question is the difference beyond chance.");
   section.say(words, worse.empty() ? Paragraph::Kind::passed : Paragraph::Kind::failed);
 }
 
@@ -110,8 +108,9 @@ void add_unpaired(Section& section, const Change& change) {
 Section changes_section(const Change& change) {
   Section section{"changes", "What changed?"};
   if (change.methods.empty())
-    section.say(strong("No method of assessment is in both archives") + ", so that nothing can be compared.",
-                Paragraph::Kind::failed);
+    section.say(
+        strong("The archives have no method of assessment in common") + ", so there is nothing to compare.",
+        Paragraph::Kind::failed);
   else if (change.pairing.paired())
     add_paired(section, change);
   else
@@ -132,9 +131,7 @@ std::string methods_alone(const Campaign& campaign, const Campaign& other) {
 Section studies_section(const Change& change) {
   Section section{"studies", "What differs between the studies?"};
   Table table(
-      "What ran, and the keys of the study that have other values, with every default written out; what "
-      "differs "
-      "is marked.",
+      "What ran, and the keys of the study whose values differ, including defaults. Differences are marked.",
       {{"", Table::Align::left}, {"A", Table::Align::left}, {"B", Table::Align::left}});
   const Campaign &a = change.before, &b = change.now;
   const auto row = [&](const char* what, const std::string& before, const std::string& now) {
@@ -170,11 +167,10 @@ Section rates_section(const Change& change) {
   const bool paired = change.pairing.paired();
   Table table(
       fmt::format("Rates of the methods{} Corrected by Holm for the rates of the method.",
-                  paired ? " over the experiments in common, those of which some loop changed. The "
-                           "difference is that over the "
-                           "loops that the rate counts in both archives (below: those that count in A alone, "
-                           "and in B alone): "
-                           "interval of Newcombe (1998, paired, method 10), p of McNemar's exact test."
+                  paired ? " over the experiments in common in which some loop changed. The difference is "
+                           "over the loops that the rate counts in both archives (below it: those that count "
+                           "in A alone, and in B alone), with the interval of Newcombe (1998, paired, method "
+                           "10) and p of McNemar's exact test."
                          : ", each over all experiments of its archive. The difference is that of "
                            "independent shares: interval "
                            "of Newcombe (1998, method 10), p of Fisher's exact test."),
@@ -224,9 +220,8 @@ std::string answer_text(const Study& study, const ExperimentRecord& record, cons
 
 Table count_table(const Change& change) {
   Table table(
-      "Each question to each method: how often the answer is right in both archives, right in A and not in "
-      "B, and "
-      "the reverse. An answer that is not judged any more is lost. p is that of McNemar's exact test, "
+      "For each question and method: how often the answer is right in both archives, in A only, and in B "
+      "only. An answer that is no longer judged counts as lost. p is that of McNemar's exact test, "
       "two-sided, and corrected by Holm for all rows.",
       {{"Question", Table::Align::left},
        {"Judged"},
@@ -261,7 +256,7 @@ std::map<std::int64_t, std::string> changed_experiments(const MethodChange& meth
 
 /// The experiments with another verdict, one by one.
 Table experiment_table(const Change& change) {
-  Table table("Experiments with an answer that became right, or is right no more.",
+  Table table("Experiments with an answer that became right or wrong.",
               {{"No."},
                {"Kind", Table::Align::left},
                {"Fault, and how to replay it", Table::Align::text},
@@ -316,8 +311,8 @@ Section numbers_section(const Change& change) {
   Section section{"numbers", "Numbers and scores, A against B"};
   Table table(
       fmt::format(
-          "Numbers of the methods that changed, over the experiments in which both give a verdict; of a "
-          "number of CVs the mean over these. {:g} % interval of the mean: Student's t.",
+          "Numbers of the methods that changed, over the experiments in which both give a verdict; a number "
+          "that each CV has is averaged over the CVs. {:g} % interval of the mean: Student's t.",
           100.0 * change.now.study.aggregate.confidence),
       {{"Number", Table::Align::left},
        {"Experiments"},
@@ -332,7 +327,7 @@ Section numbers_section(const Change& change) {
                    Number{number.difference.mean, NumberForm::digits, number.difference.mean_interval},
                    Number{number.largest}, number.index < 0 ? Cell("-") : Cell(number.index)});
   if (table.rows.empty())
-    section.leave_out("no number of a method that both archives have changed in any experiment in common.");
+    section.leave_out("no number of a method in both archives changed in any common experiment.");
   else
     section.add(std::move(table));
   return section;
@@ -355,7 +350,7 @@ std::string change_html(const Campaign& before, const std::filesystem::path& bef
       {.title = fmt::format("{} and {}", change.before_file, change.now_file),
        .heading = fmt::format("From {} to {}", code(change.before_file), code(change.now_file)),
        .lead = "Archives " + names + ".",
-       .footer = fmt::format("Made by {} from {}. Intervals have a confidence level of {:g} %.",
+       .footer = fmt::format("Made by {} from {}. Intervals have a confidence of {:g} %.",
                              code("mpmbench report"), names, 100.0 * now.study.aggregate.confidence),
        .version = now.info.mpmbench_version,
        .sections = {changes_section(change), studies_section(change), rates_section(change),

@@ -97,15 +97,15 @@ RocWords roc_words(FlagTruth truth) {
         "comparison_roc",
         "healthy loops flagged (%)",
         "loops with a fault flagged (%)",
-        "Each method with any threshold on its score; the mark is its own verdict, which need not lie on the "
-        "curve of a method that flags by more than one number.",
+        "Each method with every threshold on its score. The mark is its own verdict, which lies off the "
+        "curve if the method flags by more than one number.",
         "Receiver operating characteristics of the scores of the methods, loops with a fault against healthy "
         "ones."};
   return {"comparison-roc-impact",
           "comparison_roc_impact",
           "loops without an impact flagged (%)",
           "loops with an impact flagged (%)",
-          "The same for the truth of impact: only loops whose fault has an impact are to be flagged.",
+          "The same with impact as the truth: only loops whose fault has an impact should be flagged.",
           "Receiver operating characteristics of the scores of the methods, loops whose fault has an impact "
           "against healthy ones and those whose fault has none."};
 }

@@ -55,8 +55,8 @@ std::string found_of_cvs(const ReportInput& input) {
   if (best == nullptr)
     return "";
   return fmt::format(
-      "no method names a source; {} flags {} of the loops with a fault and finds the CV most "
-      "often, in {} of those that it flags",
+      "no method names a source; {} flags {} of the loops with a fault and finds the CV most often, in {} of "
+      "the loops it flags",
       code(best->name()), share_words(best->rates.detected), share_words(best->rates.located));
 }
 
@@ -65,27 +65,26 @@ std::string found(const ReportInput& input) {
     const Rate right = input.findings().right_scenarios;
     return right.total == 0
                ? "no scenario has a verdict."
-               : fmt::format("in {} of {} scenarios with a verdict every CV and every source is right.",
+               : fmt::format("every CV and every source is right in {} of {} scenarios with a verdict.",
                              right.hits, right.total);
   }
   std::string text;
   if (const Rate located = input.findings().located; located.total > 0)
-    text =
-        fmt::format("of the {} loops in which the chain of the thesis sees an impact it finds the CV in {}",
-                    located.total, share_words(located));
+    text = fmt::format("the chain of the thesis sees an impact in {} loops and finds the CV in {} of them",
+                       located.total, share_words(located));
   if (const Rate source = input.findings().source_recognised; source.total > 0)
     text += fmt::format("{}the source of a single fault in {}",
                         text.empty() ? "the chain of the thesis names " : " and ", share_words(source));
   if (const MethodFindings* const best = best_method(input, &MethodRates::source);
       best != nullptr && best != input.findings().chain())
-    text += fmt::format("{}{} names the source most often, in {} of those that it flags",
+    text += fmt::format("{}{} names the source most often, in {} of the loops it flags",
                         text.empty() ? "" : "; ", code(best->name()), share_words(best->rates.source));
   if (text.empty())
     text = found_of_cvs(input);
   if (!text.empty())
     return text + ".";
   return was_judged(input) ? "no method both answers nearly always and detects most faults."
-                           : "no loop has a verdict that could be right or wrong.";
+                           : "no loop has a verdict that can be judged.";
 }
 
 /// What a plant would do with what `who` says. The limits are those of a tool that is right nine times in
@@ -93,19 +92,20 @@ std::string found(const ReportInput& input) {
 std::string advice_on(const std::string& who, const Rate& located, const Rate& source) {
   constexpr double kReliable = 0.9;
   if (located.total > 0 && located.interval.lower < kReliable)
-    return fmt::format("do not re-identify a channel on the word of {} alone: it may be the wrong CV.", who);
+    return fmt::format("do not re-identify a channel on the verdict of {} alone: it may be the wrong CV.",
+                       who);
   if (source.total > 0 && source.interval.lower >= kReliable)
-    return fmt::format("act on both, the CV and the source that {} names.", who);
+    return fmt::format("act on both the CV and the source that {} names.", who);
   return fmt::format(
-      "look at the CV that {} names, but ask further before a re-identification: the source that it names is "
-      "not safe enough.",
+      "check the CV that {} names, but investigate further before you re-identify: the source it names is "
+      "too uncertain.",
       who);
 }
 
 /// Of the method that found() says is best, so that both say the same.
 std::string advice(const ReportInput& input) {
   if (!input.campaign.basis.healthy)
-    return "nothing with these numbers, for the basis case failed its self-check: mend the study first.";
+    return "do not use these numbers: the basis case failed its self-check. Repair the study first.";
   if (input.campaign.study.names_scenarios())
     return "read the scenarios that went wrong, one by one.";
   const MethodFindings* const best = best_method(input, &MethodRates::source);
@@ -115,7 +115,7 @@ std::string advice(const ReportInput& input) {
     return "compare detection and false alarms of the methods below before you choose one.";
   const Rate located = input.findings().located;
   if (located.total == 0)
-    return "draw larger faults: none of these has an impact that the chain sees.";
+    return "draw larger faults: the chain sees no impact of these.";
   return advice_on("this chain", located, input.findings().source_recognised);
 }
 
@@ -194,7 +194,7 @@ std::string variance_answer(const ReportInput& input) {
 
 std::string location_answer(const ReportInput& input) {
   const std::string kinds = by_kind(input, &KindFindings::located);
-  return kinds.empty() ? "" : "The CV with the fault is the one that is located in: " + kinds + ".";
+  return kinds.empty() ? "" : "The located CV is the one with the fault in: " + kinds + ".";
 }
 
 std::string indicator_answer(const ReportInput& input) {
@@ -220,9 +220,8 @@ std::string dominance_answer(const ReportInput& input) {
 
 std::string roc_answer(const RocCurve& curve, const Interval& area, const RocPoint& at_study) {
   return fmt::format(
-      "Of a mismatch and a disturbance, drawn at random, the mismatch has the larger I_{{MPM}} in "
-      "{:.1f} % ({:.1f} to {:.1f}) of pairs; the best threshold has a J of {:.2f}, that of the "
-      "study {:.2f}.",
+      "In {:.1f} % ({:.1f} to {:.1f}) of random pairs of a mismatch and a disturbance, the mismatch has the "
+      "larger I_{{MPM}}. The best threshold has a J of {:.2f}, that of the study {:.2f}.",
       100.0 * curve.area, 100.0 * area.lower, 100.0 * area.upper, curve.best.youden(), at_study.youden());
 }
 
@@ -233,13 +232,12 @@ std::string fault_size_answer(const std::vector<SizedFault>& faults, double conf
     wrong += fault.flagged && !fault.diagnosed ? 1 : 0;
   }
   const auto total = static_cast<std::int64_t>(faults.size());
-  return faults.empty()
-             ? ""
-             : fmt::format(
-                   "Of {} single faults {} are too small to have an impact that is seen, and {} are "
-                   "seen and given a wrong CV or source.",
-                   total, share_words(rate(missed, total, confidence)),
-                   share_words(rate(wrong, total, confidence)));
+  return faults.empty() ? ""
+                        : fmt::format(
+                              "Of {} single faults, {} are too small for a visible impact, and {} are seen "
+                              "but assigned to a wrong CV or source.",
+                              total, share_words(rate(missed, total, confidence)),
+                              share_words(rate(wrong, total, confidence)));
 }
 
 std::string comparison_answer(const ReportInput& input) {
@@ -254,10 +252,10 @@ std::string comparison_answer(const ReportInput& input) {
   best("the channel", &MethodRates::channel);
   if (text.empty())
     return was_judged(input)
-               ? "No method both answers nearly always and detects most faults: none is called best."
+               ? "No method both answers nearly always and detects most faults, so none is called best."
                : "";
   text.front() = 'T';
-  return text + ". The table has what each pays for it in false alarms.";
+  return text + ". The table shows the false alarms that each one costs.";
 }
 
 std::string s0_answer(const ReportInput& input) {
@@ -266,10 +264,9 @@ std::string s0_answer(const ReportInput& input) {
     return "";
   const S0PerturbationOptions& options = input.campaign.study.s0_perturbation;
   return fmt::format(
-      "With a time constant from {:g} to {:g} times the true one Ivar_{{diag}} changes by "
-      "{:.1f} % "
-      "at most and stays in the band of impact in {} of loops; with such a damping, by {:.1f} % and "
-      "in {}.",
+      "With a time constant of {:g} to {:g} times the true one, Ivar_{{diag}} changes by at most {:.1f} % "
+      "and stays in the band of impact in {} of the loops; with such a damping, by at most {:.1f} % and in "
+      "{}.",
       options.tolerance_lower, options.tolerance_upper, 100.0 * changes->time_constant.largest,
       share_words(changes->time_constant.within_band), 100.0 * changes->damping.largest,
       share_words(changes->damping.within_band));

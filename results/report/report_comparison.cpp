@@ -23,14 +23,15 @@ std::string rates_legend(const Study& study) {
     words += fmt::format("{}: {}. ", strong(info.title), as_label(info.meaning));
   for (const MethodEstimateInfo& info : method_estimate_infos(study))
     words += fmt::format("{}: {}. ", strong(info.title), as_label(info.meaning));
-  return words + strong("false alarms stated") + ": share of healthy loops that the method says it flags.";
+  return words + strong("false alarms stated") + ": share of healthy loops that the method claims to flag.";
 }
 
 Table methods_table(const Methods& methods) {
-  Table table("What a method needs of a loop and tells of it.", {{"Method", Table::Align::left},
-                                                                 {"A flagged loop", Table::Align::text},
-                                                                 {"Needs", Table::Align::left},
-                                                                 {"Tells besides", Table::Align::left}});
+  Table table("What each method needs from a loop and says about it.",
+              {{"Method", Table::Align::left},
+               {"A flagged loop", Table::Align::text},
+               {"Needs", Table::Align::left},
+               {"Tells besides", Table::Align::left}});
   for (const MethodFindings& method : methods) {
     const MethodDescription& info = method.form->method();
     table.row({Cell(as_label(info.name)).with(as_label(info.title)), as_label(info.verdict),
@@ -46,24 +47,22 @@ Section comparison_section(const ReportInput& input) {
   Section section{"comparison", "Which method is right most often?", {}};
   const StudyFindings& summary = input.findings();
   if (summary.assessed == 0) {
-    section.leave_out("it needs an experiment that ran to its end; there is none.");
+    section.leave_out("no experiment ran to its end.");
     return section;
   }
   section.answer = comparison_answer(input);
-  section.say(
-      fmt::format("Every method has assessed the same {} of {} experiments, those that ran to their end, and "
-                  "has seen of each what "
-                  "a historian would have kept. Judge detection and false alarms together, for a method that "
-                  "flags every loop "
-                  "detects every fault; a rate that is missing had no loop to be counted on.",
-                  summary.assessed, summary.experiments));
+  section.say(fmt::format(
+      "Every method has assessed the same {} of {} experiments, those that ran to their end. It saw of each "
+      "what a historian would have kept. Judge detection and false alarms together: a method that flags "
+      "every loop detects every fault. A rate is missing if no loop counts for it.",
+      summary.assessed, summary.experiments));
   Figure rates = comparison_rates_figure(campaign.study, summary.methods);
   if (!rates.panels.empty())
     section.add(std::move(rates));
   if (has_curves(summary.methods, FlagTruth::fault))
     section.add(comparison_roc_figure(summary.methods, FlagTruth::fault));
   else
-    section.leave_out("ROC curves: they need loops with a fault and healthy ones that a method has scored.");
+    section.leave_out("ROC curves need loops with a fault and healthy loops that a method has scored.");
   if (has_curves(summary.methods, FlagTruth::impact))
     section.add(comparison_roc_figure(summary.methods, FlagTruth::impact));
   for (auto& piece : comparison_section(campaign, summary).content)

@@ -62,9 +62,8 @@ Section experiments_section(const ReportInput& input) {
     return section;
   }
   Table table(
-      "What was wrong in each loop, and what the chain of the thesis says of it. Ivar, Ivar_{diag} and "
-      "Ivar_{basis} "
-      "are those of the CV with the fault.",
+      "What was wrong in each loop, and what the chain of the thesis says about it. Ivar, Ivar_{diag} and "
+      "Ivar_{basis} are those of the CV with the fault.",
       {{"No."},
        {"Kind", Table::Align::left},
        {"Fault", Table::Align::text},

@@ -71,9 +71,8 @@ Panel group_panel(const ReportInput& input, const FalseAlarms& group) {
 
 Table false_alarm_rates_table(const ReportInput& input) {
   Table table(
-      "Experiments in which model and plant agree: shares of the feasible ones that the chain calls a "
-      "modelling error "
-      "with impact, and which source it names.",
+      "Experiments in which model and plant agree: the share of the feasible ones that the chain calls a "
+      "modelling error with impact, and the source it names.",
       {{"Experiments", Table::Align::left},
        {"Infeasible"},
        {"False alarms"},
@@ -90,16 +89,15 @@ Table false_alarm_rates_table(const ReportInput& input) {
 }  // namespace
 
 Section false_alarm_section(const ReportInput& input) {
-  Section section{"false-alarms", "Are there alarms where the model is right?", {}};
+  Section section{"false-alarms", "Are there alarms although the model is right?", {}};
   const std::vector<FalseAlarms>& groups = input.false_alarms();
   section.answer = false_alarm_answer(input);
   Figure figure;
   figure.name = "false-alarms";
   figure.caption =
-      "The Ivar of an experiment that is farthest from 1, one point an experiment: of healthy ones by their "
-      "number, of bad tunings against the factor of the weight. Outside the band the chain sees a modelling "
-      "error where there is none. Ivar_{basis} says what the noise or the tuning really does to the variance "
-      "of some CV.";
+      "The Ivar farthest from 1 of each experiment: healthy ones by their number, bad tunings against the "
+      "factor of the weight. Outside the band the chain sees a modelling error that does not exist. "
+      "Ivar_{basis} shows what the noise or the tuning really does to the variance of a CV.";
   figure.legend = {{"Ivar: no alarm", kQuiet},
                    {"Ivar: false alarm", kAlarm},
                    {"Ivar_{basis}", kCost},
@@ -112,9 +110,8 @@ Section false_alarm_section(const ReportInput& input) {
   if (const Study& study = input.campaign.study; study.experiments.tuning > 0)
     section.say(study.tuning.sensitivity == TuningSensitivity::current
                     ? "S0 of an experiment with a bad tuning is that of the controller with this tuning."
-                    : "S0 of an experiment with a bad tuning is that of the controller of the study: nobody "
-                      "noticed the "
-                      "change.");
+                    : "S0 of an experiment with a bad tuning is that of the controller of the study, as if "
+                      "nobody had noticed the change.");
   section.add(false_alarm_rates_table(input));
   return section;
 }

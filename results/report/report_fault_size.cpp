@@ -67,7 +67,7 @@ void add_curve(PanelScript& panel, const std::vector<Whisker>& list, const Pen& 
   panel.upright_whiskers(list, pen);
 }
 
-/// A mark for each fault that was not diagnosed rightly: a row below the shares.
+/// A mark for each fault that was not diagnosed correctly: a row below the shares.
 std::map<std::int64_t, NamedPoint> fault_marks(const ReportInput& input,
                                                const std::vector<SizedFault>& faults) {
   constexpr double kMissedRow = -7, kWrongRow = -15;
@@ -101,11 +101,11 @@ Panel size_panel(const ReportInput& input, FaultSize size, const std::vector<Siz
   else if (size != FaultSize::disturbance_deviation)
     panel.upright(1.0, kNoFault);
   add_curve(panel, whiskers(bins, &SizeBin::flagged, "have an impact"), kSeen);
-  add_curve(panel, whiskers(bins, &SizeBin::diagnosed, "are diagnosed rightly"), kDiagnosed);
+  add_curve(panel, whiskers(bins, &SizeBin::diagnosed, "are diagnosed correctly"), kDiagnosed);
   panel.points(missed, kMissed);
   panel.points(wrong, kWrongVerdict);
   return panel.finish(
-      fmt::format("Share of faults with impact and share diagnosed rightly against the size of "
+      fmt::format("Share of faults with impact and share diagnosed correctly against the size of "
                   "the fault: {}.",
                   text.title));
 }
@@ -118,9 +118,9 @@ Section fault_size_section(const ReportInput& input) {
   Figure figure;
   figure.name = "fault-size";
   figure.caption = fmt::format(
-      "Share of feasible experiments with a single fault that has an impact, and share with CV and source "
-      "right as well, against the size of the fault: {} groups of equal number at their medians, {:g} % "
-      "intervals. Below them one mark for each experiment without impact and each wrong verdict.",
+      "Share of the feasible experiments with a single fault that have an impact, and share in which CV and "
+      "source are right as well, against the size of the fault: {} groups of equal size at their medians, "
+      "{:g} % intervals. Below them, one mark for each experiment without impact and for each wrong verdict.",
       kBins, 100.0 * study.aggregate.confidence);
   figure.legend = {{"has an impact", kSeen},
                    {"CV and source right", kDiagnosed},

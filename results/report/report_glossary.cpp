@@ -17,11 +17,11 @@ constexpr Term kTerms[] = {
     {"mpm", "MPM", "model-plant mismatch: the plant is not what the model of the controller says", false},
     {"ud", "UD", "unmeasured disturbance: something that the controller does not measure moves a CV", false},
     {"y0", "y<sub>0</sub>",
-     "nominal output: the CV as it would have been with a perfect model and no disturbance, "
-     "computed from the records of the loop"},
+     "nominal output: the CV as it would have been with a perfect model and no disturbance, computed from "
+     "the record of the loop"},
     {"s0", "S<sub>0</sub>, T<sub>0</sub>",
-     "nominal sensitivity of the closed loop, and its complement: how the loop "
-     "of the design answers to a moved limit"},
+     "nominal sensitivity of the closed loop, and its complement: how the loop as designed responds to a "
+     "moved limit"},
     {"ivar", "Ivar", "variance of a CV over that of its nominal output: 1 is as designed, larger is worse"},
     {"ivar-diag", "Ivar<sub>diag</sub>",
      "the same for each CV as if it were alone: shows where the error enters"},
@@ -30,15 +30,13 @@ constexpr Term kTerms[] = {
      "simulation knows"},
     {"impact", "impact", "Ivar outside its band: the fault costs something"},
     {"located", "located",
-     "the CV whose Ivar<sub>diag</sub> is farthest from 1 is taken for the one with the fault"},
+     "the CV whose Ivar<sub>diag</sub> is farthest from 1, which is taken to be the one with the fault"},
     {"impm", "I<sub>MPM</sub>",
      "how much the error of the model follows the MVs: above the threshold the source is "
      "called a mismatch, below it a disturbance"},
     {"recognised", "recognised", "the source that is named, MPM or UD, is the true one"},
     {"interval", "interval",
-     "where the true share or number lies at the stated confidence, given how few loops were "
-     "seen",
-     false},
+     "where the true share or number lies at the stated confidence, given the number of loops", false},
 };
 
 }  // namespace

@@ -121,7 +121,7 @@ Section indicator_section(const ReportInput& input) {
 Section dominance_section(const ReportInput& input) {
   const Study& study = input.campaign.study;
   const std::vector<DominanceBin>& bins = input.findings().dominance;
-  Section section{"dominance", "Which of two faults does I_{MPM} point at?", {}};
+  Section section{"dominance", "Which of two faults does I_{MPM} point to?", {}};
   std::int64_t count = 0;
   for (const DominanceBin& bin : bins)
     count += bin.i_mpm.count;

@@ -77,9 +77,8 @@ Section interaction_section(const ReportInput& input) {
   Figure figure;
   figure.name = "interaction";
   figure.caption =
-      "RPN = largest singular value of S_{0} T_{0} (4.16), which is largest near the frequencies at which "
-      "the "
-      "controller works (dashed), up to the Nyquist frequency; thesis figures 4.6, 4.12.";
+      "RPN = largest singular value of S_{0} T_{0} (4.16), up to the Nyquist frequency. It is largest near "
+      "the frequencies at which the controller works (dashed); thesis figures 4.6, 4.12.";
   figure.panels.push_back(rpn_panel(study, interaction));
   if (!interaction.mvs.empty()) {
     figure.caption +=
@@ -92,10 +91,9 @@ Section interaction_section(const ReportInput& input) {
   }
   section.add(std::move(figure));
   if (interaction.mvs.empty())
-    section.say(fmt::format(
-        "No RGA: {} CVs at a setpoint or soft limit and another number of MVs that can move are not "
-        "square.",
-        interaction.cvs.size()));
+    section.say(
+        fmt::format("No RGA: it needs as many MVs that can move as CVs at a setpoint or soft limit, {}.",
+                    interaction.cvs.size()));
   else
     section.add(relative_gain_table(study, interaction));
   return section;

@@ -114,12 +114,12 @@ Section location_section(const ReportInput& input) {
     section.file_figures.push_back(std::move(figure));
   if (!tables.empty())
     section.add(
-        "<p>Experiments with impact: the CV that the fault is on (rows) against the CV whose "
-        "Ivar<sub>diag</sub> is farthest from 1 (columns); thesis figures 6.20 and 6.23. Blue is "
-        "right, orange is wrong, deeper is a larger share of the row.</p>\n<div class=\"matrices\">\n" +
+        "<p>Experiments with impact: the CV with the fault (rows) against the CV whose Ivar<sub>diag</sub> "
+        "is farthest from 1 (columns); thesis figures 6.20 and 6.23. Blue is right, orange is wrong; the "
+        "deeper the colour, the larger the share of the row.</p>\n<div class=\"matrices\">\n" +
         tables + "</div>\n");
   if (tables.empty() || !without.empty())
-    section.leave_out(fmt::format("no experiment{}{} has an impact, so no CV is to be located.",
+    section.leave_out(fmt::format("no experiment{}{} has an impact, so there is no CV to locate.",
                                   without.empty() ? "" : " of kind ", without));
   return section;
 }

@@ -96,9 +96,9 @@ Cell judged(const Study& study, const ExperimentRecord& record, const Assessment
 }
 
 Table said_table(const Study& study, const ExperimentRecord& record) {
-  Table table("What was said of it.", {{"Method", Table::Align::left},
-                                       {"CV and source", Table::Align::left},
-                                       {"That is", Table::Align::left}});
+  Table table("What was said about it.", {{"Method", Table::Align::left},
+                                          {"CV and source", Table::Align::left},
+                                          {"That is", Table::Align::left}});
   for (const AssessmentRecord& said : record.assessments)
     table.row({as_label(said.form->method().name), verdict_of(study, said), judged(study, record, said)});
   return table;
@@ -125,8 +125,8 @@ std::string loops_answer(const ReportInput& input, const ExperimentRecord& fault
   if (cv < 0 || cv >= ivar.size())
     return "";
   return fmt::format(
-      "With the fault {} varies {:.2f} times as much as its nominal output y_{{0}}, which is what "
-      "Ivar says; in the basis case, where nothing is wrong, {:.2f} times.",
+      "With the fault, {} varies {:.2f} times as much as its nominal output y_{{0}}: this is Ivar. In the "
+      "basis case, where nothing is wrong, it is {:.2f} times.",
       as_label(cv_name(study, cv)), ivar(cv), input.campaign.basis.diagnosis.ivar(cv));
 }
 
@@ -174,7 +174,7 @@ Section loops_section(const ReportInput& input) {
   const std::vector<const LoopView*> faulty = input.loops_of(LoopReason::faulty);
   const std::vector<const LoopView*> healthy = input.loops_of(LoopReason::healthy);
   if (faulty.empty() && healthy.empty()) {
-    section.leave_out("no loop with a right verdict is at hand.");
+    section.leave_out("no loop with a right verdict was stored.");
     return section;
   }
   for (const LoopView* view : faulty) {

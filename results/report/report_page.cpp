@@ -38,15 +38,14 @@ std::string report_html(const Campaign& campaign, const StudyFindings& findings,
       {.title = campaign.study.name,
        .heading = as_label(campaign.study.title),
        .lead = fmt::format("Study {}, archive {}.", strong(as_label(campaign.study.name)), code(name)),
-       .footer = fmt::format(
-           "Made by {} from {}; written by mpmbench {}. Intervals have a confidence level of {:g} %.",
-           code("mpmbench report"), as_label(name), as_label(campaign.info.mpmbench_version),
-           100.0 * campaign.study.aggregate.confidence),
+       .footer =
+           fmt::format("Made by {} from {}; written by mpmbench {}. Intervals have a confidence of {:g} %.",
+                       code("mpmbench report"), as_label(name), as_label(campaign.info.mpmbench_version),
+                       100.0 * campaign.study.aggregate.confidence),
        .version = campaign.info.mpmbench_version,
        .sections = sections,
-       .lead_html =
-           "<p class=\"hint\">Rest a mouse on a point to see its experiment, press it to get there.</p>\n" +
-           verdict_html(input) + contents_html(sections),
+       .lead_html = "<p class=\"hint\">Hover over a point to see its experiment; click to go there.</p>\n" +
+                    verdict_html(input) + contents_html(sections),
        .aside_html = glossary_html(findings.chain() != nullptr)});
 }
 

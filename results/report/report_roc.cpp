@@ -87,10 +87,9 @@ Section roc_section(const ReportInput& input) {
   const SourceCurve roc = input.findings().source_curve.value_or(SourceCurve{});
   Section section{"roc", "How good could I_{MPM} be with another threshold?", {}};
   if (!roc.curve.defined()) {
-    section.leave_out(
-        fmt::format("it needs experiments with impact of both kinds; there are {} with an MPM and "
-                    "{} with a UD.",
-                    roc.curve.positives, roc.curve.negatives));
+    section.leave_out(fmt::format(
+        "this needs experiments of both kinds with impact; there are {} with an MPM and {} with a UD.",
+        roc.curve.positives, roc.curve.negatives));
     return section;
   }
   section.answer = roc_answer(roc.curve, roc.area, roc.at_study);
@@ -98,8 +97,7 @@ Section roc_section(const ReportInput& input) {
   figure.name = "roc";
   figure.caption =
       "I_{MPM} as a classifier, MPM against UD, over the loops with a single fault whose source is judged. "
-      "The "
-      "threshold with the largest J was chosen on these very data, so its rates flatter it.";
+      "The threshold with the largest J was chosen on these data, so its rates are optimistic.";
   figure.legend = {{"any threshold", kCurve},
                    {fmt::format("threshold of the study, {:g}", study.diagnosis.mpm_threshold), kStudy},
                    {fmt::format("largest J, {:.3f}", roc.curve.best.threshold), kBest},

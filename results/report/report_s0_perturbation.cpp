@@ -45,8 +45,8 @@ Panel ratio_panel(const Study& study, const S0Curve& curve, const std::string& p
   draw(&RatioSpread::upper_quartile, kQuartiles);
   draw(&RatioSpread::median, kMedian);
   return panel.finish(fmt::format(
-      "Ivar_diag of {} with a modified S0 over that with the true one, against the multiplier of the {}: "
-      "median, quartiles, least and largest over the experiments whose fault is on it.",
+      "Ivar_diag of {} with a modified S0 divided by that with the true one, against the multiplier of the "
+      "{}: median, quartiles, smallest and largest over the experiments with the fault on this CV.",
       cv, parameter));
 }
 
@@ -55,12 +55,12 @@ Figure ratio_figure(const ReportInput& input) {
   Figure figure;
   figure.name = "s0-perturbation";
   figure.caption = fmt::format(
-      "Ivar_{{diag}} with a modified S_{{0}} over that with the true one, over the experiments whose fault "
-      "is on the CV; shaded: multipliers {:g} to {:g}. Thesis figures 6.27 to 6.29.",
+      "Ivar_{{diag}} with a modified S_{{0}} divided by that with the true one, over the experiments with "
+      "the fault on the CV; shaded: multipliers {:g} to {:g}. Thesis figures 6.27 to 6.29.",
       study.s0_perturbation.tolerance_lower, study.s0_perturbation.tolerance_upper);
   figure.legend = {{"median", kMedian},
                    {"quartiles", kQuartiles},
-                   {"least and largest", kExtremes},
+                   {"smallest and largest", kExtremes},
                    {"band of impact", kImpactBand}};
   for (const S0Curve& curve : input.parts.s0_curves) {
     figure.panels.push_back(ratio_panel(study, curve, "time constant", curve.time_constant));

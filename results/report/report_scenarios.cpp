@@ -15,10 +15,9 @@ Section scenarios_section(const ReportInput& input) {
     return section;
   }
   const Rate& right = input.findings().right_scenarios;
-  section.say(
-      fmt::format("In {} feasible scenarios the flagged CVs are the affected ones, and the source of each is "
-                  "right.",
-                  strong(fmt::format("{} of {}", right.hits, right.total))));
+  section.say(fmt::format(
+      "In {} feasible scenarios the flagged CVs are the affected ones, and every source is right.",
+      strong(fmt::format("{} of {}", right.hits, right.total))));
   section.add(scenario_table(campaign, input.file));
   if (right.total > 0) {
     add_scenario_figures(section, campaign);

@@ -74,7 +74,7 @@ Section solver_section(const ReportInput& input) {
   }
   add_row(table, "all", std::move(all));
   if (campaign.study.controller_program) {
-    section.leave_out("the controller is a program: what it solves, and how well, is not known here.");
+    section.leave_out("the controller is a program: what it solves, and how well, is unknown.");
     return section;
   }
   section.say(fmt::format(
@@ -84,7 +84,8 @@ Section solver_section(const ReportInput& input) {
   section.add(std::move(table));
   if (campaign.info.solver == "auto")
     section.say(audit_words(input.parts, campaign.info) +
-                ". An interior point is off by about 1e-6 at a limit that touches without pushing.");
+                ". An interior-point solver is off by about 1e-6 at a limit that is touched with a "
+                "multiplier of zero.");
   return section;
 }
 

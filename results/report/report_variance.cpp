@@ -129,11 +129,10 @@ bool causes_are_known(const ReportInput& input) {
 /// What one linear S0 explains of the loops without each cause why it does not.
 Table cause_table(const ReportInput& input) {
   Table table(
-      fmt::format(
-          "R\xC2\xB2 of Ivar_{{basis}} on Ivar, all CVs, without the experiments in which one linear S_{{0}} "
-          "cannot describe the loop: it is unstable with the active set of the basis case, a CV that is "
-          "inside its range there is at a limit in more than {:g} % of the samples, or an MV is.",
-          100.0 * kOftenActive),
+      fmt::format("R\xC2\xB2 of Ivar_{{basis}} on Ivar, all CVs, without the experiments that one linear "
+                  "S_{{0}} cannot describe: the loop is unstable with the active set of the basis case, or a "
+                  "CV or MV that is free there is at a limit in more than {:g} % of the samples.",
+                  100.0 * kOftenActive),
       {{"Kind", Table::Align::left},
        {"Without", Table::Align::left},
        {"Experiments left out"},
@@ -153,13 +152,13 @@ Table cause_table(const ReportInput& input) {
 
 Section variance_section(const ReportInput& input) {
   const DiagnosisOptions& options = input.campaign.study.diagnosis;
-  Section section{"variance", "Does Ivar tell what the fault costs?", {}};
+  Section section{"variance", "Does Ivar show what the fault costs?", {}};
   Figure figure;
   figure.name = "ivar";
   figure.caption = fmt::format(
       "Ivar_{{basis}} (what the fault really does to the variance) against Ivar (what the loop data say), "
-      "one point a CV and experiment; thesis figures 6.18 and 6.22. Grey band: no impact, Ivar from {:g} to "
-      "{:g}. The regression is a straight line, which logarithmic axes bend.",
+      "one point per CV and experiment; thesis figures 6.18 and 6.22. Grey band: no impact, Ivar from {:g} "
+      "to {:g}. The regression is a straight line, bent by the logarithmic axes.",
       options.impact_lower, options.impact_upper);
   figure.legend = {{"affected CV", affected_pen(NonlinearCause::none)}};
   if (causes_are_known(input))

@@ -18,14 +18,13 @@ Section wrong_verdict_section(const ReportInput& input) {
   for (const FalseAlarms& group : input.false_alarms())
     impactful += group.parameter ? 0 : group.false_alarm.hits;
   section.say(
-      fmt::format("{} of {} experiments with impact got a wrong verdict. {} draws the closed loop of one.",
+      fmt::format("{} of {} experiments with impact got a wrong verdict. {} plots the closed loop of one.",
                   input.parts.wrong_verdicts.size(), impactful,
                   code(fmt::format("mpmbench plot {} INDEX -o FILE.svg", input.file))));
   section.add(wrong_table(input.campaign.study, input.parts, input.file, kMostVerdictRows,
                           [&](std::int64_t index) { return input.number_words(index); }));
   if (input.parts.wrong_verdicts.size() > kMostVerdictRows)
-    section.say(fmt::format("And {} more; {} lists all.",
-                            input.parts.wrong_verdicts.size() - kMostVerdictRows,
+    section.say(fmt::format("{} more; {} lists all.", input.parts.wrong_verdicts.size() - kMostVerdictRows,
                             code(fmt::format("mpmbench summary {} --json", input.file))));
   add_wrong_loops(section, input);
   return section;

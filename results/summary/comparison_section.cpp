@@ -5,9 +5,9 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "analysis/findings/method_rates.hpp"
-#include "results/document/document_text.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/summary/comparison.hpp"
 #include "results/text/experiment_text.hpp"
@@ -57,11 +57,10 @@ class MethodsTable {
 };
 
 Table rates_table(const Study& study, const Methods& methods) {
-  MethodsTable table(
-      fmt::format("Shares of loops in %, with {:g} % intervals and the number of loops looked at; rates "
-                  "that no loop was counted for are left out.",
-                  100 * study.aggregate.confidence),
-      "% of loops", methods);
+  MethodsTable table(fmt::format("Shares of loops in %, with {:g} % intervals and the number of loops "
+                                 "counted. Rates without a loop are left out.",
+                                 100 * study.aggregate.confidence),
+                     "% of loops", methods);
   for (const MethodRateInfo& info : counted_rates(methods))
     table.row(info.title,
               [&](const MethodFindings& m) { return number_of(m.rates.*info.rate, NumberForm::percent); });
@@ -86,8 +85,8 @@ void add_marks(Section& section, const Methods& methods) {
         return false_alarm_mark(method.form->method(), method.rates) != FalseAlarmMark::none;
       }))
     section.say(
-        fmt::format("!: the interval of the false alarms on healthy loops does not hold the rate that the "
-                    "method states, or {:g} % where it states none.",
+        fmt::format("!: the interval of the false alarms on healthy loops does not contain the rate that the "
+                    "method states, or {:g} % if it states none.",
                     100 * kUsualFalseAlarms));
 }
 
@@ -95,8 +94,8 @@ void add_marks(Section& section, const Methods& methods) {
 void add_calibration(Section& section, const Campaign& campaign, const Methods& methods) {
   const CalibrationOptions& options = *campaign.study.calibration;
   MethodsTable table(
-      fmt::format("Thresholds on {} healthy loops and {} with a disturbance of seed {}; \"calibrated: "
-                  "false alarms\" at a threshold for {:g} %.",
+      fmt::format("Thresholds from {} healthy loops and {} with a disturbance, seed {}; \"calibrated: false "
+                  "alarms\" is at the threshold for {:g} %.",
                   options.healthy, options.ud, campaign.calibration.seed, 100 * options.false_alarms),
       "threshold", methods);
   for (const ThresholdInfo& info : threshold_infos())
@@ -108,7 +107,7 @@ void add_calibration(Section& section, const Campaign& campaign, const Methods& 
     for (const ThresholdInfo& info : threshold_infos())
       if (const CalibratedThreshold& threshold = method.rates.thresholds.*info.threshold;
           !threshold.value && threshold.loops > 0)
-        section.say(fmt::format("no {} of {}: {} calibration loops with a verdict are too few", info.name,
+        section.say(fmt::format("no {} for {}: {} calibration loops with a verdict are too few", info.name,
                                 as_label(method.name()), threshold.loops));
 }
 
@@ -130,10 +129,10 @@ void add_unanswered(Section& section, const Study& study, const Methods& methods
 
 void add_pairs(Section& section, bool in_worlds, const StudyFindings& findings) {
   Table table(
-      fmt::format("Two methods on the loops that both gave a verdict on. Right is to flag the loops with a "
-                  "fault, or those with one that has an impact, and no others; p is that of McNemar's {}, "
-                  "two-sided, and corrected by Holm for all pairs of a truth.",
-                  in_worlds ? "test of worlds drawn at random" : "exact test"),
+      fmt::format("Two methods on the loops on which both gave a verdict. A method is right if it flags the "
+                  "loops with a fault (or with a fault that has an impact) and no others. p is that of "
+                  "McNemar's {}, two-sided, and corrected by Holm for all pairs of a truth.",
+                  in_worlds ? "test for randomly drawn worlds" : "exact test"),
       {{"Pair", Table::Align::left},
        {"Truth", Table::Align::left},
        {"Loops"},
@@ -173,11 +172,15 @@ Section comparison_section(const Campaign& campaign, const StudyFindings& findin
   return section;
 }
 
-std::string comparison_text(const Campaign& campaign, const StudyFindings& findings) {
-  return document_text(
-      {.heading = fmt::format("{}: {} of {} experiments compared", as_label(campaign.study.name),
-                              findings.assessed, findings.experiments),
-       .sections = {comparison_section(campaign, findings)}});
+std::string comparison_heading(const Study& study, const StudyFindings& findings) {
+  return fmt::format("{}: {} of {} experiments compared", as_label(study.name), findings.assessed,
+                     findings.experiments);
+}
+
+Document comparison_document(const Campaign& campaign, const StudyFindings& findings) {
+  Section section = comparison_section(campaign, findings);
+  section.data = [&](nlohmann::ordered_json& json) { put_comparison(json, campaign, findings); };
+  return {.heading = comparison_heading(campaign.study, findings), .sections = {std::move(section)}};
 }
 
 }  // namespace mpm

@@ -192,10 +192,9 @@ Table findings_table(const Study& study, const StudyFindings& findings) {
                                [](const Finding& row) { return row.has_reported(); });
   Table table(
       fmt::format("Measured values with {:g} % intervals; {}", 100.0 * study.aggregate.confidence,
-                  any ? "they agree with a reported one when both can be the same truth: a share with the "
-                        "sampling error of both, where the number of experiments behind the reported one is "
-                        "known; any other number when the interval holds the reported one."
-                      : "the study names none that others report."),
+                  any ? "a number agrees with the reported one if its interval contains it. For shares, the "
+                        "sampling error of the reported one counts too if its number of experiments is known."
+                      : "the study has no reported values."),
       {{"name", Table::Align::left, Shown::text},
        {"Quantity", Table::Align::left, Shown::page},
        {"measured"},
@@ -244,9 +243,8 @@ Table dominance_table(const Study& study, const std::vector<DominanceBin>& bins)
 Table wrong_table(const Study& study, const SummaryContent& parts, const std::string& file, std::size_t most,
                   const std::function<std::string(std::int64_t)>& number) {
   Table table(
-      "Experiments with impact whose CV, or the source of a single fault, is not the true one. Ivar and "
-      "Ivar_{diag} are "
-      "those of the true CV, then Ivar_{diag} of the located one.",
+      "Experiments with impact in which the CV, or the source of a single fault, is wrong. Ivar and "
+      "Ivar_{diag} are those of the true CV, followed by Ivar_{diag} of the located one.",
       {{"No."},
        {"Kind", Table::Align::left},
        fault_column(),

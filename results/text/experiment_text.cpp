@@ -150,14 +150,11 @@ std::string onset_text(const Onset& onset) {
 }  // namespace
 
 std::string whose_intervals(bool in_worlds) {
-  return in_worlds ? "Intervals hold for worlds drawn at random: the loops of one world share its errors of "
-                     "the model "
-                     "and its benchmark."
-                   : "Intervals hold for the one benchmark from which the methods of this study have learnt: "
-                     "over 14 "
-                     "benchmarks the number of false alarms of sse, likelihood, arx-oe and under coloured "
-                     "noise varied "
-                     "3 to 6 times as much as a binomial number.";
+  return in_worlds ? "Intervals hold for randomly drawn worlds: the loops of one world share its model "
+                     "errors and its benchmark."
+                   : "Intervals hold for the one benchmark from which the methods of this study have learnt. "
+                     "Over 14 benchmarks, the number of false alarms of sse, likelihood and arx-oe, and "
+                     "under coloured noise, had 3 to 6 times the variance of a binomial number.";
 }
 
 std::string kind_name(ExperimentKind kind) {

@@ -165,9 +165,9 @@ def main(program, octave=""):
         bare = export.folder / "bare.h5"
         export.run("run", "wood-berry", "-o", bare, "--experiments", "2", "--store", "none", "--audit", "0", "--quiet")
         message = export.run("export", bare, "--table", "loops", "--index", "1", code=2)
-        assert "--index: found 1, whose loop was not kept" in message, message
+        assert "--index: found 1, whose loop was not stored" in message, message
         table = export.folder / "bare.csv"
-        assert "has a heading only" in export.run("export", bare, "--table", "loops", "-o", table, notes=True)
+        assert "is empty" in export.run("export", bare, "--table", "loops", "-o", table, notes=True)
         assert len(table.read_text(encoding="utf-8").splitlines()) == 1
 
         # Without --table it is the experiments. What there is not is refused, and nothing is written.

@@ -57,7 +57,7 @@ def main(program):
         assert "inconclusive" in mpmbench("check", archive, "--gates", gates, code=1)
 
         mpmbench("report", archive, "-o", folder / "a.html")
-        assert "Are there alarms where the model is right?" in (folder / "a.html").read_text()
+        assert "Are there alarms although the model is right?" in (folder / "a.html").read_text()
         mpmbench("plot", archive, kinds.index(4), "-o", folder / "a.svg")
         audited = folder / "c.h5"
         mpmbench("run", "false-alarms", "--experiments", 4, "--audit", "0.005", "--quiet", "-o", audited)

@@ -152,9 +152,9 @@ def check_streams(run, folder, archive):
     """A full disk and closed streams: the archive is written all the same, and lost output is no success."""
     with open("/dev/full", "w") as full:
         error = run("summary", archive, stdout=full, code=3)
-        assert "stdout: not all could be written" in error, error
+        assert "stdout: the output is incomplete" in error, error
         run(*RUN, "-o", folder / "full.h5", stderr=full)  # notes are no result
-        assert "stdout: not all could be written" in run(*RUN, "-o", folder / "full.h5", stdout=full, code=3)
+        assert "stdout: the output is incomplete" in run(*RUN, "-o", folder / "full.h5", stdout=full, code=3)
     run("summary", folder / "full.h5")
     for closed in (">&-", "2>&-", ">&- 2>&-"):
         output = folder / "closed.h5"
@@ -197,7 +197,7 @@ def check_threads(run, folder):
 
     words = [*map(str, RUN[:-3]), "3", "--solver", "active-set", "--quiet", "-o", str(folder / "a.h5")]
     ended = subprocess.run([run.program, *words], preexec_fn=limit, capture_output=True, text=True, timeout=PATIENCE)
-    assert ended.returncode == 3 and "threads could be made" in ended.stderr, ended
+    assert ended.returncode == 3 and "threads could be started" in ended.stderr, ended
     small = {**os.environ, "OMP_STACKSIZE": "64k"}
     run(*RUN, "-o", folder / "b.h5", env=small)
 

@@ -58,13 +58,13 @@ def main(program, study):
         refused(archive, *words, 4, "--seed", 9, "--dry-run", found="the archive of wood-berry with seed")
         other = folder / "other.toml"
         other.write_text(pathlib.Path(study).read_text() + "\n# another\n")
-        refused(archive, "run", other, "-o", archive, "--experiments", 2, found="wood-berry with another study text")
+        refused(archive, "run", other, "-o", archive, "--experiments", 2, found="wood-berry with a different study text")
         run(*words, 2, "--seed", 9, "--overwrite")
         refused(archive, *words, 2, found="with seed 9")
 
         notes = folder / "notes.txt"
         notes.write_text("not to be lost")
-        refused(notes, "run", study, "-o", notes, "--experiments", 2, found="no archive of this program")
+        refused(notes, "run", study, "-o", notes, "--experiments", 2, found="not an archive of this program")
         empty = folder / "empty.h5"
         empty.touch()
         run("run", study, "-o", empty, "--experiments", 2, "--quiet")

@@ -87,7 +87,7 @@ def check_truth(own):
         assert a.attrs["outside_files"] == ""
     summary = own.run("summary", theirs)
     assert "its answers are neither certified nor audited" in summary and "audit  " not in summary, summary
-    assert "what it solves, and how well, is not known here" in report_of(own, theirs)
+    assert "what it solves, and how well, is unknown" in report_of(own, theirs)
     # Methods that simulate loops do so with the program when they are asked later.
     said = json.loads(own.run("compare", theirs, "--methods", "autocovariance,counterfactual", "--trust-programs", "--json", "--quiet"))
     assert {method["name"] for method in said["methods"]} == {"autocovariance", "counterfactual"}

@@ -115,7 +115,7 @@ def check_missing(trial, reference):
     assert "a folder with parts" in error, error
     (trial.folder / "empty").mkdir()
     error = trial.merge(trial.folder / "empty", code=2)
-    assert "no part of a campaign" in error, error
+    assert "a folder without parts of a campaign" in error, error
 
 
 def check_refusals(trial, reference):

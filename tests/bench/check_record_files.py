@@ -91,7 +91,7 @@ def check_netcdf(files, right):
         (files.folder / "cut.nc").write_bytes(whole[:int(share * len(whole))])
         assert "found" in files.assess("cut.nc", code=2)
     (files.folder / "noise.nc").write_bytes(whole[:8] + bytes(stream.randrange(256) for _ in range(3000)))
-    assert "no HDF5 file" in files.assess("noise.nc", code=2)
+    assert "not an HDF5 file" in files.assess("noise.nc", code=2)
 
 
 def check_foreign(files, refused):

@@ -153,7 +153,7 @@ def check_damaged(tiny, shown):
     for is_damaged in True, False:
         done = subprocess.run(tiny.command("one", "--jobs", 2, "--quiet", "--json"), capture_output=True, text=True)
         assert (done.returncode, done.stdout) == (0, shown), done
-        assert (str(archive) in done.stderr and "it is made anew" in done.stderr) == is_damaged, done.stderr
+        assert (str(archive) in done.stderr and "it is made again" in done.stderr) == is_damaged, done.stderr
 
 
 def check_interrupted(tiny, shown):

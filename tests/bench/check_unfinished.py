@@ -90,7 +90,7 @@ def main(program, study):
         run("run", study, "-o", parts, "--experiments", 6, "--shard", "1/2", "--quiet")
         assert run("summary", parts).stdout.startswith("PARTIAL: 3 of 6 experiments.")
         (folder / "empty").mkdir()
-        assert "no part of a campaign" in run("summary", folder / "empty", code=2).stderr
+        assert "a folder without parts of a campaign" in run("summary", folder / "empty", code=2).stderr
         run("summary", folder / "none.h5", code=2)
 
 

@@ -15,10 +15,14 @@
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/shards/shard_folder.hpp"
+#include "bench/shards/shard_store.hpp"
 #include "plants/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "results/blind/blind_loops.hpp"
+#include "results/document/document_json.hpp"
 #include "results/summary/comparison.hpp"
+#include "scenarios/files/study_change.hpp"
 #include "scenarios/files/study_file.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/files/suite_file.hpp"
@@ -159,6 +163,47 @@ TEST_CASE(
   check_same(chosen.calibration, serial.calibration);
 }
 
+TEST_CASE("comparison: loops that Ipopt runs again give the same bits for any number of worker processes") {
+  const Study study = changed_study(find_study("wood-berry"),  // Ipopt takes its time
+                                    {{"simulation.samples", "150"},
+                                     {"controller.prediction_horizon", "20"},
+                                     {"controller.control_horizon", "4"},
+                                     {"sensitivity.samples", "60"},
+                                     {"calibration.healthy", "2"},
+                                     {"calibration.ud", "1"}},
+                                    "short");
+  RunOptions options = few();
+  options.allow_unhealthy_basis = true;
+  options.solver = "ipopt";
+  options.experiments = 3;
+  options.store = StorePolicy::none;
+  options.methods = {"sse", "botelho"};
+  const Campaign serial = run_serially(study, options);
+  options.methods = {"sse"};
+  for (const int jobs : {1, 3}) {
+    Campaign later = run_serially(study, options);
+    add_methods(later, {.methods = {"botelho"}, .jobs = jobs}, {});
+    check_same(later.calibration, serial.calibration);
+    const RecordBytes format(later.study, forms_of(later));
+    for (std::size_t i = 0; i < serial.records.size(); ++i) {
+      INFO("experiment " << i << ", " << jobs << " jobs");
+      CHECK(format.differences(later.records[i], serial.records[i]) == std::vector<std::string>{});
+    }
+
+    const std::vector<BlindLoop> order = blind_order(serial, true);
+    ShardStore one(ShardIdentity{}), several(ShardIdentity{});
+    run_blind_loops(serial, order, 1, {}, one);
+    run_blind_loops(serial, order, jobs, {}, several);
+    const BlindLoops::Next first = blind_loops_in(one, order.size()).begin(),
+                           second = blind_loops_in(several, order.size()).begin();
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const AssessedLoop loop = first();
+      CHECK(loop.y == second().y);
+      CHECK(loop.samples() > 0);
+    }
+  }
+}
+
 TEST_CASE("comparison: an archive may lack experiments between those that it has") {
   RunOptions options = few();
   options.methods = {"botelho"};
@@ -197,7 +242,7 @@ TEST_CASE("comparison: of records that stay in the archive the same methods are 
     CHECK(same.end == loops.end);
     const auto json = [&](const Campaign& campaign) {
       const Campaign part = with_methods(campaign, chosen, experiments);
-      return comparison_json(part, findings_of(part));
+      return document_json(comparison_document(part, findings_of(part)));
     };
     CHECK((json(streamed) == json(read)));
   }

@@ -82,7 +82,7 @@ TEST_CASE("command line: run takes changes of its study, which its archive has")
   const Study study = read_archive(output).study;
   CHECK(study.simulation.samples == 150);
   CHECK(study.disturbance.sequence == SignalSequence::shared);
-  CHECK_THAT(complaint(run), Contains("with another study text"));
+  CHECK_THAT(complaint(run), Contains("with a different study text"));
   CHECK_THAT(complaint(run + Words{"--set", "simulation.sample=150"}), Contains("nearest: 'samples'"));
   CHECK_THAT(complaint(run + Words{"--set", "simulation.samples"}), Contains("--set"));
   CHECK_THAT(complaint({"show", "wood-bery"}), Contains("nearest: 'wood-berry'"));

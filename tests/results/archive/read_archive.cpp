@@ -5,6 +5,8 @@
 #include <string>
 
 #include "results/archive/archive.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_text.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/summary/comparison.hpp"
 #include "results/summary/summary.hpp"
@@ -15,9 +17,9 @@ std::string answer(const std::string& path) {
   try {
     const mpm::Campaign campaign = mpm::read_archive(path);
     const mpm::StudyFindings findings = mpm::findings_of(campaign);
-    const bool said = !mpm::summary_text(campaign, findings, path).empty() &&
-                      !mpm::summary_json(campaign, findings).empty() &&
-                      !mpm::comparison_json(campaign, findings).empty();
+    const bool said = !mpm::document_text(summary_document(campaign, findings, path)).empty() &&
+                      !mpm::document_json(summary_document(campaign, findings, "out.h5")).empty() &&
+                      !mpm::document_json(comparison_document(campaign, findings)).empty();
     return said ? "read" : "no summary";
   } catch (const mpm::ArchiveError& error) {
     return error.what();

@@ -2,6 +2,8 @@
 
 #include "results/archive/archive.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_text.hpp"
 #include "results/summary/summary.hpp"
 #include "tests/results/campaign_sample.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -22,8 +24,10 @@ TEST_CASE("archive: a campaign of a shipped study comes back, and so does its su
   for (std::size_t i = 0; i < read.records.size(); ++i)
     CHECK(bytes.differences(read.records[i], campaign.records[i]).empty());
   const StudyFindings findings = findings_of(campaign), of_read = findings_of(read);
-  CHECK(summary_text(read, of_read, "x") == summary_text(campaign, findings, "x"));
-  CHECK(summary_json(read, of_read) == summary_json(campaign, findings));
+  CHECK(document_text(summary_document(read, of_read, "x")) ==
+        document_text(summary_document(campaign, findings, "x")));
+  CHECK(document_json(summary_document(read, of_read, "out.h5")) ==
+        document_json(summary_document(campaign, findings, "out.h5")));
 }
 
 TEST_CASE("archive: what was read is written as the same bytes again") {

@@ -55,11 +55,12 @@ TEST_CASE("archive: what is no HDF5 file is refused by name") {
   const TemporaryFolder folder;
   const std::string name = (folder / "a.h5").string();
   CHECK_THROWS_WITH(read_archive(folder / "a.h5"), name + ": no such file");
-  CHECK_THROWS_WITH(read_archive(folder.path()), Contains("no HDF5 file"));
+  CHECK_THROWS_WITH(read_archive(folder.path()), Contains("not an HDF5 file"));
   for (const std::string& content : {std::string(), std::string("[study]\nname = \"text\"\n"),
                                      std::string(100000, '\0'), std::string("\x89HDF\r\n")}) {
-    CHECK_THAT(refusal_of(folder, content), Contains(name + ": no HDF5 file, or not a whole one"));
-    CHECK_THAT(refusal_of(folder, with_seal(content)), Contains(name + ": no HDF5 file, or not a whole one"));
+    CHECK_THAT(refusal_of(folder, content), Contains(name + ": not an HDF5 file, or not a whole one"));
+    CHECK_THAT(refusal_of(folder, with_seal(content)),
+               Contains(name + ": not an HDF5 file, or not a whole one"));
   }
 }
 
@@ -110,9 +111,10 @@ TEST_CASE("archive: one of the format before is refused with the command that ma
   const Attributes earlier{{"filetype", "mpmbench archive"},
                            {"format_version", std::vector<std::int32_t>{1, 9}},
                            {"command", "mpmbench run chapter6 -o 'my a.h5'"}};
-  CHECK_THAT(refusal_of(folder, heading_only(earlier)),
-             EndsWith("attribute '/format_version': found 1.9; allowed: 2.x; this program makes it anew by: "
-                      "mpmbench run chapter6 -o 'my a.h5'"));
+  CHECK_THAT(
+      refusal_of(folder, heading_only(earlier)),
+      EndsWith("attribute '/format_version': found 1.9; allowed: 2.x; to make it again with this program: "
+               "mpmbench run chapter6 -o 'my a.h5'"));
 }
 
 TEST_CASE("archive: a path that cannot be written is refused, and a file that was there stays") {

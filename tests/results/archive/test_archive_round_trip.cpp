@@ -11,6 +11,7 @@
 #include "results/archive/hdf5_file.hpp"
 #include "results/archive/method_json.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "results/document/document_text.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/files/study_file.hpp"
@@ -312,8 +313,8 @@ TEST_CASE("archive: a campaign whose records stay in the file has the same summa
     for (std::size_t i = 0; i < records.size(); ++i)
       for (const ExperimentRecord& record : {records.at(i), passing.at(i)})
         CHECK(bytes.differences(record, campaign.records[i]) == std::vector<std::string>{});
-    CHECK(summary_text(read, findings_of(read), "a.h5") ==
-          summary_text(campaign, findings_of(campaign), "a.h5"));
+    CHECK(document_text(summary_document(read, findings_of(read), "a.h5")) ==
+          document_text(summary_document(campaign, findings_of(campaign), "a.h5")));
   }
   Campaign healthy = made_up_campaign();
   healthy.records[5].draw = basis_draw();

@@ -9,6 +9,8 @@
 #include "results/archive/archive.hpp"
 #include "results/archive/csv_table.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_text.hpp"
 #include "results/report/report.hpp"
 #include "results/summary/comparison.hpp"
 #include "results/summary/summary.hpp"
@@ -95,11 +97,12 @@ TEST_CASE("foreign method: it is in findings, summary, comparison, report and ta
   for (const Finding& finding : findings.rows)
     means += finding.method == "foreign" && finding.name.ends_with("novelty_mean") ? 1 : 0;
   CHECK(means == 3);  // one of each kind
-  CHECK_THAT(comparison_text(campaign, findings), Contains("foreign"));
-  CHECK_THAT(summary_text(campaign, findings, "a.h5"), Contains("foreign"));
-  const nlohmann::json json = nlohmann::json::parse(comparison_json(campaign, findings));
+  CHECK_THAT(document_text(comparison_document(campaign, findings)), Contains("foreign"));
+  CHECK_THAT(document_text(summary_document(campaign, findings, "a.h5")), Contains("foreign"));
+  const nlohmann::json json = nlohmann::json::parse(document_json(comparison_document(campaign, findings)));
   CHECK(json["methods"].back()["title"] == "Somebody (2031)");
-  CHECK(nlohmann::json::parse(summary_json(campaign, findings))["methods"].back() == "foreign");
+  CHECK(nlohmann::json::parse(document_json(summary_document(campaign, findings, "out.h5")))["methods"]
+            .back() == "foreign");
   CHECK_THAT(report_html(campaign, findings, "a.h5", {}),
              Contains("Somebody (2031)") && Contains("something &lt;new&gt; is wrong"));
   CHECK_THAT(csv_table(campaign, "foreign"), Contains("novelty") && Contains("very_bad"));
@@ -119,7 +122,8 @@ TEST_CASE("foreign method: alone in an archive it needs nothing of the methods t
   const Campaign read = read_back(folder, campaign);
   const StudyFindings findings = findings_of(read);
   CHECK(findings.chain() == nullptr);
-  CHECK_THAT(summary_text(read, findings, "a.h5"), Contains("compare") || Contains("experiments"));
+  CHECK_THAT(document_text(summary_document(read, findings, "a.h5")),
+             Contains("compare") || Contains("experiments"));
   CHECK_THAT(report_html(read, findings, "a.h5", {}), Contains("Which method is right most often?"));
 }
 

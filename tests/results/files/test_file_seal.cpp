@@ -71,11 +71,11 @@ TEST_CASE("file seal: what is cut off, added or not there is named") {
     REQUIRE_THAT(seal_refusal_of(folder, whole.substr(0, length)), Contains("no checksum at its end"));
   CHECK_THAT(seal_refusal_of(folder, whole + "\n"), Contains("no checksum at its end"));
   CHECK_THAT(seal_refusal_of(folder, whole.substr(1)), Contains("the file is damaged"));
-  CHECK_THAT(seal_refusal_of(folder, "some text"), Contains("no HDF5 file"));
-  CHECK_THAT(seal_refusal_of(folder, ""), Contains("no HDF5 file"));
+  CHECK_THAT(seal_refusal_of(folder, "some text"), Contains("not an HDF5 file"));
+  CHECK_THAT(seal_refusal_of(folder, ""), Contains("not an HDF5 file"));
   CHECK_THROWS_WITH(read_sealed_file(folder / "none"), Contains("none: no such file"));
-  CHECK_THROWS_WITH(read_sealed_file(folder.path()), Contains("no HDF5 file, but a folder or a device"));
-  CHECK_THROWS_WITH(read_sealed_file("/dev/null"), Contains("no HDF5 file, but a folder or a device"));
+  CHECK_THROWS_WITH(read_sealed_file(folder.path()), Contains("a folder or a device, not an HDF5 file"));
+  CHECK_THROWS_WITH(read_sealed_file("/dev/null"), Contains("a folder or a device, not an HDF5 file"));
 }
 
 }  // namespace

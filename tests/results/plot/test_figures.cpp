@@ -184,7 +184,7 @@ TEST_CASE("gnuplot: a missing program, a wrong script and a silent one are error
   make_file(folder / "hangs", "#!/bin/sh\nexec sleep 1000\n");
   std::filesystem::permissions(folder / "hangs", std::filesystem::perms::owner_all);
   CHECK_THROWS_WITH(run_gnuplot("", folder / "hangs", std::chrono::milliseconds(50)),
-                    Contains("had not drawn a figure after 0.05 s"));
+                    Contains("did not draw a figure within 0.05 s"));
   CHECK_THROWS_AS(svg_element("no drawing", {}), GnuplotError);
   CHECK_THROWS_AS(svg_element("<svg viewBox='0 0 1 1'><g>", {}), GnuplotError);
   CHECK_THROWS_AS(svg_element("<g viewBox='0 0 1 1'/>", {}), GnuplotError);

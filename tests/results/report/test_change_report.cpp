@@ -20,7 +20,7 @@ const Campaign& first_run() {
 TEST_CASE("change report: nothing changed between an archive and itself") {
   const std::string page = change_html(first_run(), "x/a.h5", first_run(), "x/b.h5");
   CHECK_THAT(page, Contains("<strong>Nothing changed.</strong>") && Contains("No key of the study differs"));
-  CHECK_THAT(page, Contains("no number of a method that both archives have changed in any experiment"));
+  CHECK_THAT(page, Contains("no number of a method in both archives changed in any common experiment"));
   CHECK(page == change_html(first_run(), "other/a.h5", first_run(), "b.h5"));
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("change report: another seed, other methods and none in common are tol
   remove_methods(chain, [](const std::string& name) { return name != "botelho"; });
   remove_methods(others, [](const std::string& name) { return name == "botelho"; });
   CHECK_THAT(change_html(chain, "a.h5", others, "b.h5"),
-             Contains("No method of assessment is in both archives"));
+             Contains("The archives have no method of assessment in common"));
 }
 
 }  // namespace

@@ -207,12 +207,12 @@ TEST_CASE("report: several methods stand side by side, with curves where it can"
   for (const std::string& method : method_names(campaign))
     CHECK_THAT(html, Contains(method));
 
-  CHECK_THAT(html, !Contains("Thresholds on"));
+  CHECK_THAT(html, !Contains("Thresholds from"));
   Campaign calibrated = campaign;
   calibrated.study.calibration.emplace();
   calibrated.calibration.seed = 4711;
   CHECK_THAT(html_of(comparison_section(Input(calibrated))),
-             Contains("Thresholds on 200 healthy loops and 100 with a disturbance of seed 4711"));
+             Contains("Thresholds from 200 healthy loops and 100 with a disturbance, seed 4711"));
 
   // Every loop of the sample has a fault, so that there is nothing to draw a curve with.
   CHECK_THAT(html_of(comparison_section(Input(sample()))), Contains("Left out: ROC curves"));
@@ -257,7 +257,7 @@ TEST_CASE("report: the verdict on top is of the CV where no method names a sourc
   REQUIRE(rates.located.total > 0);
   CHECK_THAT(page_of(campaign, "f.h5"),
              Contains("no method names a source; <code>sse</code> flags " + share_words(rates.detected)) &&
-                 Contains("in " + share_words(rates.located) + " of those that it flags."));
+                 Contains("in " + share_words(rates.located) + " of the loops it flags."));
 }
 
 TEST_CASE("an estimate in words: bounds say so, what is shorter is not longer by less, and rounding is 0") {

@@ -7,6 +7,8 @@
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/method_words.hpp"
 #include "plants/non_finite.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_text.hpp"
 #include "results/summary/comparison.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -48,7 +50,7 @@ TEST_CASE(
     "comparison text: rates, intervals, reasons and pairs stand there; no line is wider than a terminal") {
   const Campaign campaign = four_methods();
   const StudyFindings findings = findings_of(campaign);
-  const std::string text = comparison_text(campaign, findings);
+  const std::string text = document_text(comparison_document(campaign, findings));
   const Rate& detected = findings.methods[0].rates.detected;
   CHECK(detected.hits < detected.total);
   CHECK_THAT(text, Contains(std::to_string(experiments_that_ran(campaign)) + " of 40 experiments compared"));
@@ -70,7 +72,7 @@ TEST_CASE(
 TEST_CASE("comparison text: one method has no pairs, and what was not counted is left out") {
   Campaign campaign = four_methods();
   remove_methods(campaign, [](const std::string& name) { return name != "botelho"; });
-  const std::string text = comparison_text(campaign, findings_of(campaign));
+  const std::string text = document_text(comparison_document(campaign, findings_of(campaign)));
   CHECK_THAT(text, !Contains("McNemar") && !Contains("because") && !Contains("false alarms, bad tuning"));
 }
 
@@ -78,7 +80,7 @@ TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the 
   Campaign campaign = four_methods();
   campaign.records[0].draw = {};  // a healthy one, so that there is a curve
   const StudyFindings findings = findings_of(campaign);
-  const Json json = Json::parse(comparison_json(campaign, findings));
+  const Json json = Json::parse(document_json(comparison_document(campaign, findings)));
   CHECK(json["loops"] == experiments_that_ran(campaign));
   REQUIRE(json["methods"].size() == 4);
   for (std::size_t m = 0; m < 4; ++m) {
@@ -126,15 +128,15 @@ TEST_CASE("comparison of a study with a calibration: its rates, thresholds, and 
   campaign.calibration = {77,
                           std::vector(30, CalibrationLoop{ExperimentKind::healthy, {0.25, 0.5, kNaN, 0.5}})};
   const StudyFindings findings = findings_of(campaign);
-  const std::string text = comparison_text(campaign, findings);
+  const std::string text = document_text(comparison_document(campaign, findings));
   for (const MethodRateInfo& info : counted_rates(findings.methods))
     CHECK_THAT(text, Contains(std::string("\n") + info.title));
-  CHECK_THAT(text, Contains("Thresholds on 30 healthy loops and 100 with a disturbance of seed 77"));
+  CHECK_THAT(text, Contains("Thresholds from 30 healthy loops and 100 with a disturbance, seed 77"));
   CHECK_THAT(text, Contains("no threshold_01 of botelho: 30 calibration loops with a verdict are too few"));
   CHECK_THAT(text, Contains("badwe2009: no verdict on any calibration loop, and so no rate at"));
   CHECK_THAT(text, !Contains("no threshold_05 of badwe2009"));
   CHECK_THAT(text, !Contains("no threshold_05 of sun"));
-  const Json json = Json::parse(comparison_json(campaign, findings));
+  const Json json = Json::parse(document_json(comparison_document(campaign, findings)));
   CHECK(json["calibration"]["seed"] == 77);
   CHECK(json["calibration"]["loops"] == 30);
   CHECK(json["methods"][2]["unanswered"].contains("calibration"));

@@ -7,8 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/findings/s0_perturbation_curves.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_markdown.hpp"
+#include "results/document/document_text.hpp"
 #include "results/summary/comparison.hpp"
 #include "results/summary/summary.hpp"
+#include "results/summary/sweep_document.hpp"
 #include "tests/results/campaign_sample.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -24,11 +28,11 @@ const Campaign& small_sample() {
 }
 
 std::string text_of(const Campaign& campaign, const std::string& file = "out.h5") {
-  return summary_text(campaign, findings_of(campaign), file);
+  return document_text(summary_document(campaign, findings_of(campaign), file));
 }
 
 nlohmann::json json_of(const Campaign& campaign) {
-  return nlohmann::json::parse(summary_json(campaign, findings_of(campaign)));
+  return nlohmann::json::parse(document_json(summary_document(campaign, findings_of(campaign), "out.h5")));
 }
 
 /// Lets the chain of each experiment that has an answer say something else.
@@ -258,7 +262,8 @@ TEST_CASE("summary: healthy experiments and bad tunings are counted, and their a
 
 TEST_CASE("summary: several methods are compared, and one is not") {
   Campaign campaign = made_up_campaign();
-  CHECK_THAT(text_of(campaign), Contains(comparison_text(campaign, findings_of(campaign))));
+  CHECK_THAT(text_of(campaign),
+             Contains(document_text(comparison_document(campaign, findings_of(campaign)))));
   remove_methods(campaign, [](const std::string& name) { return name != "botelho"; });
   CHECK_THAT(text_of(campaign), !Contains("experiments compared"));
   CHECK(json_of(campaign)["methods"] == nlohmann::json{"botelho"});
@@ -270,7 +275,7 @@ TEST_CASE("summary: a campaign without the chain says nothing of it, and all tha
   remove_methods(campaign, [](const std::string& name) { return name == "botelho"; });
   const std::string text = text_of(campaign);
   CHECK_THAT(text, !Contains("wrong verdict") && !Contains("I_MPM") && !Contains("botelho") &&
-                       Contains(comparison_text(campaign, findings_of(campaign))));
+                       Contains(document_text(comparison_document(campaign, findings_of(campaign)))));
   const nlohmann::json json = json_of(campaign);
   CHECK(json["wrong_verdicts"].empty());
   CHECK(json["dominance"].empty());
@@ -286,6 +291,35 @@ TEST_CASE("summary: infinite and missing numbers and broken texts still make val
   CHECK(json["findings"][0]["reported"].is_null());
   CHECK(json_of(empty_campaign())["experiments"] == 0);
   CHECK_THAT(text_of(empty_campaign()), Contains("0 experiments with impact"));
+}
+
+TEST_CASE("sweep: one table in Markdown and JSON, with the studies that could not be run") {
+  Finding share{.name = "mpm.located", .label = "CV located", .meaning = "", .form = FindingForm::share};
+  share.prominence = Prominence::headline;
+  Finding index{.name = "r_squared", .label = "R of I_{MPM}", .meaning = ""};
+  index.prominence = Prominence::headline;
+  Finding other{.name = "count", .label = "count", .meaning = ""};
+  const std::vector<SweepRow> rows{
+      {"", "", true, "", {share.with(0.985, {0.916, 0.997}, 68), index.with(0.5, {0.25, 0.75}, 68), other}},
+      {"noise", "less", false, "", {share.with(kNaN, {kNaN, kNaN}, 0), index.with(0.25, {0.0, 1.0}, 2)}},
+      {"noise", "wild", true, "no basis", {}}};
+  const Document document = sweep_document("Noise", rows);
+  CHECK(document_markdown(document) ==
+        "| choice | value | CV located, % | R of I_MPM |\n|---|---|---|---|\n"
+        "| as shipped |  | 98.5 (92 to 100) | 0.50 (0.25 to 0.75) |\n"
+        "| noise | less * | - | 0.25 (0.00 to 1.00) |\n"
+        "|  | wild | - | - |\n"
+        "\nnot run: noise = wild: no basis\n");
+  const nlohmann::json json = nlohmann::json::parse(document_json(document));
+  CHECK(json["title"] == "Noise");
+  REQUIRE(json["studies"].size() == 3);
+  CHECK(json["studies"][0]["findings"]["mpm.located"] ==
+        nlohmann::json{{"value", 0.985}, {"lower", 0.916}, {"upper", 0.997}, {"count", 68}});
+  CHECK(json["studies"][1]["choice"] == "noise");
+  CHECK(json["studies"][1]["healthy"] == false);
+  CHECK(json["studies"][1]["findings"]["mpm.located"]["value"].is_null());
+  CHECK(json["studies"][2]["trouble"] == "no basis");
+  CHECK(json["studies"][2]["findings"].empty());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "analysis/findings/finding.hpp"
+#include "results/document/document.hpp"
 
 namespace mpm {
 
@@ -16,9 +17,9 @@ struct SweepRow {
   std::vector<Finding> findings;
 };
 
-/// The sweep as a table in Markdown: one line a study, grouped by choice, the base study first, one column a
-/// headline number with its interval in brackets. A star marks a study whose basis case fails its
-/// self-check; one that could not be run has no numbers, and the reason below the table.
-std::string sweep_table(const std::vector<SweepRow>& rows);
+/// The sweep as a table: one line a study, grouped by choice, the base study first, one column a headline
+/// number. A star marks a study whose basis case fails its self-check; one that could not be run has no
+/// numbers, and the reason below the table. `rows` must outlive the document.
+Document sweep_document(const std::string& title, const std::vector<SweepRow>& rows);
 
 }  // namespace mpm

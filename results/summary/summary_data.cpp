@@ -1,10 +1,10 @@
+#include "results/summary/summary_data.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/sensitivity/loop_interaction.hpp"
 #include "results/files/utf8.hpp"
-#include "results/summary/summary.hpp"
-#include "results/summary/summary_content.hpp"
 #include "results/text/experiment_text.hpp"
 #include "results/text/scenario_text.hpp"
 
@@ -219,38 +219,46 @@ Json failures_json(const std::vector<FailedExperiment>& failed) {
 
 }  // namespace
 
-std::string summary_json(const Campaign& campaign, const StudyFindings& total,
-                         const std::optional<Unfinished>& unfinished) {
-  const SummaryContent parts = summary_content(campaign, total);
-  const Json summary{
-      {"partial",
-       unfinished ? Json{{"done", unfinished->done}, {"experiments", unfinished->experiments}} : Json()},
-      {"study", campaign.study.name},
-      {"seed", campaign.study.seed},
-      {"solver", campaign.info.solver},
-      {"controller_program",
-       campaign.study.controller_program ? Json(campaign.study.controller_program->command()) : Json()},
-      {"outside_files", campaign.info.outside_files},
-      {"seconds", campaign.info.seconds},
-      {"experiments", total.experiments},
-      {"infeasible", total.infeasible.hits},
-      {"failed", total.failed},
-      {"unstable", total.unstable.total > 0 ? Json(total.unstable.hits) : Json()},
-      {"excluded", total.excluded},
-      {"kinds", kinds_json(parts.kinds)},
-      {"basis", basis_json(campaign.study, campaign.basis)},
-      {"settings", settings_json(campaign.study)},
-      {"run", run_json(campaign.info)},
-      {"confidence", campaign.study.aggregate.confidence},
-      {"methods", method_names(campaign)},
-      {"findings", findings_json(total.rows, campaign.study.aggregate.confidence)},
-      {"scenarios", scenarios_json(campaign)},
-      {"dominance", dominance_json(total.dominance)},
-      {"s0_perturbation", s0_perturbation_json(campaign.study, parts)},
-      {"audit", audit_json(parts, campaign.info)},
-      {"failures", failures_json(parts.failures)},
-      {"wrong_verdicts", parts.wrong_verdicts}};
-  return summary.dump(2) + "\n";
+void put_run(Json& json, const Campaign& campaign, const SummaryContent& parts,
+             const std::optional<Unfinished>& unfinished) {
+  const StudyFindings& total = parts.findings;
+  json.update(
+      {{"partial",
+        unfinished ? Json{{"done", unfinished->done}, {"experiments", unfinished->experiments}} : Json()},
+       {"study", campaign.study.name},
+       {"seed", campaign.study.seed},
+       {"solver", campaign.info.solver},
+       {"controller_program",
+        campaign.study.controller_program ? Json(campaign.study.controller_program->command()) : Json()},
+       {"outside_files", campaign.info.outside_files},
+       {"seconds", campaign.info.seconds},
+       {"experiments", total.experiments},
+       {"infeasible", total.infeasible.hits},
+       {"failed", total.failed},
+       {"unstable", total.unstable.total > 0 ? Json(total.unstable.hits) : Json()},
+       {"excluded", total.excluded},
+       {"kinds", kinds_json(parts.kinds)},
+       {"basis", basis_json(campaign.study, campaign.basis)},
+       {"settings", settings_json(campaign.study)},
+       {"run", run_json(campaign.info)},
+       {"confidence", campaign.study.aggregate.confidence},
+       {"methods", method_names(campaign)}});
+}
+
+void put_findings(Json& json, const Study& study, const SummaryContent& parts) {
+  json["findings"] = findings_json(parts.findings.rows, study.aggregate.confidence);
+  json["dominance"] = dominance_json(parts.findings.dominance);
+  json["s0_perturbation"] = s0_perturbation_json(study, parts);
+}
+
+void put_scenarios(Json& json, const Campaign& campaign) {
+  json["scenarios"] = scenarios_json(campaign);
+}
+
+void put_experiments(Json& json, const CampaignInfo& info, const SummaryContent& parts) {
+  json["audit"] = audit_json(parts, info);
+  json["failures"] = failures_json(parts.failures);
+  json["wrong_verdicts"] = parts.wrong_verdicts;
 }
 
 }  // namespace mpm

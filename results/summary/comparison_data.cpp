@@ -92,25 +92,24 @@ Json rate_names_json(const Study& study) {
 
 }  // namespace
 
-std::string comparison_json(const Campaign& campaign, const StudyFindings& findings) {
+void put_comparison(Json& json, const Campaign& campaign, const StudyFindings& findings) {
   Json methods = Json::array(), pairs = Json::array();
   for (const MethodFindings& method : findings.methods)
     methods.push_back(method_findings_json(campaign.study, method));
   for (const MethodPair& pair : findings.pairs)
     pairs.push_back(pair_json(findings, pair));
-  Json comparison{{"study", campaign.study.name},
-                  {"seed", campaign.study.seed},
-                  {"experiments", findings.experiments},
-                  {"loops", findings.assessed},
-                  {"confidence", campaign.study.aggregate.confidence},
-                  {"rates", rate_names_json(campaign.study)},
-                  {"methods", methods},
-                  {"pairs", pairs}};
+  json.update({{"study", campaign.study.name},
+               {"seed", campaign.study.seed},
+               {"experiments", findings.experiments},
+               {"loops", findings.assessed},
+               {"confidence", campaign.study.aggregate.confidence},
+               {"rates", rate_names_json(campaign.study)},
+               {"methods", methods},
+               {"pairs", pairs}});
   if (campaign.study.calibration)
-    comparison["calibration"] = {{"false_alarms", campaign.study.calibration->false_alarms},
-                                 {"seed", campaign.calibration.seed},
-                                 {"loops", campaign.calibration.loops.size()}};
-  return comparison.dump(2) + "\n";
+    json["calibration"] = {{"false_alarms", campaign.study.calibration->false_alarms},
+                           {"seed", campaign.calibration.seed},
+                           {"loops", campaign.calibration.loops.size()}};
 }
 
 }  // namespace mpm

@@ -1,0 +1,160 @@
+#include "bench/campaign/revisited_loops.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "bench/campaign/campaign_loops.hpp"
+#include "bench/execution/experiment_work.hpp"
+#include "plants/error.hpp"
+#include "plants/system/program_trust.hpp"
+#include "results/archive/record_bytes.hpp"
+#include "solvers/qp_solver.hpp"
+
+namespace mpm {
+namespace {
+
+/// Where somebody else simulates the plant, its processes have to be prepared before threads are at work. Its
+/// file may be gone, or not be trusted: that matters to the loops that are run again, which then say so.
+void prepare_plant(const Study& study) {
+  if (!study.nonlinear || !study.nonlinear->model.foreign)
+    return;
+  try {
+    study.nonlinear->model.foreign->load();
+  } catch (const InputError&) {
+  } catch (const UntrustedProgram&) {
+  }
+}
+
+/// Records for threads, each of which asks for the next one or one soon after it: they are read one after the
+/// other, and in memory are those that others will ask for in a moment.
+class RecordsInTurn {
+ public:
+  /// Those with these indices, in ascending order, which there are and which must outlive it.
+  RecordsInTurn(const RecordRange& records, std::vector<std::int64_t> indices)
+      : next_(records.one_by_one()), indices_(std::move(indices)), wanted_(indices_.begin()) {}
+  RecordsInTurn(const RecordsInTurn&) = delete;
+  RecordsInTurn& operator=(const RecordsInTurn&) = delete;
+
+  /// Each once.
+  ExperimentRecord take(std::int64_t index) {
+    const std::lock_guard one_at_a_time(mutex_);
+    while (read_.count(index) == 0) {
+      const ExperimentRecord& record = *next_();
+      if (record.draw.index == *wanted_)
+        read_.emplace(*wanted_++, record);
+    }
+    return std::move(read_.extract(index).mapped());
+  }
+
+ private:
+  RecordRange::Next next_;
+  std::vector<std::int64_t> indices_;
+  std::vector<std::int64_t>::const_iterator wanted_;
+  std::map<std::int64_t, ExperimentRecord> read_;
+  std::mutex mutex_;
+};
+
+/// What one thread or process works with.
+struct LoopRunners {
+  LoopRunners(const RevisitedLoops& loops, const std::string& solver)
+      : experiments(loops.study, context(loops, solver), loops.methods) {
+    if (loops.calibration != nullptr)
+      calibration.emplace(*loops.calibration, context(loops, solver), loops.methods);
+  }
+
+  static AssessmentContext context(const RevisitedLoops& loops, const std::string& solver) {
+    return assessment_context(loops.campaign.study, loops.campaign.basis, qp_solver_factory(solver));
+  }
+
+  ExperimentRunner experiments;
+  std::optional<ExperimentRunner> calibration;
+};
+
+class Revisit {
+ public:
+  Revisit(const RevisitedLoops& loops, const std::vector<std::int64_t>& missing)
+      : loops_(loops),
+        solver_(loops.campaign.info.solver),
+        bytes_(loops.campaign.study, {}),
+        records_(records_of(loops.campaign), experiments_of(missing)) {}
+
+  LoopWork work(int jobs, const CampaignHooks& hooks) {
+    LoopWork work{.jobs = jobs, .stop = hooks.stop, .on_start = hooks.on_start, .on_done = hooks.on_done};
+    work.thread = [this] {
+      return [this, runners = std::make_shared<LoopRunners>(loops_, "active-set")](std::int64_t key) {
+        return in_thread(key, *runners);
+      };
+    };
+    if (solver_ != "active-set")
+      work.process = [this, runners = std::make_shared<LoopRunners>(loops_, solver_)](
+                         std::int64_t key, const std::string& begun) {
+        return in_process(key, begun, *runners);
+      };
+    work.lost = [this](std::int64_t key, const std::string& begun, const std::string& why,
+                       bool again) -> std::optional<LoopResult> {
+      if (!again)
+        return std::nullopt;
+      const LoopPlace place = loops_.place(key);
+      return loops_.lost(key,
+                         place.of_calibration ? lost_record(*loops_.calibration, place.index, why)
+                                              : bytes_.from_bytes(begun),
+                         why);
+    };
+    return work;
+  }
+
+ private:
+  std::vector<std::int64_t> experiments_of(const std::vector<std::int64_t>& keys) const {
+    std::vector<std::int64_t> indices;
+    for (const std::int64_t key : keys)
+      if (const LoopPlace place = loops_.place(key); !place.of_calibration)
+        indices.push_back(place.index);
+    return indices;
+  }
+
+  LoopResult in_thread(std::int64_t key, LoopRunners& runners) {
+    const LoopPlace place = loops_.place(key);
+    const LoopResult for_process{.bytes = "", .unfinished = true};
+    if (place.of_calibration) {
+      if (solver_ == "ipopt")
+        return for_process;
+      ExperimentRecord record = runners.calibration->run(place.index, loops_.calibration_store);
+      return solver_ != "active-set" && needs_ipopt(record)
+                 ? for_process
+                 : loops_.make(key, *runners.calibration, std::move(record));
+    }
+    ExperimentRecord record = records_.take(place.index);
+    record.assessments.clear();
+    const bool by_ipopt = solver_ == "ipopt" || record.solver.fallbacks > 0;
+    if (by_ipopt && runners.experiments.runs_loops(record))
+      return {.bytes = bytes_.to_bytes(record), .unfinished = true};
+    return loops_.make(key, runners.experiments, std::move(record));
+  }
+
+  LoopResult in_process(std::int64_t key, const std::string& begun, LoopRunners& runners) const {
+    const LoopPlace place = loops_.place(key);
+    return place.of_calibration ? loops_.make(key, *runners.calibration,
+                                              runners.calibration->run(place.index, loops_.calibration_store))
+                                : loops_.make(key, runners.experiments, bytes_.from_bytes(begun));
+  }
+
+  const RevisitedLoops& loops_;
+  std::string solver_;
+  RecordBytes bytes_;  ///< without answers, which nobody asks for again
+  RecordsInTurn records_;
+};
+
+}  // namespace
+
+void run_revisited(ShardStore& store, const std::vector<std::int64_t>& keys, const RevisitedLoops& loops,
+                   int jobs, const CampaignHooks& hooks) {
+  prepare_plant(loops.campaign.study);
+  Revisit revisit(loops, store.missing(keys));
+  run_missing(store, keys, revisit.work(std::max(1, jobs), hooks));
+}
+
+}  // namespace mpm
