@@ -2,7 +2,7 @@
 cell, by what all methods say of them. It knows the distribution of plants, worlds and faults, as no method in a plant does.
 
     mpmbench suite standard -o out/suite
-    python3 examples/learned_reference.py mpmbench out/suite/shell-3x3.worlds.h5 out/suite/wood-berry.mixed.h5 -o out/learned
+    python3 examples/learned_reference.py mpmbench out/suite/shell-3x3.worlds.h5 -o out/learned      # or several
 
 For each archive of a cell it runs loops of its study in other worlds, under --seed to train on and under the next seed to
 test on; trains a random forest and gradient boosting of scikit-learn, and keeps the one with the larger likelihood in a
@@ -59,7 +59,7 @@ SIGNALS = {
            "e_halves": "log ratio of var e in the second half to that in the first",
            **{f"e_lag_{lag}": f"autocorrelation of e at lag {lag} less that of the benchmark" for lag in LAGS},
            "e_setpoint": "correlation of e with the setpoint"},
-    "channel": {"e_move": f"largest correlation of a difference of e with a move of the MV up to {FARTHEST} samples before"},
+    "channel": {"e_move": f"largest correlation of a difference of e with a move of the MV, 0 to {FARTHEST} samples before"},
 }
 
 
@@ -331,18 +331,23 @@ def learn(loops, rows, kind=None):
 
 
 def with_interval(hits, counted, worlds):
-    """A share of loops, with the 95 % interval of worlds drawn at random (bootstrap)."""
+    """A share of loops with its 95 % interval: Wilson's for as many independent loops as have the variance that the
+    share shows between worlds, with Student's quantile, as the rates of studies with worlds (docs/methods.md)."""
     import numpy
+    from scipy import stats
     names = sorted(set(worlds))
-    sums = numpy.array([[(hits & counted)[worlds == each].sum(), counted[worlds == each].sum()] for each in names])
-    drawn = numpy.random.default_rng(1).integers(len(names), size=(2000, len(names)))
-    resampled = sums[drawn].sum(1)
-    resampled = resampled[resampled[:, 1] > 0]
-    if not len(resampled) or sums[:, 1].sum() == 0:
-        return {"value": None, "lower": None, "upper": None, "count": 0}
-    lower, upper = numpy.quantile(resampled[:, 0] / resampled[:, 1], [0.025, 0.975])
-    return {"value": float(sums[:, 0].sum() / sums[:, 1].sum()), "lower": float(lower), "upper": float(upper),
-            "count": int(sums[:, 1].sum())}
+    right, n = (numpy.array([of[worlds == each].sum() for each in names]) for of in (hits & counted, counted))
+    total = int(n.sum())
+    if total == 0 or len(names) < 2:
+        return {"value": None, "lower": None, "upper": None, "count": total}
+    p = right.sum() / total
+    between = len(names) / (len(names) - 1) * ((right - p * n) ** 2).sum() / total
+    size = total / max(1.0, between / (p * (1 - p))) if 0 < p < 1 else total
+    squared = stats.t.ppf(0.975, len(names) - 1) ** 2
+    middle = (p + squared / (2 * size)) / (1 + squared / size)
+    half = (squared * (p * (1 - p) / size + squared / (4 * size * size))) ** 0.5 / (1 + squared / size)
+    return {"value": float(p), "lower": float(max(0.0, middle - half)), "upper": float(min(1.0, middle + half)),
+            "count": total}
 
 
 def judged(model, loops):

@@ -72,14 +72,15 @@ def main(program, source):
             return result.stderr if code else result.stdout
 
         run(program, "suite", "small.toml", "-o", "suite", "--quiet")
-        said = run(sys.executable, "-B", script, program, "suite/column.worlds.h5", "-o", "learned", "--train", 60, "--test", 24,
-                   "--sizes", 30)
+        said = run(sys.executable, "-B", script, program, "suite/column.worlds.h5", "-o", "learned", "--train", 60,
+                   "--test", 24, "--sizes", 30)
         result, = json.loads((folder / "learned/learned.json").read_text())
         assert [each["loops"] for each in result["curve"]] == [30, 60] and result["test_loops"] == 24, result
         assert [each["worlds"] for each in result["curve"]] == [5, 10], result
         assert "column.worlds" in said and "60 (10)" in said, said
         for each in result["curve"]:
-            assert each["right"]["count"] == 24 and each["right"]["lower"] <= each["right"]["value"] <= each["right"]["upper"]
+            right = each["right"]
+            assert right["count"] == 24 and right["lower"] <= right["value"] <= right["upper"], each
         assert result["curve"][-1]["right"]["value"] > 0.5, result  # of three answers
 
         # Beside the methods of the cell, on its loops, with a threshold calibrated on healthy loops of other worlds.

@@ -4,9 +4,9 @@ that stand between `<!-- worlds: NAME -->` and `<!-- end -->`.
 usage: worlds_board.py SOURCES [LEADERBOARD|- [LEARNED]]
 
 With LEADERBOARD, the leaderboard.json that `mpmbench suite standard -o FOLDER` has written, first makes
-docs/leaderboard.json of it: shares rounded to whole percent. With LEARNED, the learned.json of examples/learned_reference.py,
-puts its numbers there as well; without it, and with - in the place of LEADERBOARD, those that are there stay. Then writes the tables. The sentences around them
-are to be read again. check_documents.py compares the tables with the JSON.
+docs/leaderboard.json of it: shares rounded to whole percent. With LEARNED, the learned.json of
+examples/learned_reference.py, puts its numbers there as well; without it, and with - in the place of LEADERBOARD, those
+that are there stay. Then writes the tables. The sentences around them are to be read again. check_documents.py compares the tables with the JSON.
 """
 
 import json
