@@ -1,8 +1,8 @@
 """A learned method: a random forest of scikit-learn for each plant, trained on loops of another seed.
 
-    mpmbench suite standard --seed 1 --methods sse -o train        # another seed than the one to be judged on
+    mpmbench suite exact --seed 1 --methods sse -o train        # another seed than the one to be judged on
     python3 examples/forest.py train forest.pickle mpmbench train/*.h5
-    mpmbench suite standard --method-file examples/forest.toml     # command = [..., "forest.py", "forest.pickle"]
+    mpmbench suite exact --method-file examples/forest.toml        # command = [..., "forest.py", "forest.pickle"]
 
 It learns whether a fault has an impact (`impact` of the archive), which source it has, and which CV it affects. It flags
 loops above the out-of-bag score that 5 % of its healthy training loops exceed. It needs python3-sklearn and python3-h5py

@@ -83,17 +83,17 @@ RepairGains repair_gains(const Study& study, const ExperimentDraw& draw, int loo
   if (now.empty() || without.empty())
     return {};
   const TransferMatrix plant = true_plant(moved, draw);
-  const Eigen::Index ny = moved.cv_count(), nu = moved.mv_count();
-  RepairGains gains{Eigen::MatrixXd::Zero(ny, nu), Eigen::MatrixXd::Zero(ny, nu)};
-  for (Eigen::Index cv = 0; cv < ny; ++cv)
-    for (Eigen::Index mv = 0; mv < nu; ++mv) {
-      if (plant(cv, mv) == moved.plant.G(cv, mv))
+  RepairGains gains{Eigen::MatrixXd::Zero(plant.rows(), plant.cols()),
+                    Eigen::MatrixXd::Zero(plant.rows(), plant.cols())};
+  for (Eigen::Index cv = 0; cv < plant.rows(); ++cv)
+    for (Eigen::Index input = 0; input < plant.cols(); ++input) {
+      if (plant(cv, input) == moved.plant.G(cv, input))
         continue;
       TransferMatrix repaired = moved.plant.G;
-      repaired(cv, mv) = plant(cv, mv);
+      repaired(cv, input) = plant(cv, input);
       const RatioOfMeans gain = gain_of(now, runs.costs(repaired, draw), without);
-      gains.gain(cv, mv) = gain.value;
-      gains.error(cv, mv) = gain.error;
+      gains.gain(cv, input) = gain.value;
+      gains.error(cv, input) = gain.error;
     }
   return gains;
 }

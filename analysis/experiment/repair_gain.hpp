@@ -19,15 +19,15 @@ namespace mpm {
 ///     gain(i, j) = (E J - E J(i, j)) / E J_0
 ///
 /// J is that of the loop as it is, J(i, j) that of the same loop under the controller whose model has the
-/// true channel from MV j to CV i (loop_with_model()), J_0 that of the same loop without the fault. The
-/// expectation is over noise and background; the loops of one noise are compared with each other. 0.3: the
-/// repair takes away 30 % of what the loop costs without the fault. A gain below 0 is a repair that does
-/// harm.
+/// true channel from input j to CV i (loop_with_model()), J_0 that of the same loop without the fault. The
+/// inputs are the MVs, and behind them the MDs. The expectation is over noise and background; the loops of
+/// one noise are compared with each other. 0.3: the repair takes away 30 % of what the loop costs without the
+/// fault. A gain below 0 is a repair that does harm.
 ///
-/// | member | shape   | meaning                                                                           |
-/// |--------|---------|-----------------------------------------------------------------------------------|
-/// | gain   | ny x nu | 0 where plant and model agree; NaN where the repaired loop does not run to its end |
-/// | error  | ny x nu | its standard error (ratio_of_means()); NaN of a single loop                       |
+/// | member | shape          | meaning                                                                    |
+/// |--------|----------------|----------------------------------------------------------------------------|
+/// | gain   | ny x (nu + nd) | 0: plant and model agree; NaN: the repaired loop does not run to its end   |
+/// | error  | ny x (nu + nd) | its standard error (ratio_of_means()); NaN of a single loop                |
 ///
 /// Both are empty, or NaN out of an archive, where nothing was computed.
 struct RepairGains {

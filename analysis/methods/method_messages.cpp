@@ -254,6 +254,53 @@ class AnswerReader {
   const std::string& place_;
 };
 
+/// As AnswerReader reads a number.
+Json number_json(double value) {
+  if (std::isnan(value))
+    return {};
+  if (std::isinf(value))
+    return value > 0.0 ? "Infinity" : "-Infinity";
+  return value;
+}
+
+Json channel_json(const Channel& channel, const PlantModel& plant) {
+  return {plant.cvs[static_cast<std::size_t>(channel.cv)].name,
+          plant.mvs[static_cast<std::size_t>(channel.mv)].name};
+}
+
+/// The three lists of what a method says of each CV.
+void add_cvs_json(const Assessment& assessment, const PlantModel& plant, bool tells_sources, Json& json) {
+  for (std::size_t cv = 0; cv < plant.cvs.size(); ++cv) {
+    const CvAssessment of_cv = cv < assessment.cvs.size() ? assessment.cvs[cv] : CvAssessment{};
+    json["cv_flagged"].push_back(of_cv.flagged ? Json(*of_cv.flagged) : Json());
+    json["cv_score"].push_back(number_json(of_cv.score));
+    if (tells_sources)
+      json["cv_source"].push_back(to_string(of_cv.source));
+  }
+}
+
+/// Those with a scope that an answer can have.
+Json numbers_json(const Assessment& assessment, const PlantModel& plant, const MethodDescription& method) {
+  const auto ny = static_cast<Eigen::Index>(plant.cvs.size()),
+             nu = static_cast<Eigen::Index>(plant.mvs.size());
+  Json numbers = Json::object();
+  for (const AssessmentNumberInfo& info : method.numbers) {
+    if (info.scope == NumberScope::loop)
+      numbers[info.name] = number_json(assessment.number(info.name));
+    else if (info.scope == NumberScope::cv)
+      for (Eigen::Index cv = 0; cv < ny; ++cv)
+        numbers[info.name].push_back(number_json(assessment.number(info.name, cv)));
+    else if (info.scope == NumberScope::channel)
+      for (Eigen::Index cv = 0; cv < ny; ++cv) {
+        Json row = Json::array();
+        for (Eigen::Index mv = 0; mv < nu; ++mv)
+          row.push_back(number_json(assessment.number(info.name, cv, mv)));
+        numbers[info.name].push_back(std::move(row));
+      }
+  }
+  return numbers;
+}
+
 }  // namespace
 
 const std::vector<LoopSignal>& loop_signals() {
@@ -287,6 +334,31 @@ Json context_json(const AssessmentContext& context) {
   json["operating_point"] = {{"u", vector_json(context.basis.point.u)},
                              {"y", vector_json(context.basis.point.y)}};
   json["benchmark"] = context.benchmark ? loop_json(*context.benchmark) : Json();
+  return json;
+}
+
+Json answer_json(const Assessment& assessment, const PlantModel& plant, const MethodDescription& method) {
+  if (assessment.status == AssessmentStatus::not_applicable)
+    return Json::object({{"not_applicable", assessment.reason}});
+  if (assessment.status != AssessmentStatus::ok)
+    return Json::object({{"error", assessment.reason}});
+  Json json{{"flagged", assessment.flagged}, {"score", number_json(assessment.score)}};
+  if (method.locates_cvs)
+    add_cvs_json(assessment, plant, method.tells_sources, json);
+  if (method.names_channels) {
+    json["channels"] = Json::array();
+    for (const Channel& channel : assessment.flagged_channels)
+      json["channels"].push_back(channel_json(channel, plant));
+  }
+  if (const auto& named = assessment.named_mismatch)
+    json["mismatch"] = {{"channel", channel_json(named->channel, plant)},
+                        {"parameter", to_string(named->parameter)},
+                        {"size", number_json(named->size)},
+                        {"lower", number_json(named->lower)},
+                        {"upper", number_json(named->upper)}};
+  if (assessment.named_candidate)
+    json["candidate"] = *assessment.named_candidate + 1;
+  json["numbers"] = numbers_json(assessment, plant, method);
   return json;
 }
 

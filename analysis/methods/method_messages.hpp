@@ -38,6 +38,12 @@ nlohmann::ordered_json loop_json(const AssessedLoop& loop);
 /// operating point and benchmark: all that a method may know besides the loop. No draw, no seed.
 nlohmann::ordered_json context_json(const AssessmentContext& context);
 
+/// What a method of this program says of a loop, in the form of an answer (see assessment_of()):
+/// `cv_flagged`, `cv_score` and `cv_source` of all CVs where it locates CVs, and its numbers of the loop, of
+/// CVs and of channels; `not_applicable` or `error` where there is no verdict.
+nlohmann::ordered_json answer_json(const Assessment& assessment, const PlantModel& plant,
+                                   const MethodDescription& method);
+
 /// The verdict of an answer:
 ///
 /// | key            | value                                                                            |

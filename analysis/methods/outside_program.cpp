@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/methods/method_messages.hpp"
+#include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
 #include "plants/system/foreign_text.hpp"
 #include "plants/system/program_talk.hpp"
@@ -39,14 +40,22 @@ Json describe_content(const MethodProgram& program) {
   return {{"protocol", kProtocol}, {"name", program.name}, {"options", Json::parse(program.options)}};
 }
 
+/// What a program says of itself, and the methods of this program whose answers it is told with each loop.
+struct ProgramDescription {
+  MethodDescription method;
+  std::vector<std::string> methods;
+};
+
 /// Reads what a program says of itself.
 class DescriptionReader {
  public:
   explicit DescriptionReader(const MethodProgram& program)
       : place_(fmt::format("method '{}', description", program.name)) {}
 
-  void read(const Json& answer, MethodDescription& method) const {
-    refuse_others(answer, {"title", "verdict", "needs", "answers", "numbers", "stated_false_alarms"});
+  void read(const Json& answer, ProgramDescription& description) const {
+    MethodDescription& method = description.method;
+    refuse_others(answer,
+                  {"title", "verdict", "needs", "answers", "methods", "numbers", "stated_false_alarms"});
     method.title = text(answer, "title", method.title);
     method.verdict = text(answer, "verdict", method.verdict);
     for (const std::string& need : words(answer, "needs"))
@@ -62,6 +71,8 @@ class DescriptionReader {
                   {"source", &method.tells_sources},
                   {"mismatch", &method.names_mismatches},
                   {"candidate", &method.names_candidates}}});
+    for (const std::string& name : words(answer, "methods"))
+      description.methods.push_back(own_method(name));
     if (const auto stated = answer.find("stated_false_alarms"); stated != answer.end() && !stated->is_null())
       method.stated_false_alarms = stated->get<double>();
     if (const auto numbers = answer.find("numbers"); numbers != answer.end())
@@ -93,6 +104,19 @@ class DescriptionReader {
 
   static std::vector<std::string> words(const Json& answer, const char* key) {
     return answer.value(key, std::vector<std::string>{});
+  }
+
+  /// A method from outside could ask for itself.
+  std::string own_method(const std::string& name) const {
+    std::vector<std::string> own;
+    for (const AssessmentMethodInfo& method : assessment_methods())
+      if (method.origin.empty())
+        own.push_back(method.name);
+    if (std::find(own.begin(), own.end(), name) == own.end())
+      throw InputError(fmt::format("{}, methods", place_),
+                       fmt::format("'{}'", foreign_text(name, kShownOfUnknown)),
+                       fmt::format("{}", fmt::join(own, ", ")));
+    return name;
   }
 
   void set(const std::string& word, const Flags& flags) const {
@@ -143,8 +167,9 @@ class DescriptionReader {
   std::string place_;
 };
 
-MethodDescription description_of(const MethodProgram& program) {
-  MethodDescription method;
+ProgramDescription description_of(const MethodProgram& program) {
+  ProgramDescription description;
+  MethodDescription& method = description.method;
   method.name = program.name;
   method.title = program.name;
   method.verdict = "as the program means it";
@@ -152,7 +177,7 @@ MethodDescription description_of(const MethodProgram& program) {
   method.origin = fmt::format("program {}", fmt::join(program.command, " "));
   try {
     const Json answer = talk_with(program)->ask(question("describe", describe_content(program)));
-    DescriptionReader(program).read(answer, method);
+    DescriptionReader(program).read(answer, description);
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("method '{}', description", program.name), error.what(),
                      "the description of a method, docs/bring_your_own.md");
@@ -160,22 +185,31 @@ MethodDescription description_of(const MethodProgram& program) {
     throw InputError(fmt::format("method '{}', description", program.name), error.what(),
                      fmt::format("an answer within {} s", program.time_limit));
   }
-  return method;
+  return description;
 }
 
 /// One thread's or worker's own.
 class ProgramMethod final : public AssessmentMethod {
  public:
-  ProgramMethod(const MethodProgram& program, const MethodDescription& method,
+  ProgramMethod(const MethodProgram& program, const ProgramDescription& description,
                 const AssessmentContext& context)
-      : program_(program), method_(method), plant_(context.study.plant), context_(context_json(context)) {}
+      : program_(program),
+        method_(description.method),
+        plant_(context.study.plant),
+        context_(context_json(context)) {
+    for (const std::string& name : description.methods)
+      told_.push_back({&assessment_method(name), {assessment_method(name), context}});
+  }
 
   Assessment assess(const AssessedLoop& loop) override {
+    Json told = loop_json(loop);
+    for (Told& each : told_)
+      told["answers"][each.method->name] = answer_json(each.assessor.assess(loop), plant_, *each.method);
     Json answer;
     try {
       if (!talk_)
         begin();
-      answer = talk_->ask(question("loop", loop_json(loop)));
+      answer = talk_->ask(question("loop", std::move(told)));
     } catch (const ChildFailure& error) {
       talk_.reset();
       throw InputError(fmt::format("method '{}'", program_.name), error.what(),
@@ -188,6 +222,12 @@ class ProgramMethod final : public AssessmentMethod {
   }
 
  private:
+  /// A method whose answers the program is told.
+  struct Told {
+    const AssessmentMethodInfo* method;
+    Assessor assessor;
+  };
+
   void begin() {
     talk_ = talk_with(program_);
     talk_->ask(question("describe", describe_content(program_)));
@@ -198,14 +238,15 @@ class ProgramMethod final : public AssessmentMethod {
   const MethodDescription method_;
   const PlantModel& plant_;
   const Json context_;
+  std::vector<Told> told_;
   std::unique_ptr<ProgramTalk> talk_;  ///< none before the first loop, and after one that failed
 };
 
 }  // namespace
 
 AssessmentMethodInfo program_method(const MethodProgram& program) {
-  const MethodDescription description = description_of(program);
-  return {description, {}, [program, description](const AssessmentContext& context) {
+  const ProgramDescription description = description_of(program);
+  return {description.method, {}, [program, description](const AssessmentContext& context) {
             return std::make_unique<ProgramMethod>(program, description, context);
           }};
 }

@@ -141,7 +141,7 @@ void add_suite(CommandSet& commands) {
   CLI::App& app =
       commands.add("suite", "Run a suite of plants and families of experiments, and make its leaderboard",
                    [options, &commands] { return run_suite(*options, commands.command_line()); });
-  add_path(app, "SUITE", options->suite, "Suite file, or name of a shipped suite: standard, worlds, quick")
+  add_path(app, "SUITE", options->suite, "Suite file, or name of a shipped suite: standard, exact, quick")
       ->required();
   add_path(app, "-o,--output", options->output,
            "Folder for the archives and the leaderboard; finished cells in it are kept")

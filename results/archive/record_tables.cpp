@@ -427,21 +427,49 @@ std::vector<RecordVariable> fault_costs(const Study& study) {
               &FaultCost::economics)};
 }
 
+/// The channels of some inputs in a matrix of RepairGains, `count` of them from column `first` on.
+RecordVariable repair_gain_variable(const Study& study, VariableText text, const char* inputs,
+                                    Eigen::Index first, Eigen::Index count,
+                                    Eigen::MatrixXd RepairGains::*member) {
+  const Eigen::Index rows = study.cv_count(), all = study.mv_count() + study.md_count();
+  RecordAccess<double> access{[=](const Record& record, double* values) {
+                                Eigen::Map<RowMajorMatrix> to(values, rows, count);
+                                if (const Eigen::MatrixXd& from = record.repair.*member; from.size() == 0)
+                                  to.setConstant(kNaN);
+                                else
+                                  to = from.middleCols(first, count);
+                              },
+                              [=](Record& record, const double* values) {
+                                Eigen::MatrixXd& to = record.repair.*member;
+                                if (to.size() == 0)
+                                  to.setConstant(rows, all, kNaN);
+                                to.middleCols(first, count) =
+                                    Eigen::Map<const RowMajorMatrix>(values, rows, count);
+                              }};
+  return lately({std::move(text), {"cv", inputs}, {count_of(rows), count_of(count)}, std::move(access)});
+}
+
 /// What repairs of the model would bring in the worlds of a study (RepairGains), since version 2.5.
 std::vector<RecordVariable> repair_gain_variables(const Study& study) {
-  const auto of = [&](VariableText text, Eigen::MatrixXd RepairGains::*member) {
-    return lately(matrix(
-        std::move(text), {"cv", "mv"}, study.cv_count(),
-        study.mv_count(), [member](auto& record) -> auto& { return record.repair.*member; }));
-  };
-  return {
-      of({"repair_gain",
-          "what the loop costs less once the controller's model has the true channel, over what it costs "
-          "without the fault",
-          "1", "0: plant and model agree; NaN: not computed, or the repaired loop does not run to its end"},
-         &RepairGains::gain),
-      of({"repair_gain_error", "standard error of repair_gain", "1", "NaN: of one loop, or as repair_gain"},
-         &RepairGains::error)};
+  const Eigen::Index nu = study.mv_count(), nd = study.md_count();
+  const VariableText gain{
+      "repair_gain",
+      "what the loop costs less once the controller's model has the true channel, over what it costs "
+      "without the fault",
+      "1", "0: plant and model agree; NaN: not computed, or the repaired loop does not run to its end"};
+  const VariableText error{"repair_gain_error", "standard error of repair_gain", "1",
+                           "NaN: of one loop, or as repair_gain"};
+  std::vector<RecordVariable> variables{repair_gain_variable(study, gain, "mv", 0, nu, &RepairGains::gain),
+                                        repair_gain_variable(study, error, "mv", 0, nu, &RepairGains::error)};
+  if (nd > 0) {
+    VariableText of_mds = gain, error_of_mds = error;
+    of_mds.name = "repair_gain_md";
+    error_of_mds.name = "repair_gain_md_error";
+    error_of_mds.long_name = "standard error of repair_gain_md";
+    variables.push_back(repair_gain_variable(study, of_mds, "md", nu, nd, &RepairGains::gain));
+    variables.push_back(repair_gain_variable(study, error_of_mds, "md", nu, nd, &RepairGains::error));
+  }
+  return variables;
 }
 
 RecordTable outcomes(const Study& study, const AssessmentForms& forms) {

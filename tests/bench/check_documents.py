@@ -1,6 +1,6 @@
 """Runs every command of README.md, docs/tutorial.md and docs/gates.md, page by page, each in an empty folder, and the
-Python of all other pages, page by page, beside a small archive. The leaderboard of README.md must be that of
-docs/leaderboard.json.
+Python of all other pages, page by page, beside a small archive. The leaderboards of README.md and docs/suite.md
+must be that of docs/leaderboard.json.
 
 usage: check_documents.py MPMBENCH SOURCES
 
@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 
-from worlds_board import percents, with_blocks
+from worlds_board import blocks as blocks_of, with_blocks
 
 PAGES = ["README.md", "docs/tutorial.md", "docs/gates.md"]
 RUN_ELSEWHERE = {"docs/file_format.md"}  # by tests/results/archive/check_reading_page.py, which checks its numbers
@@ -30,7 +30,7 @@ REQUESTS = """{"call": "reset", "parameters": {"area": 2.0}, "sample_time": 1.0}
 SHIM = """#!/bin/sh
 case "$1" in
   run) case "$*" in *heater.toml*) set -- "$@" --experiments 21 ;; *) set -- "$@" --experiments 8 ;; esac ;;
-  suite) set -- "$@" --experiments 2 --plants "$PLANT" --families classic ;;
+  suite) set -- "$@" --experiments 2 --plants "$PLANT" --families exact ;;
 esac
 exec "$MPMBENCH" "$@"
 """
@@ -117,31 +117,16 @@ def check_python(program, sources):
     assert {"docs/methods_thesis.md", "docs/own_plant.md"} <= set(ran), ran
 
 
-def check_worlds(sources):
-    """The tables of the suite worlds have the shares of its board."""
-    page = (sources / "docs/suite.md").read_text(encoding="utf-8")
-    board = json.loads((sources / "docs/leaderboard_worlds.json").read_text())
-    assert page == with_blocks(page, board), "docs/suite.md: run tests/bench/worlds_board.py"
-
-
 def check_board(sources):
-    """Each row of the table in README.md has the shares of its method over all families."""
-    methods = {method["name"]: method["all"]["rates"] for method in
-               json.loads((sources / "docs/leaderboard.json").read_text())["methods"] if "rates" in method["all"]}
-    rows = re.findall(r"^\| `[\w-]+`, .*", (sources / "README.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
-    assert len(rows) > 5, rows
-    for line in rows:
-        cells = [cell.strip() for cell in line.strip("|").split("|")][1:]
-        rates = ("answered", "false_alarm_healthy", "power_05_impact", "located", "source_all")
-        for cell, name in zip(cells, rates):
-            rate = methods[line.split("`")[1]].get(name)
-            expected = str(round(100 * rate["value"])) if name == "answered" else percents(rate) or "names none"
-            assert cell.removesuffix(", by construction") == expected, (line, name, expected)
+    """The tables of the standard suite have the shares of its board."""
+    board = json.loads((sources / "docs/leaderboard.json").read_text())
+    for name, tables in blocks_of(board).items():
+        page = (sources / name).read_text(encoding="utf-8")
+        assert page == with_blocks(page, tables), f"{name}: run tests/bench/worlds_board.py"
 
 
 def main(program, sources):
     check_board(pathlib.Path(sources))
-    check_worlds(pathlib.Path(sources))
     check_python(program, pathlib.Path(sources))
     with tempfile.TemporaryDirectory() as name:
         shims = pathlib.Path(name)

@@ -7,6 +7,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -114,6 +115,56 @@ parameter = [{{name = "failure", value = {how}}}]
         shutil.rmtree(left)
 
 
+# Random faults, in worlds in which its parameters differ from those that the model was made of.
+RANDOM = """
+[experiments]
+mpm = 4
+ud = 2
+mpm_ud = 0
+healthy = 2
+[[mismatch.plant_parameter]]
+name = "cd1"
+factor = {uniform = [1.1, 1.3]}
+affected = ["h1"]
+"""
+WORLD = """
+[world]
+count = 2
+cost_loops = 2
+plant_parameter = [{name = "cd1", factor = {uniform = [0.95, 1.05]}}, {name = "A1", factor = {uniform = [0.95, 1.05]}}]
+background = {cv_size = {uniform = [0.25, 0.5]}, time_constant = {constant = 5}}
+"""
+
+
+def check_worlds(run, folder, study):
+    """In worlds the FMU has the parameters of its world: threads, processes and replay give the same bits, and a world
+    is the plant with these parameters."""
+    text = study[:study.index("[[scenario]]")].replace("samples = 800", "samples = 200")
+    text = re.sub(r"\[\[simulation.step\]\]\ncv = \"\w+\"\nsample = [2-9]\d\d\nlevel = [\d.-]+\n", "", text)
+    (folder / "worlds.toml").write_text(text + RANDOM + WORLD)
+    words = ["--store", "all", "--quiet", "--allow-unhealthy-basis"]
+    worlds, threads = folder / "worlds.h5", folder / "worlds-threads.h5"
+    run("run", "worlds.toml", "-o", worlds, "--jobs", 2, *words)
+    run("run", "worlds.toml", "-o", threads, "--jobs", 2, "--parallel", "threads", *words)
+    check_same(threads, worlds)
+    assert "bit-identical" in run("replay", worlds, 3, "--trust-programs").stdout
+    with h5py.File(worlds) as file:
+        assert (file["status"][:] == 0).all() and set(file["world"][:]) == {0, 1}
+        faulty = file["kind"][:] != 0
+        assert numpy.isfinite(file["loss_ratio"][:]).all() and ((file["loss_ratio"][:] != 1) == faulty).all()
+        assert numpy.isnan(file["repair_gain"][:]).all()  # it has parameters, and no channels to repair
+        y = file["trajectories/y"][:]
+    healthy = RANDOM.replace("mpm = 4", "mpm = 0").replace("ud = 2\n", "ud = 0\n")
+    world = "[world]\ncount = 1\nplant_parameter = [{name = \"cd1\", factor = {constant = 1.25}}]\n"
+    (folder / "one.toml").write_text(text + healthy + world)
+    (folder / "other.toml").write_text(text.replace("value = 3.145", f"value = {3.145 * 1.25!r}") + healthy)
+    for each in "one", "other":
+        run("run", f"{each}.toml", "-o", folder / f"{each}.h5", *words)
+    with h5py.File(folder / "one.h5") as one, h5py.File(folder / "other.h5") as other:
+        assert (one["trajectories/y"][:] == other["trajectories/y"][:]).all()
+        assert not (one["trajectories/y"][0] == y[-1]).all()
+
+
 def main(program, fmu, base):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -165,6 +216,7 @@ def main(program, fmu, base):
         message = run("replay", archive, 3, "--trust-programs", cwd=elsewhere, code=2).stderr
         assert "plant.fmu.file: found 'tank.fmu', which is no file" in message, message
 
+        check_worlds(run, folder, (folder / "study.toml").read_text())
         check_hostile(program, folder, temporary, (folder / "study.toml").read_text())
 
         # What a file claims is held against a bound before it is unpacked, and a path leads nowhere.

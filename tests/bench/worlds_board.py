@@ -1,11 +1,12 @@
-"""The board of the suite `worlds` in the documents: docs/leaderboard_worlds.json, and the tables of docs/suite.md that
-stand between `<!-- worlds: NAME -->` and `<!-- end -->`.
+"""The board of the suite `standard` in the documents: docs/leaderboard.json, and the tables of README.md and docs/suite.md
+that stand between `<!-- worlds: NAME -->` and `<!-- end -->`.
 
-usage: worlds_board.py SOURCES [LEADERBOARD]
+usage: worlds_board.py SOURCES [LEADERBOARD|- [LEARNED]]
 
-With LEADERBOARD, the leaderboard.json that `mpmbench suite worlds -o FOLDER` has written, first makes
-docs/leaderboard_worlds.json of it: shares rounded to whole percent. Then writes the tables. The sentences around them
-are to be read again. check_documents.py compares the tables with the JSON.
+With LEADERBOARD, the leaderboard.json that `mpmbench suite standard -o FOLDER` has written, first makes
+docs/leaderboard.json of it: shares rounded to whole percent. With LEARNED, the learned.json of
+examples/learned_reference.py, puts its numbers there as well; without it, and with - in the place of LEADERBOARD, those
+that are there stay. Then writes the tables. The sentences around them are to be read again. check_documents.py compares the tables with the JSON.
 """
 
 import json
@@ -29,6 +30,15 @@ SHARES = {
 }
 
 
+# Where each method is from, for README.md.
+ORIGINS = {"mpmbench": "ours", "likelihood": "ours", "order": "ours", "counterfactual": "ours", "excitation": "ours",
+           "variance-ratio": "the baseline", "sse": "simulation error", "botelho": "the thesis",
+           "arx-oe": "Lu et al. (2020)", "lasso": "group lasso", "local": "local approach", "pmr": "plant-model ratio",
+           "badwe2009": "Badwe et al.", "badwe2010": "Badwe et al.", "yu-qin": "Yu and Qin", "sun": "Sun et al.",
+           "mqi-channels": "model quality"}
+REFERENCE = "ceiling"
+
+
 def rounded(number):
     return {key: round(number[key], 2) for key in ("value", "lower", "upper")}
 
@@ -41,8 +51,18 @@ def scores(entry):
     return {"passes": entry["passes"], "rates": kept}
 
 
+def learned_cell(cell):
+    """What of a learned reference the documents keep: shares rounded to whole percent."""
+    def kept(rates):
+        return {name: rounded(rate) for name, rate in rates.items()
+                if isinstance(rate, dict) and rate.get("value") is not None}
+    return {**{key: cell[key] for key in ("cell", "classifier", "seed", "test_loops")},
+            "curve": [{"loops": each["loops"], "worlds": each["worlds"], **kept(each)} for each in cell["curve"]],
+            "methods": {name: kept(rates) for name, rates in cell["methods"].items()}}
+
+
 def document(board):
-    """docs/leaderboard_worlds.json of a leaderboard.json."""
+    """docs/leaderboard.json of a leaderboard.json."""
     families = [family["name"] for family in board["families"]]
     return {
         **{key: board[key] for key in ("suite", "version", "title", "seed", "confidence")},
@@ -113,32 +133,74 @@ def detection(board):
         ("flagged at 5 % false alarms", "power_05", ["drift"]),
         ("right source of all faults", "source_all", ["exact", "errors", "worlds", "mixed"])],
         {"source_all": "names none"})
-    return table(["method", *heads], [[f"`{method['name']}`", *(cell(method) for cell in cells)]
-                                      for method in board["methods"]])
+    return table(["method", *heads], [
+        [f"`{method['name']}`" if method["name"] != REFERENCE else "reference", *(cell(method) for cell in cells)]
+        for method in board["methods"]])
+
+
+def readme(board):
+    """The methods that name sources, best first, and then the others."""
+    methods = {method["name"]: method for method in board["methods"]}
+    heads, cells = columns(board, [
+        ("healthy, flagged", "false_alarm_healthy", ["all"]), ("impact found", "power_05_impact", ["all"]),
+        ("right source", "source_05_impact", ["all"]), ("share of the best repair", "repair_gain_share_05", ["all"])],
+        {"source_05_impact": "names none", "repair_gain_share_05": "names none"})
+    return table(["method", *(head.removesuffix(": all") for head in heads)], [
+        [f"`{entry['method']}`, {ORIGINS[entry['method']]}", *(cell(methods[entry["method"]]) for cell in cells)]
+        for entry in board["ranking"]])
+
+
+def curve(board):
+    """The learned reference by the number of its training loops."""
+    rates = {"source_05_impact": "right source of the faults with an impact", "power_05_impact": "impact found",
+             "false_alarms": "healthy, flagged", "right": "right answer of all loops"}
+    return table(["cell", "classifier", "trained on (worlds)", *rates.values()], [
+        [f"`{cell['cell']}`", cell["classifier"], f"{each['loops']} ({each['worlds']})",
+         *(percents(each.get(rate)) or "-" for rate in rates)] for cell in board["learned"] for each in cell["curve"]])
+
+
+def learned(board):
+    """The learned reference beside the methods, on the loops of the cells."""
+    names = [name for name, _ in sorted(
+        {name: sum(cell["methods"].get(name, {}).get("source_05_impact", {}).get("value", 0) for cell in board["learned"])
+         for cell in board["learned"] for name, rates in cell["methods"].items() if "source_05_impact" in rates
+         and name not in (REFERENCE, "learned")}.items(), key=lambda each: -each[1])]
+    return table(["cell", "learned (reference)", *(f"`{name}`" for name in names)], [
+        [f"`{cell['cell']}`", *(percents(cell["methods"].get(name, {}).get("source_05_impact")) or "-"
+                                for name in ["learned", *names])] for cell in board["learned"]])
 
 
 def blocks(board):
-    """The tables by their names."""
-    made = {"detection": detection(board)}
-    if "ranking" in board:
-        made["ranking"] = ranking(board)
-    return made
+    """The tables by page and name."""
+    suite = {"detection": detection(board), "ranking": ranking(board)}
+    if "learned" in board:
+        suite.update(curve=curve(board), learned=learned(board))
+    return {"README.md": {"board": readme(board)}, "docs/suite.md": suite}
 
 
-def with_blocks(page, board):
-    """The page with the tables of the board; each of them must have its place."""
-    for name, text in blocks(board).items():
+def with_blocks(page, tables):
+    """The page with these tables; each of them must have its place."""
+    for name, text in tables.items():
         page, places = re.subn(rf"(<!-- worlds: {name} -->\n).*?(<!-- end -->)", lambda found: found[1] + text + found[2],
                                page, flags=re.DOTALL)
         assert places == 1, name
     return page
 
 
-def main(sources, leaderboard=None):
-    kept, page = pathlib.Path(sources) / "docs/leaderboard_worlds.json", pathlib.Path(sources) / "docs/suite.md"
-    if leaderboard:
-        kept.write_text(json.dumps(document(json.loads(pathlib.Path(leaderboard).read_text())), indent=1) + "\n")
-    page.write_text(with_blocks(page.read_text(encoding="utf-8"), json.loads(kept.read_text())), encoding="utf-8")
+def main(sources, leaderboard=None, learned_file=None):
+    kept = pathlib.Path(sources) / "docs/leaderboard.json"
+    board = before = json.loads(kept.read_text())
+    if leaderboard and leaderboard != "-":
+        board = document(json.loads(pathlib.Path(leaderboard).read_text()))
+        if "learned" in before:
+            board["learned"] = before["learned"]
+    if learned_file:
+        board["learned"] = [learned_cell(cell) for cell in json.loads(pathlib.Path(learned_file).read_text())]
+    if leaderboard or learned_file:
+        kept.write_text(json.dumps(board, indent=1) + "\n")
+    for name, tables in blocks(board).items():
+        page = pathlib.Path(sources) / name
+        page.write_text(with_blocks(page.read_text(encoding="utf-8"), tables), encoding="utf-8")
 
 
 if __name__ == "__main__":

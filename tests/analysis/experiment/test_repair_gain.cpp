@@ -79,6 +79,26 @@ TEST_CASE(
   CHECK(cost.loss_ratio == Approx(now / without).epsilon(1e-12));
 }
 
+TEST_CASE("repair gain: that of a measured disturbance is that of the feed-forward that knows it",
+          "[repair_gain]") {
+  const Study study = exact_world();
+  const Eigen::Index md = study.mv_count() + 1;
+  ExperimentDraw draw = fault_of_gain(study, 1.0);
+  draw.mismatches = {{2, md, MismatchParameter::gain, 3.0}};
+  SolverStatistics pilots;
+  const RepairGains gains = repair_gains(study, draw, kRepairLoops, testing::kFactory, pilots);
+  Study designed = study;
+  designed.plant.G = true_plant(study, draw);
+  const double now = mean_cost(study, study, draw);
+  const double repaired = mean_cost(designed, study, draw.without_faults());
+  const double without = mean_cost(study, study, draw.without_faults());
+  REQUIRE(gains.gain.cols() == study.mv_count() + study.md_count());
+  CHECK(gains.gain(2, md) == Approx((now - repaired) / without).epsilon(1e-9));
+  CHECK(gains.gain(2, md) > 0.01);
+  CHECK((gains.gain.array() != 0.0).count() == 1);
+  CHECK(*gains.best() == gains.gain(2, md));
+}
+
 TEST_CASE(
     "repair gain: with one channel and moves that cost next to nothing, the repair of its gain gives back "
     "the cost of the loop without the fault",
@@ -125,7 +145,7 @@ TEST_CASE(
       continue;
     }
     REQUIRE(record.repair.gain.rows() == study.cv_count());
-    REQUIRE(record.repair.gain.cols() == study.mv_count());
+    REQUIRE(record.repair.gain.cols() == study.mv_count() + study.md_count());
     CHECK((record.repair.gain.array() != 0.0).all());
     CHECK((record.repair.error.array() > 0.0).all());
   }

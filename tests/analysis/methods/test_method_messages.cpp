@@ -70,6 +70,51 @@ TEST_CASE("method messages: a loop is a list of samples for each row, null where
   CHECK(of_window.at("whole").at("y")[1].size() == 3);
 }
 
+TEST_CASE("method messages: what a method of this program says is an answer that means the same") {
+  Assessment said;
+  said.flagged = true;
+  said.score = kInfinity;
+  said.cvs.resize(7);
+  said.cvs[1] = {.flagged = true, .score = 2.5, .source = FaultSource::mpm};
+  said.cvs[4] = {.flagged = false, .score = -0.5};
+  said.flagged_channels = {{1, 2}, {3, 0}};
+  said.named_mismatch = {
+      .channel = {1, 2}, .parameter = MismatchParameter::dead_time, .size = 2.0, .upper = kInfinity};
+  said.named_candidate = 2;
+  said.numbers = {{"total", 7.0}, {"each", 3.0, 2}, {"gain", 0.25, 6, 1}};
+  const PlantModel& plant = seven_by_three();
+  const MessageJson json = answer_json(said, plant, answering_all());
+  const Assessment read = assessment_of(MessageJson::parse(json.dump()), plant, answering_all(), "here");
+  CHECK((read.flagged && read.score == kInfinity));
+  for (std::size_t cv = 0; cv < 7; ++cv) {
+    CHECK(read.cvs[cv].flagged == said.cvs[cv].flagged);
+    if (said.cvs[cv].flagged)
+      CHECK(read.cvs[cv].score == said.cvs[cv].score);
+    CHECK(read.cvs[cv].source == said.cvs[cv].source);
+  }
+  CHECK(read.flagged_channels == said.flagged_channels);
+  CHECK(read.named_mismatch->channel == said.named_mismatch->channel);
+  CHECK(read.named_mismatch->parameter == said.named_mismatch->parameter);
+  CHECK((read.named_mismatch->size == 2.0 && read.named_mismatch->upper == kInfinity));
+  CHECK(std::isnan(read.named_mismatch->lower));
+  CHECK(read.named_candidate == said.named_candidate);
+  CHECK(read.number("total") == 7.0);
+  CHECK(read.number("each", 2) == 3.0);
+  CHECK(std::isnan(read.number("each", 3)));
+  CHECK(read.number("gain", 6, 1) == 0.25);
+
+  for (const Assessment& none :
+       {Assessment::not_applicable("no setpoints"), Assessment::failed("singular")}) {
+    const Assessment again = assessment_of(answer_json(none, plant, answering_all()), plant, {}, "here");
+    CHECK(again.status == none.status);
+    CHECK(again.reason == none.reason);
+  }
+  // A method that says nothing of CVs or channels.
+  CHECK(answer_json(said, plant, {}).dump() ==
+        R"({"flagged":true,"score":"Infinity","mismatch":{"channel":["y2","u3"],"parameter":"dead_time",)"
+        R"("size":2.0,"lower":null,"upper":"Infinity"},"candidate":3,"numbers":{}})");
+}
+
 TEST_CASE("method messages: an answer with everything comes to its places") {
   const Assessment said = answer_of(R"({"flagged": true, "score": 2.5, "cv": "y2", "source": "other",
       "channels": [["y1", "u2"]], "candidate": 3,

@@ -122,7 +122,7 @@ TEST_CASE("what is no suite is refused by its key", "[suite_file]") {
 }
 
 TEST_CASE("each cell of the shipped suites is another study with healthy loops", "[suite_file]") {
-  for (const char* const name : {"standard", "quick"}) {
+  for (const char* const name : {"standard", "exact", "quick"}) {
     const Suite suite = find_suite(name);
     CHECK(suite.name == name);
     std::set<std::string> texts;
@@ -133,6 +133,17 @@ TEST_CASE("each cell of the shipped suites is another study with healthy loops",
     }
   }
   CHECK(find_suite("standard").plants.size() >= 6);
+}
+
+TEST_CASE("every cell of the standard suite has worlds, and no cell of the suite exact", "[suite_file]") {
+  for (const char* const name : {"standard", "quick"})
+    for (const SuiteCell& cell : find_suite(name).cells) {
+      REQUIRE(cell.study.world);
+      CHECK(cell.study.world->count >= 8);
+      CHECK(cell.study.diagnosis.unstable == UnstableLoops::exclude);
+    }
+  for (const SuiteCell& cell : find_suite("exact").cells)
+    CHECK_FALSE(cell.study.world);
 }
 
 }  // namespace mpm

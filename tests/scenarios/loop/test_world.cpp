@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <string>
 
@@ -8,6 +10,7 @@
 #include "scenarios/files/study_file.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/loop/world.hpp"
@@ -40,6 +43,23 @@ TEST_CASE("world: a study without the table, and the exact world, have no errors
   CHECK(background(study, world, 0).y_d.size() == 0);
   const Trajectory nominal = simulate_experiment(study, basis_draw(), testing::kFactory);
   CHECK(nominal.y == simulate_experiment(exact, basis_draw(), testing::kFactory).y);
+}
+
+TEST_CASE("world: one without errors and background gives the loops of a study without worlds, bit for bit",
+          "[world]") {
+  for (const char* const name : {"chapter6", "wood-berry", "suite-tank"}) {
+    Study study = find_study(name);
+    study.simulation.samples = std::min(study.simulation.samples, 150);
+    Study worlds = study;
+    worlds.world = WorldRanges{.count = 2};
+    for (std::int64_t index = 0; index < 4; ++index) {
+      INFO(name << ", experiment " << index);
+      const Trajectory alone = simulate_experiment(study, draw_experiment(study, index), testing::kFactory);
+      const Trajectory in_world =
+          simulate_experiment(worlds, draw_experiment(worlds, index), testing::kFactory);
+      CHECK((alone.y == in_world.y && alone.u == in_world.u && alone.d == in_world.d));
+    }
+  }
 }
 
 TEST_CASE("world: every channel has errors of its own within their distributions, the same in every loop",
