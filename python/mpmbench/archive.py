@@ -110,10 +110,10 @@ class Archive:
     def _simulated(self, index):
         import io
         import pandas
-        table = pandas.read_csv(io.StringIO(run_program(["export", self.path, "--table", "loops", "--index", index],
-                                                        quiet=True)))
-        return {name: columns.to_numpy().T for name in [*SIGNALS, "y_recorded"]
-                if (columns := table[[c for c in table if c.rpartition(".")[0] == name or c.split(".")[0] == name]]).size}
+        text = run_program(["export", self.path, "--table", "loops", "--index", index], quiet=True)
+        table = pandas.read_csv(io.StringIO(text), float_precision="round_trip")
+        columns = {name: [column for column in table if column.split(".")[0] == name] for name in [*SIGNALS, "y_recorded"]}
+        return {name: table[found].to_numpy(float).T for name, found in columns.items() if found}
 
     def truth(self, index):
         """What is true of an experiment: kind of fault, channel, parameter, size, impact."""

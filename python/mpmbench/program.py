@@ -73,7 +73,7 @@ def run(words, *, text=None, broker=None, quiet=False):
             if stream is not None and not stream.closed:
                 stream.close()
     for warning in [] if quiet else watch.warnings:
-        warnings.warn(warning, ProgramWarning, stacklevel=4)
+        warnings.warn(warning, ProgramWarning, stacklevel=3)
     if process.returncode:
         kind = {2: InputError, 3: Unfinished}.get(process.returncode, Error)
         raise kind(message(watch.text or said), process.returncode)

@@ -6,7 +6,7 @@ import re
 import sys
 import termios
 
-WARNING = "mpmbench: warning: "
+WARNING = re.compile("(?:mpmbench: )?warning: ")
 BAR = re.compile(r"(?:\[[# ]*\] )?(\d+)/(\d+) (.*)")
 
 
@@ -43,8 +43,8 @@ class Watcher:
         bar = BAR.fullmatch(line)
         if bar:
             self.show(int(bar[1]), int(bar[2]), bar[3])
-        elif line.startswith(WARNING):
-            self.warnings.append(line.removeprefix(WARNING))
+        elif WARNING.match(line):
+            self.warnings.append(WARNING.sub("", line, count=1))
         elif line:
             self.text += line + "\n"
 

@@ -4,19 +4,26 @@ usage: relay.py NAME, with the socket of that process in MPMBENCH_SOCKET. It imp
 """
 
 import os
+import select
 import socket
 import sys
+
+SIZE = 1 << 20
+
+
+def write(end, data):
+    while data:
+        data = data[os.write(end, data):]
+
 
 with socket.socket(socket.AF_UNIX) as home:
     home.connect(os.environ["MPMBENCH_SOCKET"])
     home.sendall(sys.argv[1].encode() + b"\n")
-    answers = home.makefile("rb")
-    for message in sys.stdin.buffer:
-        if not message.strip():  # an empty line follows each message
-            continue
-        home.sendall(message)
-        answer = answers.readline()
-        if not answer:
-            break
-        sys.stdout.buffer.write(answer)
-        sys.stdout.buffer.flush()
+    stdin, stdout = 0, 1
+    other_end = {stdin: home.fileno(), home.fileno(): stdout}
+    is_open = True
+    while is_open:
+        for end in select.select(list(other_end), [], [])[0]:
+            data = os.read(end, SIZE)
+            write(other_end[end], data)
+            is_open = is_open and bool(data)

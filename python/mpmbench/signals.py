@@ -85,6 +85,12 @@ class Loop:
                 data[dim] = (dim, names, {"variable_units": [units.get(each, "1") for each in names]})
         return data
 
+    def to_frame(self):
+        """y, u and d as a pandas DataFrame along the time, one column a variable: as records of a plant are."""
+        import pandas
+        return pandas.DataFrame(numpy.concatenate([self.y, self.u, self.d]).T, columns=[*self.cvs, *self.mvs, *self.mds],
+                                index=pandas.Index(self.time, name="time"))
+
     def plot(self):
         """y, u and the model of the loop as a figure of matplotlib."""
         from . import figures

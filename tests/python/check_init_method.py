@@ -16,7 +16,7 @@ experiments = mpmbench.read ('a.h5');
 assert (numel (experiments.experiment), 12);
 assert (ischar (experiments.kind{1}));
 findings = mpmbench.read ('a.h5', 'findings');
-assert (any (strcmp (findings.finding, 'compare.sse.detected')));
+assert (any (strcmp (findings.name, 'compare.sse.detected')));
 loop = mpmbench.read ('a.h5', 'loops', 3);
 assert (size (loop.y_xD), [400, 1]);
 shown = mpmbench.plot_loop ('a.h5', 3, 'visible', 'off');

@@ -6,6 +6,7 @@ usage: check_notebooks.py MPMBENCH SOURCES
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -23,8 +24,9 @@ def main(program, sources):
         with tempfile.TemporaryDirectory() as name:
             # Its own folders, so that no configuration of the user has a part in it.
             environment = {**os.environ, "MPMBENCH_PROGRAM": program, "PYTHONPATH": f"{sources}/python", "HOME": name}
-            result = subprocess.run([sys.executable, "-m", "nbconvert", "--to", "html", "--execute", "--output-dir", name,
-                                     str(path)], cwd=name, env=environment, capture_output=True, text=True, timeout=600)
+            shutil.copy(path, name)  # a notebook runs in its folder
+            result = subprocess.run([sys.executable, "-m", "nbconvert", "--to", "html", "--execute", path.name], cwd=name,
+                                    env=environment, capture_output=True, text=True, timeout=600)
             assert result.returncode == 0, (path, result.stderr[-4000:])
             page = (pathlib.Path(name) / f"{path.stem}.html").read_text(encoding="utf-8")
         for text in [*SHOWN[path.stem], "data:image/png;base64,"]:

@@ -75,6 +75,7 @@ class Archives(unittest.TestCase):
         self.assertEqual((loop.cvs, loop.mvs, loop.mds), (["xD", "xB"], ["R", "S"], ["F"]))
         data = loop.to_xarray()
         self.assertEqual(data["y"].sel(cv="xB", time=7.0).item(), loop.y[1, 7])
+        self.assertTrue(numpy.array_equal(loop.to_frame()["S"], loop.u[1]))
         with self.assertRaisesRegex(AttributeError, "a loop has no 'z'; allowed: y, u"):
             loop.z
         # What the function says of it here is what it says of it to the program.
@@ -238,12 +239,11 @@ class Boards(unittest.TestCase):
 
 class Records(unittest.TestCase):
     def record(self):
-        data = archive.loop(3).to_xarray()
-        return pandas.concat([data[name].to_pandas().T for name in ("y", "u", "d")], axis=1)
+        return archive.loop(3).to_frame()
 
     def test_frames_are_as_good_as_files(self):
         frame = self.record()
-        frame.to_csv("record.csv", index_label="time")
+        frame.to_csv("record.csv")
         expected = json.loads(mpmbench.command("assess", STUDY, "record.csv", trials=0, json=True))
         numbers = mpmbench.assess(STUDY, frame, trials=0, quiet=True)
         dates = mpmbench.assess(STUDY, frame.set_index(pandas.date_range("2024-03-01", periods=400, freq="1min", tz="UTC")),
