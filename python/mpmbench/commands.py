@@ -55,8 +55,14 @@ def run(study, output=None, *, methods=None, set=None, quiet=False, **options): 
     study, text = study_words(study)
     names, own = split(methods)
     with Broker(own) as broker:
-        run_program(["run", study, "-o", output, *words.changes(set), *words.options({"methods": names or None, **options}),
-                     *broker.words()], text=text, broker=broker, quiet=quiet)
+        try:
+            run_program(["run", study, "-o", output, *words.changes(set), *broker.words(),
+                         *words.options({"methods": names or None, **options})], text=text, broker=broker, quiet=quiet)
+        except Exception as error:
+            # What a function has answered before it failed is of no use to the next one.
+            if not isinstance(error, Error) and not options.get("resume"):
+                shutil.rmtree(f"{output}.shards", ignore_errors=True)
+            raise
     return Archive(output)
 
 

@@ -12,7 +12,7 @@ BAR = re.compile(r"(?:\[[# ]*\] )?(\d+)/(\d+) (.*)")
 
 def in_notebook():
     shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
-    return shell is not None and "kernel" in shell.config or type(shell).__name__ == "ZMQInteractiveShell"
+    return type(shell).__name__ == "ZMQInteractiveShell"
 
 
 class Watcher:

@@ -22,16 +22,15 @@ def rate_table(rates, methods, own=()):
     """HTML of {method: {rate: {value, lower, upper}}}: the most important rates that some method has."""
     shown = {name: heading for name, heading in SHOWN.items()
              if any(percent(rates[method][name]) for method in methods if name in rates[method])}
-    rows = "".join(f"<tr>{cell(method, method in own)}" + "".join(
-        f"<td>{percent(rates[method][name]) if name in rates[method] else ''}</td>" for name in shown) + "</tr>"
-        for method in methods)
-    return ('<div style="overflow-x: auto"><table style="white-space: nowrap"><thead><tr><th>method</th>' + "".join(f"<th>{heading}</th>" for heading in shown.values()) +
-            f"</tr></thead><tbody>{rows}</tbody></table></div><p>Percent of loops, with 95 % intervals</p>")
-
-
-def cell(method, is_own):
-    name = html.escape(method)
-    return f"<td><b>{name}</b></td>" if is_own else f"<td>{name}</td>"
+    head = "".join(f"<th>{heading}</th>" for heading in ["method", *shown.values()])
+    rows = ""
+    for method in methods:
+        name = html.escape(method)
+        cells = [f"<b>{name}</b>" if method in own else name,
+                 *(percent(rates[method][rate]) if rate in rates[method] else "" for rate in shown)]
+        rows += "<tr>" + "".join(f"<td>{each}</td>" for each in cells) + "</tr>"
+    return (f'<div style="overflow-x: auto"><table style="white-space: nowrap"><thead><tr>{head}</tr></thead>'
+            f"<tbody>{rows}</tbody></table></div><p>Percent of loops, with 95 % intervals</p>")
 
 
 class Rated:

@@ -7,8 +7,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import threading
-import time
 import tomllib
 import unittest
 
@@ -157,6 +155,16 @@ class Methods(unittest.TestCase):
 
         with self.assertRaisesRegex(LookupError, "nothing in it"):
             archive.compare(broken, quiet=True)
+        # A function that is put right does not meet what the wrong one has left.
+        for function in broken, mine.with_options(name="broken"):
+            for call in (lambda: mpmbench.run(STUDY, "broken.h5", experiments=6, methods=function, quiet=True),
+                         lambda: archive.compare(function, output="broken-too.h5", quiet=True),
+                         lambda: mpmbench.suite("quick", function, methods="sse", plants=STUDY, families="classic",
+                                                experiments=4, output="broken", quiet=True)):
+                if function is broken:
+                    self.assertRaises(LookupError, call)
+                else:
+                    self.assertIn("broken", call().methods)
 
         @mpmbench.method
         def silent(loop):
@@ -374,16 +382,21 @@ class Program(unittest.TestCase):
 
     def test_ctrl_c_stops_the_program_and_a_resumed_run_is_the_whole_one(self):
         @mpmbench.method
-        def slow(loop):
-            time.sleep(0.2)
+        def interrupted(loop):
+            with open("asked.txt", "a") as file:  # a variable of the function would make another method of it
+                file.write("x")
+            if os.path.getsize("asked.txt") == 12:
+                signal.raise_signal(signal.SIGINT)
             return True
 
-        threading.Timer(3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        run = {"experiments": 20, "set": HEALTHY, "methods": ["sse", interrupted], "shard_interval": 0, "quiet": True}
         with self.assertRaises(KeyboardInterrupt):
-            mpmbench.run(STUDY, "stopped.h5", experiments=36, methods=["sse", slow], shard_interval=0, quiet=True)
+            mpmbench.run(STUDY, "stopped.h5", **run)
         self.assertFalse(os.path.exists("stopped.h5"))
-        resumed = mpmbench.run(STUDY, "stopped.h5", experiments=36, methods=["sse", slow], resume=True, quiet=True)
-        self.assertEqual(len(resumed), 36)
+        resumed = mpmbench.run(STUDY, "stopped.h5", resume=True, **run)
+        self.assertLess(os.path.getsize("asked.txt"), 12 + 20)  # what was done was kept
+        self.assertTrue((resumed.experiments["score"].values[:, 0] == archive.experiments["score"].values[:, 0]).all())
+
 
 
 if __name__ == "__main__":
