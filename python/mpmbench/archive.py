@@ -29,8 +29,12 @@ class Archive:
         self.path = pathlib.Path(path)
         if not self.path.is_file():
             raise FileNotFoundError(f"{self.path}: no such archive")
-        if self.attributes.get("filetype") != "mpmbench archive":
-            raise ValueError(f"{self.path}: found a file that is no archive of mpmbench")
+        try:
+            kind = self.attributes.get("filetype", "a file of something else")
+        except OSError as error:
+            kind = f"no HDF5 file ({error})"
+        if kind != "mpmbench archive":
+            raise ValueError(f"{self.path}: found {kind}; allowed: an archive of mpmbench")
 
     @functools.cached_property
     def attributes(self):

@@ -1,8 +1,10 @@
 """What comparisons, boards, assessments and repairs say."""
 
+import copy
 import functools
 import html
 import json
+import pathlib
 import statistics
 
 # In the order of the table: name, heading.
@@ -139,6 +141,23 @@ class Board(Rated):
         from .archive import Archive
         return Archive(self.folder / f"{plant}.{family}.h5")
 
+    def join(self, board):
+        """This board with the methods of another one of the same suite, a Board or the path of its JSON, such as the
+        finished docs/leaderboard.json: run the suite with `methods=mine` alone, and join. Methods of both are those of
+        this board. Raises ValueError unless suite, version, seed and number of experiments are the same."""
+        other = board.json if isinstance(board, Board) else json.loads(pathlib.Path(board).read_text(encoding="utf-8"))
+        for key in "suite", "version", "seed":
+            if other[key] != self.json[key]:
+                raise ValueError(f"{key}: found {other[key]} in the board to join; allowed: {self.json[key]}, that of this one")
+        theirs, ours = (experiments_of(each) for each in (other, self.json))
+        if theirs != ours:
+            raise ValueError(f"experiments: found {theirs} in the board to join; allowed: {ours}, those of this one")
+        joined = copy.copy(self)
+        joined.__dict__.pop("intervals", None)
+        joined.json = {**self.json, "methods": [each for each in other["methods"] if each["name"] not in self.methods] +
+                       self.json["methods"]}
+        return joined
+
     def standing(self, method, rate="power_05_impact"):
         """Where a method stands by a rate, in a sentence."""
         ranked = self.rank(rate)["value"]
@@ -147,10 +166,11 @@ class Board(Rated):
         equal = int((ranked == ranked[method]).sum())
         place = int((ranked.values == ranked[method]).argmax()) + 1
         shared = f", with {equal - 1} other{'s' if equal > 2 else ''}" if equal > 1 else ""
-        return f"{method} is number {place} of {len(ranked)}{shared} by {SHOWN.get(rate, rate)}"
+        worse = len(ranked) - place - equal + 1
+        return f"{method} is number {place} of {len(ranked)}{shared} by {SHOWN.get(rate, rate)}; {worse} are worse"
 
     def _repr_html_(self):
-        loops = sum(cell["experiments"] for cell in self.json["cells"])
+        loops = experiments_of(self.json)
         said = "".join(f"<br>{html.escape(self.standing(name))}" for name in self.own)
         plants, families = (", ".join(each["name"] for each in self.json[kind]) for kind in ("plants", "families"))
         return (f"<p><b>Suite {self.json['suite']} {self.json['version']}</b>: {html.escape(plants)} under "
@@ -158,6 +178,12 @@ class Board(Rated):
 
     def __repr__(self):
         return f"<mpmbench.Board of {self.json['suite']} {self.json['version']}: {', '.join(self.methods)}>"
+
+
+def experiments_of(board):
+    """How many loops the JSON of a board counts; one that is shipped has the sum."""
+    cells = board["cells"]
+    return board["experiments"] if isinstance(cells, int) else sum(cell["experiments"] for cell in cells)
 
 
 class Assessment:

@@ -95,10 +95,12 @@ class Archives(unittest.TestCase):
 
     def test_what_is_no_archive(self):
         pathlib.Path("text.h5").write_text("no archive")
-        with self.assertRaises(FileNotFoundError):
-            mpmbench.open("none.h5")
-        with self.assertRaises(Exception):
-            mpmbench.open("text.h5")
+        xarray.Dataset({"x": ("time", [1.0])}).to_netcdf("other.h5", engine="netcdf4")
+        for name, kind, message in (("none.h5", FileNotFoundError, "none.h5: no such archive"),
+                                    ("text.h5", ValueError, "text.h5: found no HDF5 file .*; allowed: an archive of mpmbench"),
+                                    ("other.h5", ValueError, "other.h5: found a file of something else; allowed: an archive")):
+            with self.assertRaisesRegex(kind, message):
+                mpmbench.open(name)
 
 
 class Methods(unittest.TestCase):
@@ -243,6 +245,30 @@ class Boards(unittest.TestCase):
         self.assertIn("sse", board.archive(STUDY, "shapes").methods)
         with self.assertRaisesRegex(KeyError, "found 'weather'; allowed: classic, shapes"):
             board.family("weather")
+
+
+    def test_a_method_joins_a_finished_board(self):
+        words_of = {"plants": [STUDY], "families": ["classic"], "experiments": 8, "quiet": True}
+        finished = mpmbench.suite("quick", methods=["sse", "botelho"], **words_of)
+        alone = mpmbench.suite("quick", methods=mine, **words_of)
+        self.assertEqual(alone.methods, ["mine"])
+        # as docs/leaderboard.json has it
+        shipped = {**finished.json, "cells": 1, "experiments": 8, "methods": [
+            {"name": each["name"], "all": {"rates": {name: {key: rate[key] for key in ("value", "lower", "upper")}
+                                                     for name, rate in each["all"]["rates"].items()}}}
+            for each in finished.json["methods"]]}
+        pathlib.Path("shipped.json").write_text(json.dumps(shipped))
+        for each in finished, "shipped.json":
+            joined = alone.join(each)
+            self.assertEqual(joined.methods, ["sse", "botelho", "mine"])
+            self.assertEqual(joined.rates.loc["mine", "detected"], finished.rates.loc["sse", "detected"])
+            self.assertRegex(joined.standing("mine"), r"^mine is number \d of 3, with .*; \d are worse$")
+            self.assertIn("<b>mine</b>", joined._repr_html_())
+            self.assertEqual(len(joined.plot().axes[0].get_yticklabels()), 3)
+        for key, value in ("version", "1999.1"), ("seed", 3), ("experiments", 9):
+            pathlib.Path("other.json").write_text(json.dumps({**shipped, key: value}))
+            with self.assertRaisesRegex(ValueError, f"^{key}: found {value} in the board to join; allowed:"):
+                alone.join("other.json")
 
 
 class Records(unittest.TestCase):
