@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the Debian package, installs it in a bare Debian 12 of its own, and uses it there as a stranger would: a study
-# and its report, without the source tree. Needs root and debootstrap, and takes minutes; it is not one of the tests.
+# Makes the Debian packages, installs them in a bare Debian 12 of its own, and uses them there as a stranger would: a
+# study and its report, and a function of one's own on the board from Python, without the source tree. Needs root and debootstrap, and takes minutes; it is not one of the tests.
 #
 #   .ci/check_package.sh [EXPERIMENTS]    400 unless told
 set -euo pipefail
@@ -21,6 +21,9 @@ debootstrap --variant=minbase bookworm "$bare"
 cp -a /etc/apt/apt.conf.d/. "$bare/etc/apt/apt.conf.d/"
 cp /etc/resolv.conf "$bare/etc/resolv.conf"
 cp "$work"/packages/mpmbench_*.deb "$bare/tmp/mpmbench.deb"
+cp "$work"/packages/python3-mpmbench_*.deb "$bare/tmp/python3-mpmbench.deb"
+(cd "$root" && python3 -c 'import sys; sys.path.insert(0, "tests/python"); import check_package; print(check_package.TEN_LINES)') \
+  >"$bare/tmp/ten_lines.py"
 
 unshare --fork --pid --mount-proc="$bare/proc" chroot "$bare" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive EXPERIMENTS="${1:-400}" \
   bash -euxc '
@@ -32,5 +35,7 @@ unshare --fork --pid --mount-proc="$bare/proc" chroot "$bare" env -i PATH=/usr/s
     mpmbench report chapter6.h5 -o chapter6.html
     mpmbench summary chapter6.h5
     test -s chapter6.html
+    apt-get install -y -q --no-install-recommends /tmp/python3-mpmbench.deb
+    python3 ten_lines.py
   '
-echo "the package works on a bare Debian 12"
+echo "the packages work on a bare Debian 12"

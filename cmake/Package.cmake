@@ -1,4 +1,5 @@
-# `cpack` in the build folder makes two packages for Debian: the program with its studies, and what one needs to build on it.
+# `cpack` in the build folder makes three packages for Debian: the program with its studies, the Python package, and what
+# one needs to build on the libraries.
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The authors of mpmbench (CITATION.cff)")
@@ -7,7 +8,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_COMPONENTS_ALL program development python)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME mpmbench)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
@@ -20,8 +21,16 @@ list(TRANSFORM packages REPLACE " .*" "")
 list(JOIN packages ", " packages)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmpmbench-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${packages}")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-mpmbench)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+  "mpmbench (= ${PROJECT_VERSION}), python3 (>= 3.11), python3-numpy, python3-pandas, python3-xarray, python3-netcdf4, python3-matplotlib")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
   "Random model-plant mismatches and unmeasured disturbances, closed loops of a range MPC, and how often methods\n that assess its model are right about them. With its studies, documents and examples.")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+  "mpmbench from Python: studies, methods that are functions, records as data frames, and figures.")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries, headers and the CMake package mpmbench.")
 
 include(CPack)

@@ -10,27 +10,28 @@ namespace mpm {
 /// place in one of the tasks below.
 using AddCommand = void(CommandSet& commands);
 
-AddCommand add_init;        // writes a study of a plant of one's own
-AddCommand add_run;         // runs a study and writes its archive
-AddCommand add_merge;       // makes the archive of parts that were run on several machines
-AddCommand add_validate;    // what is implausible in a study, what it will show and cost
-AddCommand add_identify;    // a model for the controller, from a step test on the plant
-AddCommand add_replay;      // runs one experiment of an archive again
-AddCommand add_summary;     // what a study found, as text or JSON
-AddCommand add_suite;       // plants and families of experiments, and the leaderboard of the methods
-AddCommand add_sweep;       // runs a study once for each value of its open choices
-AddCommand add_check;       // holds an archive against limits
-AddCommand add_report;      // what a study found, as a page and figures
-AddCommand add_plot;        // draws the loop of one experiment
-AddCommand add_compare;     // several methods of assessment on the loops of an archive
-AddCommand add_assess;      // records of a plant: what the methods say of them, and how far to trust it
-AddCommand add_repair;      // identifies a named channel again, and says what the repaired controller brings
-AddCommand add_reproduce;   // the tables of the thesis
-AddCommand add_export;      // a table of an archive as CSV
-AddCommand add_list;        // the shipped studies
-AddCommand add_show;        // the text of one of them
-AddCommand add_manual;      // the manual page, from the declarations of all commands
-AddCommand add_completion;  // what completes them in a shell
+AddCommand add_init;         // writes a study of a plant of one's own
+AddCommand add_init_method;  // writes a method of one's own, with one function to fill in
+AddCommand add_run;          // runs a study and writes its archive
+AddCommand add_merge;        // makes the archive of parts that were run on several machines
+AddCommand add_validate;     // what is implausible in a study, what it will show and cost
+AddCommand add_identify;     // a model for the controller, from a step test on the plant
+AddCommand add_replay;       // runs one experiment of an archive again
+AddCommand add_summary;      // what a study found, as text or JSON
+AddCommand add_suite;        // plants and families of experiments, and the leaderboard of the methods
+AddCommand add_sweep;        // runs a study once for each value of its open choices
+AddCommand add_check;        // holds an archive against limits
+AddCommand add_report;       // what a study found, as a page and figures
+AddCommand add_plot;         // draws the loop of one experiment
+AddCommand add_compare;      // several methods of assessment on the loops of an archive
+AddCommand add_assess;       // records of a plant: what the methods say of them, and how far to trust it
+AddCommand add_repair;       // identifies a named channel again, and says what the repaired controller brings
+AddCommand add_reproduce;    // the tables of the thesis
+AddCommand add_export;       // a table of an archive as CSV
+AddCommand add_list;         // the shipped studies
+AddCommand add_show;         // the text of one of them
+AddCommand add_manual;       // the manual page, from the declarations of all commands
+AddCommand add_completion;   // what completes them in a shell
 
 /// Commands that serve one task, in the order of the help.
 struct Task {
@@ -40,7 +41,7 @@ struct Task {
 
 inline std::vector<Task> tasks() {
   return {{"Test methods on simulated loops",
-           {add_init, add_validate, add_run, add_merge, add_sweep, add_suite, add_compare}},
+           {add_init, add_validate, add_run, add_merge, add_sweep, add_suite, add_compare, add_init_method}},
           {"Look at the results", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
           {"Assess the records of a plant", {add_assess, add_identify, add_repair}},
           {"Shipped studies and the program itself",

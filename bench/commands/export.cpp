@@ -14,6 +14,7 @@
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/experiment_loop.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
@@ -98,9 +99,9 @@ ExitCode export_table(const ExportArguments& options) {
   if (options.index) {
     campaign.records = {experiment_of(campaign, *options.index)};
     campaign.streamed.reset();
-    if (options.table == "loops" && !campaign.records.front().loop)
-      throw InputError("--index", fmt::format("{}, whose loop was not stored", *options.index),
-                       "an experiment whose loop is in the archive (run --store)");
+    ExperimentRecord& record = campaign.records.front();
+    if (options.table == "loops" && !record.loop)
+      record.loop = loop_of(campaign, record);
   }
   bool heading_only = true;
   const auto write_table = [&](const auto& write) {
@@ -130,7 +131,7 @@ void add_export(CommandSet& commands) {
   add_archive(app, options->archive);
   add_trust(app);
   app.add_option("--table", options->table,
-                 "experiments, findings, loops (the stored ones), or the name of a method")
+                 "experiments, findings, loops (the stored ones; with --index any), or the name of a method")
       ->capture_default_str();
   app.add_option("--index", options->index, "Only this experiment; not for the findings")
       ->check(whole_number(0, 1000000000));

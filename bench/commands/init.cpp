@@ -1,17 +1,10 @@
-#include <algorithm>
-#include <cctype>
-#include <cerrno>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <string_view>
-#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -21,6 +14,7 @@
 #include "bench/commands/option_checks.hpp"
 #include "bench/commands/sketch_words.hpp"
 #include "bench/console/output.hpp"
+#include "bench/files/new_file.hpp"
 #include "plants/error.hpp"
 #include "scenarios/files/study_file.hpp"
 #include "scenarios/files/study_template.hpp"
@@ -86,47 +80,15 @@ void require_model(const SketchWords& words) {
     throw InputError("--gains", "no model", "--gains with --time-constants, or --channel for each channel");
 }
 
-/// A new file; one that is there is left as it is.
-void write_new(const std::string& path, std::string_view text) {
-  constexpr mode_t kAnybody = 0666;
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kAnybody);
-  if (file < 0 && errno == EEXIST)
-    throw InputError(path, "a file that is there", "a name for a new one");
-  bool whole = file >= 0;
-  while (whole && !text.empty()) {
-    const ssize_t written = ::write(file, text.data(), text.size());
-    whole = written > 0;
-    if (whole)
-      text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  const int error = errno;
-  if (file >= 0 && ::close(file) == 0 && whole)
-    return;
-  if (file >= 0)
-    ::unlink(path.c_str());
-  throw std::runtime_error(
-      fmt::format("{}: cannot be written: {}", path, std::generic_category().message(error)));
-}
-
-/// Letters, digits, "_" and "-" of the name of the file.
-std::string study_name(const std::string& output) {
-  std::string name = output == "-" ? "my-plant" : std::filesystem::path(output).stem().string();
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; },
-      '-');
-  constexpr std::size_t kLongest = 64;
-  return name.substr(0, kLongest);
-}
-
 ExitCode init(InitArguments arguments) {
   const bool to_stdout = arguments.output == "-";
-  std::error_code no_status;
-  if (!to_stdout && std::filesystem::exists(std::filesystem::symlink_status(arguments.output, no_status)))
-    throw InputError(arguments.output, "a file that is there", "a name for a new one");
+  if (!to_stdout)
+    require_new(arguments.output);
   if (arguments.words.cvs.empty() && arguments.words.mvs.empty() && ::isatty(STDIN_FILENO) == 1)
     ask(arguments.words);
   require_model(arguments.words);
-  const std::string text = study_template(sketch_of(arguments.words, study_name(arguments.output)));
+  const std::string text =
+      study_template(sketch_of(arguments.words, to_stdout ? "my-plant" : name_of_file(arguments.output)));
   const Study study = parse_study(text, arguments.output);
   const BasisCase basis = run_basis_case(study, qp_solver_factory("auto"));
   if (to_stdout)

@@ -74,8 +74,8 @@ def check_synopsis(program, content):
 
 def check_page(program, sources, page, shims):
     text = without_marked((sources / page).read_text(encoding="utf-8"), page)
-    environment = {**os.environ, "PATH": f"{shims}:{os.environ['PATH']}", "MPMBENCH": program,
-                   "PLANT": (sources / "scenarios/suites/standard.toml").read_text().split("[[plant]]\nname = \"")[1].split('"')[0]}
+    environment = {**python_environment(sources, shims / "mpmbench"), "PATH": f"{shims}:{os.environ['PATH']}",
+                   "MPMBENCH": program}
     ran = 0
     with tempfile.TemporaryDirectory() as folder:
         os.symlink(shims / "run.sh", pathlib.Path(folder) / "run.sh")
@@ -96,6 +96,11 @@ def check_page(program, sources, page, shims):
     assert ran > 0, page
 
 
+def python_environment(sources, program):
+    """With the Python package of the tree."""
+    return {**os.environ, "PYTHONPATH": str(sources / "python"), "MPMBENCH_PROGRAM": str(program)}
+
+
 def check_python(program, sources):
     """The blocks of a page are one program, which finds an archive under the names that pages give it."""
     ran = []
@@ -111,7 +116,7 @@ def check_python(program, sources):
             if not content or page in PAGES or page in RUN_ELSEWHERE:
                 continue
             result = subprocess.run([sys.executable, "-c", content], cwd=folder, input=REQUESTS, capture_output=True,
-                                    text=True, timeout=600)
+                                    text=True, timeout=600, env=python_environment(sources, program))
             assert result.returncode == 0, (page, content, result.stdout[-2000:], result.stderr[-2000:])
             ran.append(page)
     assert {"docs/methods_thesis.md", "docs/own_plant.md"} <= set(ran), ran

@@ -1,5 +1,5 @@
-"""Installs mpmbench, moves what was installed, and uses it from there: studies, manual page, completion in bash, and
-a project outside the tree that builds on the libraries.
+"""Installs mpmbench, moves what was installed, and uses it from there: studies, manual page, completion in bash, the
+Python package, the folder of +mpmbench, and a project outside the tree that builds on the libraries.
 
 usage: check_install.py CMAKE BUILD SOURCES
 """
@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 
 
 def run(*words, **options):
@@ -56,6 +57,19 @@ def check_completion(prefix, program):
     assert completions(script, program, "mpmbench", "run", "wood") == ["wood-berry-mixed", "wood-berry"]
 
 
+def check_python(prefix, program):
+    """The package finds the program of its prefix, and init-method the +mpmbench of it."""
+    packages = prefix / "lib/python3/dist-packages"
+    environment = {**os.environ, "PYTHONPATH": str(packages), "PATH": "/usr/bin:/bin", "PYTHONDONTWRITEBYTECODE": "1"}
+    environment.pop("MPMBENCH_PROGRAM", None)
+    with tempfile.TemporaryDirectory() as empty:
+        found = run(sys.executable, "-c", "import mpmbench; print(mpmbench.program())", cwd=empty, env=environment)
+        assert found.strip() == str(program), found
+        run(program, "init-method", "mine.m", cwd=empty)
+        command = tomllib.loads((pathlib.Path(empty) / "mine.toml").read_text())["method"]["mine"]["command"]
+        assert (pathlib.Path(command[command.index("--path") + 1]) / "+mpmbench/serve.m").is_file(), command
+
+
 def check_embedding(cmake, prefix, sources, folder):
     shutil.copytree(sources / "examples/embedded", folder / "embedded")
     run(cmake, "-S", folder / "embedded", "-B", folder / "build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}",
@@ -77,6 +91,7 @@ def main():
         check_embedding(cmake, prefix, sources, folder)
         check_manual(prefix, program)
         check_completion(prefix, program)
+        check_python(prefix, program)
         check_studies(prefix, program)
 
 

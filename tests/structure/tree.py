@@ -7,7 +7,7 @@ from pathlib import Path
 # From left to right: a file includes only its own room and rooms to its left.
 ROOMS = ["plants", "solvers", "scenarios", "analysis", "results", "bench"]
 # Beside the rooms: may include every room, and no room includes them.
-ABOVE_THE_ROOMS = ["tests", "examples"]
+ABOVE_THE_ROOMS = ["tests", "examples", "python", "octave"]
 
 # The folders of a room, in the same way: a file includes only its own folder and folders to its left. A header of
 # the room itself that its folders may include stands here by its name.
@@ -30,7 +30,9 @@ def project_files(root, suffixes=None):
     """Every file below `root` (of these suffixes), without build trees and results, in a fixed order."""
     found = []
     for folder, subfolders, names in os.walk(root):
-        skipped = SKIPPED_AT_ROOT if Path(folder) == Path(root) else {"__pycache__"}
+        below = Path(folder).relative_to(root)
+        skipped = SKIPPED_AT_ROOT if below == Path() else {"__pycache__"}
+        skipped = skipped | ({"build", "mpmbench.egg-info"} if below == Path("python") else set())  # what pip leaves there
         subfolders[:] = [name for name in subfolders if name not in skipped]
         found += [Path(folder) / name for name in names if name not in skipped]
     return sorted(f for f in found if suffixes is None or f.suffix in suffixes)

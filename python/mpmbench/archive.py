@@ -1,0 +1,187 @@
+"""An archive of mpmbench, and what is in it."""
+
+import functools
+import html
+import os
+import pathlib
+
+from . import words
+from .program import run as run_program
+from .results import Comparison, Repair, rate_table
+from .signals import SIGNALS, Loop
+
+
+class Archive:
+    """An archive that `mpmbench run` has written (docs/file_format.md). Opening one starts no program.
+
+    | | |
+    |---|---|
+    | `experiments` | xarray Dataset: what was drawn, what is true, and one verdict a method, with words for flags |
+    | `findings` | pandas DataFrame: every number of the study with its interval |
+    | `rates` | pandas DataFrame: how often each method is right |
+    | `loop(i)` | the loop of an experiment: `y`, `u`, ... as arrays, `to_xarray()`, `plot()` |
+    | `compare(mine)` | the same loops under further methods |
+    | `group("methods/sse")` | any group as xarray Dataset, with the numbers that are in the file |
+    | `report()`, `summary()` | a page, and a text |
+    """
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        if not self.path.is_file():
+            raise FileNotFoundError(f"{self.path}: no such archive")
+        try:
+            kind = self.attributes.get("filetype", "a file of something else")
+        except OSError as error:
+            kind = f"no HDF5 file ({error})"
+        if kind != "mpmbench archive":
+            raise ValueError(f"{self.path}: found {kind}; allowed: an archive of mpmbench")
+
+    @functools.cached_property
+    def attributes(self):
+        """Those of the root: study, seed, command, versions."""
+        return self.group().attrs
+
+    def group(self, name=None):
+        """A group of the file as xarray Dataset, in memory."""
+        import xarray
+        with xarray.open_dataset(self.path, group=name, engine="netcdf4") as data:
+            return data.load()
+
+    @functools.cached_property
+    def experiments(self):
+        return worded(self.group())
+
+    @functools.cached_property
+    def findings(self):
+        data = worded(self.group("findings"))
+        return data[[name for name in data.data_vars if data[name].dims == ("finding",)]].to_dataframe()
+
+    @property
+    def rates(self):
+        """One row a method, one column a rate of docs/methods.md, as shares."""
+        import pandas
+        shares = {}
+        for name, value in self.findings["value"].items():
+            if name.startswith("compare."):
+                _, method, rate = name.split(".", 2)
+                shares.setdefault(method, {})[rate] = value
+        return pandas.DataFrame(shares).T
+
+    @property
+    def methods(self):
+        return [str(name) for name in self.experiments["method"].values]
+
+    def __len__(self):
+        return self.experiments.sizes["experiment"]
+
+    @functools.cached_property
+    def context(self):
+        """What a method may know besides the loop: model, controller, benchmark (docs/bring_your_own.md)."""
+        from .methods import method
+        found = []
+
+        @method
+        def look(loop):
+            found.append(loop.context)
+            return False
+
+        self.compare(look, methods=[], experiments=1, quiet=True)
+        if not found:
+            raise ValueError(f"{self.path}: the first loop did not run to its end, and has no context")
+        return found[0]
+
+    def loop(self, index):
+        """The loop of an experiment, as methods see it. One that the archive did not keep is run again. Of a study with
+        worlds `benchmark` is that of the first loop."""
+        signals = self._stored(index)
+        if signals is None:
+            signals = self._simulated(index)
+        if "y_recorded" in signals:  # a degraded record is all that a method sees
+            signals["y"] = signals.pop("y_recorded")
+        return Loop(signals, self.context)
+
+    def _stored(self, index):
+        import netCDF4
+        with netCDF4.Dataset(self.path) as file:
+            group = file.groups.get("trajectories")
+            stored = list(group["stored"][:]) if group is not None else []
+            if index not in stored:
+                return None
+            place = stored.index(index)
+            return {name: group[name][place].filled(float("nan")) for name in [*SIGNALS, "y_recorded"]
+                    if name in group.variables}
+
+    def _simulated(self, index):
+        import io
+        import pandas
+        text = run_program(["export", self.path, "--table", "loops", "--index", index], quiet=True)
+        table = pandas.read_csv(io.StringIO(text), float_precision="round_trip")
+        columns = {name: [column for column in table if column.split(".")[0] == name] for name in [*SIGNALS, "y_recorded"]}
+        return {name: table[found].to_numpy(float).T for name, found in columns.items() if found}
+
+    def truth(self, index):
+        """What is true of an experiment: kind of fault, channel, parameter, size, impact."""
+        row = self.experiments.sel(experiment=index)
+        return {name: row[name].item() for name in row.data_vars if not row[name].dims}
+
+    def compare(self, *own, methods=None, output=None, quiet=False, **options):
+        """The loops of the archive under further methods, `own` or names; beside those of the archive, or beside
+        `methods`. `output`: an archive to write with all of them. `options`: those of `mpmbench compare`."""
+        from .commands import split, temporary
+        from .methods import Broker
+        names, functions = split([*(self.methods if methods is None else methods), *own])
+        # The functions take the place of earlier answers under their names.
+        names = list(dict.fromkeys(names))
+        output = pathlib.Path(output) if output is not None else temporary("compared.h5")
+        with Broker(functions) as broker:
+            said = run_program(["compare", self.path, "-o", output, "--json",
+                                *words.options({"methods": names, **options}), *broker.words()], broker=broker, quiet=quiet)
+            return Comparison(said, Archive(output), [each.name for each in functions], broker.seconds)
+
+    def repair(self, index, **options):
+        """The channel that a method names in an experiment, identified again, and what the repaired controller brings."""
+        return Repair(run_program(["repair", self.path, "--index", index, "--json", *words.options(options)], quiet=True),
+                      self.context)
+
+    def summary(self):
+        """What the study found, as a text."""
+        return run_program(["summary", self.path], quiet=True)
+
+    def report(self, page=None):
+        """Writes what the study found as one page (HTML); its path. Beside the archive unless `page` is named."""
+        page = pathlib.Path(page) if page is not None else self.path.with_suffix(".html")
+        run_program(["report", self.path, "-o", page], quiet=True)
+        return page
+
+    def __repr__(self):
+        return f"<mpmbench.Archive {self.attributes['title']}: {len(self)} experiments, methods {', '.join(self.methods)}>"
+
+    def _repr_html_(self):
+        kinds = self.experiments["kind"].to_series().value_counts(sort=False)
+        return (f"<p><b>{html.escape(self.attributes['title'])}</b><br>"
+                f"{html.escape(os.fspath(self.path.name))}: {', '.join(f'{n} {kind}' for kind, n in kinds.items())}; seed "
+                f"{self.attributes['master_seed']}</p>" + rate_table(self._intervals(), self.methods))
+
+    def _intervals(self):
+        found = self.findings
+        return {method: {name.split(".", 2)[2]: row for name, row in
+                         found[found.index.str.startswith(f"compare.{method}.")].iterrows()} for method in self.methods}
+
+
+def worded(data):
+    """The Dataset with words in the place of flags and positions; `no` and `yes` become truth values."""
+    import numpy
+    for name in list(data.data_vars):
+        flags, meanings = data[name].attrs.get("flag_values"), data[name].attrs.get("flag_meanings")
+        if flags is None or meanings is None:
+            continue
+        attributes = {key: text for key, text in data[name].attrs.items() if not key.startswith("flag_")}
+        known = dict(zip(numpy.atleast_1d(flags).tolist(), meanings.split()))
+        numbers = data[name].values
+        if list(known.values()) == ["no", "yes"]:
+            values = numbers == 1
+        else:
+            values = numpy.array([known.get(number, "") for number in numbers.ravel().tolist()], dtype=object)
+            values = values.reshape(numbers.shape)
+        data = data.assign({name: (data[name].dims, values, attributes)})
+    return data

@@ -1,0 +1,142 @@
+"""The program mpmbench: where it is, how it is run, and what goes wrong."""
+
+import os
+import pathlib
+import re
+import selectors
+import shutil
+import signal
+import subprocess
+import sys
+import warnings
+
+from .progress import watcher
+
+READ_SIZE = 1 << 16
+
+
+class Error(RuntimeError):
+    """The program ended without a result; the text is its message, `code` its exit code."""
+
+    def __init__(self, message, code):
+        super().__init__(message)
+        self.code = code
+
+
+class InputError(Error, ValueError):
+    """Wrong input: the message says what was found and what is allowed."""
+
+
+class Unfinished(Error):
+    """Stopped before the end, or output that could not be written."""
+
+
+class ProgramWarning(UserWarning):
+    """What the program warns of."""
+
+
+def program():
+    """The program: the one that MPMBENCH_PROGRAM names, that of this installation or source tree, or that in PATH."""
+    named = os.environ.get("MPMBENCH_PROGRAM")
+    if named:
+        return named
+    here = pathlib.Path(__file__).resolve()
+    for folder in here.parents[1:]:
+        for place in "bin/mpmbench", "build/release/bench/mpmbench":
+            # of a prefix, only if this is its package: /usr/lib/python3/dist-packages and the like
+            if (folder / place).is_file() and (place.startswith("build") or "lib" in here.relative_to(folder).parts):
+                return str(folder / place)
+    found = shutil.which("mpmbench")
+    if found is None:
+        raise FileNotFoundError("the program mpmbench is not in PATH; install it, or name it in MPMBENCH_PROGRAM")
+    return found
+
+
+def run(words, *, text=None, broker=None, quiet=False):
+    """What the program writes to stdout. `text` goes to its stdin; `broker` serves methods of this process
+    (methods.Broker). Warnings become ProgramWarning; `quiet` leaves them and the progress out. Raises Error, and what a
+    method of this process raises."""
+    watch = watcher(quiet)
+    environment = dict(os.environ) | (broker.environment if broker else {})
+    process = subprocess.Popen([program(), *map(str, words)], env=environment,
+                               stdin=subprocess.DEVNULL if text is None else subprocess.PIPE, stdout=subprocess.PIPE,
+                               stderr=watch.writing_end, start_new_session=True)
+    watch.started()
+    try:
+        said = talk(process, watch, text, broker)
+    except BaseException:
+        stop(process)
+        raise
+    finally:
+        watch.close()
+        for stream in process.stdin, process.stdout:
+            if stream is not None and not stream.closed:
+                stream.close()
+    for warning in [] if quiet else watch.warnings:
+        warnings.warn(warning, ProgramWarning, stacklevel=3)
+    if process.returncode:
+        kind = {2: InputError, 3: Unfinished}.get(process.returncode, Error)
+        raise kind(message(watch.text or said), process.returncode)
+    return said
+
+
+def talk(process, watch, text, broker):
+    """Reads and serves until the program has ended, in this thread: a method may use what is not thread-safe."""
+    output = []
+    with selectors.DefaultSelector() as selector:
+        def read_output():
+            piece = os.read(process.stdout.fileno(), READ_SIZE)
+            output.append(piece)
+            return bool(piece)
+
+        def write_input():
+            nonlocal unsent
+            try:
+                unsent = unsent[os.write(process.stdin.fileno(), unsent[:READ_SIZE]):]
+            except BrokenPipeError:
+                unsent = b""
+            if not unsent:
+                process.stdin.close()
+            return bool(unsent)
+
+        unsent = (text or "").encode()
+        open_ends = {process.stdout.fileno(): read_output, watch.reading_end: watch.read}
+        for end in open_ends:
+            selector.register(end, selectors.EVENT_READ)
+        if text is not None:
+            open_ends[process.stdin.fileno()] = write_input
+            selector.register(process.stdin.fileno(), selectors.EVENT_WRITE)
+        if broker:
+            broker.register(selector)
+        while open_ends:
+            for key, _ in selector.select():
+                if key.fd not in open_ends:
+                    broker.serve(key)
+                else:
+                    end = key.fd
+                    if not open_ends[end]():
+                        if end in selector.get_map():
+                            selector.unregister(end)
+                        del open_ends[end]
+    process.wait()
+    return b"".join(output).decode(errors="replace")
+
+
+def stop(process):
+    """Ends the program as Ctrl-C does: it keeps what is done."""
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+        try:
+            process.wait(timeout=5)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def message(text):
+    """What the program says of its error, without its name."""
+    lines = [line for line in text.strip().splitlines() if line != "Run with --help for more information."]
+    first = max((i for i, line in enumerate(lines) if line.startswith("mpmbench: ")), default=0)
+    return re.sub(r"^mpmbench: ", "", "\n".join(lines[first:])) or "the program mpmbench ended without a message"
+
+

@@ -1,0 +1,235 @@
+"""What comparisons, boards, assessments and repairs say."""
+
+import copy
+import functools
+import html
+import json
+import pathlib
+import statistics
+
+# In the order of the table: name, heading.
+SHOWN = {"answered": "answers", "false_alarm_healthy": "false alarms", "detected_impact": "impact found",
+         "power_05_impact": "impact found at 5 % false alarms", "located": "right CV", "source_all": "right source"}
+
+
+def percent(rate):
+    """93 (91 to 94), or nothing where no loop was looked at."""
+    value, lower, upper = (rate[key] for key in ("value", "lower", "upper"))
+    if value is None or value != value:
+        return ""
+    return f"{100 * value:.0f} ({100 * lower:.0f} to {100 * upper:.0f})"
+
+
+def rate_table(rates, methods, own=()):
+    """HTML of {method: {rate: {value, lower, upper}}}: the most important rates that some method has."""
+    shown = {name: heading for name, heading in SHOWN.items()
+             if any(percent(rates[method][name]) for method in methods if name in rates[method])}
+    head = "".join(f"<th>{heading}</th>" for heading in ["method", *shown.values()])
+    rows = ""
+    for method in methods:
+        name = html.escape(method)
+        cells = [f"<b>{name}</b>" if method in own else name,
+                 *(percent(rates[method][rate]) if rate in rates[method] else "" for rate in shown)]
+        rows += "<tr>" + "".join(f"<td>{each}</td>" for each in cells) + "</tr>"
+    return (f'<div style="overflow-x: auto; max-width: calc(100vw - 8em)"><table><thead><tr>{head}</tr></thead>'
+            f"<tbody>{rows}</tbody></table></div><p>Percent of loops, with 95 % intervals</p>")
+
+
+class Rated:
+    """Methods with their rates. `json` is what the program says, `own` names the methods of this process, and
+    `milliseconds` has the median processor time of their verdicts, reading of the loop included."""
+
+    def __init__(self, text, own, seconds):
+        self.json, self.own = json.loads(text), list(own)
+        self.milliseconds = {name: 1e3 * statistics.median(each) for name, each in seconds.items() if each}
+
+    def _of(self, method):
+        raise NotImplementedError
+
+    @property
+    def methods(self):
+        return [method["name"] for method in self.json["methods"]]
+
+    @functools.cached_property
+    def intervals(self):
+        """pandas DataFrame, one row a method and rate: value, lower, upper, hits, total."""
+        import pandas
+        rows = {(method["name"], name): rate for method in self.json["methods"] for name, rate in self._of(method).items()}
+        return pandas.DataFrame.from_dict(rows, orient="index").rename_axis(["method", "rate"])
+
+    @property
+    def rates(self):
+        """pandas DataFrame, one row a method, one column a rate, as shares."""
+        return self.intervals["value"].astype(float).unstack("rate").reindex(self.methods)
+
+    def rank(self, rate):
+        """The methods by a rate, best first: pandas DataFrame with its interval. The rates that count what should not be
+        (false alarms) rank the lowest first."""
+        found = self.intervals.xs(rate, level="rate").dropna(subset=["value"])
+        return found.sort_values("value", ascending=rate.startswith(("false_alarm", "flagged_without", "abstained")))
+
+    def plot(self, rates=None, highlight=None):
+        """Rates of all methods with their intervals, as a figure of matplotlib; `highlight`: names, own methods unless
+        told."""
+        from . import figures
+        return figures.board(self, rates, self.own if highlight is None else highlight)
+
+    def _repr_html_(self):
+        return rate_table({method["name"]: self._of(method) for method in self.json["methods"]}, self.methods, self.own)
+
+
+class Comparison(Rated):
+    """Methods on the loops of an archive. `archive` has the answers of all of them on each loop."""
+
+    def __init__(self, text, archive, own, seconds):
+        super().__init__(text, own, seconds)
+        self.archive = archive
+
+    def _of(self, method):
+        return method["rates"]
+
+    def roc(self, method, truth="impact"):
+        """pandas DataFrame: threshold, false_positive_rate, true_positive_rate of the scores of a method. `truth`: what
+        is to be flagged, loops with an "impact" or with any "fault"."""
+        import pandas
+        found = next((each for each in self.json["methods"] if each["name"] == method), None)
+        if found is None:
+            raise KeyError(f"method: found '{method}'; allowed: {', '.join(self.methods)}")
+        curve = found["roc_impact" if truth == "impact" else "roc"]
+        return pandas.DataFrame({name: curve[name] for name in ("threshold", "false_positive_rate", "true_positive_rate")},
+                                dtype=float)
+
+    def area(self, truth="impact"):
+        """pandas DataFrame, one row a method: area under its ROC curve with the interval, best first."""
+        import pandas
+        curves = {each["name"]: each["roc_impact" if truth == "impact" else "roc"] for each in self.json["methods"]}
+        frame = pandas.DataFrame({name: {key: curve[key] for key in ("area", "lower", "upper")}
+                                  for name, curve in curves.items()}).T.astype(float)
+        return frame.sort_values("area", ascending=False)
+
+    def plot_roc(self, truth="impact", highlight=None):
+        """ROC curves of all methods, as a figure of matplotlib."""
+        from . import figures
+        return figures.roc(self, truth, self.own if highlight is None else highlight)
+
+    def __repr__(self):
+        return f"<mpmbench.Comparison of {', '.join(self.methods)} on {self.json['loops']} loops of {self.json['study']}>"
+
+
+class Board(Rated):
+    """The leaderboard of a suite. `folder` has its archives and its page, leaderboard.html."""
+
+    def __init__(self, text, folder, own, seconds):
+        super().__init__(text, own, seconds)
+        self.folder, self.page = folder, folder / "leaderboard.html"
+
+    def _of(self, method):
+        return method["all"]["rates"]
+
+    def family(self, name):
+        """pandas DataFrame as `intervals`, of the loops of one family."""
+        import pandas
+        families = [family["name"] for family in self.json["families"]]
+        if name not in families:
+            raise KeyError(f"family: found '{name}'; allowed: {', '.join(families)}")
+        rows = {(method["name"], rate): value for method in self.json["methods"]
+                for rate, value in method["families"].get(name, {}).get("rates", {}).items()}
+        return pandas.DataFrame.from_dict(rows, orient="index").rename_axis(["method", "rate"])
+
+    def archive(self, plant, family):
+        """The archive of a cell."""
+        from .archive import Archive
+        return Archive(self.folder / f"{plant}.{family}.h5")
+
+    def join(self, board):
+        """This board with the methods of another one of the same suite, a Board or the path of its JSON, such as the
+        finished docs/leaderboard.json: run the suite with `methods=mine` alone, and join. Methods of both are those of
+        this board. Raises ValueError unless suite, version, seed and number of experiments are the same."""
+        other = board.json if isinstance(board, Board) else json.loads(pathlib.Path(board).read_text(encoding="utf-8"))
+        for key in "suite", "version", "seed":
+            if other[key] != self.json[key]:
+                raise ValueError(f"{key}: found {other[key]} in the board to join; allowed: {self.json[key]}, that of this one")
+        theirs, ours = (experiments_of(each) for each in (other, self.json))
+        if theirs != ours:
+            raise ValueError(f"experiments: found {theirs} in the board to join; allowed: {ours}, those of this one")
+        joined = copy.copy(self)
+        joined.__dict__.pop("intervals", None)
+        joined.json = {**self.json, "methods": [each for each in other["methods"] if each["name"] not in self.methods] +
+                       self.json["methods"]}
+        return joined
+
+    def standing(self, method, rate="power_05_impact"):
+        """Where a method stands by a rate, in a sentence."""
+        ranked = self.rank(rate)["value"]
+        if method not in ranked.index:
+            return f"{method} has no loops for {rate}"
+        equal = int((ranked == ranked[method]).sum())
+        place = int((ranked.values == ranked[method]).argmax()) + 1
+        shared = f", with {equal - 1} other{'s' if equal > 2 else ''}" if equal > 1 else ""
+        worse = len(ranked) - place - equal + 1
+        return f"{method} is number {place} of {len(ranked)}{shared} by {SHOWN.get(rate, rate)}; {worse} are worse"
+
+    def _repr_html_(self):
+        loops = experiments_of(self.json)
+        said = "".join(f"<br>{html.escape(self.standing(name))}" for name in self.own)
+        plants, families = (", ".join(each["name"] for each in self.json[kind]) for kind in ("plants", "families"))
+        return (f"<p><b>Suite {self.json['suite']} {self.json['version']}</b>: {html.escape(plants)} under "
+                f"{html.escape(families)}; {loops} loops, seed {self.json['seed']}{said}</p>{super()._repr_html_()}")
+
+    def __repr__(self):
+        return f"<mpmbench.Board of {self.json['suite']} {self.json['version']}: {', '.join(self.methods)}>"
+
+
+def experiments_of(board):
+    """How many loops the JSON of a board counts; one that is shipped has the sum."""
+    cells = board["cells"]
+    return board["experiments"] if isinstance(cells, int) else sum(cell["experiments"] for cell in cells)
+
+
+class Assessment:
+    """The verdict on a record. `found` is a word of docs/own_records.md, `verdict` the sentences, `json` all that the
+    program says, `page` the page."""
+
+    def __init__(self, text, page, study):
+        self.json, self.page, self._study = json.loads(text), page, study
+        self.found, self.verdict = self.json["found"], self.json["verdict"]
+
+    def __str__(self):
+        return "\n".join(self.verdict)
+
+    @functools.cached_property
+    def repair(self):
+        """The channel that the verdict names, identified again; None where it names none."""
+        if self.json.get("repair") is None:
+            return None
+        from .commands import context
+        return Repair(json.dumps(self.json["repair"]), context(self._study))
+
+    def _repr_html_(self):
+        first, *others = map(html.escape, self.verdict)
+        return f"<p><b>{first}</b></p><ul>{''.join(f'<li>{each}</li>' for each in others)}</ul>"
+
+    def __repr__(self):
+        return f"<mpmbench.Assessment: {self.found}: {self.verdict[0]}>"
+
+
+class Repair:
+    """A channel of the model that was identified again. `cv`, `mv` name it; `gain_factor`, `time_factor` and
+    `dead_time_shift` have `value`, `lower`, `upper`; `variance` has those of the CVs `now`, `predicted` and so on."""
+
+    def __init__(self, text, context):
+        self.json, self.context = json.loads(text), context
+        channel = self.json.get("channel")
+        self.cv, self.mv = channel.split("/") if channel else (self.json["cv"], self.json["mv"])
+        self.gain_factor, self.time_factor, self.dead_time_shift, self.variance = (
+            self.json[key] for key in ("gain_factor", "time_factor", "dead_time_shift", "variance"))
+
+    def plot(self):
+        """Step responses of the channel, old and new, as a figure of matplotlib."""
+        from . import figures
+        return figures.steps(self)
+
+    def __repr__(self):
+        factors = (f"gain x {self.gain_factor['value']:.3g}", f"time constants x {self.time_factor['value']:.3g}",
+                   f"dead time {self.dead_time_shift['value']:+.3g}")
+        return f"<mpmbench.Repair of {self.cv}/{self.mv}: {', '.join(factors)}>"

@@ -1,0 +1,100 @@
+"""A loop as a method sees it."""
+
+import functools
+
+import numpy
+
+SIGNALS = {"y": "cvs", "u": "mvs", "u_target": "mvs", "d": "mds", "y_sim": "cvs", "y_set": "cvs", "candidates": None}
+
+
+class Loop:
+    """A record of a closed loop. Arrays have one row a variable and one column a sample; NaN is a sample that is missing.
+
+    | attribute | rows | what |
+    |---|---|---|
+    | `y`, `y_sim`, `y_set` | CVs | measured; output of the model with the recorded MVs and disturbances; setpoints |
+    | `u`, `u_target` | MVs | moves of the controller, and the targets of its optimizer |
+    | `d` | measured disturbances | |
+    | `candidates` | logged signals | further signals that may drive a disturbance |
+
+    `cvs`, `mvs`, `mds` are the names of the rows, `sample_time` is in `time_unit`. `benchmark` is the same of a period in
+    which nothing was wrong, `learnt` what the method has learnt from the context. `context` has all that a method may
+    know besides, as docs/bring_your_own.md has it: model, controller, operating point.
+    """
+
+    def __init__(self, signals, context, learnt=None, whole=None, first=0):
+        self._signals, self.context, self.learnt = signals, context, learnt
+        self._whole, self.first = whole, first
+
+    @property
+    def cvs(self):
+        return [cv["name"] for cv in self.context["cvs"]]
+
+    @property
+    def mvs(self):
+        return [mv["name"] for mv in self.context["mvs"]]
+
+    @property
+    def mds(self):
+        return [md["name"] for md in self.context["mds"]]
+
+    @property
+    def sample_time(self):
+        return self.context["sample_time"]
+
+    @property
+    def time_unit(self):
+        return self.context["time_unit"]
+
+    @property
+    def time(self):
+        """Of each sample, from the first one of the record."""
+        return (self.first + numpy.arange(self.y.shape[1])) * self.sample_time
+
+    @functools.cached_property
+    def benchmark(self):
+        return Loop(self.context["benchmark"], self.context)
+
+    @functools.cached_property
+    def whole(self):
+        """Of a moving window, the record that it is a part of, from the sample `first` on; the loop itself otherwise."""
+        return self if self._whole is None else Loop(self._whole, self.context, self.learnt)
+
+    def __getattr__(self, name):
+        if name not in SIGNALS:
+            raise AttributeError(f"a loop has no '{name}'; allowed: {', '.join(SIGNALS)}")
+        rows = self._signals.get(name)
+        if rows is None or len(rows) == 0:
+            rows = numpy.empty((0, len(self._signals["y"][0])))
+        value = numpy.array(rows, float)  # null becomes NaN
+        setattr(self, name, value)
+        return value
+
+    def to_xarray(self):
+        """The signals along their names and the time."""
+        import xarray
+        units = {each["name"]: each["unit"] for kind in ("cvs", "mvs", "mds") for each in self.context[kind]}
+        dims = {"cvs": "cv", "mvs": "mv", "mds": "md"}
+        data = xarray.Dataset(coords={"time": ("time", self.time, {"units": self.time_unit})})
+        for name, rows in SIGNALS.items():
+            value = getattr(self, name)
+            if value.size:
+                names = getattr(self, rows) if rows else [f"candidate {i + 1}" for i in range(len(value))]
+                dim = dims.get(rows, "candidate")
+                data[name] = ((dim, "time"), value)
+                data[dim] = (dim, names, {"variable_units": [units.get(each, "1") for each in names]})
+        return data
+
+    def to_frame(self):
+        """y, u and d as a pandas DataFrame along the time, one column a variable: as records of a plant are."""
+        import pandas
+        return pandas.DataFrame(numpy.concatenate([self.y, self.u, self.d]).T, columns=[*self.cvs, *self.mvs, *self.mds],
+                                index=pandas.Index(self.time, name="time"))
+
+    def plot(self):
+        """y, u and the model of the loop as a figure of matplotlib."""
+        from . import figures
+        return figures.loop(self)
+
+    def __repr__(self):
+        return f"<mpmbench.Loop of {', '.join(self.cvs)}: {self.y.shape[1]} samples>"
