@@ -12,7 +12,7 @@ set(CPACK_COMPONENTS_ALL program development python)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME mpmbench)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS gnuplot-nox) # figures; not a library
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "gnuplot-nox, tzdata") # figures; time zones of records
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS libopenblas0-serial)
 
 # The headers and libraries that Dependencies.cmake looks for, from the one list of packages.

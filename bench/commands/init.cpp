@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -16,6 +17,8 @@
 #include "bench/console/output.hpp"
 #include "bench/files/new_file.hpp"
 #include "plants/error.hpp"
+#include "results/records/data_sketch.hpp"
+#include "results/records/record_file.hpp"
 #include "scenarios/files/study_file.hpp"
 #include "scenarios/files/study_template.hpp"
 #include "solvers/qp_solver.hpp"
@@ -24,7 +27,7 @@ namespace mpm {
 namespace {
 
 struct InitArguments {
-  std::string output;
+  std::string output, data;
   SketchWords words;
 };
 
@@ -80,15 +83,69 @@ void require_model(const SketchWords& words) {
     throw InputError("--gains", "no model", "--gains with --time-constants, or --channel for each channel");
 }
 
+/// Puts what a file of records shows into what the options leave open.
+void take_from_data(const DataSketch& data, StudySketch& sketch, const SketchWords& words) {
+  const auto two_digits = [](double value) { return std::stod(fmt::format("{:.2g}", value)); };
+  constexpr double kMove = 3.0;  // of a setpoint, in standard deviations of the record
+  sketch.noise.assign(sketch.plant.cvs.size(), 0.0);
+  for (std::size_t i = 0; i < sketch.plant.cvs.size(); ++i) {
+    const std::string& name = sketch.plant.cvs[i].name;
+    if (const auto noise = data.noise.find(name); noise != data.noise.end())
+      sketch.noise[i] = noise->second;
+    const bool sized = std::any_of(words.setpoints.begin(), words.setpoints.end(),
+                                   [&](const std::string& text) { return text.starts_with(name + "="); });
+    if (const auto spread = data.spread.find(name);
+        !sized && spread != data.spread.end() && spread->second > 0)
+      sketch.size(static_cast<Eigen::Index>(i)) = two_digits(kMove * spread->second);
+  }
+  constexpr double kOftener = 0.2;  // than the time constants ask for: the historian is faster than the MPC
+  const double guessed = parse_study(study_template(sketch), "study").controller.sample_time;
+  if (!words.sample_time && data.step >= kOftener * guessed)
+    sketch.sample_time = two_digits(data.step);
+}
+
+/// A comment before [data] on what else is guessed from the file.
+std::string words_on_guesses(const DataSketch& data, const StudySketch& sketch, const SketchWords& words) {
+  std::string text = fmt::format(
+      "\n# From {} as well: the noise in [simulation], and how far setpoints move{}.\n", data.file,
+      !words.sample_time && sketch.sample_time ? ", and the sample time in [controller], one row of the file"
+                                               : "");
+  for (const auto& [mv, rests] : data.rests)
+    text += fmt::format("# To do: what {} costs, if it costs anything: {}.\n", mv, rests);
+  return text + "\n";
+}
+
+/// [data] alone, where nothing is said of the plant.
+ExitCode init_data(const InitArguments& arguments) {
+  PlantModel plant;
+  plant.time_unit = arguments.words.time_unit;
+  const std::string text = data_sketch(plant, load_record_columns(arguments.data, DataOptions())).table;
+  if (arguments.output == "-")
+    print_result(text);
+  else
+    write_new(arguments.output, text);
+  print_note("mpmbench: no --cvs and --mvs: only [data], with a list of the columns\n");
+  return ExitCode::done;
+}
+
 ExitCode init(InitArguments arguments) {
   const bool to_stdout = arguments.output == "-";
   if (!to_stdout)
     require_new(arguments.output);
-  if (arguments.words.cvs.empty() && arguments.words.mvs.empty() && ::isatty(STDIN_FILENO) == 1)
+  const bool nothing_said = arguments.words.cvs.empty() && arguments.words.mvs.empty();
+  if (nothing_said && ::isatty(STDIN_FILENO) == 1)
     ask(arguments.words);
+  else if (nothing_said && !arguments.data.empty())
+    return init_data(arguments);
   require_model(arguments.words);
-  const std::string text =
-      study_template(sketch_of(arguments.words, to_stdout ? "my-plant" : name_of_file(arguments.output)));
+  StudySketch sketch = sketch_of(arguments.words, to_stdout ? "my-plant" : name_of_file(arguments.output));
+  std::string of_data;
+  if (!arguments.data.empty()) {
+    const DataSketch data = data_sketch(sketch.plant, load_record_columns(arguments.data, DataOptions()));
+    take_from_data(data, sketch, arguments.words);
+    of_data = words_on_guesses(data, sketch, arguments.words) + data.table;
+  }
+  const std::string text = study_template(sketch) + of_data;
   const Study study = parse_study(text, arguments.output);
   const BasisCase basis = run_basis_case(study, qp_solver_factory("auto"));
   if (to_stdout)
@@ -117,6 +174,10 @@ void add_init(CommandSet& commands) {
                                [options] { return init(*options); });
   add_path(app, "STUDY", options->output, "Study file to write; it must not exist yet; - for stdout")
       ->required();
+  add_path(
+      app, "--data", options->data,
+      "File of records of the plant: its columns, period, sample time, operating point and noise as first "
+      "guesses, in [data]");
   app.add_option("--cvs", options->words.cvs, "Controlled variables: names separated by commas, or how many");
   app.add_option("--mvs", options->words.mvs,
                  "Manipulated variables: names separated by commas, or how many");

@@ -17,7 +17,7 @@ using String = const char*;
 enum Status : int { ok, warning, discard, error, fatal, pending };
 enum Type : int { model_exchange, co_simulation };
 
-inline constexpr Boolean kFalse = 0;
+inline constexpr Boolean kFalse = 0, kTrue = 1;
 inline constexpr const char* kVersion = "2.0";
 inline constexpr const char* kTypesPlatform = "default";
 

@@ -1,6 +1,8 @@
 #include "plants/outside/fmu_instance.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
@@ -32,11 +34,38 @@ std::string_view name_of(fmi2::Status status) {
   return "a status that there is not";
 }
 
+/// The last messages of the one FMU of this process. They are no member of an instance, because some FMUs
+/// give their logger no environment.
+struct FmuMessages {
+  std::string any, of_trouble;
+};
+
+FmuMessages& messages() {
+  static FmuMessages kept;
+  return kept;
+}
+
+/// The library with its own symbols first. The sanitizers cannot have that.
+void* load_library(const std::string& path) {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kOwnFirst = 0;
+#else
+  constexpr int kOwnFirst = RTLD_DEEPBIND;
+#endif
+  return ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | kOwnFirst);
+}
+
 }  // namespace
 
+FmuSteps FmuSteps::of_sample(double sample, double longest) {
+  constexpr double kRounding = 1e-9;  // of a step: 0.3 is three steps of 0.1
+  const double count = longest > 0.0 ? std::max(std::ceil(sample / longest - kRounding), 1.0) : 1.0;
+  return {sample / count, static_cast<int>(count)};
+}
+
 FmuInstance::FmuInstance(const FmuPackage& package, const FmuReferences& references,
-                         const Eigen::VectorXd& parameters, const Eigen::VectorXd& input)
-    : references_(references), library_(::dlopen(package.library().c_str(), RTLD_NOW | RTLD_LOCAL)) {
+                         const Eigen::VectorXd& parameters, const Eigen::VectorXd& input, FmuSteps steps)
+    : references_(references), library_(load_library(package.library())), step_(steps) {
   if (library_ == nullptr)
     throw ForeignFailure(fmt::format("its library cannot be loaded: {}", ::dlerror()));
   const std::string version = function<fmi2::GetVersion>("GetVersion")();
@@ -50,13 +79,13 @@ FmuInstance::FmuInstance(const FmuPackage& package, const FmuReferences& referen
   callbacks_ = {log, std::calloc, std::free, nullptr, this};
   component_ = function<fmi2::Instantiate>("Instantiate")(
       "mpmbench", fmi2::co_simulation, package.description().guid.c_str(), package.resources().c_str(),
-      &callbacks_, fmi2::kFalse, fmi2::kFalse);
+      &callbacks_, fmi2::kFalse, fmi2::kTrue);
   if (component_ == nullptr)
     throw ForeignFailure(fmt::format(
         "fmi2Instantiate gave no instance; is the GUID '{}' of modelDescription.xml that of the library?{}",
-        package.description().guid, said_));
-  require(function<fmi2::SetupExperiment>("SetupExperiment")(component_, fmi2::kFalse, 0.0, 0.0, fmi2::kFalse,
-                                                             0.0),
+        package.description().guid, said()));
+  require(function<fmi2::SetupExperiment>("SetupExperiment")(component_, fmi2::kFalse, 0.0, 0.0, fmi2::kTrue,
+                                                             kMostSamples * step_.count * step_.length),
           "SetupExperiment");
   set_parameters(parameters);
   require(function<fmi2::EnterInitializationMode>("EnterInitializationMode")(component_),
@@ -70,10 +99,12 @@ void FmuInstance::set_parameters(const Eigen::VectorXd& parameters) {
   set(references_.parameters, parameters);
 }
 
-Eigen::VectorXd FmuInstance::step(const Eigen::VectorXd& input, double step) {
+Eigen::VectorXd FmuInstance::step(const Eigen::VectorXd& input) {
   set(references_.inputs, input);
-  require(do_step_(component_, now_, step, 1), "DoStep");
-  now_ = static_cast<double>(++steps_) * step;
+  for (int part = 0; part < step_.count; ++part) {
+    require(do_step_(component_, now_, step_.length, 1), "DoStep");
+    now_ = static_cast<double>(++steps_) * step_.length;
+  }
   Eigen::VectorXd y(static_cast<Eigen::Index>(references_.outputs.size()));
   require(get_real_(component_, references_.outputs.data(), references_.outputs.size(), y.data()), "GetReal");
   if (!y.allFinite())
@@ -98,19 +129,25 @@ Function* FmuInstance::function(const char* name) const {
 
 void FmuInstance::require(fmi2::Status status, const char* function) const {
   if (status != fmi2::ok && status != fmi2::warning)
-    throw ForeignFailure(fmt::format("fmi2{} at its time {}: {}{}", function, now_, name_of(status), said_));
+    throw ForeignFailure(fmt::format("fmi2{} at its time {}: {}{}", function, now_, name_of(status), said()));
 }
 
-void FmuInstance::log(fmi2::ComponentEnvironment environment, fmi2::String, fmi2::Status status, fmi2::String,
+std::string FmuInstance::said() {
+  const FmuMessages& kept = messages();
+  const std::string& text = kept.of_trouble.empty() ? kept.any : kept.of_trouble;
+  return text.empty() ? "" : fmt::format(" (it says: {})", text);
+}
+
+void FmuInstance::log(fmi2::ComponentEnvironment, fmi2::String, fmi2::Status status, fmi2::String,
                       fmi2::String message, ...) {
-  if (environment == nullptr || message == nullptr || status == fmi2::ok)
+  if (message == nullptr)
     return;
   std::array<char, 512> text{};
   std::va_list arguments;
   va_start(arguments, message);
   std::vsnprintf(text.data(), text.size(), message, arguments);
   va_end(arguments);
-  static_cast<FmuInstance*>(environment)->said_ = fmt::format(" (it says: {})", text.data());
+  (status == fmi2::ok ? messages().any : messages().of_trouble) = text.data();
 }
 
 }  // namespace mpm

@@ -42,7 +42,7 @@ std::vector<double> request_of(FmuRequest kind, const Eigen::VectorXd& first,
 /// The other end: the instance, in the process that has it.
 class FmuServer {
  public:
-  FmuServer(const LoadedFmu& fmu, double step) : fmu_(fmu), step_(step) {}
+  FmuServer(const LoadedFmu& fmu, FmuSteps steps) : fmu_(fmu), steps_(steps) {}
 
   std::vector<double> serve(const std::vector<double>& request) {
     const Eigen::Map<const Eigen::VectorXd> all(request.data(), static_cast<Eigen::Index>(request.size()));
@@ -51,13 +51,13 @@ class FmuServer {
     switch (static_cast<FmuRequest>(static_cast<int>(request.front()))) {
       case FmuRequest::start:
         instance_.emplace(fmu_.package, fmu_.references, numbers.head(parameters),
-                          numbers.tail(numbers.size() - parameters));
+                          numbers.tail(numbers.size() - parameters), steps_);
         break;
       case FmuRequest::change:
         instance_->set_parameters(numbers);
         break;
       case FmuRequest::step: {
-        const Eigen::VectorXd y = instance_->step(numbers, step_);
+        const Eigen::VectorXd y = instance_->step(numbers);
         return {y.begin(), y.end()};
       }
     }
@@ -66,17 +66,18 @@ class FmuServer {
 
  private:
   const LoadedFmu& fmu_;
-  double step_;
+  FmuSteps steps_;
   std::optional<FmuInstance> instance_;
 };
 
 class FmuSimulation final : public ForeignSimulation {
  public:
-  FmuSimulation(std::shared_ptr<const LoadedFmu> fmu, double step, double time_limit)
-      : fmu_(std::move(fmu)), step_(step), time_limit_(time_limit) {}
+  FmuSimulation(std::shared_ptr<const LoadedFmu> fmu, FmuSteps steps, double time_limit)
+      : fmu_(std::move(fmu)), steps_(steps), time_limit_(time_limit) {}
 
   void start(const Eigen::VectorXd& parameters, const Eigen::VectorXd& input) override {
-    service_.emplace(*fmu_->server, std::vector{step_}, time_limit_);
+    service_.emplace(*fmu_->server, std::vector{steps_.length, static_cast<double>(steps_.count)},
+                     time_limit_);
     service_->ask(request_of(FmuRequest::start, parameters, input));
   }
   void change(const Eigen::VectorXd& parameters) override {
@@ -92,7 +93,8 @@ class FmuSimulation final : public ForeignSimulation {
 
  private:
   std::shared_ptr<const LoadedFmu> fmu_;
-  double step_, time_limit_;
+  FmuSteps steps_;
+  double time_limit_;
   std::optional<ServedProcess> service_;
 };
 
@@ -105,6 +107,8 @@ class FmuModel final : public ForeignModel {
     std::string text =
         fmt::format("{} {} {} {} {}", settings_.file.filename().string(), settings_.time_factor,
                     options().settle, options().settle_tolerance, options().time_limit);
+    if (settings_.step > 0.0)
+      text += fmt::format(" steps of {}", settings_.step);
     for (const auto* list : {&settings_.inputs, &settings_.outputs, &settings_.parameters})
       for (const FmuSettings::Variable& variable : *list)
         text += fmt::format(" '{}'", variable.name);
@@ -129,7 +133,8 @@ class FmuModel final : public ForeignModel {
     for (const FmuSettings::Variable& each : settings_.parameters)
       fmu->tunable.push_back(fmu->package.description().variables.at(each.name).variability == "tunable");
     fmu->server.emplace([&loaded = *fmu](const std::vector<double>& setting) {
-      const auto server = std::make_shared<FmuServer>(loaded, setting.front());
+      const auto server =
+          std::make_shared<FmuServer>(loaded, FmuSteps{setting[0], static_cast<int>(setting[1])});
       return [server](const std::vector<double>& request) { return server->serve(request); };
     });
     loaded_ = std::move(fmu);
@@ -140,8 +145,9 @@ class FmuModel final : public ForeignModel {
   bool is_tunable(std::size_t parameter) const override { return loaded_->tunable[parameter]; }
 
   std::unique_ptr<ForeignSimulation> simulation(double sample_time) const override {
-    return std::make_unique<FmuSimulation>(loaded_, sample_time * settings_.time_factor,
-                                           options().time_limit);
+    return std::make_unique<FmuSimulation>(
+        loaded_, FmuSteps::of_sample(sample_time * settings_.time_factor, settings_.step),
+        options().time_limit);
   }
 
  private:

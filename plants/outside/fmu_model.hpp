@@ -20,10 +20,12 @@ struct FmuSettings {
   std::filesystem::path file;
   std::string place;         ///< where the study names it, for messages
   double time_factor = 1.0;  ///< units of the time of the FMU, as a rule s, in one of the study
+  double step = 0.0;         ///< longest communication step, time of the FMU; 0: a sample
   std::vector<Variable> inputs, outputs, parameters;
 };
 
-/// A plant by FMI 2.0 for co-simulation. A sample is one communication step with held inputs.
+/// A plant by FMI 2.0 for co-simulation. A sample is one communication step with held inputs, or as many as
+/// FmuSettings::step makes of it.
 ///
 /// Each simulation runs in a process of its own (ForkedService), with one instance in it: many exports allow
 /// no more, and so neither a crash nor what an FMU keeps in memory reaches another loop. load() unpacks the

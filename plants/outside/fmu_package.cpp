@@ -145,7 +145,15 @@ FmuPackage::FmuPackage(const fs::path& file) {
 }
 
 fs::path FmuPackage::library() const {
-  return folder_.path() / kBinaries / (description_.identifier + ".so");
+  const fs::path folder = folder_.path() / kBinaries, named = folder / (description_.identifier + ".so");
+  std::error_code none;
+  if (fs::is_regular_file(named, none))
+    return named;
+  std::vector<fs::path> others;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
+    if (entry.path().extension() == ".so")
+      others.push_back(entry.path());
+  return others.size() == 1 ? others.front() : named;
 }
 
 std::string FmuPackage::resources() const {

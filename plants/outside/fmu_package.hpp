@@ -16,7 +16,7 @@ class FmuPackage {
   explicit FmuPackage(const std::filesystem::path& file);
 
   const FmuDescription& description() const { return description_; }
-  /// binaries/linux64/IDENTIFIER.so
+  /// binaries/linux64/IDENTIFIER.so, or the only library there, whatever its name is.
   std::filesystem::path library() const;
   /// The URI of the folder resources, as fmi2Instantiate takes it.
   std::string resources() const;

@@ -121,6 +121,12 @@ class Hdf5Group {
   std::vector<double> numbers(const std::string& variable) const;
   /// All values of texts of fixed or variable length.
   std::vector<std::string> texts(const std::string& variable) const;
+  /// Names of the groups in this one, in the order of the alphabet.
+  std::vector<std::string> groups() const;
+  bool is_reference(const std::string& variable) const;
+  /// The paths of the objects that the values of a variable refer to, by which other members take them;
+  /// empty: none.
+  std::vector<std::string> references(const std::string& variable) const;
   /// An attribute of a variable; none when there is none. One of another kind, or with several values, is
   /// refused.
   std::optional<double> number_attribute(const std::string& variable, const std::string& name) const;

@@ -101,6 +101,19 @@ herr_t keep_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
+/// The objects of a kind in a group. One that lies in another file is refused when it is read.
+std::vector<std::string> names_in(const hdf5::Place& place, hid_t group, H5O_type_t kind) {
+  std::vector<std::string> links, names;
+  place.check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &links), "list it");
+  for (std::string& name : links) {
+    H5O_info_t info;
+    if (H5Oget_info_by_name2(group, name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0 &&
+        info.type == kind)
+      names.push_back(std::move(name));
+  }
+  return names;
+}
+
 herr_t keep_scale_name(hid_t, unsigned, hid_t scale, void* name) {
   const ssize_t length = H5Iget_name(scale, nullptr, 0);
   std::string path(length > 0 ? static_cast<std::size_t>(length) + 1 : 1, '\0');
@@ -113,17 +126,11 @@ herr_t keep_scale_name(hid_t, unsigned, hid_t scale, void* name) {
 }  // namespace
 
 std::vector<std::string> Hdf5Group::variables() const {
-  std::vector<std::string> links, names;
-  state_->place("group", "")
-      .check(H5Literate(state_->group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &links),
-             "list it");
-  for (std::string& name : links) {
-    H5O_info_t info;
-    if (H5Oget_info_by_name2(state_->group.get(), name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0 &&
-        info.type == H5O_TYPE_DATASET)
-      names.push_back(std::move(name));  // one that lies in another file is refused when it is read
-  }
-  return names;
+  return names_in(state_->place("group", ""), state_->group.get(), H5O_TYPE_DATASET);
+}
+
+std::vector<std::string> Hdf5Group::groups() const {
+  return names_in(state_->place("group", ""), state_->group.get(), H5O_TYPE_GROUP);
 }
 
 std::vector<std::size_t> Hdf5Group::shape(const std::string& variable) const {
@@ -155,6 +162,33 @@ bool Hdf5Group::is_text(const std::string& variable) const {
   const hdf5::Place place = state_->place("variable", variable);
   const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
   return is_text_type(place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type").get());
+}
+
+bool Hdf5Group::is_reference(const std::string& variable) const {
+  const hdf5::Place place = state_->place("variable", variable);
+  const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
+  const hdf5::Handle type = place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type");
+  return H5Tequal(type.get(), H5T_STD_REF_OBJ) > 0;
+}
+
+std::vector<std::string> Hdf5Group::references(const std::string& variable) const {
+  const hdf5::Place place = state_->place("variable", variable);
+  const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
+  if (!is_reference(variable))
+    place.fail("no references");
+  std::vector<hobj_ref_t> found(bounded_count(place, shape_of_dataset(place, dataset), sizeof(std::string)));
+  if (!found.empty())
+    place.check(H5Dread(dataset.get(), H5T_STD_REF_OBJ, H5S_ALL, H5S_ALL, H5P_DEFAULT, found.data()),
+                "read it");
+  std::vector<std::string> paths;
+  for (const hobj_ref_t& reference : found) {
+    const ssize_t length = H5Rget_name(dataset.get(), H5R_OBJECT, &reference, nullptr, 0);
+    std::string path(length > 0 ? static_cast<std::size_t>(length) + 1 : 1, '\0');
+    H5Rget_name(dataset.get(), H5R_OBJECT, &reference, path.data(), path.size());
+    path.resize(path.size() - 1);
+    paths.push_back(std::move(path));
+  }
+  return paths;
 }
 
 std::vector<double> Hdf5Group::numbers(const std::string& variable) const {

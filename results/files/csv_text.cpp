@@ -1,6 +1,7 @@
 #include "results/files/csv_text.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,10 +24,19 @@ std::string_view without_blanks(std::string_view text) {
 }
 
 void refuse_bytes(std::string_view text, const std::string& file) {
-  const bool utf16 = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
-  if (utf16 || text.find('\0') != std::string_view::npos)
-    throw InputError(file, utf16 ? "a text in UTF-16" : "bytes that are not text",
-                     "a CSV file in UTF-8 or ASCII: export it again, or save the sheet as \"CSV UTF-8\"");
+  if (text.find('\0') != std::string_view::npos)
+    throw InputError(
+        file, "bytes that are not text",
+        "a CSV file in UTF-8, UTF-16 or ASCII: export it again, or save the sheet as \"CSV UTF-8\"");
+}
+
+/// The sign that a spreadsheet names in the first line.
+std::optional<char> named_separator(std::string_view line) {
+  line = without_blanks(line);
+  if (line.size() == 7 && line.front() == '"' && line.back() == '"')
+    line = line.substr(1, 5);
+  const bool named = line.size() == 5 && (line.starts_with("sep=") || line.starts_with("SEP="));
+  return named ? std::optional(line.back()) : std::nullopt;
 }
 
 /// The one that the heading has most often.
@@ -39,7 +49,10 @@ char found_separator(std::string_view heading) {
 }  // namespace
 
 CsvReader::CsvReader(std::string_view text, std::string file, CsvForm form)
-    : text_(text), file_(std::move(file)), form_(std::move(form)) {
+    : decoded_(is_utf16(text) ? utf8_of_utf16(text) : std::string()),
+      text_(is_utf16(text) ? decoded_ : text),
+      file_(std::move(file)),
+      form_(std::move(form)) {
   refuse_bytes(text_, file_);
   if (text_.starts_with(kByteOrderMark))
     text_.remove_prefix(kByteOrderMark.size());
@@ -58,7 +71,8 @@ bool CsvReader::next_line(std::string_view& line) {
     at_ = end + (text_.substr(end).starts_with("\r\n") ? 2 : 1);
     ++line_;
     const std::string_view content = without_blanks(line);
-    if (content.empty())
+    const bool skipped = std::find(form_.skip.begin(), form_.skip.end(), line_) != form_.skip.end();
+    if (content.empty() || skipped)
       continue;
     if (!content.starts_with('#') || !(heading_.empty() || form_.comments_everywhere))
       return true;
@@ -107,7 +121,10 @@ void CsvReader::read_heading() {
   std::string_view line;
   if (!next_line(line))
     return;
-  separator_ = form_.separator.empty() ? found_separator(line) : form_.separator.front();
+  const std::optional<char> named = named_separator(line);
+  if (named && !next_line(line))
+    return;
+  separator_ = !form_.separator.empty() ? form_.separator.front() : named.value_or(found_separator(line));
   heading_ = fields_of(line);
   for (const std::string& name : heading_)
     if (name.size() > kLongestCsvName)
@@ -122,14 +139,18 @@ bool CsvReader::next(std::vector<std::string>& fields) {
   if (!next_line(line))
     return false;
   fields = fields_of(line);
+  while (fields.size() > heading_.size() && fields.back().empty())
+    fields.pop_back();
   if (fields.size() != heading_.size()) {
     const bool decimal_commas = separator_ == ',' && fields.size() > heading_.size();
     throw InputError(
         place(), fmt::format("{} fields", fields.size()),
         fmt::format("{}, as the heading has them{}", heading_.size(),
-                    decimal_commas ? "; if these are decimal commas in a file separated by commas, export it "
-                                     "with ';' between the columns, or with decimal points"
-                                   : ""));
+                    heading_.size() == 1 ? "; if lines of a title stand before it: data.skip"
+                    : decimal_commas
+                        ? "; if these are decimal commas in a file separated by commas, export it "
+                          "with ';' between the columns, or with decimal points"
+                        : ""));
   }
   cells_ += fields.size();
   if (cells_ > form_.most_cells)

@@ -17,14 +17,17 @@ struct CsvForm {
   bool comments_everywhere =
       false;  ///< otherwise lines that begin with '#' are comments before the heading only
   std::size_t most_cells = kMostForeignCells;
+  std::vector<int> skip = {};  ///< numbers of lines that are not read, from 1
 };
 
 /// A CSV text of somebody else, line by line: the one reader of records and of verdicts.
 ///
-/// A byte order mark, empty lines and the line ends of any system are read. Fields stand without the blanks
-/// around them. One rule for quotes: a field whose first character is '"' ends at the next '"' that is not
-/// doubled, on the same line, and only blanks may follow it; any other '"' is a character like all others
-/// (5" pipe). So no quote reaches beyond its line, whoever forgot to close it.
+/// UTF-8 and UTF-16, a byte order mark, empty lines and the line ends of any system are read, and a first
+/// line "sep=;", by which spreadsheets say what is between the fields. Fields stand without the blanks around
+/// them; empty ones behind the last one of the heading are dropped. One rule for quotes: a field whose first
+/// character is '"' ends at the next '"' that is not doubled, on the same line, and only blanks may follow
+/// it; any other '"' is a character like all others (5" pipe). So no quote reaches beyond its line, whoever
+/// forgot to close it.
 ///
 /// Errors: InputError "FILE:LINE: found ...; allowed: ..." for bytes that are no text, a quote that breaks
 /// the rule, a row with another number of fields than the heading, a name of more than kLongestCsvName
@@ -33,6 +36,8 @@ class CsvReader {
  public:
   /// Reads up to the heading; `text` must outlive the reader. Without a heading heading() is empty.
   CsvReader(std::string_view text, std::string file, CsvForm form = {});
+  CsvReader(const CsvReader&) = delete;
+  CsvReader& operator=(const CsvReader&) = delete;
 
   char separator() const { return separator_; }
   const std::vector<std::string>& heading() const { return heading_; }
@@ -51,6 +56,7 @@ class CsvReader {
   std::vector<std::string> fields_of(std::string_view line) const;
   void read_heading();
 
+  std::string decoded_;  ///< of UTF-16
   std::string_view text_;
   std::string file_;
   CsvForm form_;

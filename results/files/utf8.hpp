@@ -16,6 +16,13 @@ std::string proper_utf8(std::string_view text);
 /// U+2069): a name could make the rest of a line read as something else.
 std::string plain_text(std::string_view text);
 
+/// Is it a text in UTF-16: with its byte order mark, or with a NUL as one of its first two bytes?
+bool is_utf16(std::string_view bytes);
+
+/// A text in UTF-16 as UTF-8, without its byte order mark; without one the byte that is NUL tells the order.
+/// Halves of characters are replaced by U+FFFD, and so is a last odd byte.
+std::string utf8_of_utf16(std::string_view bytes);
+
 /// The first `most` bytes of `text`, less what would be half a character of UTF-8.
 std::string_view cut_utf8(std::string_view text, std::size_t most);
 

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
-#include "results/files/csv_text.hpp"
+#include "results/records/written_date.hpp"
 
 namespace mpm {
 namespace {
@@ -20,19 +21,45 @@ bool begins_with_number(const std::string& field) {
   return error == std::errc() && end != field.data();
 }
 
+/// Takes the rows of units away. A file that has nothing else keeps them.
+void take_units(RecordColumns& csv) {
+  constexpr std::size_t kMostRows = 5;
+  const auto says_nothing = [&csv](std::size_t row) {
+    return std::none_of(csv.columns.begin(), csv.columns.end(), [&](const auto& column) {
+      return begins_with_number(column[row]) || is_date(column[row]);
+    });
+  };
+  std::size_t rows = 0;
+  while (rows < std::min(kMostRows, csv.rows()) && says_nothing(rows))
+    ++rows;
+  if (rows == 0 || rows == csv.rows() || says_nothing(rows))
+    return;
+  for (const auto& column : csv.columns)
+    csv.units.push_back(column.front());
+  csv.warnings.push_back(rows == 1
+                             ? fmt::format("line {} has neither a number nor a date: units", csv.lines[0])
+                             : fmt::format("lines {} to {} have neither a number nor a date: units",
+                                           csv.lines[0], csv.lines[rows - 1]));
+  std::vector<std::size_t> kept(csv.rows() - rows);
+  std::iota(kept.begin(), kept.end(), rows);
+  csv.keep_rows(kept);
+}
+
 }  // namespace
 
-RecordColumns parse_csv(std::string_view text, const std::string& file, const std::string& separator) {
-  CsvReader reader(text, file, {.separator = separator});
+RecordColumns parse_csv(std::string_view text, const std::string& file, CsvForm form) {
+  CsvReader reader(text, file, std::move(form));
   RecordColumns csv;
   csv.file = file;
   csv.separator = reader.separator();
   csv.names = reader.heading();
   if (csv.names.size() == 1)
     throw InputError(reader.place(), "one column",
-                     "a heading with the names of the columns, separated by , ; tab or | (data.separator)");
+                     "a heading with the names of the columns, separated by , ; tab or | (data.separator); "
+                     "data.skip for lines of a title before it");
   if (!csv.names.empty() && std::all_of(csv.names.begin(), csv.names.end(), begins_with_number))
-    throw InputError(reader.place(), "numbers", "a heading with the names of the columns");
+    throw InputError(reader.place(), "numbers",
+                     "a heading with the names of the columns; data.skip for lines before it");
   csv.columns.resize(csv.names.size());
   for (std::vector<std::string> fields; reader.next(fields);) {
     for (std::size_t column = 0; column < fields.size(); ++column)
@@ -42,6 +69,7 @@ RecordColumns parse_csv(std::string_view text, const std::string& file, const st
   if (csv.rows() == 0)
     throw InputError(file, csv.names.empty() ? "nothing" : "a heading and no rows",
                      "a heading with the names of the columns, and a row a time stamp");
+  take_units(csv);
   return csv;
 }
 

@@ -21,6 +21,7 @@
 #include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "results/records/matlab_columns.hpp"
 #include "results/records/time_stamps.hpp"
 
 namespace mpm {
@@ -124,7 +125,7 @@ class NetcdfReader {
                       kFirstYear));
     const std::vector<std::string> cell{date};
     const std::vector<std::size_t> line{0};
-    const TimeStamps begin = parse_time_stamps({place, cell, line}, DateOrder::year_month_day, '.');
+    const TimeStamps begin = parse_time_stamps({place, cell, line}, {.order = DateOrder::year_month_day});
     if (!begin.calendar)
       throw InputError(place, fmt::format("'{}'", cut_utf8(date, kShownBytes)),
                        "a date, such as 2024-10-27 00:00:00");
@@ -200,6 +201,10 @@ class NetcdfReader {
         throw InputError(fmt::format("{}: variable '{}'", columns_.file, variable),
                          fmt::format("{} samples", shape[i]),
                          fmt::format("{}, as '{}' has them", samples_, along_));
+    if (dimensions.size() == 2 && dimensions.front() == dimension_ && root_.is_text(variable)) {
+      add_characters(variable, shape.back());
+      return;
+    }
     if (dimensions.empty() || dimensions.back() != dimension_ || dimensions.size() > 3 ||
         variable == dimension_ || !(root_.is_number(variable) || root_.is_text(variable)))
       return;
@@ -220,6 +225,19 @@ class NetcdfReader {
     }
   }
 
+  /// A text a sample, of single characters along the last dimension.
+  void add_characters(const std::string& variable, std::size_t length) {
+    const std::vector<std::string> characters = root_.texts(variable);
+    if (std::any_of(characters.begin(), characters.end(), [](const auto& each) { return each.size() > 1; }))
+      return;
+    std::vector<std::string> cells(samples_);
+    for (std::size_t i = 0; i < characters.size(); ++i)
+      cells[i / length] += characters[i].empty() ? " " : characters[i];
+    for (std::string& cell : cells)
+      cell.erase(cell.find_last_not_of(' ') + 1);
+    add(variable, std::move(cells));
+  }
+
   Hdf5Group root_;
   std::vector<std::string> variables_;
   RecordColumns columns_;
@@ -234,8 +252,11 @@ class NetcdfReader {
 /// What is in the file, or why it is refused.
 nlohmann::json read_file(std::vector<std::byte>& content, const std::string& file, const std::string& time) {
   try {
+    const auto* const text = reinterpret_cast<const char*>(content.data());
+    const bool matlab = is_matlab({text, content.size()});
     const Hdf5File opened = Hdf5File::open_unsealed(std::move(content), file);
-    const RecordColumns read = NetcdfReader(opened.root(), file, time).columns();
+    const RecordColumns read = matlab ? matlab_columns(opened.root(), file, time)
+                                      : NetcdfReader(opened.root(), file, time).columns();
     return {{"names", read.names}, {"columns", read.columns}, {"lines", read.lines}};
   } catch (const InputError& error) {
     return {{"refused", error.what()}};
@@ -283,8 +304,10 @@ RecordColumns columns_of(const nlohmann::json& answer, const std::string& file) 
 
 }  // namespace
 
-bool is_netcdf4(std::string_view content) {
-  return content.starts_with("\x89HDF\r\n\x1a\n");
+bool is_hdf5(std::string_view content) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  return content.starts_with(kSignature) ||
+         (is_matlab(content) && content.substr(kMatlabHeading).starts_with(kSignature));
 }
 
 RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file, const std::string& time,

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,9 +35,51 @@ std::string columns_text(const std::vector<std::string>& names) {
   return fmt::format("one of the columns {}", fmt::join(shown, ", "));
 }
 
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// One to three digits, then groups of three with this sign before each, then perhaps a fraction.
+bool is_grouped(std::string_view cell, char group, char decimal) {
+  constexpr std::size_t kDigits = 3;
+  if (cell.starts_with('+') || cell.starts_with('-'))
+    cell.remove_prefix(1);
+  const std::string_view whole = cell.substr(0, cell.find(decimal));
+  const std::string_view fraction = cell.substr(std::min(whole.size() + 1, cell.size()));
+  const std::size_t first = whole.find(group);
+  if (first == 0 || first > kDigits || !std::all_of(fraction.begin(), fraction.end(), is_digit))
+    return false;  // std::string_view::npos among them
+  if ((whole.size() - first) % (kDigits + 1) != 0)
+    return false;
+  for (std::size_t at = 0; at < whole.size(); ++at)
+    if ((at >= first && (at - first) % (kDigits + 1) == 0) ? whole[at] != group : !is_digit(whole[at]))
+      return false;
+  return true;
+}
+
+/// Takes out what stands between thousands: `group`, where the file has one, a blank of any kind, or '.
+void drop_groups(std::string& cell, char decimal, char group) {
+  if (cell.find_first_not_of("+-0123456789.,eE") == std::string::npos) {
+    if (group != '\0' && cell.find(group) != std::string::npos && is_grouped(cell, group, decimal))
+      std::erase(cell, group);
+    return;
+  }
+  if (cell.empty() || cell.find_first_of(" '\xC2\xE2") == std::string::npos)
+    return;
+  std::string plain = cell;
+  for (const std::string_view blank : {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x99", "'"})
+    for (std::size_t at = plain.find(blank); at != std::string::npos; at = plain.find(blank, at))
+      plain.replace(at, blank.size(), " ");
+  if (is_grouped(plain, ' ', decimal)) {
+    std::erase(plain, ' ');
+    cell = std::move(plain);
+  }
+}
+
 }  // namespace
 
 std::optional<double> RecordColumns::number(std::string cell) const {
+  drop_groups(cell, decimal, group);
   if (decimal == ',')
     std::replace(cell.begin(), cell.end(), ',', '.');
   const std::size_t sign = cell.starts_with('+') ? 1 : 0;
@@ -83,15 +126,26 @@ void RecordColumns::keep_rows(const std::vector<std::size_t>& kept) {
   pick(lines);
 }
 
-char found_decimal(const RecordColumns& columns) {
-  std::size_t commas = 0, points = 0;
+void find_number_form(RecordColumns& columns, char decimal) {
+  std::size_t commas = 0, points = 0, groups_of_commas = 0, groups_of_points = 0;
   for (const auto& column : columns.columns)
     for (const std::string& cell : column) {
-      const bool digits = cell.find_first_not_of("+-0123456789.,eE") == std::string::npos;
-      commas += digits && std::count(cell.begin(), cell.end(), ',') == 1 ? 1 : 0;
-      points += digits && std::count(cell.begin(), cell.end(), '.') == 1 ? 1 : 0;
+      if (cell.find_first_of(".,") == std::string::npos ||
+          cell.find_first_not_of("+-0123456789.,eE") != std::string::npos)
+        continue;
+      const auto of_comma = std::count(cell.begin(), cell.end(), ',');
+      const auto of_point = std::count(cell.begin(), cell.end(), '.');
+      commas += of_comma == 1 && of_point == 0 ? 1 : 0;
+      points += of_point == 1 && of_comma == 0 ? 1 : 0;
+      groups_of_commas += of_comma + of_point > 1 && is_grouped(cell, ',', '.') ? 1 : 0;
+      groups_of_points += of_comma + of_point > 1 && is_grouped(cell, '.', ',') ? 1 : 0;
     }
-  return commas > points ? ',' : '.';
+  const bool proven = groups_of_commas != groups_of_points;
+  if (decimal == '\0')
+    decimal = (proven ? groups_of_points > groups_of_commas : commas > points) ? ',' : '.';
+  columns.decimal = decimal;
+  const bool grouped = (decimal == '.' ? groups_of_commas : groups_of_points) > 0;
+  columns.group = !grouped ? '\0' : decimal == '.' ? ',' : '.';
 }
 
 }  // namespace mpm

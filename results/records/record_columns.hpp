@@ -11,12 +11,15 @@ struct RecordColumns {
   std::string file;  ///< for messages
   char separator = ',';
   char decimal = '.';
+  char group = '\0';                              ///< between thousands, beside blanks and '; '\0': none
   std::vector<std::string> names;                 ///< of the columns
   std::vector<std::vector<std::string>> columns;  ///< [column][row]
   std::vector<std::size_t> lines;                 ///< in the file, of each row
+  std::vector<std::string> units;                 ///< of the columns, where a row below the heading has them
+  std::vector<std::string> warnings;              ///< what was made of the file that needs a look
 
   std::size_t rows() const { return lines.size(); }
-  /// The cell as a number with the decimal sign of the file; none when it is not one.
+  /// The cell as a number as the file writes them; none when it is not one.
   std::optional<double> number(std::string cell) const;
   /// The column of this name; of one that differs in capitals only where there is no other. Errors:
   /// InputError for two columns of this name.
@@ -28,7 +31,9 @@ struct RecordColumns {
   void keep_rows(const std::vector<std::size_t>& kept);
 };
 
-/// "," where numbers are written so: more cells have one comma than one point. The file may have any of them.
-char found_decimal(const RecordColumns& columns);
+/// The decimal sign and the sign between thousands that the cells show; `decimal` where it is known, else
+/// '\0'. It is "," if more cells have one comma than one point, unless thousands prove it (12,345.6 or
+/// 1,234,567): only then there is a sign between thousands.
+void find_number_form(RecordColumns& columns, char decimal);
 
 }  // namespace mpm

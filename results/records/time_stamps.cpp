@@ -1,38 +1,40 @@
 #include "results/records/time_stamps.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <regex>
+#include <sstream>
 
+#include <date/date.h>
 #include <fmt/format.h>
 
+#include "analysis/findings/monitored_loop.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "results/records/written_date.hpp"
+#include "results/records/zone_clock.hpp"
 
 namespace mpm {
 namespace {
 
+constexpr double kSecondsOfDay = 86400.0;
 constexpr const char* kForms =
-    "numbers, or dates such as 2024-10-27 02:59:30, 2024-10-27T02:59:30Z, 27.10.2024 02:59, 10/27/2024 2:59 "
-    "PM";
+    "numbers (data.time_unit), or dates such as 2024-10-27 02:59:30, 2024-10-27T02:59:30Z, 27.10.2024 02:59, "
+    "10/27/2024 2:59 PM, 27-Oct-24 02:59:30; data.time_format for others";
 
-/// A stamp as it stands: three numbers of the date in their order, and the time of day with its offset.
-struct WrittenDate {
-  int first = 0, second = 0, third = 0;
-  double seconds = 0.0;       ///< since midnight, the offset taken off
-  bool offset = false;        ///< it had one
-  bool time_of_day = false;   ///< it had one
-  bool twelve_hours = false;  ///< AM or PM
-};
+using Dates = std::vector<std::optional<WrittenDate>>;
 
-std::optional<double> number_in(std::string cell, char decimal) {
+[[noreturn]] void refuse_stamp(const StampSource& source, std::size_t row, const std::string& allowed) {
+  throw InputError(fmt::format("{}, line {}", source.where, source.lines[row]),
+                   fmt::format("'{}'", cut_utf8(source.cells[row], kShownBytes)), allowed);
+}
+
+std::optional<double> number_in_stamp(std::string cell, char decimal) {
   if (decimal == ',')
     std::replace(cell.begin(), cell.end(), ',', '.');
   double value = 0.0;
@@ -42,148 +44,319 @@ std::optional<double> number_in(std::string cell, char decimal) {
              : std::nullopt;
 }
 
-/// "+01:00" in s; none for one that no clock has.
-std::optional<double> offset_of(const std::string& text) {
-  if (text.empty() || text == "Z" || text == "z")
+// --- Numbers ---
+
+struct EpochUnit {
+  const char* name;
+  double in_second;
+};
+
+constexpr EpochUnit kEpochUnits[] = {{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}};
+
+struct Range {
+  double low, high;
+  /// Of those that there are: one at least.
+  bool has_all(const std::vector<double>& values, double scale = 1.0) const {
+    std::size_t inside = 0, there = 0;
+    for (const double value : values) {
+      there += std::isnan(value) ? 0 : 1;
+      inside += value >= low * scale && value < high * scale ? 1 : 0;
+    }
+    return there > 0 && inside == there;
+  }
+};
+
+constexpr Range kEpoch{631152000.0, 4102444800.0};  // 1990 to 2099, s since 1970
+
+/// Programs that count days.
+struct DayCount {
+  const char* name;
+  double of_1970;
+};
+
+constexpr DayCount kDayCounts[] = {{"spreadsheet", 25569.0}, {"matlab", 719529.0}};
+constexpr Range kDays{10957.0, 47482.0};  // 2000 to 2099, days since 1970
+
+double median_step(std::vector<double> values) {
+  std::vector<double> steps;
+  for (std::size_t row = 1; row < values.size(); ++row)
+    if (const double step = std::abs(values[row] - values[row - 1]); step > 0.0)
+      steps.push_back(step);
+  if (steps.empty())
     return 0.0;
-  const double hours = std::stod(text.substr(1, 2));
-  const double minutes = text.size() > 3 ? std::stod(text.substr(text.size() - 2)) : 0.0;
-  constexpr double kMostHours = 14.0;
-  if (minutes > 59.0 || hours + minutes / 60.0 > kMostHours)
-    return std::nullopt;
-  return (text[0] == '-' ? -1.0 : 1.0) * (3600.0 * hours + 60.0 * minutes);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
 }
 
-std::optional<WrittenDate> date_in(const std::string& cell) {
-  static const std::regex form(
-      R"((\d{1,4})[-./](\d{1,2})[-./](\d{1,4})(?:[T ]+(\d{1,2}):(\d{2})(?::(\d{2})(?:[.,](\d{1,9}))?)?\s*([AaPp][Mm])?\s*(Z|z|[+-]\d{2}:?(?:\d{2})?)?)?)");
-  std::smatch part;
-  if (cell.size() > 64 || !std::regex_match(cell, part, form))
-    return std::nullopt;
-  WrittenDate date{std::stoi(part[1]), std::stoi(part[2]), std::stoi(part[3])};
-  if (!part[4].matched)
-    return date;
-  int hour = std::stoi(part[4]);
-  date.time_of_day = true;
-  date.twelve_hours = part[8].matched;
-  if (date.twelve_hours && (hour < 1 || hour > 12))
-    return std::nullopt;
-  if (date.twelve_hours)
-    hour = hour % 12 + (std::tolower(part[8].str()[0]) == 'p' ? 12 : 0);
-  const int minute = std::stoi(part[5]);
-  const double second = (part[6].matched ? std::stod(part[6]) : 0.0) +
-                        (part[7].matched ? std::stod(fmt::format("0.{}", part[7].str())) : 0.0);
-  const bool end_of_day = hour == 24 && minute == 0 && second == 0.0;
-  const std::optional<double> offset = offset_of(part[9]);
-  if ((hour > 23 && !end_of_day) || minute > 59 || second > 60.0 || !offset)
-    return std::nullopt;
-  date.offset = part[9].matched;
-  date.seconds = 3600.0 * hour + 60.0 * minute + second - *offset;
-  return date;
+/// Days whose steps suit the controller, and would be far too short for it in the unit of the plant.
+bool have_steps_of_days(const std::vector<double>& values, const StampRules& rules) {
+  constexpr double kMostSamples = 10.0, kFarTooShort = 0.01;
+  const double step = median_step(values);
+  return rules.sample_days > 0.0 && step > 0.0 && step <= kMostSamples * rules.sample_days &&
+         step < kFarTooShort * rules.sample;
 }
+
+/// Stamps to the nearest millisecond: the digits of a sheet leave no more.
+TimeStamps from_days(std::vector<double> days, const DayCount& count, bool found) {
+  constexpr double kMilliseconds = 1000.0;
+  for (double& day : days)
+    day = std::round((day - count.of_1970) * kSecondsOfDay * kMilliseconds) / kMilliseconds;
+  return {.calendar = true,
+          .offsets = false,
+          .unit = "s",
+          .found = found ? count.name : "",
+          .order = DateOrder::automatic,
+          .times = std::move(days)};
+}
+
+TimeStamps from_numbers(std::vector<double> values, const StampRules& rules) {
+  for (const DayCount& count : kDayCounts) {
+    const Range range{kDays.low + count.of_1970, kDays.high + count.of_1970};
+    const bool found = rules.unit.empty() && range.has_all(values) && have_steps_of_days(values, rules);
+    if (found || rules.unit == count.name)
+      return from_days(std::move(values), count, found);
+  }
+  TimeStamps stamps;
+  stamps.unit = rules.unit;
+  for (const EpochUnit& unit : kEpochUnits) {
+    stamps.calendar =
+        kEpoch.has_all(values, unit.in_second) && (rules.unit.empty() || rules.unit == unit.name);
+    if (!stamps.calendar && rules.unit != unit.name)
+      continue;
+    stamps.offsets = stamps.calendar;
+    stamps.unit = "s";
+    stamps.found = rules.unit.empty() ? unit.name : "";
+    if (unit.in_second != 1.0)
+      for (double& value : values)
+        value /= unit.in_second;
+    break;
+  }
+  stamps.times = std::move(values);
+  return stamps;
+}
+
+// --- Dates ---
 
 /// The order that the stamps themselves show.
-DateOrder shown_order(const StampSource& source, const std::vector<std::optional<WrittenDate>>& dates) {
+DateOrder shown_order(const StampSource& source, const Dates& dates) {
   bool day_first = false, month_first = false, points = false;
+  const std::string* example = nullptr;
   for (std::size_t row = 0; row < dates.size(); ++row) {
-    if (!dates[row])
+    if (!dates[row] || dates[row]->resolved)
       continue;
     if (dates[row]->first > 31)
       return DateOrder::year_month_day;
-    points = points || source.cells[row].find('.') < source.cells[row].find(':');
+    example = example == nullptr ? &source.cells[row] : example;
+    points = points || dates[row]->points;
     day_first = day_first || dates[row]->first > 12;
     month_first = month_first || dates[row]->second > 12;
   }
+  if (example == nullptr)
+    return DateOrder::year_month_day;
   if (day_first != month_first)
     return day_first ? DateOrder::day_month_year : DateOrder::month_day_year;
   if (points && !month_first)
     return DateOrder::day_month_year;
-  throw InputError(
-      source.where,
-      fmt::format("dates such as '{}', whose day and month nothing tells apart", source.cells.front()),
-      "data.date_order = \"day-month-year\" or \"month-day-year\" in the study file");
+  throw InputError(source.where,
+                   fmt::format("dates such as '{}', whose day and month nothing tells apart", *example),
+                   "data.date_order = \"day-month-year\" or \"month-day-year\" in the study file");
 }
 
-/// Days since 1970 (std::chrono knows which days there are).
-std::optional<double> days_of(const WrittenDate& date, DateOrder order) {
-  const bool year_first = order == DateOrder::year_month_day;
-  const int year = year_first ? date.first : date.third;
-  const int month = order == DateOrder::month_day_year ? date.first : date.second;
-  const int day = year_first ? date.third : order == DateOrder::month_day_year ? date.second : date.first;
-  const std::chrono::year_month_day of_calendar{std::chrono::year(year < 100 ? year + 2000 : year),
-                                                std::chrono::month(static_cast<unsigned>(month)),
-                                                std::chrono::day(static_cast<unsigned>(day))};
-  if (!of_calendar.ok())
-    return std::nullopt;
-  return static_cast<double>(std::chrono::sys_days(of_calendar).time_since_epoch().count());
-}
-
-[[noreturn]] void refuse_stamp(const StampSource& source, std::size_t row, const char* allowed) {
-  throw InputError(fmt::format("{}, line {}", source.where, source.lines[row]),
-                   fmt::format("'{}'", cut_utf8(source.cells[row], kShownBytes)), allowed);
+bool has_offset(const WrittenTime& time) {
+  return time.offset || !time.zone.empty();
 }
 
 /// An hour that some stamps mean in another way than the others moves these without a word.
-void refuse_mixed_forms(const StampSource& source, const std::vector<std::optional<WrittenDate>>& dates) {
+void refuse_mixed_forms(const StampSource& source, const Dates& dates) {
   const std::optional<WrittenDate>* first = nullptr;
   for (std::size_t row = 0; row < dates.size(); ++row) {
-    if (!dates[row] || !dates[row]->time_of_day)
+    if (!dates[row] || !dates[row]->time)
       continue;
     if (first == nullptr)
       first = &dates[row];
-    if (dates[row]->offset != (*first)->offset)
+    const WrittenTime &here = *dates[row]->time, &before = *(*first)->time;
+    if (has_offset(here) != has_offset(before))
       refuse_stamp(source, row, "stamps that all have their offset from UTC (or Z), or none of them");
-    if (dates[row]->twelve_hours != (*first)->twelve_hours)
+    if (here.twelve_hours != before.twelve_hours)
       refuse_stamp(source, row, "stamps that all have AM or PM, or none of them");
   }
 }
 
-}  // namespace
+/// What the clock of a zone shows, row by row, as UTC.
+class LocalTimes {
+ public:
+  LocalTimes(const StampSource& source, const std::string& zone) : source_(source), name_(zone) {
+    if (!zone.empty())
+      clock_.emplace(zone, "data.time_zone");
+  }
 
-bool is_date(const std::string& cell) {
-  return date_in(cell).has_value();
+  double utc(std::size_t row, double local, const std::string& letters) {
+    if (!clock_)
+      return letters.empty() ? local : local - offset(row, letters);
+    const std::optional<double> time = clock_->utc(local, letters, latest_);
+    if (!time)
+      refuse_stamp(source_, row,
+                   fmt::format("a time that the clocks of {} (data.time_zone) show{}", name_,
+                               letters.empty() ? "" : fmt::format(", with the letters '{}'", letters)));
+    latest_ = *time;
+    return *time;
+  }
+
+ private:
+  double offset(std::size_t row, const std::string& letters) const {
+    const std::optional<double> known = offset_of_letters(letters);
+    if (!known)
+      refuse_stamp(source_, row,
+                   fmt::format("Z, an offset such as +01:00, or letters of one zone alone, such as CET; "
+                               "data.time_zone = \"Europe/Berlin\" says which zone '{}' is of",
+                               cut_utf8(letters, kShownBytes)));
+    return *known;
+  }
+
+  const StampSource& source_;
+  std::string name_;
+  std::optional<ZoneClock> clock_;
+  double latest_ = -kInfinity;
+};
+
+/// The rows from the earliest to the latest, of stamps that ascend or descend.
+std::vector<std::size_t> rows_in_time(const std::vector<double>& times) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < times.size(); ++row)
+    if (!std::isnan(times[row]))
+      rows.push_back(row);
+  if (!rows.empty() && times[rows.front()] > times[rows.back()])
+    std::reverse(rows.begin(), rows.end());
+  return rows;
 }
 
-TimeStamps parse_time_stamps(const StampSource& source, DateOrder order, char decimal) {
-  TimeStamps stamps;
+TimeStamps from_dates(const StampSource& source, const Dates& dates, const StampRules& rules) {
+  refuse_mixed_forms(source, dates);
+  const DateOrder order = rules.order == DateOrder::automatic ? shown_order(source, dates) : rules.order;
+  TimeStamps stamps{.calendar = true, .offsets = true, .unit = "s", .found = {}, .order = order, .times = {}};
+  stamps.times.assign(dates.size(), kNaN);
+  for (std::size_t row = 0; row < dates.size(); ++row) {
+    if (!dates[row])
+      continue;
+    const std::optional<double> days = days_of(*dates[row], order);
+    if (!days)
+      refuse_stamp(source, row, "a day that there is, in the order data.date_order");
+    const std::optional<WrittenTime>& time = dates[row]->time;
+    stamps.offsets = stamps.offsets && time && has_offset(*time);
+    stamps.times[row] = kSecondsOfDay * *days + (time ? time->seconds - time->offset.value_or(0.0) : 0.0);
+  }
+  LocalTimes local(source, rules.zone);
+  for (const std::size_t row : rows_in_time(stamps.times)) {
+    const std::optional<WrittenTime>& time = dates[row]->time;
+    if (!time || !time->offset)
+      stamps.times[row] = local.utc(row, stamps.times[row], time ? time->zone : "");
+  }
+  stamps.offsets = stamps.offsets || !rules.zone.empty();
+  return stamps;
+}
+
+/// Dates of the form that the study gives.
+TimeStamps in_format(const StampSource& source, const StampRules& rules) {
+  using LocalTime = date::local_time<std::chrono::microseconds>;
+  constexpr double kMicroseconds = 1e6;
+  constexpr std::chrono::minutes kNoOffset(10000);
+  TimeStamps stamps{
+      .calendar = true, .offsets = true, .unit = "s", .found = {}, .order = rules.order, .times = {}};
   stamps.times.assign(source.cells.size(), kNaN);
-  std::vector<std::optional<WrittenDate>> dates(source.cells.size());
-  bool numbers = false;
+  std::vector<std::string> letters(source.cells.size());
+  std::vector<bool> known(source.cells.size(), false);
+  for (std::size_t row = 0; row < source.cells.size(); ++row) {
+    if (source.cells[row].empty())
+      continue;
+    std::istringstream in(source.cells[row]);
+    LocalTime time{};
+    std::chrono::minutes offset = kNoOffset;
+    date::from_stream(in, rules.format.c_str(), time, &letters[row], &offset);
+    if (in.fail() || in.peek() != std::istringstream::traits_type::eof())
+      refuse_stamp(source, row, fmt::format("dates of the form '{}' (data.time_format)", rules.format));
+    known[row] = offset != kNoOffset;
+    stamps.offsets = stamps.offsets && (known[row] || !letters[row].empty());
+    stamps.times[row] = static_cast<double>(time.time_since_epoch().count()) / kMicroseconds -
+                        (known[row] ? 60.0 * static_cast<double>(offset.count()) : 0.0);
+  }
+  LocalTimes local(source, rules.zone);
+  for (const std::size_t row : rows_in_time(stamps.times))
+    if (!known[row])
+      stamps.times[row] = local.utc(row, stamps.times[row], letters[row]);
+  stamps.offsets = stamps.offsets || !rules.zone.empty();
+  return stamps;
+}
+
+/// Dates in digits alone; none when one cell is none.
+std::optional<Dates> compact_dates(const std::vector<std::string>& cells) {
+  Dates dates(cells.size());
+  for (std::size_t row = 0; row < cells.size(); ++row) {
+    if (cells[row].empty())
+      continue;
+    dates[row] = compact_date(cells[row]);
+    if (!dates[row])
+      return std::nullopt;
+  }
+  return dates;
+}
+
+}  // namespace
+
+StampRules stamp_rules(const DataOptions& data, char decimal, double sample_time,
+                       const std::string& time_unit) {
+  return {.order = data.date_order,
+          .decimal = decimal,
+          .unit = data.time_unit,
+          .format = data.time_format,
+          .zone = data.time_zone,
+          .sample_days = sample_time * days_in(time_unit).value_or(0.0),
+          .sample = sample_time};
+}
+
+TimeStamps parse_time_stamps(const StampSource& source, const StampRules& rules) {
+  if (!rules.format.empty())
+    return in_format(source, rules);
+  if (rules.unit.empty())
+    if (const std::optional<Dates> compact = compact_dates(source.cells);
+        compact && std::any_of(compact->begin(), compact->end(), [](const auto& date) { return date; }))
+      return from_dates(source, *compact, rules);
+  std::vector<double> numbers(source.cells.size(), kNaN);
+  Dates dates(source.cells.size());
+  bool has_numbers = false, has_dates = false;
   for (std::size_t row = 0; row < source.cells.size(); ++row) {
     const std::string& cell = source.cells[row];
     if (cell.empty())
       continue;
-    const std::optional<double> number = number_in(cell, decimal);
-    dates[row] = number ? std::nullopt : date_in(cell);
-    if (number)
-      stamps.times[row] = *number;
-    else if (!dates[row])
+    const std::optional<double> number = number_in_stamp(cell, rules.decimal);
+    numbers[row] = number.value_or(kNaN);
+    dates[row] = number ? std::nullopt : written_date(cell);
+    if (!number && !dates[row])
       refuse_stamp(source, row, kForms);
-    numbers = numbers || number.has_value();
-    stamps.calendar = stamps.calendar || dates[row].has_value();
-    if (numbers && stamps.calendar)
+    has_numbers = has_numbers || number;
+    has_dates = has_dates || dates[row];
+    if (has_numbers && has_dates)
       refuse_stamp(source, row, "stamps of one form: all dates, or all numbers");
   }
-  if (!stamps.calendar)
-    return stamps;
-  refuse_mixed_forms(source, dates);
-  const DateOrder of_all = order == DateOrder::automatic ? shown_order(source, dates) : order;
-  stamps.offsets = true;
-  for (std::size_t row = 0; row < dates.size(); ++row) {
-    if (!dates[row])
-      continue;
-    stamps.offsets = stamps.offsets && dates[row]->offset;
-    const std::optional<double> days = days_of(*dates[row], of_all);
-    if (!days)
-      refuse_stamp(source, row, "a day that there is, in the order data.date_order");
-    stamps.times[row] = 86400.0 * *days + dates[row]->seconds;
+  return has_dates ? from_dates(source, dates, rules) : from_numbers(std::move(numbers), rules);
+}
+
+bool are_dates_in_numbers(const std::vector<std::string>& cells, const StampRules& rules) {
+  if (const std::optional<Dates> compact = compact_dates(cells))
+    return std::any_of(compact->begin(), compact->end(), [](const auto& date) { return date.has_value(); });
+  std::vector<double> numbers;
+  for (const std::string& cell : cells) {
+    const std::optional<double> number = cell.empty() ? kNaN : number_in_stamp(cell, rules.decimal);
+    if (!number)
+      return false;
+    numbers.push_back(*number);
   }
-  return stamps;
+  return from_numbers(std::move(numbers), rules).calendar;
 }
 
 std::string date_text(double seconds) {
   const auto whole = static_cast<std::int64_t>(std::floor(seconds));
-  const std::int64_t days = static_cast<std::int64_t>(std::floor(static_cast<double>(whole) / 86400.0));
+  const std::int64_t days = static_cast<std::int64_t>(std::floor(static_cast<double>(whole) / kSecondsOfDay));
   const std::int64_t of_day = whole - 86400 * days;
   const std::chrono::year_month_day date{std::chrono::sys_days(std::chrono::days(days))};
   return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}", static_cast<int>(date.year()),

@@ -1,8 +1,13 @@
 // [data]
 
+#include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "scenarios/files/study_file_parts.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -57,6 +62,25 @@ std::vector<std::string> read_period(const TomlTable& data, const std::string& k
   return stamps;
 }
 
+/// The first lines, or a list of lines.
+std::vector<int> read_skipped(const TomlTable& data, const std::string& key) {
+  constexpr int kMostLines = 1000;
+  const NumberRule rule{.low = 1, .high = kMostLines, .low_included = true, .high_included = true};
+  std::vector<int> lines;
+  if (data.find(key)->is_integer()) {
+    lines.resize(static_cast<std::size_t>(read_whole(data, key, 1, kMostLines)));
+    std::iota(lines.begin(), lines.end(), 1);
+  } else {
+    for (const double line : read_numbers(data, key, rule, kMostLines)) {
+      if (line != std::floor(line))
+        data.refuse(key, fmt::format("{}", line), "whole numbers");
+      lines.push_back(static_cast<int>(line));
+    }
+    data.record(key, lines);
+  }
+  return lines;
+}
+
 OptionKeys data_keys(Study& study) {
   DataOptions& o = study.data;
   const Variables cvs = [&study] { return variable_names(study.plant.cvs); };
@@ -83,12 +107,45 @@ OptionKeys data_keys(Study& study) {
           .otherwise("`time`, `timestamp`, `datetime`, `date` or `t`, or the one column of dates; none: a "
                      "row a sample")
           .allow("a column"),
-      one_word("time_unit", o.time_unit, {"s", "min", "h", "d"}, "unit of stamps that are numbers")
-          .otherwise("that of the plant")
-          .allow("`\"s\"`, `\"min\"`, `\"h\"`, `\"d\"`"),
+      key::text("date", o.date, "column of the dates, if that of the time has the time of day only")
+          .otherwise("the one column of dates")
+          .allow("a column"),
+      one_word("time_unit", o.time_unit, {"s", "min", "h", "d", "ms", "us", "ns", "spreadsheet", "matlab"},
+               "unit of stamps that are numbers. Of s, ms, us and ns since 1970, of days since 1899-12-30 "
+               "(`\"spreadsheet\"`) and of `datenum` (`\"matlab\"`) the dates are known")
+          .otherwise("found, if the numbers can only be dates of the years 2000 to 2099; else that of the "
+                     "plant")
+          .allow("`\"s\"`, `\"min\"`, `\"h\"`, `\"d\"`, `\"ms\"`, `\"us\"`, `\"ns\"`, "
+                 "`\"spreadsheet\"`, `\"matlab\"`"),
+      key::text("time_format", o.time_format,
+                "form of the stamps in the letters of strptime, such as `\"%d%b%Y:%H:%M:%S\"`; each is read "
+                "to its end")
+          .otherwise("found")
+          .allow("`%Y %y %m %b %d %H %I %M %S %p %z %Z %j` and others"),
+      key::text("time_zone", o.time_zone,
+                "zone whose clock the stamps show, such as `\"Europe/Berlin\"`; its changes of the clock "
+                "are undone")
+          .otherwise("stamps are taken as they stand")
+          .allow("a name of the IANA time zone database"),
       key::choice("date_order", o.date_order,
                   {"automatic", "year-month-day", "day-month-year", "month-day-year"},
                   "order of day, month and year; found where a number above 12 or points between them tell"),
+      key::option("skip", "whole number, or list of whole numbers",
+                  "lines that are not read: so many at the start, or those of these numbers; rows of units "
+                  "below the heading are found")
+          .otherwise("none")
+          .allow("1 to 1000 (each)")
+          .read([&o](const TomlTable& data, const std::string& key) { o.skip = read_skipped(data, key); }),
+      key::choice("layout", o.layout, {"automatic", "wide", "time-per-tag", "long"},
+                  "a row a time stamp; a column of stamps before each column of values; or a row a value. "
+                  "Automatic: several columns of stamps with one name are time-per-tag, and columns of "
+                  "usual names for a tag and a value, without any of a variable, are long"),
+      key::text("tag_column", o.tag_column, "column of the tags, if a row is a value")
+          .otherwise("`tag`, `tagname`, `point`, `variable`, `name` and others")
+          .allow("a column"),
+      key::text("value_column", o.value_column, "column of the values, if a row is a value")
+          .otherwise("`value`, `val`, `wert`, `reading`")
+          .allow("a column"),
       one_word("separator", o.separator, {",", ";", "\t", "|"}, "between the columns")
           .otherwise("found in the heading")
           .allow("`\",\"`, `\";\"`, `\"\\t\"`, `\"|\"`"),
@@ -125,7 +182,19 @@ OptionKeys data_keys(Study& study) {
           .otherwise("none: all is good")
           .allow("columns"),
       key::texts("good_quality", o.good_quality, "texts",
-                 "words of a good quality; capitals do not matter, and numbers count in any form (`192.0`)"),
+                 "words of a good quality; capitals do not matter, and numbers count in any form (`192.0`). "
+                 "`opc`: words that begin with good, and the good codes of OPC, those of OPC UA if there is "
+                 "one of 2^30 or above, otherwise those of OPC DA (192 and others)"),
+      key::option("stored_on_change", "list of texts",
+                  "variables that were stored only when they changed: their last value holds until the next "
+                  "one, and nothing of them is missing in between")
+          .otherwise("none")
+          .allow("variables")
+          .read([&o, all](const TomlTable& data, const std::string& key) {
+            const std::vector<std::string> names = all();
+            for (const std::size_t place : read_some_of(data, key, names))
+              o.stored_on_change.push_back(names[place]);
+          }),
       key::text("controller_on", o.controller_on, "is the controller on? CVs are not judged where it is not")
           .otherwise("none: always on")
           .allow("a column"),

@@ -32,7 +32,7 @@ using ForeignVariables = std::vector<ForeignVariable>;
 struct ForeignPlant {
   std::string file;
   std::vector<std::string> command;
-  double time_factor = FmuSettings().time_factor;
+  double time_factor = FmuSettings().time_factor, step = FmuSettings().step;
   ForeignOptions options;
   ForeignVariables inputs, outputs, parameters;
 };
@@ -123,7 +123,15 @@ OptionKeys fmu_keys(ForeignPlant& plant, const PlantModel& model) {
           .allow("an FMU with a library for linux64"),
       key::number("time_factor", plant.time_factor, NumberRule::positive(),
                   "units of the time of the FMU, as a rule seconds, in one time unit of the study: 60 for "
-                  "`\"min\"`")};
+                  "`\"min\"`"),
+      key::option("step", "number",
+                  "longest communication step, in the time of the FMU: a sample is as many equal ones as it "
+                  "needs, with inputs held")
+          .otherwise("a sample is one")
+          .allow("> 0")
+          .read([&plant](const TomlTable& table, const std::string& key) {
+            plant.step = read_number(table, key, NumberRule::positive());
+          })};
   for (OptionKey& key : common_keys(plant))
     keys.push_back(std::move(key));
   keys.push_back(variables("input", plant.inputs, input_keys, "inputs, 1000 at most")
@@ -196,6 +204,7 @@ std::shared_ptr<const ForeignModel> fmu_of(const TomlTable& fmu, const ForeignPl
   settings.file = file_beside(folder, said.file);
   settings.place = fmu.where("file");
   settings.time_factor = said.time_factor;
+  settings.step = said.step;
   for (const ForeignVariable& input : inputs)
     settings.inputs.push_back(input.place);
   for (const ForeignVariable& parameter : said.parameters)

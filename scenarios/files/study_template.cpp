@@ -24,6 +24,11 @@ constexpr const char* kHead =
     "# guesses made from them: change what you know better. `mpmbench validate` looks for what is "
     "implausible.\n\n";
 
+constexpr const char* kCostNote =
+    "# To do: a guess that drives CVs with a range to their upper limits. Put in what the MV costs: its "
+    "sign\n"
+    "# says to which end the optimizer drives the MV, and can decide a verdict\n";
+
 constexpr double kStepsOfFastest = 10.0;  // samples in the smallest time constant, unless that makes ...
 constexpr double kMostSamples = 150.0;    // ... more than this until the slowest channel has settled
 constexpr double kNoise = 0.01;           // of the size of a CV
@@ -236,8 +241,10 @@ void write_simulation(TomlDraft& document, const StudySketch& sketch, const Gues
   for (const PlantModel::Variable& cv : plant.cvs)
     names.push_back(cv.name);
   TomlDraft& noise = simulation.table("noise_standard_deviation", names);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    noise.set(names[i], rounded(kNoise * guess.size(static_cast<Eigen::Index>(i))));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double known = i < sketch.noise.size() ? sketch.noise[i] : 0.0;
+    noise.set(names[i], rounded(known > 0 ? known : kNoise * guess.size(static_cast<Eigen::Index>(i))));
+  }
   write_moves(simulation, sketch, guess);
   if (plant.mds.empty())
     return;
@@ -277,6 +284,16 @@ void write_analysis(TomlDraft& document, const Guess& guess) {
   below(document, "methods", "methods").set("names", std::vector<std::string>{"botelho", "mpmbench"});
 }
 
+/// Calls each cost the guess that it is.
+std::string with_cost_notes(std::string text) {
+  constexpr std::string_view kCost = "\ncost = ";
+  for (std::size_t at = text.find(kCost); at != std::string::npos; at = text.find(kCost, at)) {
+    text.insert(at + 1, kCostNote);
+    at += std::string_view(kCostNote).size() + 1;
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string study_template(const StudySketch& sketch) {
@@ -293,7 +310,7 @@ std::string study_template(const StudySketch& sketch) {
   write_simulation(document, sketch, guess);
   write_faults(document, guess);
   write_analysis(document, guess);
-  return kHead + document.text();
+  return kHead + with_cost_notes(document.text());
 }
 
 }  // namespace mpm

@@ -18,12 +18,14 @@ namespace mpm {
 /// | sample_time | of the controller; none: chosen                                |       | time |
 /// | ranges      | soft limits; a CV without them is held at a setpoint           | ny    | CV   |
 /// | size        | by how much the setpoint of a CV without a range moves         | ny    | CV   |
+/// | noise       | of the CVs, standard deviation; empty or 0: a part of the size | ny    | CV   |
 /// | mv_hard     | hard limits, infinite where there are none                     | nu    | MV   |
 struct StudySketch {
   PlantModel plant;
   std::optional<double> sample_time;
   std::vector<std::optional<std::pair<double, double>>> ranges;
   Eigen::VectorXd size;
+  std::vector<double> noise;
   Limits mv_hard;
 };
 

@@ -12,6 +12,14 @@ namespace mpm {
 /// The order of day, month and year in the time stamps of a file.
 enum class DateOrder { automatic, year_month_day, day_month_year, month_day_year };
 
+/// How the rows of a file hold the values.
+enum class TableLayout {
+  automatic,     ///< found in the heading
+  wide,          ///< a row a time stamp, a column a variable
+  time_per_tag,  ///< each column of values has its own time stamps, in the column of stamps before it
+  long_table,    ///< a row a value: time stamp, tag, value
+};
+
 /// What the value of a CV at a sample is when the file has more of them.
 enum class CvResampling { mean, nearest };
 
@@ -26,11 +34,17 @@ struct DataOptions {
   using Names = std::map<std::string, std::string>;
   using Numbers = std::map<std::string, double>;
 
-  std::string time;       ///< column; empty: one with a usual name, or none
-  std::string time_unit;  ///< of stamps that are numbers; empty: that of the plant
+  std::string time;         ///< column; empty: one with a usual name, or none
+  std::string date;         ///< column of the dates where `time` has times of day only; empty: found
+  std::string time_unit;    ///< of stamps that are numbers; empty: found, else that of the plant
+  std::string time_format;  ///< of dates, as strptime() has it; empty: found
+  std::string time_zone;    ///< IANA name of the zone whose clock the stamps show; empty: no offset
   DateOrder date_order = DateOrder::automatic;
-  std::string separator;    ///< one character; empty: found
-  std::string decimal;      ///< "." or ","; empty: found
+  std::vector<int> skip;  ///< lines of the file that are not read, from 1
+  TableLayout layout = TableLayout::automatic;
+  std::string tag_column, value_column;  ///< of a long table; empty: those of usual names
+  std::string separator;                 ///< one character; empty: found
+  std::string decimal;                   ///< "." or ","; empty: found
   Names tags;               ///< columns of CVs, MVs and MDs; without one: that of the variable's name
   Numbers operating_point;  ///< in the unit of the file; without one: 0
   Numbers scale;            ///< unit of the study over that of the file; without one: 1
@@ -39,8 +53,9 @@ struct DataOptions {
   Names y_sim;              ///< output of the model, as the CV is recorded; without one: computed
   Names target;             ///< of MVs, as the MV is recorded
   Names quality;            ///< of any variable
-  std::vector<std::string> good_quality{"good", "192"};
-  std::string controller_on;  ///< column; empty: the controller is always on
+  std::vector<std::string> good_quality{"good", "opc"};
+  std::vector<std::string> stored_on_change;  ///< variables whose last value holds until the next one
+  std::string controller_on;                  ///< column; empty: the controller is always on
   std::vector<std::string> on_values{"1", "on", "true", "auto"};
   CvResampling cv_resampling = CvResampling::mean;
   RecordStart start = RecordStart::automatic;

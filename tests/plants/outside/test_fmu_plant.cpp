@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -160,6 +161,38 @@ TEST_CASE("an FMU that does not come to rest has no steady state", "[fmu]") {
   broken.parameters.back().nominal = 1.0;  // fails from the start
   const auto plant = plant_of(broken);
   CHECK_THROWS_AS(plant->reset(Eigen::VectorXd::Zero(12)), NoSteadyState);
+}
+
+/// The lag of tests/plants/fmu/own_names.c.
+std::unique_ptr<Plant> own_lag(double step, double failure = 0.0) {
+  FmuSettings settings{.file = MPMBENCH_OWN_FMU,
+                       .place = "file",
+                       .step = step,
+                       .inputs = {{"u", "input"}},
+                       .outputs = {{"y", "output"}},
+                       .parameters = {{"failure", "parameter"}}};
+  NonlinearModel model;
+  model.operating_input = Eigen::VectorXd::Zero(1);
+  model.parameters = {{"failure", 0.0}};
+  model.foreign = fmu_model(std::move(settings), {.settle = 50.0});
+  return plant_of(model, failure == 0.0 ? std::vector<ParameterChange>()
+                                        : std::vector<ParameterChange>{{"failure", failure}});
+}
+
+TEST_CASE("an FMU calls its own functions, whatever names this program has, and is told what it needs",
+          "[fmu]") {
+  const auto plant = own_lag(2.0);
+  plant->reset(Eigen::VectorXd::Zero(1));
+  for (int k = 1; k <= 3; ++k) {  // beyond the 10 s of its own experiment
+    REQUIRE(plant->advance(Eigen::VectorXd::Ones(1)) == PlantStatus::ok);
+    CHECK(plant->output()(0) == Approx(1.0 - std::exp(-k * kSampleTime / 10.0)).epsilon(1e-12));
+  }
+  const auto long_steps = own_lag(0.0);
+  CHECK_THROWS_AS(long_steps->reset(Eigen::VectorXd::Zero(1)), NoSteadyState);
+  const auto failing = own_lag(2.0, 1.0);
+  failing->reset(Eigen::VectorXd::Zero(1));
+  CHECK(failing->advance(Eigen::VectorXd::Zero(1)) == PlantStatus::failed);
+  CHECK_THAT(failing->failure(), Contains("(it says: no water in the lag)"));
 }
 
 TEST_CASE("files that are no FMU are refused, and nothing is left of them", "[fmu]") {

@@ -10,6 +10,7 @@
 #include "results/records/csv_columns.hpp"
 #include "results/records/plant_record_file.hpp"
 #include "results/records/time_stamps.hpp"
+#include "results/records/written_date.hpp"
 #include "scenarios/files/study_file.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
@@ -26,7 +27,7 @@ Study study_with(const std::string& data) {
 
 std::vector<double> times_of(const std::vector<std::string>& cells, DateOrder order = DateOrder::automatic) {
   const std::vector<std::size_t> lines(cells.size(), 2);
-  return parse_time_stamps({"t", cells, lines}, order, '.').times;
+  return parse_time_stamps({"t", cells, lines}, {.order = order}).times;
 }
 
 /// A record of the small study in which each variable has a value of its own.
@@ -39,15 +40,15 @@ std::string record_text(const std::vector<std::string>& rows) {
 
 TEST_CASE("a CSV text is read as RFC 4180 and spreadsheets have it", "[records]") {
   const RecordColumns csv = parse_csv(
-      "\xEF\xBB\xBF# made by a historian\r\n\"a;1\" ; b\r\n\r\n1,5;\"say \"\"x\"\"\"\r\n2;\r\n", "f", "");
+      "\xEF\xBB\xBF# made by a historian\r\n\"a;1\" ; b\r\n\r\n1,5;\"say \"\"x\"\"\"\r\n2;\r\n", "f");
   CHECK(csv.separator == ';');
   CHECK(csv.names == std::vector<std::string>{"a;1", "b"});
   CHECK(csv.columns == std::vector<std::vector<std::string>>{{"1,5", "2"}, {"say \"x\"", ""}});
   CHECK(csv.lines == std::vector<std::size_t>{4, 5});
-  CHECK(parse_csv("a|b\n1|2\n", "f", "").separator == '|');
-  CHECK_THROWS_WITH(parse_csv("a,b\n1,2\n3\n", "f", ""),
+  CHECK(parse_csv("a|b\n1|2\n", "f").separator == '|');
+  CHECK_THROWS_WITH(parse_csv("a,b\n1,2\n3\n", "f"),
                     "f:3: found 1 fields; allowed: 2, as the heading has them");
-  CHECK_THROWS_WITH(parse_csv("1,2\n3,4\n", "f", ""), Catch::Contains("f:1: found numbers"));
+  CHECK_THROWS_WITH(parse_csv("1,2\n3,4\n", "f"), Catch::Contains("f:1: found numbers"));
 }
 
 TEST_CASE("time stamps are those of the calendar", "[records]") {
@@ -128,7 +129,7 @@ TEST_CASE("what cannot be measured is missing, with a warning", "[records]") {
               "'-9999.0' in line 22"));
 }
 
-TEST_CASE("dates are found under any heading, numbers of seconds are named in full", "[records]") {
+TEST_CASE("dates are found under any heading, and in numbers of seconds", "[records]") {
   const auto read = [](const std::string& heading, const std::string& begin, const std::string& data = "") {
     return read_plant_record(study_with(data),
                              heading + ",level,heat,hot,cold,drain\n" + begin + "0,1,5,9,1,7\n" + begin +
@@ -137,7 +138,9 @@ TEST_CASE("dates are found under any heading, numbers of seconds are named in fu
   };
   for (const char* heading : {"", "Timestamp (UTC)"})
     CHECK(read(heading, "2024-03-01 12:00:0").stamps.back() == "2024-03-01 12:00:02");
-  CHECK(read("time", "170925120").stamps.back() == "1709251202");
+  CHECK(read("time", "170925120").stamps.back() == "2024-03-01 00:00:02");
+  CHECK(read("time", "170925120", "period = ['2024-03-01', '2024-03-01 00:00:01']").samples() == 2);
+  CHECK(read("time", "170925120", "period = ['1709251200', '1709251201']").samples() == 2);
   CHECK_THROWS_WITH(
       read_plant_record(study_with(""), "a,b,level,heat,hot,cold,drain\n2024-03-01,2024-03-01,1,1,1,1,1\n",
                         "r.csv"),
@@ -154,12 +157,12 @@ TEST_CASE("dates are found under any heading, numbers of seconds are named in fu
 TEST_CASE("qualities that are not good are named, and numbers are known in any form", "[records]") {
   std::string text = "time,level,heat,hot,cold,drain,q\n";
   for (int k = 0; k < 10; ++k)
-    text += fmt::format("{},{},{},9,1,7,{}\n", k, k, k + 1, k == 4 ? "216.0" : k == 5 ? "Bad" : "192.0");
+    text += fmt::format("{},{},{},9,1,7,{}\n", k, k, k + 1, k == 4 ? "24.0" : k == 5 ? "Bad" : "192.0");
   const PlantRecord record = read_plant_record(study_with("quality = {level = 'q'}"), text, "r.csv");
   CHECK(record.y.row(0).array().isNaN().count() == 2);
   CHECK(warns(record,
               "level is missing in 2 of 10 rows, whose quality is none of data.good_quality (good, "
-              "192): '216.0' (1 rows), 'Bad' (1 rows)"));
+              "opc): '24.0' (1 rows), 'Bad' (1 rows)"));
 }
 
 TEST_CASE("what a record lacks is said by name", "[records]") {

@@ -1,0 +1,306 @@
+#include "results/records/data_sketch.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/findings/monitored_loop.hpp"
+#include "plants/non_finite.hpp"
+#include "results/files/foreign_content.hpp"
+#include "results/files/utf8.hpp"
+#include "results/records/stamped_rows.hpp"
+#include "scenarios/toml/nearest_name.hpp"
+#include "scenarios/toml/toml_literal.hpp"
+
+namespace mpm {
+namespace {
+
+std::string small_letters(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty())
+    return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// A name as a key of TOML.
+std::string key_of(const std::string& name) {
+  const bool bare = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-');
+  });
+  return bare && !name.empty() ? name : toml_literal(name);
+}
+
+/// A text of somebody else in a comment: on its line.
+std::string in_comment(const std::string& text) {
+  std::string shown = plain_text(cut_utf8(text, 4 * kShownBytes));
+  std::replace(shown.begin(), shown.end(), '\n', ' ');
+  return shown;
+}
+
+std::string three_digits(double value) {
+  return fmt::format("{:.3g}", value);
+}
+
+/// The numbers of a column, one after the other.
+struct ColumnLook {
+  std::vector<double> values;
+  double mean = 0.0, deviation = 0.0, lowest = kInfinity, highest = -kInfinity;
+  double changes = 0.0;  ///< share of the values that differ from the one before
+
+  ColumnLook(const RecordColumns& file, std::size_t column) {
+    for (const std::string& cell : file.columns[column])
+      if (const auto value = file.number(cell))
+        values.push_back(*value);
+    const auto count = static_cast<double>(values.size());
+    for (const double value : values) {
+      mean += value / count;
+      lowest = std::min(lowest, value);
+      highest = std::max(highest, value);
+    }
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      deviation += (values[row] - mean) * (values[row] - mean) / count;
+      changes += row > 0 && values[row] != values[row - 1] ? 1.0 / count : 0.0;
+    }
+    deviation = std::sqrt(deviation);
+  }
+
+  double noise() const {
+    constexpr double kOfNormal = 1.4826;  // standard deviation over median absolute deviation
+    std::vector<double> bends;
+    for (std::size_t row = 2; row < values.size(); ++row)
+      bends.push_back(std::abs(values[row] - 2.0 * values[row - 1] + values[row - 2]));
+    return kOfNormal * median_of(std::move(bends)) / std::sqrt(6.0);
+  }
+
+  /// The share of the values in the tenth of the range at one end.
+  double share_at(bool upper) const {
+    constexpr double kEnd = 0.1;
+    const double width = kEnd * (highest - lowest);
+    const auto inside = std::count_if(values.begin(), values.end(), [&](double value) {
+      return upper ? value >= highest - width : value <= lowest + width;
+    });
+    return static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(values.size(), 1));
+  }
+
+  std::string rests() const {
+    constexpr double kMost = 0.5;
+    if (highest <= lowest)
+      return "it never moves in the file";
+    for (const bool upper : {true, false})
+      if (const double share = share_at(upper); share > kMost)
+        return fmt::format(
+            "{:.0f} % of its values lie in the {} tenth of what it has had ({} to {}), so the cost "
+            "seems to be {}",
+            100.0 * share, upper ? "upper" : "lower", three_digits(lowest), three_digits(highest),
+            upper ? "negative" : "positive");
+    return "it rests at neither end of what it has had in the file, which says nothing of the sign";
+  }
+
+  std::string words() const {
+    constexpr double kMeasured = 0.5;
+    if (values.empty())
+      return "no numbers";
+    if (highest <= lowest)
+      return fmt::format("always {}", three_digits(lowest));
+    return fmt::format("{} to {}, mean {}, {}", three_digits(lowest), three_digits(highest),
+                       three_digits(mean),
+                       changes > kMeasured
+                           ? "moves nearly always: measured (a CV or an MD), or an MV"
+                           : fmt::format("moves in {:.2g} % of the rows: a setpoint, a limit, an MV or an MD",
+                                         100.0 * changes));
+  }
+};
+
+class DataSketcher {
+ public:
+  DataSketcher(const PlantModel& plant, StampedRows rows) : plant_(plant), rows_(std::move(rows)) {}
+
+  DataSketch sketch() {
+    for (const auto* list : {&plant_.cvs, &plant_.mvs, &plant_.mds})
+      for (const PlantModel::Variable& variable : *list)
+        find_column(variable.name);
+    sketch_.file = file().file;
+    sketch_.step = step();
+    write_table();
+    look_at_variables();
+    return std::move(sketch_);
+  }
+
+ private:
+  const RecordColumns& file() const { return rows_.file; }
+
+  /// By its name, its name as the export writes it, a part of another name, or the nearest name.
+  void find_column(const std::string& variable) {
+    std::optional<std::size_t> found = file().find(variable);
+    for (const char* prefix : {"y", "u", "d"})
+      if (!found)
+        found = file().find(fmt::format("{}.{}", prefix, variable));
+    if (!found)
+      found = only_column_with(variable);
+    if (const std::string nearest = nearest_name(variable, file().names); !found && !nearest.empty())
+      found = file().find(nearest);
+    if (found && std::find(taken_.begin(), taken_.end(), *found) == taken_.end()) {
+      taken_.push_back(*found);
+      columns_.emplace_back(variable, *found);
+    } else {
+      missing_.push_back(variable);
+    }
+  }
+
+  /// The one column that has the variable in its name; of several the one of the measurement (PV).
+  std::optional<std::size_t> only_column_with(const std::string& variable) const {
+    std::vector<std::size_t> all, measured;
+    for (std::size_t column = 0; column < file().names.size(); ++column) {
+      const std::string name = small_letters(file().names[column]);
+      if (name.find(small_letters(variable)) == std::string::npos)
+        continue;
+      all.push_back(column);
+      if (name.ends_with("pv"))
+        measured.push_back(column);
+    }
+    const std::vector<std::size_t>& found = all.size() == 1 ? all : measured;
+    return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
+  }
+
+  double step() const {
+    if (!rows_.stamped)
+      return 0.0;
+    std::vector<double> steps;
+    for (std::size_t row = 1; row < rows_.times.size(); ++row)
+      if (rows_.times[row] > rows_.times[row - 1])
+        steps.push_back(rows_.times[row] - rows_.times[row - 1]);
+    const std::optional<double> stamp_days = days_in(rows_.unit), plant_days = days_in(plant_.time_unit);
+    return median_of(std::move(steps)) * (stamp_days && plant_days ? *stamp_days / *plant_days : 1.0);
+  }
+
+  void line(const std::string& text) { sketch_.table += text + "\n"; }
+
+  /// KEY = {variable = value of its column, ...}
+  template <class Of>
+  std::string assigned(const char* key, Of of) const {
+    std::vector<std::string> pairs;
+    for (const auto& [variable, column] : columns_)
+      if (const std::optional<std::string> value = of(column))
+        pairs.push_back(fmt::format("{} = {}", key_of(variable), *value));
+    return pairs.empty() ? "" : fmt::format("{} = {{{}}}", key, fmt::join(pairs, ", "));
+  }
+
+  void write_table() {
+    line("[data]");
+    line(fmt::format("# From {}: {} rows{}. Whatever stands here is a first guess: look at each.",
+                     in_comment(file().file), file().rows(),
+                     sketch_.step > 0.0
+                         ? fmt::format(", one every {} {}", three_digits(sketch_.step), plant_.time_unit)
+                         : ""));
+    for (const std::string& warning : file().warnings)
+      line(fmt::format("# Note: {}.", in_comment(warning)));
+    if (rows_.stamped && rows_.times.size() > 1) {
+      line("# Guess: the whole file.");
+      line(fmt::format("period = [{}, {}]", toml_literal(rows_.text(rows_.times.front())),
+                       toml_literal(rows_.text(rows_.times.back()))));
+    }
+    if (!columns_.empty()) {
+      line("# Guess: columns whose names are alike.");
+      line(assigned("tags", [&](std::size_t column) { return toml_literal(file().names[column]); }));
+      write_operating_point();
+      write_setpoints();
+    }
+    for (const std::string& variable : missing_)
+      line(fmt::format("# To do: no column is called like {}: add it to tags.", in_comment(variable)));
+    write_others();
+  }
+
+  void write_operating_point() {
+    bool deviations = true;
+    for (const auto& [variable, column] : columns_) {
+      const ColumnLook look(file(), column);
+      deviations = deviations && std::abs(look.mean) <= look.deviation;
+    }
+    line(deviations ? "# Guess: the values are deviations already, because each mean is within one standard "
+                      "deviation of 0. If not:"
+                    : "# Guess: the means of the file; right only if the plant was at its operating point on "
+                      "average.");
+    line((deviations ? "# " : "") + assigned("operating_point", [&](std::size_t column) {
+           return fmt::format("{:.6g}", ColumnLook(file(), column).mean);
+         }));
+  }
+
+  /// AI101.SP beside AI101.PV
+  void write_setpoints() {
+    const std::string text = assigned("setpoint", [&](std::size_t column) -> std::optional<std::string> {
+      std::string name = file().names[column];
+      if (!small_letters(name).ends_with("pv"))
+        return std::nullopt;
+      name.replace(name.size() - 2, 2, "SP");
+      const auto found = file().find(name);
+      return found ? std::optional(toml_literal(file().names[*found])) : std::nullopt;
+    });
+    if (text.empty())
+      return;
+    line("# Guess: the setpoints of the time.");
+    line(text);
+  }
+
+  void write_others() {
+    constexpr std::size_t kMostShown = 100;
+    std::size_t shown = 0;
+    for (std::size_t column = 0; column < file().names.size() && shown < kMostShown; ++column) {
+      const bool taken = std::find(taken_.begin(), taken_.end(), column) != taken_.end();
+      const ColumnLook look(file(), column);
+      if (taken || look.values.empty())
+        continue;
+      line(fmt::format("{}#   {}: {}", shown++ == 0 ? "# Columns that no variable has:\n" : "",
+                       in_comment(file().names[column]), look.words()));
+    }
+  }
+
+  void look_at_variables() {
+    for (const auto& [variable, column] : columns_) {
+      const ColumnLook look(file(), column);
+      const auto is = [&, name = variable](const std::vector<PlantModel::Variable>& list) {
+        return std::any_of(list.begin(), list.end(), [&](const auto& each) { return each.name == name; });
+      };
+      if (look.values.empty())
+        continue;
+      sketch_.spread[variable] = look.deviation;
+      if (is(plant_.cvs))
+        sketch_.noise[variable] = look.noise();
+      if (is(plant_.mvs))
+        sketch_.rests[variable] = look.rests();
+    }
+  }
+
+  const PlantModel& plant_;
+  StampedRows rows_;
+  DataSketch sketch_;
+  std::vector<std::size_t> taken_;
+  std::vector<std::pair<std::string, std::size_t>> columns_;  ///< of the variables that have one
+  std::vector<std::string> missing_;
+};
+
+}  // namespace
+
+DataSketch data_sketch(const PlantModel& plant, RecordColumns file) {
+  const DataOptions none;
+  std::vector<std::string> names;
+  for (const auto* list : {&plant.cvs, &plant.mvs, &plant.mds})
+    for (const PlantModel::Variable& variable : *list)
+      names.push_back(variable.name);
+  return DataSketcher(plant, stamped_rows({none, 1.0, plant.time_unit, names}, std::move(file))).sketch();
+}
+
+}  // namespace mpm

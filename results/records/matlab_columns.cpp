@@ -1,0 +1,180 @@
+#include "results/records/matlab_columns.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "results/files/csv_text.hpp"
+#include "results/files/utf8.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::array kTimesOfMatlab{"time", "timestamp", "datetime", "date", "t"};
+
+/// A variable with MATLAB's dimensions.
+struct MatlabArray {
+  std::string name;
+  bool text = false;
+  std::size_t rows = 0, columns = 0;
+  std::vector<std::string> cells;  ///< column by column; a text a row of characters, in one column
+
+  bool vector() const { return rows == 1 || columns == 1; }
+  std::size_t length() const { return vector() ? std::max(rows, columns) : rows; }
+};
+
+std::string text_of_codes(const std::vector<double>& codes) {
+  std::string bytes{"\xFE\xFF"};
+  for (const double code : codes) {
+    const auto unit = static_cast<std::uint16_t>(code >= 0.0 && code < 65536.0 ? code : 0xFFFD);
+    bytes += static_cast<char>(unit >> 8U);
+    bytes += static_cast<char>(unit & 0xFFU);
+  }
+  return proper_utf8(utf8_of_utf16(bytes));
+}
+
+class MatlabReader {
+ public:
+  MatlabReader(const Hdf5Group& root, std::string file) : file_(std::move(file)) {
+    take_group(root);
+    for (const std::string& name : root.groups())
+      if (!name.starts_with('#'))
+        take_group(root.group(name));
+  }
+
+  RecordColumns columns(const std::string& time) const {
+    const std::size_t rows = row_count(time);
+    RecordColumns made;
+    made.file = file_;
+    for (const MatlabArray& array : arrays_)
+      if (array.length() == rows)
+        add(made, array, rows);
+    made.lines.resize(rows);
+    std::iota(made.lines.begin(), made.lines.end(), std::size_t{1});
+    if (rows < 2 || made.names.empty())
+      throw InputError(
+          file_, "no arrays of numbers with a row a sample",
+          "vectors, matrices with names in a cell array, or the fields of a struct; a table or timetable as "
+          "table2struct(T, \"ToScalar\", true)");
+    return made;
+  }
+
+ private:
+  void take_group(const Hdf5Group& group) {
+    for (const std::string& name : group.variables())
+      take(group, name);
+  }
+
+  void take(const Hdf5Group& group, const std::string& name) {
+    const std::vector<std::size_t> shape = group.shape(name);
+    const std::string kind = group.text_attribute(name, "MATLAB_class").value_or("");
+    const bool empty = group.number_attribute(name, "MATLAB_empty").value_or(0.0) != 0.0;
+    if (shape.size() != 2 || empty || kind.empty())
+      return;
+    MatlabArray array;
+    array.name = name;
+    array.rows = shape[1];  // MATLAB's first dimension is the last of HDF5
+    array.columns = shape[0];
+    if (group.is_reference(name)) {
+      if (kind != "cell" || !take_texts(group, name, array))
+        return;
+    } else if (kind == "char") {
+      take_characters(group.numbers(name), array);
+    } else if (group.is_number(name) && !group.number_attribute(name, "MATLAB_object_decode")) {
+      for (const double value : group.numbers(name))
+        array.cells.push_back(std::isfinite(value) ? fmt::format("{}", value) : "");
+    } else {
+      return;
+    }
+    count_ += array.cells.size();
+    if (count_ > kMostForeignCells)
+      throw InputError(file_, fmt::format("more than {} values", kMostForeignCells),
+                       "so many: a shorter period, or fewer variables");
+    arrays_.push_back(std::move(array));
+  }
+
+  /// A cell array of texts; false when it holds something else.
+  static bool take_texts(const Hdf5Group& group, const std::string& name, MatlabArray& array) {
+    array.text = true;
+    for (const std::string& path : group.references(name)) {
+      if (path.empty() || group.text_attribute(path, "MATLAB_class") != "char")
+        return false;
+      const bool empty = group.number_attribute(path, "MATLAB_empty").value_or(0.0) != 0.0;
+      array.cells.push_back(empty ? "" : text_of_codes(group.numbers(path)));
+    }
+    return true;
+  }
+
+  static void take_characters(const std::vector<double>& codes, MatlabArray& array) {
+    array.text = true;
+    for (std::size_t row = 0; row < array.rows; ++row) {
+      std::vector<double> of_row;
+      for (std::size_t column = 0; column < array.columns; ++column)
+        of_row.push_back(codes[column * array.rows + row]);
+      std::string text = text_of_codes(of_row);
+      text.erase(text.find_last_not_of(' ') + 1);
+      array.cells.push_back(std::move(text));
+    }
+    array.columns = 1;
+  }
+
+  std::size_t row_count(const std::string& time) const {
+    std::size_t most = 0;
+    for (const MatlabArray& array : arrays_) {
+      if (array.name == time)
+        return array.length();
+      most = array.text ? most : std::max(most, array.length());
+    }
+    if (!time.empty())
+      throw InputError(fmt::format("{}: data.time", file_), fmt::format("no variable '{}'", time),
+                       "a vector of the file");
+    for (const char* usual : kTimesOfMatlab)
+      for (const MatlabArray& array : arrays_)
+        if (array.name == usual)
+          return array.length();
+    return most;
+  }
+
+  /// The names of so many columns, which is not the number of rows either.
+  const MatlabArray* names_of(std::size_t columns, std::size_t rows) const {
+    const auto found = std::find_if(arrays_.begin(), arrays_.end(), [&](const MatlabArray& array) {
+      return array.text && array.vector() && array.cells.size() == columns && columns != rows;
+    });
+    return found == arrays_.end() ? nullptr : &*found;
+  }
+
+  void add(RecordColumns& made, const MatlabArray& array, std::size_t rows) const {
+    const std::size_t columns = array.cells.size() / rows;
+    const MatlabArray* const names = columns > 1 ? names_of(columns, rows) : nullptr;
+    for (std::size_t column = 0; column < columns; ++column) {
+      made.names.push_back(columns == 1       ? array.name
+                           : names != nullptr ? names->cells[column]
+                                              : fmt::format("{}.{}", array.name, column + 1));
+      const auto first = array.cells.begin() + static_cast<std::ptrdiff_t>(column * rows);
+      made.columns.emplace_back(first, first + static_cast<std::ptrdiff_t>(rows));
+    }
+  }
+
+  std::string file_;
+  std::vector<MatlabArray> arrays_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+bool is_matlab(std::string_view content) {
+  return content.starts_with("MATLAB 7.3 MAT-file") && content.size() > kMatlabHeading;
+}
+
+RecordColumns matlab_columns(const Hdf5Group& root, const std::string& file, const std::string& time) {
+  return MatlabReader(root, file).columns(time);
+}
+
+}  // namespace mpm

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "results/archive/hdf5_file.hpp"
+#include "results/records/record_columns.hpp"
+
+namespace mpm {
+
+inline constexpr std::size_t kMatlabHeading = 512;  ///< bytes before HDF5 in a MAT-file of MATLAB 7.3
+
+/// Does a file begin as a MAT-file of MATLAB 7.3?
+bool is_matlab(std::string_view content);
+
+/// The variables of a MAT-file of MATLAB 7.3 (save -v7.3), and the fields of its scalar structs, as columns:
+///
+/// | variable                             | columns                                                   |
+/// |--------------------------------------|-----------------------------------------------------------|
+/// | N x 1 or 1 x N numbers, also logical | x                                                         |
+/// | N x c numbers                        | the names of a cell array of c texts, or x.1, x.2, ...    |
+/// | N x 1 or 1 x N cell array of texts   | x                                                         |
+/// | N x n characters                     | x, a text a row                                           |
+/// | others                               | none                                                      |
+///
+/// N is the length of the variable `time`; empty: of one with a usual name, otherwise the largest number of
+/// rows. Fields of a struct have their own names. NaN is an empty cell.
+///
+/// Errors: InputError for a file without such a variable; ArchiveError for one that HDF5 cannot read.
+RecordColumns matlab_columns(const Hdf5Group& root, const std::string& file, const std::string& time);
+
+}  // namespace mpm

@@ -1,0 +1,217 @@
+#include "results/records/signal_reader.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+#include "results/files/foreign_content.hpp"
+#include "results/files/utf8.hpp"
+#include "results/records/implausible_values.hpp"
+#include "results/records/opc_quality.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::size_t kWordsShown = 5;  // of a quality
+constexpr const char* kOpc = "opc";     // among the words of a good one
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool is_one_of(const std::string& cell, const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), [cell = in_lower_case(cell)](const std::string& word) {
+    return in_lower_case(word) == cell;
+  });
+}
+
+std::string cut_name(const std::string& text) {
+  return std::string(cut_utf8(text, kShownBytes));
+}
+
+/// What the names of a DataOptions group say of a variable; none: nothing.
+template <class Value>
+std::optional<Value> said_of(const std::map<std::string, Value>& group, const std::string& variable) {
+  const auto found = group.find(variable);
+  return found == group.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace
+
+SignalReader::SignalReader(const Study& study, RecordColumns& file, std::vector<std::string>& warnings)
+    : study_(study), data_(study.data), file_(file), warnings_(warnings) {
+  for (const std::string& name : data_.stored_on_change)
+    if (const auto quality = said_of(data_.quality, name))
+      fill(file_.column(where("quality", name), *quality));
+}
+
+std::string SignalReader::where(const std::string& key, const std::string& variable) const {
+  return fmt::format("{}: data.{}.{}", file_.file, key, variable);
+}
+
+std::size_t SignalReader::column_of(const std::string& variable, const char* prefix) const {
+  if (const auto tag = said_of(data_.tags, variable))
+    return file_.column(where("tags", variable), *tag);
+  if (const auto exported = file_.find(fmt::format("{}.{}", prefix, variable)))
+    return *exported;
+  if (const auto column = file_.find(variable))
+    return *column;
+  return file_.column(where("tags", variable), variable);
+}
+
+bool SignalReader::on_change(const std::string& variable) const {
+  const std::vector<std::string>& names = data_.stored_on_change;
+  return std::find(names.begin(), names.end(), variable) != names.end();
+}
+
+/// An empty cell has what stands above it.
+void SignalReader::fill(std::size_t column) {
+  std::vector<std::string>& cells = file_.columns[column];
+  for (std::size_t row = 1; row < cells.size(); ++row)
+    if (cells[row].empty())
+      cells[row] = cells[row - 1];
+}
+
+RowSignal SignalReader::numbers(std::size_t column, const std::string& variable) {
+  const double zero = said_of(data_.operating_point, variable).value_or(0.0);
+  const double scale = said_of(data_.scale, variable).value_or(1.0);
+  RowSignal signal(file_.rows(), kNaN);
+  std::size_t texts = 0, first_text = 0, filled = 0;
+  for (std::size_t row = 0; row < file_.rows(); ++row) {
+    const std::string& cell = file_.columns[column][row];
+    if (const auto value = file_.number(cell))
+      signal[row] = *value;
+    else if (!cell.empty() && texts++ == 0)
+      first_text = row;
+    filled += cell.empty() ? 0 : 1;
+  }
+  const std::string name = cut_name(file_.names[column]);
+  const std::string_view text = texts == 0 ? "" : cut_utf8(file_.columns[column][first_text], kShownBytes);
+  if (texts == filled)
+    throw InputError(fmt::format("{}: column '{}', for {}", file_.file, name, variable),
+                     texts == 0 ? std::string("no value") : fmt::format("no number, but '{}'", text),
+                     file_.decimal == '.' ? "numbers with a decimal point; data.decimal = \",\" for commas"
+                                          : "numbers with a decimal comma; data.decimal = \".\" for points");
+  if (texts > 0)
+    warnings_.push_back(
+        fmt::format("column '{}': {} cells are no numbers and count as missing, the first is '{}' in line {}",
+                    name, texts, text, file_.lines[first_text]));
+  drop_implausible(column, variable, signal);
+  for (double& value : signal)
+    value = scale * (value - zero);
+  return signal;
+}
+
+RowSignal SignalReader::holding(const std::string& name, const char* prefix, RowSignal signal) const {
+  const std::vector<std::string>& cells = file_.columns[column_of(name, prefix)];
+  for (std::size_t row = 1; row < signal.size(); ++row)
+    if (cells[row].empty())
+      signal[row] = signal[row - 1];
+  return signal;
+}
+
+RowSignal SignalReader::variable(const std::string& name, const char* prefix) {
+  RowSignal signal = numbers(column_of(name, prefix), name);
+  drop_bad_quality(name, signal);
+  return signal;
+}
+
+/// The hard limits of a variable; infinite without.
+std::pair<double, double> SignalReader::hard_limits(const std::string& variable) const {
+  std::pair<double, double> found{-kInfinity, kInfinity};
+  const auto look = [&](const std::vector<PlantModel::Variable>& variables, const Limits& limits) {
+    for (std::size_t i = 0; i < variables.size(); ++i)
+      if (variables[i].name == variable)
+        found = {limits.lower(static_cast<Eigen::Index>(i)), limits.upper(static_cast<Eigen::Index>(i))};
+  };
+  look(study_.plant.cvs, study_.controller.cv_hard);
+  look(study_.plant.mvs, study_.controller.mv_hard);
+  return found;
+}
+
+/// Takes out what cannot be measured. The signal is as recorded: it is there that -9999 means something.
+void SignalReader::drop_implausible(std::size_t column, const std::string& variable, RowSignal& signal) {
+  const double zero = said_of(data_.operating_point, variable).value_or(0.0);
+  const double scale = said_of(data_.scale, variable).value_or(1.0);
+  const std::pair<double, double> limits = hard_limits(variable);
+  const double one = zero + limits.first / scale, other = zero + limits.second / scale;
+  const std::vector<std::size_t> rows = implausible_rows(signal, std::min(one, other), std::max(one, other));
+  if (rows.empty())
+    return;
+  for (const std::size_t row : rows)
+    signal[row] = kNaN;
+  warnings_.push_back(fmt::format(
+      "column '{}': {} values cannot be measurements and count as missing, the first is '{}' in line {}",
+      cut_name(file_.names[column]), rows.size(), cut_utf8(file_.columns[column][rows.front()], kShownBytes),
+      file_.lines[rows.front()]));
+}
+
+bool SignalReader::has_numbers(std::size_t column) const {
+  const std::vector<std::string>& cells = file_.columns[column];
+  return std::any_of(cells.begin(), cells.end(),
+                     [&](const std::string& cell) { return file_.number(cell).has_value(); });
+}
+
+void SignalReader::drop_bad_quality(const std::string& variable, RowSignal& signal) {
+  const auto tag = said_of(data_.quality, variable);
+  if (!tag)
+    return;
+  const std::size_t column = file_.column(where("quality", variable), *tag);
+  const bool opc = is_one_of(kOpc, data_.good_quality);
+  const OpcCodes codes = opc ? opc_codes(file_, column) : OpcCodes::da;
+  std::size_t bad = 0;
+  std::map<std::string, std::size_t> words;
+  for (std::size_t row = 0; row < signal.size(); ++row) {
+    const std::string& cell = file_.columns[column][row];
+    const bool nothing = cell.empty() && std::isnan(signal[row]);  // the row is of other variables
+    if (nothing || is_word(cell, data_.good_quality) || (opc && is_good_opc(file_, cell, codes)))
+      continue;
+    signal[row] = kNaN;
+    ++bad;
+    if (const std::string word = cut_name(cell); words.size() <= kWordsShown || words.contains(word))
+      ++words[word];
+  }
+  if (bad == 0)
+    return;
+  std::vector<std::string> shown;
+  for (const auto& [word, rows] : words)
+    shown.push_back(shown.size() < kWordsShown ? fmt::format("'{}' ({} rows)", word, rows) : "others");
+  if (bad == signal.size())
+    throw InputError(where("quality", variable),
+                     fmt::format("no row of good quality, but {}", fmt::join(shown, ", ")),
+                     fmt::format("one of data.good_quality: {}{}", fmt::join(data_.good_quality, ", "),
+                                 words.size() == 1 && is_word(words.begin()->first, {"0"})
+                                     ? "; in OPC UA 0 is good: good_quality = [\"0\"]"
+                                     : ""));
+  warnings_.push_back(
+      fmt::format("{} is missing in {} of {} rows, whose quality is none of data.good_quality ({}): {}",
+                  variable, bad, signal.size(), fmt::join(data_.good_quality, ", "), fmt::join(shown, ", ")));
+}
+
+/// Is the cell one of these words, or a number that one of them is?
+bool SignalReader::is_word(const std::string& cell, const std::vector<std::string>& words) const {
+  if (is_one_of(cell, words))
+    return true;
+  const auto value = file_.number(cell);
+  return value && is_one_of(fmt::format("{:g}", *value), words);
+}
+
+RowSignal SignalReader::controller_on() const {
+  const std::size_t column = file_.column(file_.file + ": data.controller_on", data_.controller_on);
+  RowSignal on;
+  for (const std::string& cell : file_.columns[column])
+    on.push_back(cell.empty() ? kNaN : is_word(cell, data_.on_values) ? 1.0 : 0.0);
+  return on;
+}
+
+}  // namespace mpm
