@@ -62,6 +62,7 @@ Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& o
   md_gain_ = model.static_gain().rightCols(model.cols() - mv_count);
   input_.setZero(model.cols());
   bias_.setZero(model.rows());
+  measured_.setZero(model.rows());
   y_at_zero_.setZero(model.rows());
   free_.setZero(model.rows(), options.prediction_horizon);
   move_.u.setZero(nu_);
@@ -130,6 +131,7 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   require_signal("measured disturbances", d, md_gain_.cols());
   if (is_pending_)
     model_.advance(input_);
+  measured_ = y;
   bias_ = y - model_.output();
   input_ << move_.u, d;
   move_.status = ControlStatus::ok;
@@ -171,7 +173,8 @@ bool Mpc::solve_targets() {
 void Mpc::solve_moves() {
   free_response(model_, input_, scratch_, free_);
   free_.colwise() += bias_;
-  const QpResult& plan = solver_->solve(qp_.update({free_, input_.head(nu_), move_.u_target, setpoint_}));
+  const QpResult& plan =
+      solver_->solve(qp_.update({free_, input_.head(nu_), move_.u_target, setpoint_, measured_}));
   note(plan);
   if (move_.status != ControlStatus::ok)
     return;

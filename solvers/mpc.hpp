@@ -60,7 +60,7 @@ class Mpc final : public Controller {
   std::unique_ptr<QpSolver> solver_;
   Eigen::VectorXd input_;    ///< (u(k-1), d(k)), then what acts, (u(k), d(k))
   bool is_pending_ = false;  ///< input_ acts, and the model has not been advanced with it
-  Eigen::VectorXd bias_, y_at_zero_, setpoint_;
+  Eigen::VectorXd bias_, y_at_zero_, setpoint_, measured_;
   Eigen::VectorXd setpoint_weight_;
   Limits cv_soft_, target_range_;
   Eigen::MatrixXd free_;  ///< ny x Hp

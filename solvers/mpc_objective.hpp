@@ -26,11 +26,13 @@ Eigen::VectorXd effective_weight(const Eigen::VectorXd& weight, WeightConvention
 /// | u(k-1)    | previous | nu      | MVs that act until this sample                   |
 /// | u_target  | target   | nu      | targets of the optimizer                         |
 /// | y_set     | setpoint | ny      | setpoints, held over the horizon                 |
+/// | y(k)      | measured | ny      | measured CVs                                     |
 struct MpcSample {
   const Eigen::Ref<const Eigen::MatrixXd>& free;
   const Eigen::Ref<const Eigen::VectorXd>& previous;
   const Eigen::Ref<const Eigen::VectorXd>& target;
   const Eigen::Ref<const Eigen::VectorXd>& setpoint;
+  const Eigen::Ref<const Eigen::VectorXd>& measured;
 };
 
 /// sum_{i=0}^{Hc-1} sum_j Q_du,j |v_j(i) - v_j(i-1)|^2,  v(-1) = 0. Constant; it adds nothing to the
@@ -45,7 +47,7 @@ class MoveSuppression {
   Eigen::VectorXd weight_;
 };
 
-/// sum_{i=0}^{Hp-1} sum_j Q_u,j |u_j(k+i) - u_target,j|^2,  u held after the control horizon.
+/// sum_{i=0}^{Hp-1} sum_j Q_u,j |u_j(k+i) - u_target,j|^2,  each planned position held until the next.
 class TargetTracking {
  public:
   explicit TargetTracking(const MpcOptions& options);
@@ -53,14 +55,14 @@ class TargetTracking {
   void add_gradient(const MpcSample& sample, Eigen::VectorXd& gradient) const;
 
  private:
-  double samples_held(int i) const;
-
-  int prediction_horizon_, control_horizon_;
+  std::vector<double> samples_held_;  ///< of each planned position
   Eigen::VectorXd weight_;
 };
 
-/// sum_{l=1}^{Hp} sum_j Q_y,j |y_j(k+l) - y_set,j|^2 over the CVs with a setpoint weight above 0. The sums of
-/// (2.26) and (6.20) begin at the sample k itself, which no move can change any more.
+/// sum_{l=1}^{Hp} sum_j Q_y,j |y_j(k+l) - r_j(k+l)|^2 over the CVs with a setpoint weight above 0. The sums
+/// of (2.26) and (6.20) begin at the sample k itself, which no move can change any more. r is y_set, or with
+/// a reference time the trajectory
+///     r_j(k+l) = y_set,j + (y_j(k) - y_set,j) e^{-l Ts / tau_ref,j}.
 class SetpointTracking {
  public:
   /// `forced` are the rows of forced_response(): cv * Hp + l - 1.
@@ -72,7 +74,8 @@ class SetpointTracking {
   struct TrackedCv {
     Eigen::Index cv;
     double weight;
-    RowMajorMatrix forced;  ///< Hp x (nu Hc)
+    RowMajorMatrix forced;      ///< Hp x (nu Hc)
+    Eigen::VectorXd from_here;  ///< e^{-l Ts / tau_ref}, Hp; empty: at once
   };
   std::vector<TrackedCv> tracked_;
 };

@@ -1,10 +1,13 @@
 #include "solvers/mpc_options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
@@ -21,6 +24,30 @@ void require_weights(const char* name, const Eigen::VectorXd& weights, Eigen::In
       throw InputError(fmt::format("{}[{}]", name, i), fmt::format("{}", weights(i)), "a number >= 0");
 }
 
+bool has(const Eigen::VectorXd& of_some, Eigen::Index i) {
+  return of_some.size() > 0 && of_some(i) > 0.0;
+}
+
+void require_optional_weights(const char* name, const Eigen::VectorXd& weights, Eigen::Index size) {
+  if (weights.size() > 0)
+    require_weights(name, weights, size);
+}
+
+void require_move_blocks(const MpcOptions& options) {
+  const std::vector<int>& blocks = options.move_blocks;
+  const std::string found = fmt::format("{}", fmt::join(blocks, ", "));
+  if (static_cast<int>(blocks.size()) != options.control_horizon)
+    throw InputError("move_blocks", fmt::format("{} blocks", blocks.size()),
+                     fmt::format("{}, the control horizon", options.control_horizon));
+  if (std::any_of(blocks.begin(), blocks.end(), [](int samples) { return samples < 1; }))
+    throw InputError("move_blocks", found, "blocks of 1 sample or more");
+  if (options.move_starts().back() >= options.prediction_horizon)
+    throw InputError(
+        "move_blocks", found,
+        fmt::format("blocks of which the last begins within the prediction horizon of {} samples",
+                    options.prediction_horizon));
+}
+
 auto members(const Limits& limits) {
   const auto& [lower, upper] = limits;
   return std::tie(lower, upper);
@@ -28,11 +55,13 @@ auto members(const Limits& limits) {
 
 auto members(const MpcOptions& options) {
   const auto& [sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
-               setpoint_weight, slack_weight, weight_convention, slack_form, mv_hard, cv_hard, cv_soft,
-               mv_cost, target_violation_cost] = options;
+               setpoint_weight, slack_weight, slack_cost, reference_time, move_blocks, weight_convention,
+               slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost, resting_value, resting_weight,
+               target_violation_cost] = options;
   return std::tie(sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
-                  setpoint_weight, slack_weight, weight_convention, slack_form, mv_hard, cv_hard, cv_soft,
-                  mv_cost, target_violation_cost);
+                  setpoint_weight, slack_weight, slack_cost, reference_time, move_blocks, weight_convention,
+                  slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost, resting_value, resting_weight,
+                  target_violation_cost);
 }
 
 }  // namespace
@@ -58,6 +87,29 @@ void Limits::validate(std::string_view what, Eigen::Index size) const {
     if (!(lower(i) <= upper(i) && lower(i) < kInfinity && upper(i) > -kInfinity))  // also false for NaN
       throw InputError(fmt::format("{}[{}]", what, i), fmt::format("lower {}, upper {}", lower(i), upper(i)),
                        "lower <= upper, no NaN, an absent limit is -inf below and inf above");
+}
+
+bool MpcOptions::has_reference(Eigen::Index cv) const {
+  return has(reference_time, cv);
+}
+
+bool MpcOptions::has_slack_cost(Eigen::Index cv) const {
+  return has(slack_cost, cv);
+}
+
+bool MpcOptions::has_resting_values() const {
+  return (resting_weight.array() > 0.0).any();
+}
+
+bool MpcOptions::has_move_limits() const {
+  return move_limit.array().isFinite().any();
+}
+
+std::vector<int> MpcOptions::move_starts() const {
+  std::vector<int> starts(static_cast<std::size_t>(control_horizon));
+  for (std::size_t i = 1; i < starts.size(); ++i)
+    starts[i] = starts[i - 1] + (move_blocks.empty() ? 1 : move_blocks[i - 1]);
+  return starts;
 }
 
 bool MpcOptions::has_soft_limit(Eigen::Index cv) const {
@@ -87,9 +139,20 @@ void MpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) const {
   cv_hard.validate("cv_hard", cv_count);
   cv_soft.validate("cv_soft", cv_count);
   require_weights("slack_weight", slack_weight, cv_count);
+  require_optional_weights("slack_cost", slack_cost, cv_count);
   for (Eigen::Index i = 0; i < cv_count; ++i)
-    if (has_soft_limit(i) && slack_weight(i) == 0)
+    if (has_soft_limit(i) && slack_weight(i) == 0 && !has_slack_cost(i))
       throw InputError(fmt::format("slack_weight[{}]", i), "0", "a number > 0 for a CV with a soft limit");
+  require_optional_weights("reference_time", reference_time, cv_count);
+  require_optional_weights("resting_weight", resting_weight, mv_count);
+  if (resting_weight.size() != resting_value.size() || !resting_value.allFinite())
+    throw InputError("resting_value", fmt::format("{} numbers", resting_value.size()),
+                     "a finite number for each resting_weight");
+  if (move_limit.size() > 0 && (move_limit.size() != mv_count || !(move_limit.array() > 0.0).all()))
+    throw InputError("move_limit", fmt::format("{} numbers", move_limit.size()),
+                     fmt::format("{} numbers > 0; infinite: no limit", mv_count));
+  if (!move_blocks.empty())
+    require_move_blocks(*this);
   if (mv_cost.size() != mv_count || !mv_cost.allFinite())
     throw InputError(
         "mv_cost", fmt::format("{} numbers{}", mv_cost.size(), mv_cost.allFinite() ? "" : ", not all finite"),

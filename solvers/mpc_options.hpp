@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -55,7 +56,11 @@ struct Limits {
 /// | Q_u      | target_weight      | nu    | 1 / MV^2                    |
 /// | Q_y      | setpoint_weight    | ny    | 1 / CV^2                    |
 /// | tau_y    | slack_weight       | ny    | 1 / CV^2                    |
+/// | l_y      | slack_cost         | ny    | 1 / CV                      |
 /// | phi_u    | mv_cost            | nu    | 1 / MV                      |
+/// | r_u, w_u | resting_value, resting_weight | nu | MV, 1 / MV^2        |
+/// | du_max   | move_limit         | nu    | MV a sample                 |
+/// | tau_ref  | reference_time     | ny    | time unit of the plant      |
 struct MpcOptions {
   double sample_time = 1.0;
   int prediction_horizon = 1;
@@ -63,13 +68,23 @@ struct MpcOptions {
   Eigen::VectorXd move_suppression;
   Eigen::VectorXd target_weight;
   Eigen::VectorXd setpoint_weight;  ///< 0: the CV has no setpoint
-  Eigen::VectorXd slack_weight;     ///< above 0 for a CV with a soft limit
+  Eigen::VectorXd slack_weight;     ///< with slack_cost above 0 for a CV with a soft limit
+  Eigen::VectorXd slack_cost = {};  ///< linear cost of a slack; empty or 0: none
+  /// Time constant with which the CV is asked to approach its setpoint from where it is; empty or 0: at once.
+  Eigen::VectorXd reference_time = {};
+  /// Samples for which each planned position of the MVs is held but the last, which is held to the end of the
+  /// horizon (move blocking); empty: one sample each.
+  std::vector<int> move_blocks = {};
   WeightConvention weight_convention = WeightConvention::direct;
   SlackForm slack_form = SlackForm::per_sample;
   Limits mv_hard;
+  Eigen::VectorXd move_limit = {};  ///< largest |u(k) - u(k-1)|; empty or infinite: none
   Limits cv_hard;
   Limits cv_soft;
   Eigen::VectorXd mv_cost;
+  /// Where an MV rests as far as the limits of the CVs allow: w_u (u_tgt - r_u)^2 in the objective (6.19).
+  /// Empty or weights of 0: nowhere.
+  Eigen::VectorXd resting_value = {}, resting_weight = {};
   /// Cost of a unit of steady-state violation of a CV soft limit in the target optimizer, relative to the
   /// largest |mv_cost|. Large enough that limits are left only when no target keeps them (docs/methods.md).
   double target_violation_cost = 1000.0;
@@ -80,6 +95,12 @@ struct MpcOptions {
   bool has_targets() const { return (target_weight.array() > 0.0).any(); }
   bool has_soft_limit(Eigen::Index cv) const;
   bool has_soft_limits() const;
+  bool has_move_limits() const;
+  bool has_reference(Eigen::Index cv) const;
+  bool has_slack_cost(Eigen::Index cv) const;
+  bool has_resting_values() const;
+  /// Sample of the horizon from which planned position i acts, i = 0 ... control_horizon - 1.
+  std::vector<int> move_starts() const;
 
   /// Throws InputError for sizes, signs or horizons that make no controller.
   void validate(Eigen::Index cv_count, Eigen::Index mv_count) const;

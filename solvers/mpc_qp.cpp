@@ -1,11 +1,13 @@
 #include "solvers/mpc_qp.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/prediction.hpp"
 
 namespace mpm {
@@ -27,37 +29,58 @@ void require_determined(const Eigen::MatrixXd& hessian) {
 void set_slacks(const MpcOptions& options, Eigen::Index cv_count, QpStructure& structure) {
   const int hp = options.prediction_horizon;
   const bool per_sample = options.slack_form == SlackForm::per_sample;
-  structure.slack_of_row.resize(cv_count * hp);
+  structure.slack_of_row.setConstant(structure.rows.rows(), -1);
+  structure.slack_linear.setZero(per_sample ? cv_count * hp : cv_count);
   structure.slack_quadratic.resize(per_sample ? cv_count * hp : cv_count);
   for (Eigen::Index cv = 0; cv < cv_count; ++cv) {
     const double weight = options.has_soft_limit(cv) ? options.slack_weight(cv) : 1.0;
+    const double cost =
+        options.has_soft_limit(cv) && options.has_slack_cost(cv) ? options.slack_cost(cv) : 0.0;
+    const double uses = per_sample ? 1.0 : hp;
     for (int l = 0; l < hp; ++l) {
       const Eigen::Index row = cv * hp + l;
       const Eigen::Index slack = per_sample ? row : cv;
       structure.slack_of_row(row) = static_cast<int>(slack);
-      structure.slack_quadratic(slack) = weight * (per_sample ? 1.0 : hp);
+      structure.slack_quadratic(slack) = weight * uses;
+      structure.slack_linear(slack) = cost * uses;
     }
   }
-  structure.slack_linear.setZero(structure.slack_quadratic.size());
+}
+
+/// Adds a row v_j(i) - v_j(i-1), i = 1 ... Hc-1, for each MV with a limit of its moves.
+void add_move_rows(const MpcOptions& options, RowMajorMatrix& rows) {
+  if (!options.has_move_limits())
+    return;
+  const Eigen::Index nu = options.move_limit.size();
+  for (Eigen::Index place = nu; place < rows.cols(); ++place) {
+    if (!std::isfinite(options.move_limit(place % nu)))
+      continue;
+    rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
+    rows.bottomRows(1).setZero();
+    rows(rows.rows() - 1, place) = 1.0;
+    rows(rows.rows() - 1, place - nu) = -1.0;
+  }
 }
 
 std::shared_ptr<const QpStructure> make_structure(const MpcOptions& options, RowMajorMatrix forced,
                                                   const TargetTracking& targets,
                                                   const SetpointTracking& setpoints) {
   auto structure = std::make_shared<QpStructure>();
+  const Eigen::Index cv_count = forced.rows() / options.prediction_horizon;
   structure->rows = std::move(forced);
   structure->hessian.setZero(structure->rows.cols(), structure->rows.cols());
   MoveSuppression(options).add_hessian(structure->hessian);
   targets.add_hessian(structure->hessian);
   setpoints.add_hessian(structure->hessian);
   require_determined(structure->hessian);
-  set_slacks(options, structure->rows.rows() / options.prediction_horizon, *structure);
+  add_move_rows(options, structure->rows);
+  set_slacks(options, cv_count, *structure);
   return structure;
 }
 
 RowMajorMatrix forced(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& options) {
   return forced_response(model, mv_count, options.sample_time, options.prediction_horizon,
-                         options.control_horizon);
+                         options.move_starts());
 }
 
 }  // namespace
@@ -72,10 +95,20 @@ MpcQp::MpcQp(RowMajorMatrix forced, Eigen::Index mv_count, const MpcOptions& opt
       mv_hard_(options.mv_hard),
       cv_hard_(options.cv_hard),
       cv_soft_(options.cv_soft),
+      move_limit_(options.has_move_limits() ? options.move_limit
+                                            : Eigen::VectorXd::Constant(mv_count, kInfinity)),
       targets_(options),
       setpoints_(options, forced),
       structure_(make_structure(options, std::move(forced), targets_, setpoints_)),
-      data_(QpData::unconstrained(*structure_)) {}
+      data_(QpData::unconstrained(*structure_)) {
+  Eigen::Index row = cv_soft_.lower.size() * prediction_horizon_;
+  for (Eigen::Index place = mv_count; row < structure_->row_count(); ++place)
+    if (const double limit = move_limit_(place % mv_count); std::isfinite(limit)) {
+      data_.hard_lower(row) = -limit;
+      data_.hard_upper(row) = limit;
+      ++row;
+    }
+}
 
 const QpData& MpcQp::update(const MpcSample& sample) {
   data_.gradient.setZero();
@@ -85,6 +118,9 @@ const QpData& MpcQp::update(const MpcSample& sample) {
     data_.lower.segment(i * mv_count_, mv_count_) = mv_hard_.lower - sample.previous;
     data_.upper.segment(i * mv_count_, mv_count_) = mv_hard_.upper - sample.previous;
   }
+  // An MV outside of its limits returns as fast as it may.
+  data_.lower.head(mv_count_) = data_.lower.head(mv_count_).cwiseMax(-move_limit_).cwiseMin(move_limit_);
+  data_.upper.head(mv_count_) = data_.upper.head(mv_count_).cwiseMin(move_limit_).cwiseMax(-move_limit_);
   for (Eigen::Index cv = 0; cv < sample.free.rows(); ++cv)
     for (Eigen::Index l = 0; l < prediction_horizon_; ++l) {
       const Eigen::Index row = cv * prediction_horizon_ + l;

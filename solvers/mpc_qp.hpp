@@ -18,9 +18,11 @@ namespace mpm {
 ///
 /// (solvers/mpc_objective), subject to the MV limits as bounds of x and the CV limits as rows
 /// y(k+l) = free(k+l) + R x, l = 1..Hp. With a slack per CV, delta_{j,l} = delta_j and tau_j counts Hp times,
-/// as the sum over the horizon in (6.20) says.
+/// as the sum over the horizon in (6.20) says. A limit of the moves bounds v(0), and v(i) - v(i-1) as a row
+/// after those of the CVs.
 ///
-/// Hessian and rows are constant; gradient and limits are affine in (free response, u(k-1), u_target, y_set).
+/// Hessian and rows are constant; gradient and limits are affine in (free response, u(k-1), u_target, y_set,
+/// y(k)), but for v(0) where a move limit and an MV limit meet.
 class MpcQp {
  public:
   /// `options` must be valid for the model (see MpcOptions::validate). Throws InputError when they do
@@ -45,6 +47,7 @@ class MpcQp {
   int prediction_horizon_;
   int control_horizon_;
   Limits mv_hard_, cv_hard_, cv_soft_;
+  Eigen::VectorXd move_limit_;  ///< nu; infinite: none
   TargetTracking targets_;
   SetpointTracking setpoints_;
   std::shared_ptr<const QpStructure> structure_;

@@ -1,12 +1,15 @@
 #include "solvers/prediction.hpp"
 
+#include <iterator>
+
 namespace mpm {
 
 RowMajorMatrix forced_response(const TransferMatrix& model, Eigen::Index mv_count, double sample_time,
-                               int prediction_horizon, int control_horizon) {
+                               int prediction_horizon, const std::vector<int>& starts) {
   const Eigen::Index ny = model.rows();
   const Eigen::Index hp = prediction_horizon;
-  RowMajorMatrix response = RowMajorMatrix::Zero(ny * hp, mv_count * control_horizon);
+  const auto positions = static_cast<Eigen::Index>(starts.size());
+  RowMajorMatrix response = RowMajorMatrix::Zero(ny * hp, mv_count * positions);
 
   LinearPlant plant(model, sample_time);
   Eigen::MatrixXd step(ny, hp + 1);  // column l: y(l) for a unit step at sample 0
@@ -17,13 +20,15 @@ RowMajorMatrix forced_response(const TransferMatrix& model, Eigen::Index mv_coun
       step.col(l) = plant.output();
       plant.advance(unit);
     }
-    for (Eigen::Index cv = 0; cv < ny; ++cv)
-      for (Eigen::Index l = 1; l <= hp; ++l)
-        for (Eigen::Index i = 0; i < control_horizon && i < l; ++i) {
-          const bool last = i == control_horizon - 1;
-          const double ended_by_next = last ? 0.0 : step(cv, l - i - 1);
-          response(cv * hp + l - 1, i * mv_count + j) = step(cv, l - i) - ended_by_next;
-        }
+    const auto of_step = [&step](Eigen::Index cv, Eigen::Index l) { return l > 0 ? step(cv, l) : 0.0; };
+    for (Eigen::Index i = 0; i < positions; ++i) {
+      const auto from = starts.begin() + i;
+      const bool last = i == positions - 1;
+      for (Eigen::Index cv = 0; cv < ny; ++cv)
+        for (Eigen::Index l = *from + 1; l <= hp; ++l)
+          response(cv * hp + l - 1, i * mv_count + j) =
+              of_step(cv, l - *from) - (last ? 0.0 : of_step(cv, l - *std::next(from)));
+    }
   }
   return response;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "plants/linear/linear_plant.hpp"
@@ -10,16 +12,18 @@ namespace mpm {
 
 /// The forced response of the CVs over the prediction horizon, linear in the planned MV positions.
 ///
-/// With v(i) = u(k+i) - u(k-1), i = 0..Hc-1, and u held after the control horizon,
+/// With v(i), i = 0..Hc-1, the MVs from sample k + start(i) on, relative to u(k-1), until the next position
+/// acts; the last one is held to the end:
 ///     y(k+l) = free(k+l) + sum_i sum_j R[l, (i, j)] v_j(i),   l = 1..Hp,
 /// where free is the response to MVs held at u(k-1). R follows from the step responses S of the nominal
-/// model: v(i) adds S(l-i) - S(l-i-1), and the last one S(l-Hc+1).
+/// model: v(i) adds S(l-start(i)) - S(l-start(i+1)), and the last one S(l-start(Hc-1)).
 ///
 /// Row `cv * Hp + l - 1`, column `i * nu + j`; shape (ny Hp) x (nu Hc).
 ///
-/// `model` has the MVs in its first `mv_count` columns, then the MDs.
+/// `model` has the MVs in its first `mv_count` columns, then the MDs. `starts` are MpcOptions::move_starts():
+/// 0, 1, ..., Hc-1 without move blocking.
 RowMajorMatrix forced_response(const TransferMatrix& model, Eigen::Index mv_count, double sample_time,
-                               int prediction_horizon, int control_horizon);
+                               int prediction_horizon, const std::vector<int>& starts);
 
 /// The free response: y(k+1..k+Hp) of `model` with `held_input` (MVs, then MDs) held from sample k on.
 /// Writes ny x Hp numbers into `response`; `scratch` is a plant of the same structure that is overwritten.

@@ -1,15 +1,32 @@
 #include "solvers/target_optimizer.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace mpm {
 namespace {
+
+/// Of the objective without the penalty, within the limits of the MVs where they have any.
+double largest_slope(const MpcOptions& options) {
+  double largest = options.mv_cost.lpNorm<Eigen::Infinity>();
+  for (Eigen::Index j = 0; options.has_resting_values() && j < options.resting_weight.size(); ++j)
+    for (const double limit : {options.mv_hard.lower(j), options.mv_hard.upper(j)}) {
+      const double way = std::isfinite(limit) ? limit - options.resting_value(j) : 1.0;
+      largest =
+          std::max(largest, std::abs(options.mv_cost(j)) + 2.0 * options.resting_weight(j) * std::abs(way));
+    }
+  return largest;
+}
 
 std::shared_ptr<const QpStructure> target_structure(const Eigen::MatrixXd& static_gain,
                                                     const MpcOptions& options) {
   const Eigen::Index ny = static_gain.rows();
   const Eigen::Index nu = static_gain.cols();
-  const double largest_cost = options.mv_cost.lpNorm<Eigen::Infinity>();
+  const double largest_cost = largest_slope(options);
   auto structure = std::make_shared<QpStructure>();
   structure->hessian.setZero(nu, nu);
+  if (options.has_resting_values())
+    structure->hessian.diagonal() = 2.0 * options.resting_weight;
   structure->rows = static_gain;
   structure->slack_of_row.setLinSpaced(ny, 0, static_cast<int>(ny) - 1);
   structure->slack_quadratic.setZero(ny);
@@ -26,6 +43,8 @@ TargetOptimizer::TargetOptimizer(const Eigen::MatrixXd& static_gain, const MpcOp
   const auto structure = target_structure(static_gain, options);
   data_ = QpData::unconstrained(*structure);
   data_.gradient = options.mv_cost;
+  if (options.has_resting_values())
+    data_.gradient -= 2.0 * options.resting_weight.cwiseProduct(options.resting_value);
   data_.lower = options.mv_hard.lower;
   data_.upper = options.mv_hard.upper;
   solver_ = factory(structure);

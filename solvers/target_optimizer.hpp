@@ -11,14 +11,16 @@ namespace mpm {
 
 /// The steady-state target optimizer above the MPC (6.19):
 ///
-///     minimise    phi_u' u_tgt + rho sum_j v_j             over u_tgt, v >= 0
+///     minimise    phi_u' u_tgt + sum_j w_u,j (u_tgt,j - r_u,j)^2 + rho sum_j v_j     over u_tgt, v >= 0
 ///     subject to  mv_hard.lower <= u_tgt <= mv_hard.upper
 ///                 cv_soft.lower - v <= y_0 + K u_tgt <= cv_soft.upper + v
 ///
 /// where K is the static gain of the nominal model and y_0 what the CVs would settle at with the MVs at zero.
 /// The thesis gives no answer for limits that no target satisfies. Here the violation v has the price
-/// rho = target_violation_cost * max|phi_u|: an exact penalty, so that limits which can be kept are kept (v =
-/// 0, the answer is that of (6.19)), and otherwise the sum of the violations is made small first.
+/// rho = target_violation_cost * the largest slope of the objective within the limits, max|phi_u| without
+/// resting values: an exact penalty, so that limits which can be kept are kept (v = 0, the answer is that of
+/// (6.19)), and otherwise the sum of the violations is made small first. The resting values r_u of industrial
+/// controllers, with weights w_u, are not in the thesis; there are none by default.
 ///
 /// | symbol | meaning                    | shape   | unit    |
 /// |--------|----------------------------|---------|---------|

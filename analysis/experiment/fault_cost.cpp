@@ -60,7 +60,8 @@ LoopCost loop_cost(const Study& study, const Trajectory& loop) {
       const double violation = outside(loop.y(cv, k), soft.lower(cv), soft.upper(cv));
       cost.violation(cv) += violation;
       if (controller.has_soft_limit(cv))
-        cost.cv(cv) += of_slack(cv) * violation * violation;
+        cost.cv(cv) += of_slack(cv) * violation * violation +
+                       (controller.has_slack_cost(cv) ? controller.slack_cost(cv) * violation : 0.0);
       if (controller.has_setpoint(cv))
         cost.cv(cv) += of_setpoint(cv) * std::pow(loop.y(cv, k) - loop.y_set(cv, k), 2);
     }

@@ -151,7 +151,7 @@ FirstMoves first_moves(const Study& study, MpcQp& qp, const Indices& cvs, const 
   Eigen::VectorXd target = Eigen::VectorXd::Zero(all);
   const Eigen::VectorXd previous = Eigen::VectorXd::Zero(all), setpoint = Eigen::VectorXd::Zero(free.rows());
   const auto moves = [&]() -> Eigen::VectorXd {
-    const Eigen::VectorXd gradient = qp.update({free, previous, target, setpoint}).gradient(places);
+    const Eigen::VectorXd gradient = qp.update({free, previous, target, setpoint, setpoint}).gradient(places);
     return -hessian.solve(gradient).head(nu);
   };
   FirstMoves result{Eigen::MatrixXd(nu, count_of(cvs) * hp), Eigen::MatrixXd(nu, nu)};
@@ -197,7 +197,10 @@ bool changes_loop(const OtherFault& fault) {
 
 bool has_linear_law(const Study& study, bool has_active_limits) {
   const bool one_slack = has_active_limits && study.controller.slack_form != SlackForm::per_sample;
-  return !study.nonlinear && !study.controller_program && !one_slack;
+  const MpcOptions& controller = study.controller;
+  const bool other_terms = (controller.reference_time.array() > 0.0).any() ||
+                           (controller.slack_cost.array() > 0.0).any() || controller.has_resting_values();
+  return !study.nonlinear && !study.controller_program && !one_slack && !other_terms;
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ double& limit_of(Limits& soft, const ActiveConstraint& reference) {
 MpcOptions relaxed_options(const Study& study, const OperatingPoint& point) {
   MpcOptions options = study.controller;
   options.mv_hard = Limits::none(study.mv_count());
+  options.move_limit = {};
   for (const Eigen::Index mv : point.fixed_mvs)
     options.mv_hard.lower(mv) = options.mv_hard.upper(mv) = point.u(mv);
   options.cv_hard = Limits::none(study.cv_count());

@@ -22,17 +22,30 @@ void set_limits(Limits& limits, Eigen::Index i, const NumberPair& range) {
 
 struct MvOptions {
   double cost = 0.0, move_suppression = 0.0, target_weight = 0.0;
+  double move_limit = kInfinity, resting_value = 0.0, resting_weight = 0.0;
   NumberPair hard;
 };
 
 OptionKeys keys(MvOptions& mv) {
   // A cost decides where the target lies: an MV with a target has to say it.
   const auto read_cost = [&mv](const TomlTable& table) {
-    mv.cost = mv.target_weight > 0 ? read_number(table, "cost", NumberRule::finite())
-                                   : read_number_or(table, "cost", NumberRule::finite(), 0.0);
+    const bool rests = table.has("resting_weight");
+    if (rests != table.has("resting_value"))
+      table.refuse(rests ? "resting_weight" : "resting_value", "one of resting_value and resting_weight",
+                   "both or none");
+    mv.cost = mv.target_weight > 0 && !rests ? read_number(table, "cost", NumberRule::finite())
+                                             : read_number_or(table, "cost", NumberRule::finite(), 0.0);
+    if (table.has("move_limit"))
+      mv.move_limit = read_number(table, "move_limit", NumberRule::positive());
+    if (!rests)
+      return;
+    if (mv.target_weight == 0)
+      table.refuse("resting_value", "a resting value without a target", "a target_weight above 0");
+    mv.resting_value = read_number(table, "resting_value", NumberRule::finite());
+    mv.resting_weight = read_number(table, "resting_weight", NumberRule::positive());
   };
   return {key::option("cost", "number", "phi_u of (6.19)", "1 / MV")
-              .otherwise("required with a target")
+              .otherwise("required with a target and without a resting value")
               .allow("finite"),
           key::number("move_suppression", mv.move_suppression, NumberRule::at_least(0), "Q_du of (6.20)",
                       "1 / MV^2")
@@ -42,11 +55,24 @@ OptionKeys keys(MvOptions& mv) {
                       "setpoints, or too few setpoints",
                       "1 / MV^2")
               .otherwise("0: no target"),
-          key::check(read_cost), key::limits("hard", mv.hard, "hard limits", "MV")};
+          key::option("resting_value", "number",
+                      "where the MV rests as far as the limits of the CVs allow (ideal resting value); "
+                      "`resting_weight` times the squared distance is added to (6.19)",
+                      "MV")
+              .otherwise("none")
+              .allow("finite; with `resting_weight` and a target"),
+          key::option("resting_weight", "number", "weight of the distance from `resting_value`", "1 / MV^2")
+              .otherwise("none")
+              .allow("> 0"),
+          key::check(read_cost),
+          key::limits("hard", mv.hard, "hard limits", "MV"),
+          key::option("move_limit", "number", "largest move of a sample, a hard limit", "MV")
+              .otherwise("none")
+              .allow("> 0")};
 }
 
 struct CvOptions {
-  double setpoint_weight = 0.0, setpoint = 0.0, slack_weight = 0.0;
+  double setpoint_weight = 0.0, setpoint = 0.0, slack_weight = 0.0, slack_cost = 0.0, reference_time = 0.0;
   NumberPair soft{-kInfinity, kInfinity}, hard;
 };
 
@@ -65,16 +91,24 @@ void read_setpoint_and_range(const TomlTable& table, CvOptions& cv) {
   const bool has_setpoint = table.has("setpoint_weight");
   if (table.has("setpoint") && !has_setpoint)
     table.refuse("setpoint", "a setpoint without setpoint_weight", "both or none");
-  if (!has_setpoint && !table.has("soft") && !table.has("slack_weight"))
+  const bool has_range = table.has("soft") || table.has("slack_weight") || table.has("slack_cost");
+  if (!has_setpoint && !has_range)
     table.refuse("", "neither a setpoint nor a range",
                  "setpoint_weight for a setpoint, slack_weight and soft for a range, or all three");
   if (has_setpoint) {
     cv.setpoint_weight = read_number(table, "setpoint_weight", NumberRule::positive());
     cv.setpoint = read_number_or(table, "setpoint", NumberRule::finite(), 0.0);
   }
-  if (has_setpoint && !table.has("soft") && !table.has("slack_weight"))
+  if (table.has("reference_time") && !has_setpoint)
+    table.refuse("reference_time", "a reference trajectory without a setpoint", "setpoint_weight beside it");
+  if (table.has("reference_time"))
+    cv.reference_time = read_number(table, "reference_time", NumberRule::positive());
+  if (table.has("slack_cost"))
+    cv.slack_cost = read_number(table, "slack_cost", NumberRule::positive());
+  if (!has_range)
     return;
-  cv.slack_weight = read_number(table, "slack_weight", NumberRule::positive());
+  if (table.has("slack_weight") || cv.slack_cost == 0.0)
+    cv.slack_weight = read_number(table, "slack_weight", NumberRule::positive());
   cv.soft = read_limits(table, "soft");
   refuse_soft_outside_hard(table, cv.soft, cv.hard);
 }
@@ -87,8 +121,19 @@ OptionKeys keys(CvOptions& cv) {
               .otherwise("0")
               .allow("finite; with `setpoint_weight`"),
           key::option("slack_weight", "number", "tau_y of (6.20)", "1 / CV^2")
-              .otherwise("required with `soft`")
+              .otherwise("required with `soft` and without `slack_cost`")
               .allow("> 0"),
+          key::option("slack_cost", "number",
+                      "linear cost of a violation of the soft limits, beside or in place of `slack_weight`",
+                      "1 / CV")
+              .otherwise("none")
+              .allow("> 0"),
+          key::option("reference_time", "number",
+                      "time constant of the reference trajectory: the CV is asked to approach its setpoint "
+                      "from where it is",
+                      "time")
+              .otherwise("none: at once")
+              .allow("> 0; with `setpoint_weight`"),
           key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
               .otherwise("required without a setpoint")
               .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
@@ -120,11 +165,13 @@ OptionKey variable_tables(const char* name, const std::vector<PlantModel::Variab
 void resize(Study& study) {
   MpcOptions& options = study.controller;
   const Eigen::Index cvs = study.cv_count(), mvs = study.mv_count();
-  for (Eigen::VectorXd* of_mv : {&options.move_suppression, &options.target_weight, &options.mv_cost})
+  for (Eigen::VectorXd* of_mv : {&options.move_suppression, &options.target_weight, &options.mv_cost,
+                                 &options.resting_value, &options.resting_weight})
     of_mv->setZero(mvs);
-  for (Eigen::VectorXd* of_cv :
-       {&options.setpoint_weight, &options.slack_weight, &study.simulation.initial_setpoint})
+  for (Eigen::VectorXd* of_cv : {&options.setpoint_weight, &options.slack_weight, &options.slack_cost,
+                                 &options.reference_time, &study.simulation.initial_setpoint})
     of_cv->setZero(cvs);
+  options.move_limit.setConstant(mvs, kInfinity);
   options.mv_hard = Limits::none(mvs);
   options.cv_hard = Limits::none(cvs);
   options.cv_soft = Limits::none(cvs);
@@ -179,11 +226,16 @@ OptionKeys controller_keys(Study& study) {
     options.mv_cost(i) = mv.cost;
     options.move_suppression(i) = mv.move_suppression;
     options.target_weight(i) = mv.target_weight;
+    options.move_limit(i) = mv.move_limit;
+    options.resting_value(i) = mv.resting_value;
+    options.resting_weight(i) = mv.resting_weight;
     set_limits(options.mv_hard, i, mv.hard);
   };
   const auto take_cv = [&study, &options](Eigen::Index i, const CvOptions& cv) {
     options.setpoint_weight(i) = cv.setpoint_weight;
     options.slack_weight(i) = cv.slack_weight;
+    options.slack_cost(i) = cv.slack_cost;
+    options.reference_time(i) = cv.reference_time;
     study.simulation.initial_setpoint(i) = cv.setpoint;
     set_limits(options.cv_soft, i, cv.soft);
     set_limits(options.cv_hard, i, cv.hard);
@@ -200,6 +252,9 @@ OptionKeys controller_keys(Study& study) {
               .required()
               .allow("1 to `prediction_horizon`")
               .read(read_control_horizon),
+          key::wholes("move_blocks", options.move_blocks, 1, kMaxHorizon,
+                      "samples for which each planned position of the MVs is held (move blocking); "
+                      "`control_horizon` numbers; the last one is held to the end of the horizon"),
           key::choice(
               "weight_convention", options.weight_convention, {"direct", "squared"},
               "`abs(Q x)^2` in (6.20) as Q x^2 or as (Q x)^2. Open in the thesis; the first comes close to "

@@ -41,7 +41,7 @@ class P1Sequence {
             0.02 * std::sin(13.0 * k + 5.0 * static_cast<double>(cv));
     previous_ = Eigen::Vector3d(std::sin(0.3 * k), std::cos(0.2 * k), std::sin(0.17 * k)) * 0.45;
     target_.setConstant(0.5 * std::cos(0.05 * k));
-    return qp_.update({free_, previous_, target_, no_setpoint_});
+    return qp_.update({free_, previous_, target_, no_setpoint_, no_setpoint_});
   }
 
  private:

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <numeric>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -51,7 +53,9 @@ void check_prediction(const TransferMatrix& model, Eigen::Index mv_count, double
   const Eigen::VectorXd held = samples::rough_input(model.cols(), 7).col(6);
   const Eigen::MatrixXd plan = samples::rough_input(mv_count, hc);
 
-  const RowMajorMatrix forced = forced_response(model, mv_count, sample_time, hp, hc);
+  std::vector<int> starts(static_cast<std::size_t>(hc));
+  std::iota(starts.begin(), starts.end(), 0);
+  const RowMajorMatrix forced = forced_response(model, mv_count, sample_time, hp, starts);
   REQUIRE(forced.rows() == model.rows() * hp);
   REQUIRE(forced.cols() == mv_count * hc);
   const Eigen::VectorXd moved = forced * plan.reshaped();  // column i * nu + j is MV j at position i
@@ -94,7 +98,7 @@ TEST_CASE("without a change of inputs the free response of a plant at rest is it
 TEST_CASE("a move acts from the sample after its own and its dead time on", "[prediction]") {
   // Ts 2, dead time 4: two samples; u(k) of the plan first shows in y(k + 3).
   const TransferMatrix model{{TransferFunction::first_order(2, 10, 4)}};
-  const RowMajorMatrix forced = forced_response(model, 1, 2, 6, 3);
+  const RowMajorMatrix forced = forced_response(model, 1, 2, 6, {0, 1, 2});
   for (Eigen::Index l = 0; l < 6; ++l)
     for (Eigen::Index i = 0; i < 3; ++i)
       CHECK((forced(l, i) != 0) == (l >= i + 2));
