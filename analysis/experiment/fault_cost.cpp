@@ -11,14 +11,9 @@
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/signals.hpp"
-#include "solvers/mpc_objective.hpp"
 
 namespace mpm {
 namespace {
-
-double outside(double y, double lower, double upper) {
-  return std::max({0.0, y - upper, lower - y});
-}
 
 /// Sums over the pairs of one side of them.
 struct Side {
@@ -43,36 +38,6 @@ struct Side {
 };
 
 }  // namespace
-
-LoopCost loop_cost(const Study& study, const Trajectory& loop) {
-  const MpcOptions& controller = study.controller;
-  const Eigen::Index ny = loop.y.rows(), N = loop.y.cols();
-  LoopCost cost{.cv = Eigen::VectorXd::Zero(ny), .violation = Eigen::VectorXd::Zero(ny)};
-  const auto weights = [&controller](const Eigen::VectorXd& of) {
-    return effective_weight(of, controller.weight_convention);
-  };
-  const Eigen::VectorXd of_slack = weights(controller.slack_weight);
-  const Eigen::VectorXd of_setpoint = weights(controller.setpoint_weight);
-  const Eigen::VectorXd of_move = weights(controller.move_suppression);
-  for (Eigen::Index k = 0; k < N; ++k) {
-    const Limits soft = soft_limits(study, k);
-    for (Eigen::Index cv = 0; cv < ny; ++cv) {
-      const double violation = outside(loop.y(cv, k), soft.lower(cv), soft.upper(cv));
-      cost.violation(cv) += violation;
-      if (controller.has_soft_limit(cv))
-        cost.cv(cv) += of_slack(cv) * violation * violation +
-                       (controller.has_slack_cost(cv) ? controller.slack_cost(cv) * violation : 0.0);
-      if (controller.has_setpoint(cv))
-        cost.cv(cv) += of_setpoint(cv) * std::pow(loop.y(cv, k) - loop.y_set(cv, k), 2);
-    }
-    if (k > 0)
-      cost.effort += of_move.dot((loop.u.col(k) - loop.u.col(k - 1)).cwiseAbs2());
-    if (controller.mv_cost.size() > 0)
-      cost.economics += controller.mv_cost.dot(loop.u.col(k));
-  }
-  const auto samples = static_cast<double>(N);
-  return {cost.cv / samples, cost.violation / samples, cost.effort / samples, cost.economics / samples};
-}
 
 bool FaultCost::has_impact(double upper) const {
   return loss_ratio > upper || std::any_of(variance_ratio.begin(), variance_ratio.end(),

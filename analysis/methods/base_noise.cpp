@@ -28,6 +28,7 @@ constexpr double kGolden = 0.6180339887498949;
 constexpr int kVarianceSteps = 40;
 constexpr double kMuchLess = 15.0;         // of log L
 constexpr double kNoWeightOfNoise = -6.0;  // logarithm of a posterior probability
+constexpr double kUnseen = 0.1;            // prior probability of another background than the record shows
 constexpr std::array<Eigen::Index, 4> kNeighbours{-2, -1, 1, 2};
 
 double median(std::vector<double> values) {
@@ -176,7 +177,7 @@ NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
                                const Eigen::Ref<const Eigen::MatrixXd>& directions, double least) {
   const double n = sample_count(e);
   const double mean_square = mean_square_of(e);
-  NoisePosterior noise{{std::max(std::sqrt(mean_square), least)}, {}};
+  NoisePosterior noise{{std::max(std::sqrt(mean_square), least)}, {}, 0.0};
   if (mean_square <= least * least)
     return noise;
   const Eigen::Index q = directions.rows();
@@ -212,6 +213,7 @@ NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
   for (const PossibleNoises& each : noise.possible)
     for (const double log_weight : each.log_weight)
       total = log_sum(total, log_weight);
+  noise.log_evidence = total;
   for (PossibleNoises& each : noise.possible) {
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < each.log_weight.size(); ++i)
@@ -221,6 +223,19 @@ NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
   }
   std::erase_if(noise.possible, [](const PossibleNoises& each) { return each.a.size() == 0; });
   return noise;
+}
+
+void add_unseen_backgrounds(NoisePosterior& noise, Eigen::Index samples) {
+  const NoiseModels grid = grid_of_models(samples);
+  std::vector<Eigen::Index> small;
+  for (Eigen::Index i = 0; i < grid.count(); ++i)
+    if (grid.b(i) <= kLargestBackground * std::sqrt(1.0 - grid.a(i) * grid.a(i)))
+      small.push_back(i);
+  for (PossibleNoises& each : noise.possible)
+    each.log_weight += std::log(1.0 - kUnseen);
+  const double share = std::log(kUnseen / static_cast<double>(small.size()));
+  noise.possible.push_back({0.0, grid.a(small), grid.b(small),
+                            Eigen::ArrayXd::Constant(static_cast<Eigen::Index>(small.size()), share)});
 }
 
 double deviation_of_steps(const Eigen::Ref<const Eigen::RowVectorXd>& e) {

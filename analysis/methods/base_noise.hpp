@@ -30,7 +30,16 @@ struct PossibleNoises {
 struct NoisePosterior {
   BaseNoise best;
   std::vector<PossibleNoises> possible;  ///< none: the best is known
+  double log_evidence = 0.0;             ///< of the record, all of them counted
 };
+
+/// A slow disturbance of up to this part of the standard deviation of the measurement noise is background,
+/// which healthy loops have too: it adds a quarter to the variance of the noise.
+inline constexpr double kLargestBackground = 0.5;
+
+/// Counts backgrounds that the record does not show among those that are possible: a small part of the weight
+/// goes to each AR(1) state up to kLargestBackground, since a background may be another one next month.
+void add_unseen_backgrounds(NoisePosterior& noise, Eigen::Index samples);
 
 /// For simulation errors of which the rows of `directions` (q x N, q > 0, CV unit) explain a part with
 /// coefficients z ~ N(0, I), which are integrated out.

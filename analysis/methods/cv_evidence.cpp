@@ -182,6 +182,18 @@ class RecordLikelihood {
     if (possible.empty())
       return 0.0;
     const Eigen::MatrixXd series = stacked(e, directions);
+    // Of many noises most are hopeless, which e alone shows.
+    const auto hopeful = [&](const PossibleNoises& noises) {
+      const WhitenedProducts sums = whitened_products({noises.a, noises.b, noises.phi, rest_}, e);
+      Eigen::ArrayXd all = noises.log_weight;
+      for (Eigen::Index i = 0; i < all.size(); ++i)
+        all(i) += likelihood_(sums.log_determinant(i), sums.of(0, 0)(i));
+      std::vector<Eigen::Index> kept;
+      for (Eigen::Index i = 0; i < all.size(); ++i)
+        if (all(i) > all.maxCoeff() - kLost)
+          kept.push_back(i);
+      return PossibleNoises{noises.phi, noises.a(kept), noises.b(kept), noises.log_weight(kept)};
+    };
     const auto log_likelihoods = [&](const NoiseModels& models) {
       const WhitenedProducts sums = marginalised(whitened_products(models, series), 1, directions.rows());
       Eigen::ArrayXd all(models.count());
@@ -190,10 +202,12 @@ class RecordLikelihood {
       return all;
     };
     double mean = -kInfinity;
-    for (const PossibleNoises& noises : possible)
+    for (const PossibleNoises& all : possible) {
+      const PossibleNoises noises = hopeful(all);
       for (const double each :
            (noises.log_weight + log_likelihoods({noises.a, noises.b, noises.phi, rest_})).eval())
         mean = log_sum(mean, each);
+    }
     return mean - log_likelihoods(base_models(base_, rest_).models)(0);
   }
 

@@ -24,15 +24,16 @@ struct CvWeights {
   double all() const { return log_sum(log_sum(mpm, ud), both); }
 };
 
+CvWeights weights_of_cv(const CvPrior& prior, const CvEvidence& evidence) {
+  return {log_weight(prior.mpm, evidence.mpm, evidence.healthy),
+          log_weight(prior.ud, evidence.ud, evidence.healthy),
+          log_weight(prior.both, evidence.both, evidence.healthy)};
+}
+
 std::vector<CvWeights> weights_of(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence) {
   std::vector<CvWeights> weights;
-  for (std::size_t i = 0; i < evidence.size(); ++i) {
-    const CvPrior& prior = priors.cvs[i];
-    const CvEvidence& of_cv = evidence[i];
-    weights.push_back({log_weight(prior.mpm, of_cv.mpm, of_cv.healthy),
-                       log_weight(prior.ud, of_cv.ud, of_cv.healthy),
-                       log_weight(prior.both, of_cv.both, of_cv.healthy)});
-  }
+  for (std::size_t i = 0; i < evidence.size(); ++i)
+    weights.push_back(weights_of_cv(priors.cvs[i], evidence[i]));
   return weights;
 }
 
@@ -124,10 +125,15 @@ std::vector<ModelErrors> learnt_models(const AssessmentContext& context, FaultPr
   return models;
 }
 
-Eigen::VectorXd deviations(const std::vector<ModelErrors>& models) {
+/// Of the noise of each CV, `whole`: with its slow part.
+Eigen::VectorXd deviations(const std::vector<ModelErrors>& models, bool whole) {
   Eigen::VectorXd all(static_cast<Eigen::Index>(models.size()));
-  for (std::size_t i = 0; i < models.size(); ++i)
-    all(static_cast<Eigen::Index>(i)) = models[i].noise().deviation;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const BaseNoise& noise = models[i].noise();
+    all(static_cast<Eigen::Index>(i)) =
+        whole ? std::hypot(noise.deviation, noise.deviation * noise.b / std::sqrt(1.0 - noise.a * noise.a))
+              : noise.deviation;
+  }
   return all;
 }
 
@@ -183,9 +189,11 @@ class FaultPosterior final : public AssessmentMethod {
         models_(learnt_models(context, priors)),
         priors_(fault_priors(context.study, priors,
                              context.study.assessment.of<LikelihoodOptions>().fault_probability,
-                             deviations(models_))) {
+                             deviations(models_, context.learnt != nullptr), context.learnt != nullptr)) {
     if (priors == FaultPriors::study && !noise_is_known(study_))
       priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
+    if (priors != FaultPriors::study && context.learnt)
+      discount_false_faults(context);
     for_scores_ = priors == FaultPriors::study ? of_equal_kinds(study_, priors_) : priors_;
     if (priors == FaultPriors::study && !draws_known_faults(study_))
       priors_ = for_scores_;
@@ -214,6 +222,38 @@ class FaultPosterior final : public AssessmentMethod {
   }
 
  private:
+  /// A fault must be more probable than the false ones that one half of the benchmark shows under what the
+  /// other half teaches, in a record of the length of both: there the model of the errors is wrong (a
+  /// nonlinear plant). Where it is right, the halves show none, and the priors stay.
+  void discount_false_faults(const AssessmentContext& context) {
+    const AssessedLoop& benchmark = *context.benchmark;
+    const Eigen::MatrixXd inputs = model_inputs(benchmark.from_start());
+    const Eigen::Index middle = benchmark.first + benchmark.samples() / 2;
+    for (std::size_t i = 0; i < priors_.cvs.size(); ++i) {
+      CvPrior& prior = priors_.cvs[i];
+      const auto cv = static_cast<Eigen::Index>(i);
+      double false_odds = 0.0;
+      for (const bool first : {true, false}) {
+        const auto learns = [&](Eigen::Index k) { return (k < middle) == first; };
+        const std::optional<ModelErrors> half = context.learnt->of_part(study_, benchmark, cv, learns);
+        Eigen::RowVectorXd other = errors_in_window(benchmark, cv);
+        for (Eigen::Index k = 0; k < other.size(); ++k)
+          if (learns(k))
+            other(k) = kNaN;
+        if (!half || other.array().isNaN().all())
+          continue;
+        const CvLikelihood likelihood(*half, study_.controller.sample_time, prior, priors_.noise_freedom,
+                                      priors_.starts_from_rest);
+        false_odds = std::max(false_odds, weights_of_cv(prior, likelihood.of(other, inputs, initial_)).all());
+      }
+      const double left = std::exp(-kHalves * false_odds);
+      prior.mpm *= left;
+      prior.ud *= left;
+      prior.both *= left;
+    }
+  }
+
+  static constexpr double kHalves = 2.0;  ///< of the benchmark in a record: log L grows with the samples
   /// Degrees of freedom of the variance of a noise that is taken from the benchmark.
   static constexpr double kUnknownNoise = 4.0;
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "analysis/methods/base_noise.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/faults/fault_ranges.hpp"
 
@@ -19,6 +20,7 @@ constexpr double kDeviations = 4.0;  // at which a normal distribution is cut of
 // long or longer by a residence time, a disturbance of 0.1 to 1000 standard deviations of the noise with a
 // time constant of a sample to half the record.
 constexpr double kLargestFactor = 10.0;
+constexpr double kBeyond = 1.1;  // of the largest factor, where the model has errors of its own
 constexpr double kSmallestDisturbance = 0.1, kLargestDisturbance = 1000.0;
 /// Of mismatch, disturbance and both, when there is a fault.
 constexpr std::array kWideShares{0.4, 0.4, 0.2};
@@ -87,10 +89,12 @@ Distribution study_size(const Study& study, const TransferFunction& channel, Mis
   return Distribution::constant(-1.0);
 }
 
-Distribution wide_size(const Study& study, const TransferFunction& channel, MismatchParameter parameter) {
+Distribution wide_size(const Study& study, const TransferFunction& channel, MismatchParameter parameter,
+                       bool imperfect) {
   if (parameter == MismatchParameter::dead_time)
     return shift_between(-channel.dead_time(), longest_delay(study, channel));
-  return Distribution::log_uniform(1.0 / kLargestFactor, kLargestFactor);
+  const double largest = imperfect ? kBeyond * kLargestFactor : kLargestFactor;
+  return Distribution::log_uniform(1.0 / largest, largest);
 }
 
 /// Relative frequencies of kRandomMismatchParameters.
@@ -99,7 +103,8 @@ auto parameter_weights(const Study& study, FaultPriors priors) {
                                       : std::array<double, 6>{1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
 }
 
-std::vector<SizePrior> mismatches_of(const Study& study, FaultPriors priors, Eigen::Index cv) {
+std::vector<SizePrior> mismatches_of(const Study& study, FaultPriors priors, Eigen::Index cv,
+                                     bool imperfect) {
   const auto weights = parameter_weights(study, priors);
   std::vector<SizePrior> mismatches;
   double total = 0.0;
@@ -117,7 +122,7 @@ std::vector<SizePrior> mismatches_of(const Study& study, FaultPriors priors, Eig
                             parameter,
                             weights[i],
                             priors == FaultPriors::study ? study_size(study, channel, parameter)
-                                                         : wide_size(study, channel, parameter)});
+                                                         : wide_size(study, channel, parameter, imperfect)});
     }
   }
   for (SizePrior& mismatch : mismatches)
@@ -142,7 +147,8 @@ std::vector<std::pair<double, double>> time_constants(const Distribution& distri
   return nodes;
 }
 
-std::vector<DisturbancePrior> disturbances_of(const Study& study, FaultPriors priors, double noise) {
+std::vector<DisturbancePrior> disturbances_of(const Study& study, FaultPriors priors, double noise,
+                                              bool imperfect) {
   const double Ts = study.controller.sample_time;
   const DisturbanceRanges& ranges = study.disturbance;
   const bool drawn = priors == FaultPriors::study;
@@ -151,7 +157,9 @@ std::vector<DisturbancePrior> disturbances_of(const Study& study, FaultPriors pr
             : Distribution::log_uniform(Ts, std::max(2.0, 0.5 * study.simulation.samples) * Ts);
   const bool sized = drawn && !ranges.impact;
   const Distribution size =
-      sized ? ranges.gain : Distribution::log_uniform(kSmallestDisturbance, kLargestDisturbance);
+      sized ? ranges.gain
+            : Distribution::log_uniform(imperfect && !drawn ? kLargestBackground : kSmallestDisturbance,
+                                        kLargestDisturbance);
   std::vector<DisturbancePrior> disturbances;
   for (const auto& [tau, weight] : time_constants(taus)) {
     const double a = std::exp(-Ts / tau);
@@ -222,7 +230,7 @@ double density(const Distribution& distribution, double x) {
 }
 
 FaultPriorSet fault_priors(const Study& study, FaultPriors priors, double fault_probability,
-                           const Eigen::Ref<const Eigen::VectorXd>& noise) {
+                           const Eigen::Ref<const Eigen::VectorXd>& noise, bool imperfect) {
   const bool drawn = priors == FaultPriors::study && !study.names_scenarios();
   FaultPriorSet set{{},
                     drawn && draws_one_fault(study),
@@ -239,8 +247,8 @@ FaultPriorSet fault_priors(const Study& study, FaultPriors priors, double fault_
       prior.ud = odds * kWideShares[1];
       prior.both = odds * kWideShares[2];
     }
-    prior.mismatches = mismatches_of(study, used, cv);
-    prior.disturbances = disturbances_of(study, used, noise(cv));
+    prior.mismatches = mismatches_of(study, used, cv, imperfect);
+    prior.disturbances = disturbances_of(study, used, noise(cv), imperfect);
     for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
       channels += study.plant.G(cv, mv).is_zero() ? 0.0 : 1.0;
     set.cvs.push_back(std::move(prior));

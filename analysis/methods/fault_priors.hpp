@@ -68,8 +68,10 @@ struct FaultPriorSet {
 };
 
 /// The priors of `options`. `noise` (ny) are the standard deviations of the measurement noise, in which the
-/// sizes of wide disturbances are measured.
+/// sizes of wide disturbances are measured. `imperfect`: healthy models have errors and healthy loops a
+/// background, so that wide disturbances begin above kLargestBackground, and wide factors reach beyond what a
+/// corrected model may be off.
 FaultPriorSet fault_priors(const Study& study, FaultPriors priors, double fault_probability,
-                           const Eigen::Ref<const Eigen::VectorXd>& noise);
+                           const Eigen::Ref<const Eigen::VectorXd>& noise, bool imperfect = false);
 
 }  // namespace mpm

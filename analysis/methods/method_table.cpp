@@ -29,6 +29,7 @@ namespace mpm {
   method(excitation) /* do signals from outside of the loop? */                \
   method(candidates) /* do logged signals that the model does not know? */      \
   method(likelihood) /* the posterior of all faults, of any size */            \
+  method(adequacy)  /* does the repair of a channel bring more than it is worth? */ \
   method(ceiling)    /* the same with the distributions of the study */       \
   method(lasso)     /* L1 regression of the simulation errors, Kono 2023 */    \
   method(local)     /* local approach to model divergence, Jiang 2009 */       \

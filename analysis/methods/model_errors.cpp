@@ -1,6 +1,7 @@
 #include "analysis/methods/model_errors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -19,6 +20,10 @@ namespace {
 constexpr double kFaintDirection = 0.05;
 constexpr double kSmallestFactor = 0.05;
 constexpr int kGaussNewtonSteps = 3;
+/// Gains that wander: what is tried, the gain of log L that speaks for it, and the corners of a benchmark.
+constexpr std::array kWanders{0.05, 0.1, 0.2, 0.02};
+constexpr double kSpeaksForWander = 3.0;
+constexpr Eigen::Index kCorners = 8;
 /// Smallest noise against the size of the outputs: that of their rounding in a record without noise.
 constexpr double kLeastNoise = 1e-6;
 
@@ -129,7 +134,8 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
   const auto p = static_cast<Eigen::Index>(errors_.size());
   Eigen::MatrixXd unknown(p + (bias_ > 0.0 ? 1 : 0), e.size());
   unknown.bottomRows(unknown.rows() - p).setConstant(bias_ * std::max(deviation_of_steps(e), least));
-  Eigen::MatrixXd series(1 + unknown.rows(), e.size());
+  Eigen::MatrixXd series;
+  corner_ = std::max<Eigen::Index>(2, e.size() / kCorners);
   Coefficients known_errors{Eigen::VectorXd::Zero(unknown.rows()), {}};
   take(nominal_);
   // Gauss and Newton: where outputs move by a hundred times the noise, a slope is not enough.
@@ -140,10 +146,13 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
     if (!known && step + 1 < kGaussNewtonSteps)
       noise_.best = {std::max(deviation_of_steps(left), least)};
     else if (!known)
-      noise_ = noise_posterior(left, noise_.best.deviation * strong(unknown / noise_.best.deviation), least);
-    series << left, unknown;
+      learn_noise(left, unknown, inputs, initial, least);
+    const Eigen::MatrixXd wanders = wandering(model_, inputs, initial);
+    series.resize(1 + unknown.rows() + wanders.rows(), e.size());
+    series << left, unknown, wanders;
     known_errors = coefficients(noise_.best, series);
-    take(with_errors(known_errors.mean.head(p)));
+    mean_ = known_errors.mean.head(p);
+    take(with_errors(mean_));
   }
   factor_ = known_errors.covariance.topLeftCorner(p, p).llt().matrixL();
 }
@@ -165,10 +174,67 @@ Eigen::RowVectorXd ModelErrors::correction(const Eigen::Ref<const Eigen::MatrixX
 
 Eigen::MatrixXd ModelErrors::slopes(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                     const Eigen::Ref<const Eigen::VectorXd>& initial) const {
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(slopes_.size()), inputs.cols());
-  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+  const auto p = static_cast<Eigen::Index>(slopes_.size());
+  const Eigen::MatrixXd wanders = wandering(model_, inputs, initial);
+  Eigen::MatrixXd rows(p + wanders.rows(), inputs.cols());
+  for (Eigen::Index i = 0; i < p; ++i)
     rows.row(i) = slopes_[static_cast<std::size_t>(i)].response(inputs, initial);
+  rows.bottomRows(wanders.rows()) = wanders;
   return rows;
+}
+
+void ModelErrors::learn_noise(const Eigen::Ref<const Eigen::RowVectorXd>& left,
+                              const Eigen::MatrixXd& unknown, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                              const Eigen::Ref<const Eigen::VectorXd>& initial, double least) {
+  const double deviation = noise_.best.deviation;
+  const auto under = [&](const Eigen::MatrixXd& rows) {
+    return noise_posterior(left, deviation * strong(rows / deviation), least);
+  };
+  noise_ = under(unknown);
+  double best = noise_.log_evidence + kSpeaksForWander, wander = 0.0;
+  for (const double tried : kWanders) {
+    wander_ = tried;
+    const Eigen::MatrixXd wanders = wandering(model_, inputs, initial);
+    Eigen::MatrixXd rows(unknown.rows() + wanders.rows(), unknown.cols());
+    rows << unknown, wanders;
+    NoisePosterior noise = under(rows);
+    if (noise.log_evidence > best) {
+      best = noise.log_evidence;
+      wander = tried;
+      noise_ = std::move(noise);
+    } else if (wander == 0.0) {
+      break;
+    }
+  }
+  wander_ = wander;
+  add_unseen_backgrounds(noise_, left.size());
+}
+
+Eigen::MatrixXd ModelErrors::wandering(const TransferMatrix& model,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                       const Eigen::Ref<const Eigen::VectorXd>& initial) const {
+  if (wander_ == 0.0)
+    return Eigen::MatrixXd(0, inputs.cols());
+  const Eigen::Index corners = (inputs.cols() + corner_ - 1) / corner_ + 1;
+  std::vector<Eigen::RowVectorXd> rows;
+  for (Eigen::Index input = 0; input < model.cols(); ++input) {
+    if (model(0, input).is_zero())
+      continue;
+    const Eigen::RowVectorXd response =
+        channel_response(discretise(model(0, input), sample_time_), inputs.row(input), initial(input));
+    for (Eigen::Index corner = 0; corner < corners; ++corner) {
+      Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(response.size());
+      for (Eigen::Index k = std::max<Eigen::Index>(0, (corner - 1) * corner_ + 1);
+           k < std::min((corner + 1) * corner_, response.size()); ++k)
+        row(k) = wander_ * response(k) *
+                 (1.0 - std::abs(static_cast<double>(k - corner * corner_)) / static_cast<double>(corner_));
+      rows.push_back(std::move(row));
+    }
+  }
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(rows.size()), inputs.cols());
+  for (Eigen::Index i = 0; i < all.rows(); ++i)
+    all.row(i) = rows[static_cast<std::size_t>(i)];
+  return all;
 }
 
 Eigen::MatrixXd ModelErrors::slopes(Eigen::MatrixXd without, const Mismatch& mismatch,
@@ -178,17 +244,22 @@ Eigen::MatrixXd ModelErrors::slopes(Eigen::MatrixXd without, const Mismatch& mis
   if (mismatch.parameter == MismatchParameter::dead_time)
     possible.value = std::max(mismatch.value, -model_(0, mismatch.input).dead_time());
   const TransferMatrix changed = with_mismatches(model_, {possible});
-  for (Eigen::Index i = 0; i < without.rows(); ++i)
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(errors_.size()); ++i)
     if (const ChannelError& error = errors_[static_cast<std::size_t>(i)]; error.input == mismatch.input)
       without.row(i) = slope_of(changed, error).response(inputs, initial);
+  if (wander_ > 0.0)
+    without.bottomRows(without.rows() - static_cast<Eigen::Index>(errors_.size())) =
+        wandering(changed, inputs, initial);
   return without;
 }
 
 Eigen::MatrixXd ModelErrors::directions(const Eigen::Ref<const Eigen::MatrixXd>& slopes) const {
   const Eigen::Index p = factor_.rows();
-  Eigen::MatrixXd Z(p + (bias_ > 0.0 ? 1 : 0), slopes.cols());
-  Z.topRows(p) = factor_.transpose() * slopes / noise_.best.deviation;
-  Z.bottomRows(Z.rows() - p).setConstant(bias_);
+  const Eigen::Index wanders = slopes.rows() - p;
+  Eigen::MatrixXd Z(p + wanders + (bias_ > 0.0 ? 1 : 0), slopes.cols());
+  Z.topRows(p) = factor_.transpose() * slopes.topRows(p) / noise_.best.deviation;
+  Z.middleRows(p, wanders) = slopes.bottomRows(wanders) / noise_.best.deviation;
+  Z.bottomRows(Z.rows() - p - wanders).setConstant(bias_);
   return strong(Z);
 }
 
@@ -217,6 +288,10 @@ TransferMatrix ModelErrors::with_errors(const Eigen::Ref<const Eigen::VectorXd>&
   return model;
 }
 
+TransferMatrix ModelErrors::drawn(const Eigen::Ref<const Eigen::VectorXd>& z) const {
+  return with_errors(mean_ + factor_ * z);
+}
+
 void ModelErrors::take(TransferMatrix model) {
   model_ = std::move(model);
   corrected_.clear();
@@ -231,17 +306,26 @@ void ModelErrors::take(TransferMatrix model) {
 
 LearntModel::LearntModel(const Study& study, const Eigen::Ref<const Eigen::VectorXd>& initial_u,
                          const AssessedLoop& benchmark, double share, double bias)
-    : initial_(Eigen::VectorXd::Zero(study.plant.G.cols())) {
+    : share_(share), bias_(bias), initial_(Eigen::VectorXd::Zero(study.plant.G.cols())) {
   initial_.head(initial_u.size()) = initial_u;
   // Of a window the inputs before it are known, too.
   const AssessedLoop& whole = benchmark.from_start();
-  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
-    Eigen::RowVectorXd e = Eigen::RowVectorXd::Constant(whole.samples(), kNaN);
-    e.segment(benchmark.first, benchmark.samples()) =
-        without_outliers(benchmark.y.row(cv) - benchmark.y_sim.row(cv));
-    cvs_.emplace_back(study, cv, relative_errors(study, cv, share, bias), e, model_inputs(whole), initial_,
-                      least_noise(benchmark.y_sim.row(cv)));
-  }
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    cvs_.emplace_back(study, cv, relative_errors(study, cv, share, bias), errors_in_window(benchmark, cv),
+                      model_inputs(whole), initial_, least_noise(benchmark.y_sim.row(cv)));
+}
+
+std::optional<ModelErrors> LearntModel::of_part(const Study& study, const AssessedLoop& benchmark,
+                                                Eigen::Index cv,
+                                                const std::function<bool(Eigen::Index)>& uses) const {
+  Eigen::RowVectorXd e = errors_in_window(benchmark, cv);
+  for (Eigen::Index k = 0; k < e.size(); ++k)
+    if (!uses(k))
+      e(k) = kNaN;
+  if ((!e.array().isNaN()).count() < kFewestNoiseSamples)
+    return std::nullopt;
+  return ModelErrors(study, cv, relative_errors(study, cv, share_, bias_), e,
+                     model_inputs(benchmark.from_start()), initial_, least_noise(benchmark.y_sim.row(cv)));
 }
 
 TransferMatrix LearntModel::plant() const {
@@ -268,11 +352,12 @@ AssessedLoop LearntModel::corrected(const AssessedLoop& loop, AssessedLoop& whol
 Eigen::MatrixXd LearntModel::explained(const AssessedLoop& loop) const {
   const AssessedLoop& whole = loop.from_start();
   const Eigen::MatrixXd inputs = model_inputs(whole);
+  // Not what wanders: free in each record, it would take a part of every mismatch.
   Eigen::MatrixXd sum(whole.y.rows(), whole.samples());
   for (Eigen::Index cv = 0; cv < sum.rows(); ++cv) {
     const ModelErrors& errors = of(cv);
     sum.row(cv) = errors.correction(inputs, initial_);
-    const Eigen::MatrixXd Z = errors.directions(errors.slopes(inputs, initial_));
+    const Eigen::MatrixXd Z = errors.directions(errors.slopes(inputs, initial_).topRows(errors.count()));
     Eigen::MatrixXd series(1 + Z.rows(), whole.samples());
     series.row(0).setConstant(kNaN);
     series.block(0, loop.first, 1, loop.samples()) =
@@ -287,6 +372,12 @@ Eigen::MatrixXd LearntModel::explained(const AssessedLoop& loop) const {
     sum.row(cv) += z.transpose() * series.bottomRows(Z.rows());
   }
   return sum;
+}
+
+Eigen::RowVectorXd errors_in_window(const AssessedLoop& loop, Eigen::Index cv) {
+  Eigen::RowVectorXd e = Eigen::RowVectorXd::Constant(loop.from_start().samples(), kNaN);
+  e.segment(loop.first, loop.samples()) = without_outliers(loop.y.row(cv) - loop.y_sim.row(cv));
+  return e;
 }
 
 double least_noise(const Eigen::Ref<const Eigen::RowVectorXd>& y_sim) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -42,10 +43,12 @@ Eigen::MatrixXd model_inputs(const AssessedLoop& loop);
 /// the errors, S the slopes of the output of the model by them, c a constant and n the noise, the simulation
 /// error is
 ///
-///   e = S delta + c + n,    delta ~ N(0, D^2),    c ~ N(0, bias^2),
+///   e = S delta + W eta + c + n,    delta ~ N(0, D^2),    eta ~ N(0, wander^2),    c ~ N(0, bias^2),
 ///
-/// in closed loop, too, because S of a sample is made of inputs before it. The benchmark gives the sizes of n
-/// by their marginal likelihood, and delta a mean, with which the model is corrected, and a covariance.
+/// in closed loop, too, because S of a sample is made of inputs before it. W are errors of the gains that
+/// wander along the record, as those of a nonlinear plant do: the response of each channel times a polygon in
+/// time with free corners. The benchmark gives the sizes of n and eta by their marginal likelihood, and delta
+/// a mean, with which the model is corrected, and a covariance. eta is another one in each record.
 class ModelErrors {
  public:
   /// `e` (N) are the simulation errors of the benchmark, NaN where there is no sample, `inputs` (nu + nd x N)
@@ -63,11 +66,17 @@ class ModelErrors {
   const TransferMatrix& model() const { return model_; }
   const BaseNoise& noise() const { return noise_.best; }
   const NoisePosterior& noises() const { return noise_; }
+  /// Whether errors change along a healthy record, as those of a nonlinear plant do.
+  bool wanders() const { return wander_ > 0.0; }
+  /// Of the errors, without the constant.
+  Eigen::Index count() const { return mean_.size(); }
+  /// The model with errors out of their posterior, of `z` ~ N(0, I) of the size count().
+  TransferMatrix drawn(const Eigen::Ref<const Eigen::VectorXd>& z) const;
 
   /// What the correction makes of the simulation error of a record, N.
   Eigen::RowVectorXd correction(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                 const Eigen::Ref<const Eigen::VectorXd>& initial) const;
-  /// D S of a record, p x N in CV units.
+  /// D S of a record and below it wander W, in CV units.
   Eigen::MatrixXd slopes(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                          const Eigen::Ref<const Eigen::VectorXd>& initial) const;
   /// The same where a channel has this mismatch, from the slopes without it.
@@ -90,13 +99,24 @@ class ModelErrors {
   };
 
   Slope slope_of(const TransferMatrix& model, const ChannelError& error) const;
+  /// What the noise is, and whether errors wander, from what the mean leaves of a healthy record. `unknown`
+  /// are the rows that explain a part of it.
+  void learn_noise(const Eigen::Ref<const Eigen::RowVectorXd>& left, const Eigen::MatrixXd& unknown,
+                   const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                   const Eigen::Ref<const Eigen::VectorXd>& initial, double least);
+  /// Rows of gains that wander: of each channel its response times a hat of each corner.
+  Eigen::MatrixXd wandering(const TransferMatrix& model, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                            const Eigen::Ref<const Eigen::VectorXd>& initial) const;
   /// The model with these errors, in their standard deviations.
   TransferMatrix with_errors(const Eigen::Ref<const Eigen::VectorXd>& z) const;
   void take(TransferMatrix model);
 
   double sample_time_, bias_ = 0.0;
+  double wander_ = 0.0;      ///< deviation of each gain at a corner; 0: none wanders
+  Eigen::Index corner_ = 1;  ///< samples between corners
   std::vector<ChannelError> errors_;
   TransferMatrix nominal_, model_;  ///< 1 x (nu + nd)
+  Eigen::VectorXd mean_;            ///< of the errors, over their D
   NoisePosterior noise_;
   Eigen::MatrixXd factor_;  ///< p x p: factor factor' is the covariance of the errors over their D
   std::vector<Slope> slopes_, corrected_;  ///< of each error; of each channel that is corrected
@@ -110,6 +130,9 @@ class LearntModel {
               const AssessedLoop& benchmark, double share, double bias);
 
   const ModelErrors& of(Eigen::Index cv) const { return cvs_[static_cast<std::size_t>(cv)]; }
+  /// The same from the samples of the benchmark whose place `uses` is true for; none where they are too few.
+  std::optional<ModelErrors> of_part(const Study& study, const AssessedLoop& benchmark, Eigen::Index cv,
+                                     const std::function<bool(Eigen::Index)>& uses) const;
   /// The model with the mean of its errors: the plant without a fault, as far as the benchmark shows it.
   TransferMatrix plant() const;
   /// The loop with what the errors of the model explain of y - y_sim added to y_sim: by their mean, and by
@@ -120,9 +143,13 @@ class LearntModel {
  private:
   Eigen::MatrixXd explained(const AssessedLoop& loop) const;
 
+  double share_, bias_;
   Eigen::VectorXd initial_;
   std::vector<ModelErrors> cvs_;
 };
+
+/// y - y_sim of a CV over the whole record, NaN outside of the window and where a sample is an outlier.
+Eigen::RowVectorXd errors_in_window(const AssessedLoop& loop, Eigen::Index cv);
 
 /// The deviation below which the simulation errors of a CV are rounding of its outputs.
 double least_noise(const Eigen::Ref<const Eigen::RowVectorXd>& y_sim);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -6,6 +7,7 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/counterfactual_loop.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/model_errors.hpp"
 
 namespace mpm {
 namespace {
@@ -15,6 +17,8 @@ constexpr double kNoHelp = 0.05;  ///< p above which the MVs do not help to pred
 /// The MVs explain so much of the error that a mismatch alone does: log p of their test over that of its
 /// colour.
 constexpr double kMostlyMismatch = 0.2;
+/// Distance of Ivar from 1 that noise and errors of the model do not explain.
+constexpr double kMuchMore = 0.5;
 
 /// The best methods together, in the order in which an engineer asks.
 ///
@@ -25,7 +29,12 @@ constexpr double kMostlyMismatch = 0.2;
 /// both, and `order`, the test whether the MVs help to predict the error, which knows nothing of the shape of
 /// a disturbance. Where the likelihood sees both, `order` says whether one of them alone is enough. Where
 /// they contradict each other, one naming a mismatch alone and the other a disturbance alone, no source is
-/// named: the data cannot tell.
+/// named: the data cannot tell. Where errors of the model are learnt and do not wander, the likelihood
+/// decides alone, and a fault that costs nothing has its source named without a flag.
+///
+/// A loop that costs much more than the nominal one although both methods find nothing in its simulation
+/// errors has another fault than model and disturbances: an operator, a limit, a controller that is not the
+/// one of the study. Asked only where errors of the model are learnt.
 ///
 /// Which channel, which parameter, how large? `likelihood`, where the source is a mismatch.
 ///
@@ -33,7 +42,8 @@ constexpr double kMostlyMismatch = 0.2;
 class Mpmbench final : public AssessmentMethod {
  public:
   explicit Mpmbench(const AssessmentContext& context)
-      : nominal_(context),
+      : learnt_(context.learnt),
+        nominal_(context),
         posterior_(assessment_method("likelihood"), context),
         order_(assessment_method("order"), context) {}
 
@@ -41,21 +51,40 @@ class Mpmbench final : public AssessmentMethod {
     Assessment assessment = nominal_.impact(loop);
     if (assessment.status == AssessmentStatus::ok && assessment.flagged)
       diagnose(loop, assessment);
-    if (assessment.status == AssessmentStatus::ok && !assessment.flagged)
+    if (assessment.status == AssessmentStatus::ok && !assessment.flagged && assessment.cvs.empty())
       assessment.cvs.assign(static_cast<std::size_t>(loop.y.rows()), {.flagged = false, .score = 0.0});
+    if (assessment.status == AssessmentStatus::ok && !assessment.flagged && learnt_)
+      name_without_impact(loop, assessment);
     return assessment;
   }
 
  private:
+  /// A fault that costs nothing is named as the source of its CV, and nothing is flagged.
+  void name_without_impact(const AssessedLoop& loop, Assessment& assessment) {
+    const Assessment posterior = posterior_.assess(loop);
+    if (posterior.status != AssessmentStatus::ok || !posterior.flagged)
+      return;
+    assessment.cvs = posterior.cvs;
+    for (CvAssessment& cv : assessment.cvs)
+      cv.flagged = false;
+  }
+
   void diagnose(const AssessedLoop& loop, Assessment& assessment) {
     const Assessment posterior = posterior_.assess(loop);
     const Assessment order = order_.assess(loop);
     const auto denies = [](const Assessment& said) {
       return said.status == AssessmentStatus::ok && !said.flagged;
     };
-    assessment.flagged = !(denies(posterior) && denies(order));
+    const bool clean = denies(posterior) && denies(order);
+    assessment.flagged = !clean || (learnt_ && assessment.score > kMuchMore);
     if (!assessment.flagged)
       return;
+    if (clean) {
+      assessment.cvs = nominal_.located(nominal_.ivar_diag(loop), assessment);
+      if (const std::optional<Eigen::Index> other = assessment.worst_cv())
+        assessment.cvs[static_cast<std::size_t>(*other)].source = FaultSource::other;
+      return;
+    }
     // A method that has no answer for this loop leaves the others theirs.
     if (posterior.status == AssessmentStatus::ok)
       assessment.cvs = posterior.cvs;
@@ -76,7 +105,7 @@ class Mpmbench final : public AssessmentMethod {
   }
 
   /// What both say of the CV, or the one that has an answer.
-  static FaultSource agreed_source(const Assessment& posterior, const Assessment& order, Eigen::Index cv) {
+  FaultSource agreed_source(const Assessment& posterior, const Assessment& order, Eigen::Index cv) const {
     const auto of = [cv](const Assessment& said) {
       return said.status == AssessmentStatus::ok ? said.cvs[static_cast<std::size_t>(cv)].source
                                                  : FaultSource::none;
@@ -86,11 +115,21 @@ class Mpmbench final : public AssessmentMethod {
       return tested;
     if (order.status != AssessmentStatus::ok)
       return probable;
+    // Where the errors of the model are known for what they are, its posterior is the better judge, but for a
+    // disturbance of an MV, which no CV alone shows for what it is.
+    if (learnt_ && !learnt_->of(cv).wanders() &&
+        !(probable == FaultSource::mpm_ud && (tested == FaultSource::mpm || several_flagged(posterior))))
+      return probable;
     if (probable == FaultSource::mpm_ud)
       return both_or_one(tested, order.number("log10_p", cv), order.number("log10_p_noise", cv));
     const bool contradiction = (probable == FaultSource::mpm && tested == FaultSource::ud) ||
                                (probable == FaultSource::ud && tested == FaultSource::mpm);
     return contradiction ? FaultSource::none : probable;
+  }
+
+  static bool several_flagged(const Assessment& said) {
+    return std::count_if(said.cvs.begin(), said.cvs.end(),
+                         [](const CvAssessment& cv) { return cv.flagged == true; }) > 1;
   }
 
   /// The likelihood sees both, as it does where one fault alone is not of its family: a mismatch that begins
@@ -101,6 +140,7 @@ class Mpmbench final : public AssessmentMethod {
     return log10_p > std::log10(kNoHelp) ? FaultSource::ud : FaultSource::mpm_ud;
   }
 
+  std::shared_ptr<const LearntModel> learnt_;
   CounterfactualLoop nominal_;
   Assessor posterior_, order_;
 };

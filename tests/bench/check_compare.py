@@ -18,7 +18,7 @@ from archives import check_same, contents, seal
 EXPERIMENTS = 8
 TIMES = {"seconds", "milliseconds"}  # all that two comparisons of one archive may differ in
 ALL = ["botelho", "sun", "badwe2009", "badwe2010", "yu-qin", "variance-ratio", "sse", "counterfactual", "mpmbench", "order", "excitation",
-       "candidates", "likelihood", "ceiling", "lasso", "local", "mqi-channels", "arx-oe", "pmr", "autocovariance"]
+       "candidates", "likelihood", "adequacy", "ceiling", "lasso", "local", "mqi-channels", "arx-oe", "pmr", "autocovariance"]
 
 
 class Compare:

@@ -19,7 +19,7 @@ using Names = std::vector<std::string>;
 const std::string kKnown =
     "botelho, sun, badwe2009, badwe2010, yu-qin, variance-ratio, sse, counterfactual, mpmbench, order, "
     "excitation, "
-    "candidates, likelihood, ceiling, lasso, local, mqi-channels, arx-oe, pmr, autocovariance";
+    "candidates, likelihood, adequacy, ceiling, lasso, local, mqi-channels, arx-oe, pmr, autocovariance";
 
 }  // namespace
 

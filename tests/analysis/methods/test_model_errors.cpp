@@ -146,6 +146,35 @@ TEST_CASE(
   CHECK(total == Approx(1.0).margin(0.2));  // without those that hardly have a share
 }
 
+TEST_CASE("gains that change along a record are learnt as errors that wander, constant ones are not") {
+  const Study study = find_study("setpoint-methods");
+  const TransferMatrix plant = imperfect_plant(study, 3);
+  CHECK_FALSE(learnt(study, plant, 3).wanders());
+
+  const Eigen::MatrixXd u = input_moves(study.plant.G.cols(), 400, 3);
+  const Eigen::RowVectorXd y = simulate(study.plant.G, study.controller.sample_time, u).row(0);
+  const Eigen::VectorXd initial = Eigen::VectorXd::Zero(u.rows());
+  // 15 % more and less gain, slowly.
+  Eigen::RowVectorXd e = error_of(study, plant, u) + white(400, 3);
+  for (Eigen::Index k = 0; k < e.size(); ++k)
+    e(k) += 0.15 * std::sin(0.03 * static_cast<double>(k)) * y(k);
+  const ModelErrors errors(study, 0, relative_errors(study, 0, kShare, 0.5), e, u, initial, 1e-6);
+  CHECK(errors.wanders());
+  // A row of each channel and corner below those of the errors, for a record of any length.
+  CHECK(errors.slopes(u, initial).rows() > errors.count());
+  CHECK(errors.slopes(u.leftCols(100), initial).rows() < errors.slopes(u, initial).rows());
+}
+
+TEST_CASE("plants drawn from what a record shows of the errors lie about their mean") {
+  const Study study = find_study("setpoint-methods");
+  const ModelErrors errors = learnt(study, imperfect_plant(study, 3), 3);
+  CHECK(errors.drawn(Eigen::VectorXd::Zero(errors.count()))(0, 0) == errors.model()(0, 0));
+  const TransferMatrix drawn = errors.drawn(Eigen::VectorXd::Ones(errors.count()));
+  CHECK_FALSE(drawn(0, 0) == errors.model()(0, 0));
+  CHECK(drawn(0, 0).static_gain() ==
+        Approx(errors.model()(0, 0).static_gain()).epsilon(0.2));  // prior of 5 %
+}
+
 TEST_CASE("a loop is corrected by what its benchmark shows, a fault is not") {
   const Study study = find_study("setpoint-methods");
   TransferMatrix plant = imperfect_plant(study, 7);
