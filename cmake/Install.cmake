@@ -30,5 +30,5 @@ install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT 
 
 # Where Debian's Python looks when the prefix is /usr, and what +mpmbench is for Octave.
 install(DIRECTORY python/mpmbench DESTINATION lib/python3/dist-packages COMPONENT python PATTERN __pycache__ EXCLUDE)
-install(DIRECTORY python/notebooks DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+install(DIRECTORY python/notebooks DESTINATION "${CMAKE_INSTALL_DOCDIR}/python" COMPONENT program)
 install(DIRECTORY octave/+mpmbench DESTINATION "${MPMBENCH_INSTALLED_DATA}/octave" COMPONENT program)

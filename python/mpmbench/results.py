@@ -31,7 +31,7 @@ def rate_table(rates, methods, own=()):
         cells = [f"<b>{name}</b>" if method in own else name,
                  *(percent(rates[method][rate]) if rate in rates[method] else "" for rate in shown)]
         rows += "<tr>" + "".join(f"<td>{each}</td>" for each in cells) + "</tr>"
-    return (f'<div style="overflow-x: auto; max-width: calc(100vw - 8em)"><table><thead><tr>{head}</tr></thead>'
+    return (f'<div style="overflow-x: auto; max-width: calc(100vw - 11em)"><table><thead><tr>{head}</tr></thead>'
             f"<tbody>{rows}</tbody></table></div><p>Percent of loops, with 95 % intervals</p>")
 
 

@@ -210,6 +210,20 @@ class Methods(unittest.TestCase):
         functions = [lambda loop, help=each: help() for each in helper]
         self.assertNotEqual(*map(identity.digest, functions))
 
+    def test_moving_windows_are_parts_of_their_record(self):
+        windows = []
+
+        @mpmbench.method
+        def watching(loop):
+            windows.append((loop.first, loop.y.shape[1], float(loop.time[0])))
+            part = loop.whole.y[:, loop.first:loop.first + loop.y.shape[1]]
+            return {"flagged": bool((part == loop.y).all()), "score": loop.y.var()}
+
+        watched = mpmbench.run(STUDY, experiments=2, set={**HEALTHY, "monitoring.window": 150, "monitoring.stride": 100},
+                               methods=watching, quiet=True)
+        self.assertEqual(set(windows), {(0, 400, 0.0), (0, 150, 0.0), (100, 150, 100.0), (200, 150, 200.0)})
+        self.assertTrue((watched.group("methods/watching")["window_flagged"].values == 1).all())
+
     def test_a_program_that_serves_a_function(self):
         pathlib.Path("served.py").write_text(
             "import mpmbench\n\n\ndef ratio(loop, *, threshold):\n    print('on the way')\n    if loop.y[0, 5] > 0.01:\n"
