@@ -76,7 +76,7 @@ def suite(suite, *own, output=None, methods=None, quiet=False, **options):
 
     `suite`: a file, or the name of a shipped one ("quick", "standard"). `own`: methods of your own, beside those of the
     suite, or beside `methods`. `output`: the folder of the archives; the same call resumes what is in it. `options`:
-    those of `mpmbench suite`, such as plants="wood-berry", families=["classic"], experiments=8."""
+    those of `mpmbench suite`, such as plants="wood-berry", families=["exact"], experiments=8."""
     output = pathlib.Path(output) if output is not None else temporary("suite")
     names, given = split(methods)
     own = [*split(own)[1], *given]

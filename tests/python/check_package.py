@@ -19,7 +19,7 @@ def mine(loop):
     ratio = ((loop.y - loop.y_sim) ** 2).mean(axis=1) / ((loop.benchmark.y - loop.benchmark.y_sim) ** 2).mean(axis=1)
     return {"flagged": ratio.max() > 1.5, "score": ratio.max(), "cv": loop.cvs[ratio.argmax()]}
 
-board = mpmbench.suite("quick", mine, methods="sse", plants="wood-berry", families="classic", experiments=8)
+board = mpmbench.suite("quick", mine, methods="sse", plants="wood-berry", families="exact", experiments=8)
 print(board.standing("mine"))
 '''
 

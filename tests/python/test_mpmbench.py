@@ -161,7 +161,7 @@ class Methods(unittest.TestCase):
         for function in broken, mine.with_options(name="broken"):
             for call in (lambda: mpmbench.run(STUDY, "broken.h5", experiments=6, methods=function, quiet=True),
                          lambda: archive.compare(function, output="broken-too.h5", quiet=True),
-                         lambda: mpmbench.suite("quick", function, methods="sse", plants=STUDY, families="classic",
+                         lambda: mpmbench.suite("exact", function, methods="sse", plants=STUDY, families="classic",
                                                 experiments=4, output="broken", quiet=True)):
                 if function is broken:
                     self.assertRaises(LookupError, call)
@@ -202,7 +202,7 @@ class Methods(unittest.TestCase):
             return mpmbench.method(lambda loop: verdict, name="changing")
 
         words_of = {"output": "suite", "methods": "sse", "plants": STUDY, "families": "classic", "experiments": 4, "quiet": True}
-        detected = [mpmbench.suite("quick", flagging(verdict), **words_of).rates.loc["changing", "detected"]
+        detected = [mpmbench.suite("exact", flagging(verdict), **words_of).rates.loc["changing", "detected"]
                     for verdict in (True, False, False)]
         self.assertEqual(detected, [1, 0, 0])
         self.assertEqual(identity.digest(mine.function), identity.digest(mine.function))
@@ -245,7 +245,7 @@ class Methods(unittest.TestCase):
 
 class Boards(unittest.TestCase):
     def test_a_function_on_the_board(self):
-        board = mpmbench.suite("quick", mine, methods="sse,botelho", plants=[STUDY], families=["classic", "shapes"],
+        board = mpmbench.suite("exact", mine, methods="sse,botelho", plants=[STUDY], families=["classic", "shapes"],
                                experiments=8, output="board", quiet=True)
         self.assertEqual(board.methods, ["sse", "botelho", "mine"])
         self.assertTrue(board.rates.loc["mine"].equals(board.rates.loc["sse"]))
@@ -263,8 +263,8 @@ class Boards(unittest.TestCase):
 
     def test_a_method_joins_a_finished_board(self):
         words_of = {"plants": [STUDY], "families": ["classic"], "experiments": 8, "quiet": True}
-        finished = mpmbench.suite("quick", methods=["sse", "botelho"], **words_of)
-        alone = mpmbench.suite("quick", methods=mine, **words_of)
+        finished = mpmbench.suite("exact", methods=["sse", "botelho"], **words_of)
+        alone = mpmbench.suite("exact", methods=mine, **words_of)
         self.assertEqual(alone.methods, ["mine"])
         # as docs/leaderboard.json has it
         shipped = {**finished.json, "cells": 1, "experiments": 8, "methods": [
