@@ -106,14 +106,10 @@ const Study& ExperimentRunner::study_of(const ExperimentDraw& draw) {
 
 const ExperimentRunner::WorldCase& ExperimentRunner::case_of(const ExperimentDraw& draw) {
   WorldCase& known = worlds_[draw.world];
-  if (known.panel || known.basis.world == draw.world)
+  if (known.basis.world == draw.world)
     return known;
   known.basis = world_basis(study_, basis_, draw.world, factory_);
   known.spectral_radius = stability_.spectral_radius(basis_draw(draw.world));
-  if (known.basis.trajectory.status != ControlStatus::ok)
-    return known;
-  known.panel =
-      std::make_unique<MethodPanel>(study_, assessment_context(study_, known.basis, factory_), methods_);
   return known;
 }
 
@@ -123,7 +119,14 @@ const BasisCase& ExperimentRunner::basis_of(const ExperimentDraw& draw) {
 
 template <class Call>
 auto ExperimentRunner::with_panel(const ExperimentDraw& draw, const FinishedLoop& loop, Call with) {
-  MethodPanel& panel = draw.world == kExactWorld ? panel_ : *case_of(draw).panel;
+  // Made when the first loop of a world is to be assessed: loops like a record of a plant are assessed
+  // elsewhere.
+  std::unique_ptr<MethodPanel>* const of_world =
+      draw.world == kExactWorld ? nullptr : &worlds_[draw.world].panel;
+  if (of_world && !*of_world)
+    *of_world = std::make_unique<MethodPanel>(
+        study_, assessment_context(study_, case_of(draw).basis, factory_), methods_);
+  MethodPanel& panel = of_world ? **of_world : panel_;
   if (loop.own) {
     const MethodPanel::Own own{loop.own->study, loop.own->basis};
     return with(panel, &own);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/records/channel_error_fit.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/faults/fault.hpp"
 
@@ -28,17 +29,16 @@ void shift_row(Eigen::MatrixXd& signals, Eigen::Index row, Eigen::Index shift, b
   }
 }
 
-/// log var(y - y_sim) of each CV, ny; 0 of one with too few samples.
+/// Logarithm of what errors of the model leave of the errors of each CV (ChannelErrorFit::left), ny; 0 of one
+/// with too few samples.
 Eigen::VectorXd log_errors(const RecordFrame& frame, const PlantRecord& record) {
   const AssessedLoop loop = judged_loop(frame, record);
-  const Eigen::ArrayXXd e = loop.y - loop.y_sim;
-  const auto there = !e.isNaN();
-  const Eigen::ArrayXd count = there.cast<double>().rowwise().sum();
-  const Eigen::ArrayXd mean = there.select(e, 0.0).rowwise().sum() / count.max(1.0);
-  const Eigen::ArrayXd variance =
-      there.select((e.colwise() - mean).square(), 0.0).rowwise().sum() / count.max(1.0);
-  return (count >= static_cast<double>(kFewestErrors) && variance > 0.0)
-      .select(variance.max(std::numeric_limits<double>::min()).log(), 0.0);
+  const ChannelErrorFits fits(frame.as_kept, frame.model_error);
+  Eigen::VectorXd logs = Eigen::VectorXd::Zero(loop.y.rows());
+  for (Eigen::Index cv = 0; cv < logs.size(); ++cv)
+    if ((!(loop.y.row(cv) - loop.y_sim.row(cv)).array().isNaN()).count() >= kFewestErrors)
+      logs(cv) = std::log(std::max(fits.of(loop, cv).left, std::numeric_limits<double>::min()));
+  return logs;
 }
 
 struct Shifted {

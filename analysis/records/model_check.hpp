@@ -6,17 +6,15 @@ namespace mpm {
 
 inline constexpr const char* kModelCheck = "model-error";
 
-/// Does the model explain the record, as well as a model does that is some percent off? Of each CV i with the
-/// errors e = y - y_sim,
+/// Does the model explain the record, as well as a model does that is some percent off? With the errors a of
+/// the channels of CV i that ChannelErrorFit has, what they leave of the simulation errors and their noise
+/// v_i,
 ///
-///   e = S a + n,    a ~ N(0, delta^2),    score_i = max(max |a| / (2 delta), sqrt(mean (e - S a)^2 / v_i)),
+///   score_i = max(max |a| / 2, sqrt(left / v_i))
 ///
-/// S the responses to relative errors of gain, time constants and dead time of every channel under the
-/// recorded inputs, a their most likely values, and v_i half of the mean squared difference of successive
-/// errors, which is their noise. So both a channel that is further off and errors that no channel explains
-/// raise the score; without either it is about 1. The controller plays no part in it. A method that only
-/// `assess` has: it knows delta, and its threshold is that of the simulated records. With delta = 0, S is
-/// left out.
+/// So both a channel that is further off and errors that no channel explains raise the score; without either
+/// it is about 1. The controller plays no part in it. A method that only `assess` has: it knows `delta`, and
+/// its threshold is that of the simulated records. With delta = 0 the model is exact.
 AssessmentMethodInfo model_check_method(double delta);
 
 }  // namespace mpm

@@ -49,6 +49,19 @@ AssessedLoop without_gaps(AssessedLoop loop, Eigen::Index unjudged, GapFill fill
   return loop;
 }
 
+/// The record of the nominal loop.
+AssessedLoop nominal_benchmark(const Study& study, const BasisCase& basis) {
+  return assessed_loop(study, basis.point, recorded(study, basis_index(basis.world), basis.trajectory));
+}
+
+/// The same simulation errors under inputs that never move: a simulated loop has the noise of the record,
+/// but shows nothing of the errors of its model, so that these stay as probable as they were before.
+AssessedLoop without_moves(AssessedLoop loop, const OperatingPoint& point) {
+  loop.u = point.u.replicate(1, loop.samples());
+  loop.d.setZero();
+  return loop;
+}
+
 std::pair<Eigen::Index, Eigen::Index> benchmark_of(const RecordFrame& frame, const PlantRecord& record,
                                                    const AssessedLoop& loop) {
   if (!frame.finds_benchmark)
@@ -108,13 +121,13 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
     };
     const AssessedLoop loop = seen(judged.loop);
     const auto panel_with = [&](const AssessedLoop* of_benchmark) {
-      AssessmentContext context = assessment_context(study, frame_.basis, frame_.factory);
-      // Of a simulated benchmark nothing is to be learnt.
-      context.learnt = nullptr;
-      if (of_benchmark != nullptr) {
-        context.benchmark = window_of(*of_benchmark, first, count);
-        context.learnt = learnt_model(study, frame_.basis.point, *context.benchmark);
-      }
+      AssessmentContext context{study, frame_.basis, frame_.factory,
+                                of_benchmark != nullptr ? window_of(*of_benchmark, first, count)
+                                                        : nominal_benchmark(study, frame_.basis)};
+      context.learnt = of_benchmark != nullptr
+                           ? learnt_model(study, frame_.basis.point, *context.benchmark)
+                           : learnt_model(study, frame_.basis.point,
+                                          without_moves(*context.benchmark, frame_.basis.point));
       return std::make_unique<MethodPanel>(study, std::move(context), std::vector{name});
     };
     if (has_benchmark) {

@@ -8,7 +8,8 @@
 namespace mpm {
 namespace {
 
-constexpr double kAlike = 0.02;  // of a time constant: two channels settle alike
+constexpr double kFarLarger = 2.0;  // mean squares
+constexpr double kAlike = 0.02;     // of a time constant: two channels settle alike
 
 /// Time constants of the channels of a CV, those that are alike once, in samples.
 std::vector<double> memories_of(const Study& study, Eigen::Index cv) {
@@ -51,6 +52,23 @@ Eigen::MatrixXd untold_columns(const Study& study, Eigen::Index cv, const std::v
       ++column;
     }
   return columns;
+}
+
+bool shows_a_past(const AssessedLoop& loop, Eigen::Index settling) {
+  if (settling <= 0 || 2 * settling > loop.samples())
+    return false;
+  const auto mean = [](const Eigen::ArrayXd& values) {
+    const auto is_there = !values.isNaN();
+    return is_there.select(values, 0.0).sum() / std::max(1.0, is_there.cast<double>().sum());
+  };
+  for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
+    const Eigen::ArrayXd e = (loop.y.row(cv) - loop.y_sim.row(cv)).transpose();
+    const Eigen::ArrayXd later = e.tail(e.size() - settling);
+    const double centre = mean(later);
+    if (mean((e.head(settling) - centre).square()) > kFarLarger * mean((later - centre).square()))
+      return true;
+  }
+  return false;
 }
 
 }  // namespace mpm

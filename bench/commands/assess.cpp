@@ -15,6 +15,7 @@
 
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/records/channel_information.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/controller_check.hpp"
 #include "analysis/records/model_check.hpp"
@@ -116,6 +117,10 @@ void add_repair(RecordAssessment& assessment, const RecordFrame& frame) {
   try {
     assessment.repair = promised_repair(assessment.study, frame.basis.point, assessment.loop,
                                         assessment.verdict(), frame.factory);
+    if (assessment.repair)
+      assessment.information = channel_information(
+          assessment.study, assessment.loop, assessment.repair->channel,
+          frame.model_error > 0.0 ? frame.model_error : assessment.study.assessment.model_error);
   } catch (const InputError& error) {
     assessment.no_repair = error.what();
   }
@@ -146,8 +151,10 @@ std::string shape_text(const PlantRecord& record) {
 std::string judged_text(const RecordFrame& frame, const TrialFrame& made, std::string_view seen) {
   return fmt::format(
       "judged as the record {} is: {} samples before it, {} not judged, {:g} of the noise as "
-      "bias, {} % of errors, benchmark {} to {}{}",
+      "bias, {} % of errors, {}, benchmark {} to {}{}",
       digest_of(seen), made.lead, frame.unjudged, made.bias, 100.0 * frame.model_error,
+      frame.as_kept.assessment.model == AssessmentModel::benchmark ? "which methods allow for"
+                                                                   : "of which methods know nothing",
       made.record.benchmark.first, made.record.benchmark.second, frame.finds_benchmark ? ", found" : "");
 }
 
@@ -259,16 +266,34 @@ std::shared_ptr<const RecordFrame> frame_of(const AssessArguments& options, cons
   frame->fill = study.data.fill;
   frame->as_kept = study_with(GapFill::none);
   frame->closed = study_with(frame->fill);
+  if (options.model_error > 0.0 && study.assessment.model == AssessmentModel::automatic)
+    for (Study* const of : {&frame->as_kept, &frame->closed}) {
+      of->assessment.model = AssessmentModel::benchmark;
+      of->assessment.model_error = 0.01 * options.model_error;
+    }
   frame->factory = qp_solver_factory(options.run.solver);
   frame->model_error = 0.01 * options.model_error;
   frame->finds_benchmark = study.data.benchmark.size() == 1;
   assessment.study = frame->study_of(options.methods.front());
   frame->basis = basis_of(assessment.study, frame->factory);
-  frame->unjudged = assessment.unjudged =
-      samples_to_settle(assessment.study, frame->basis.point, assessment.record, study.data.start);
   frame->settling = slowest_settling(study);
+  frame->unjudged =
+      samples_to_settle(assessment.study, frame->basis.point, assessment.record, study.data.start);
+  if (frame->unjudged == 0 && frame->model_error > 0.0 && study.data.start == RecordStart::automatic &&
+      shows_a_past(assessed_loop(frame->as_kept, frame->basis.point, assessment.record, 0), frame->settling))
+    frame->unjudged = frame->settling;
+  assessment.unjudged = frame->unjudged;
   tell_unjudged(assessment);
   return frame;
+}
+
+/// The answer of `likelihood` on a record with a fault. That there is one it cannot say: it takes the small
+/// disturbances that no plant is without for a fault.
+AssessmentRecord odds_of(const RecordFrame& frame, const RecordAssessment& assessment) {
+  RecordFrame alone = frame;
+  alone.methods = {"likelihood"};
+  alone.as_kept.monitoring.reset();
+  return RecordPanel(alone).judge(assessment.record).said.front();
 }
 
 /// The record as it is judged, without the simulated ones beside it.
@@ -316,6 +341,8 @@ ExitCode assess(AssessArguments options, const std::string& command) {
   } catch (const Interrupted& error) {
     throw std::runtime_error(progress.explain(error) + "; the same command goes on with the calibration run");
   }
+  if (assessment.found() == RecordVerdict::fault)
+    assessment.odds = odds_of(*frame, assessment);
   add_repair(assessment, *frame);
   if (!options.page.empty())
     write_text(options.page, document_html(assessment_document(assessment)));

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/findings/repair_findings.hpp"
+#include "analysis/records/channel_information.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/option_checks.hpp"
@@ -18,6 +19,7 @@
 #include "bench/files/archive_input.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
+#include "results/assess/record_assessment.hpp"
 #include "results/document/document_text.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/text/experiment_text.hpp"
@@ -40,6 +42,7 @@ struct RepairArguments {
 struct Repair {
   const ExperimentRecord* record;
   RepairedLoop loop;
+  ChannelInformation told;
 };
 
 std::string channel_name(const Study& study, const Channel& channel) {
@@ -92,7 +95,8 @@ Repair repaired(const Campaign& campaign, const ExperimentRecord& record, const 
       record.loop ? record.loop->trajectory : simulate_experiment(study, record.draw, factory);
   const AssessedLoop loop =
       assessed_loop(study, campaign.basis.point, recorded(study, record.draw.index, trajectory));
-  return {&record, repaired_loop(study, campaign.basis.point, record.draw, loop, channel, factory)};
+  return {&record, repaired_loop(study, campaign.basis.point, record.draw, loop, channel, factory),
+          channel_information(study, loop, channel, study.assessment.model_error)};
 }
 
 Json json_of(const FittedNumber& number) {
@@ -115,6 +119,9 @@ Json json_of(const Study& study, const Repair& repair) {
           {"time_factor", json_of(fit.time_factor)},
           {"dead_time_shift", json_of(fit.dead_time_shift)},
           {"explained", fit.explained},
+          {"rank", repair.told.rank},
+          {"condition", std::isfinite(repair.told.condition) ? Json(repair.told.condition) : Json()},
+          {"worsens", worsened_cvs(study, repair.loop.now, repair.loop.predicted)},
           {"variance",
            {{"now", json_of(repair.loop.now)},
             {"predicted", json_of(repair.loop.predicted)},
@@ -132,11 +139,11 @@ std::string text_of(const Study& study, const Repair& repair) {
   const FittedNumber& shift = loop.fit.dead_time_shift;
   std::string text = fmt::format(
       "{}\nchannel {}, identified again: gain x {}, time constants x {}, dead time {}\n"
-      "{:.0f} % of the error of its CV is explained by it\n\n",
+      "{:.0f} % of the error of its CV is explained by it\n{}\n\n",
       experiment_title(study, repair.record->draw), channel_name(study, loop.channel),
       text_of(loop.fit.gain_factor), text_of(loop.fit.time_factor),
       dead_time_text(shift.value, shift.lower, shift.upper, shift.bound, study.plant.time_unit),
-      100.0 * loop.fit.explained);
+      100.0 * loop.fit.explained, information_sentence(study, loop.channel, repair.told));
   Table table("", {{"variance", Table::Align::left}, {"now"}, {"predicted"}, {"repaired"}, {"perfect"}});
   const auto cell = [](const Eigen::VectorXd& variances, Eigen::Index cv) {
     return Number{variances.size() == 0 ? kNaN : variances(cv)};
@@ -144,11 +151,17 @@ std::string text_of(const Study& study, const Repair& repair) {
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
     table.row({as_label(cv_name(study, cv)), cell(loop.now, cv), cell(loop.predicted, cv),
                cell(loop.repaired, cv), cell(loop.perfect, cv)});
+  const std::vector<std::string> worse = worsened_cvs(study, loop.now, loop.predicted);
+  const std::string advice =
+      worse.empty()
+          ? ""
+          : fmt::format("Do not put this channel into the controller: {} would vary more with it.\n",
+                        fmt::join(worse, ", "));
   return fmt::format(
-      "{}{}\nnow: the controller as it is; predicted: what the repaired model promises, from the record "
+      "{}{}\n{}now: the controller as it is; predicted: what the repaired model promises, from the record "
       "alone;\n"
       "repaired: with the repaired model on the plant; perfect: with the plant itself as its model\n",
-      text, table_text(table));
+      text, table_text(table), advice);
 }
 
 /// The outcomes of all repairs that compare.

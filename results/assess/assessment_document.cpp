@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "analysis/experiment/judgement.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/linear/settling_time.hpp"
 #include "plants/non_finite.hpp"
 #include "results/assess/record_assessment.hpp"
 #include "results/plot/panel_script.hpp"
@@ -135,6 +137,68 @@ Section cvs_section(const RecordAssessment& of) {
   return section;
 }
 
+/// The CV's answer to a step of the MV by the model, and by the channel identified again.
+Figure step_figure(const RecordAssessment& of) {
+  constexpr double kHeight = 220;
+  constexpr double kSettled = 1.5;  // times the settling time of the slower one
+  const Pen old{colour::kVermillion, Dash::dashed, Mark::none, 1.5};
+  const Pen identified{colour::kBlack, Dash::solid, Mark::none, 2.0};
+  const PromisedRepair& repair = *of.repair;
+  const TransferFunction& model = of.study.plant.G(repair.channel.cv, repair.channel.mv);
+  const double Ts = of.study.controller.sample_time;
+  const double settled = std::max(settling_time(model), settling_time(repair.fit.channel));
+  const auto samples =
+      static_cast<Eigen::Index>(std::clamp(std::ceil(kSettled * settled / Ts), 10.0, 2000.0));
+  const std::string channel =
+      fmt::format("{}/{}", cv_name(of.study, repair.channel.cv), mv_name(of.study, repair.channel.mv));
+  PanelScript panel("step", as_label(channel), {.label = as_label(of.study.plant.time_unit)}, {.label = ""});
+  const auto draw = [&](const TransferFunction& of_channel, const Pen& pen) {
+    const Eigen::RowVectorXd y = step_response(TransferMatrix{{of_channel}}, Ts, samples).front().row(0);
+    std::vector<double> time;
+    for (Eigen::Index k = 0; k < y.size(); ++k)
+      time.push_back(Ts * static_cast<double>(k + 1));
+    panel.line(time, {y.begin(), y.end()}, pen);
+  };
+  draw(model, old);
+  draw(repair.fit.channel, identified);
+  Figure figure;
+  figure.name = "step-response";
+  figure.caption = fmt::format("Step response of {}: in the model, and identified again", as_label(channel));
+  figure.legend = {{"model", old}, {"identified again", identified}};
+  figure.panels.push_back(panel.finish(
+      fmt::format("Step response of {} in the model and as identified again.", channel), kHeight));
+  figure.columns = 1;
+  return figure;
+}
+
+/// The score of each window, at its last sample.
+Figure trend_figure(const RecordAssessment& of, const Eigen::RowVectorXd& scores) {
+  constexpr double kHeight = 220;
+  const Pen score{colour::kBlue, Dash::solid, Mark::dot, 1.5};
+  const Pen limit{colour::kVermillion, Dash::dashed, Mark::none, 1.5};
+  const MonitoringOptions& monitoring = *of.study.monitoring;
+  constexpr int kSteps = 2;
+  const auto last = static_cast<double>(std::max<Eigen::Index>(1, of.record.samples() - 1));
+  std::vector<double> time, values;
+  for (int window = 0; window < scores.size(); ++window) {
+    time.push_back(kSteps * static_cast<double>(monitoring.end(window) - 1) / last);
+    values.push_back(scores(window));
+  }
+  PanelScript panel("trend", "score", stamps_axis(of.record.stamps, kSteps), {.label = ""});
+  panel.line(time, values, score);
+  Figure figure;
+  figure.name = "score-of-windows";
+  figure.caption = "Score of each window, at its last sample";
+  figure.legend = {{"score", score}};
+  if (const TrialFindings* const trial = of.trial_of(0); trial && std::isfinite(trial->threshold)) {
+    panel.across(trial->threshold, limit);
+    figure.legend.push_back({"threshold of a whole record", limit});
+  }
+  figure.panels.push_back(panel.finish("Score of the method over time, window by window.", kHeight));
+  figure.columns = 1;
+  return figure;
+}
+
 Section repair_section(const RecordAssessment& of) {
   Section section{"repair", "What a repair would bring"};
   if (!of.repair || of.repair->now.size() == 0 || of.repair->predicted.size() == 0)
@@ -147,6 +211,7 @@ Section repair_section(const RecordAssessment& of) {
                fmt::format("{:+.0f}", 100.0 * (then / now - 1.0))});
   }
   section.add(std::move(table));
+  section.add(step_figure(of));
   return section;
 }
 
@@ -158,8 +223,10 @@ Section windows_section(const RecordAssessment& of) {
               {{"window", Table::Align::left}, {"flagged"}, {"score"}});
   for (int window = 0; window < flags.cols(); ++window)
     table.row({as_label(window_text(of, window)), word(flags(0, window)), Number{scores(0, window)}});
-  if (!table.rows.empty())
-    section.add(std::move(table));
+  if (table.rows.empty())
+    return section;
+  section.add(trend_figure(of, scores.row(0)));
+  section.add(std::move(table));
   return section;
 }
 

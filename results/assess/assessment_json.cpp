@@ -1,4 +1,5 @@
 #include <cmath>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -88,15 +89,43 @@ Json fitted_json(const FittedNumber& number) {
           {"bound", to_string(number.bound)}};
 }
 
-Json repair_json(const Study& study, const PromisedRepair& repair) {
-  const auto variances = [](const Eigen::VectorXd& of) { return std::vector<double>(of.begin(), of.end()); };
+Json information_json(const std::optional<ChannelInformation>& told) {
+  if (!told)
+    return {};
+  Json alike = Json::array();
+  for (const MismatchParameter parameter : told->alike)
+    alike.push_back(to_string(parameter));
+  return {{"parameters", told->parameters},
+          {"rank", told->rank},
+          {"condition", std::isfinite(told->condition) ? Json(told->condition) : Json()},
+          {"alike", alike}};
+}
+
+/// Probabilities of the kinds of fault, given one; null without an answer.
+Json odds_json(const AssessmentRecord& odds) {
+  if (!odds.answered())
+    return {};
+  const double fault = 1.0 - odds.number("p_healthy");
+  return {{"mpm", odds.number("p_mpm") / fault},
+          {"ud", odds.number("p_ud") / fault},
+          {"mpm_ud", odds.number("p_both") / fault}};
+}
+
+Json repair_json(const RecordAssessment& of) {
+  const Study& study = of.study;
+  const PromisedRepair& repair = *of.repair;
+  const auto variances = [](const Eigen::VectorXd& all) {
+    return std::vector<double>(all.begin(), all.end());
+  };
   return {{"cv", cv_name(study, repair.channel.cv)},
           {"mv", mv_name(study, repair.channel.mv)},
           {"parameter", repair.only ? Json(to_string(*repair.only)) : Json()},
           {"gain_factor", fitted_json(repair.fit.gain_factor)},
           {"time_factor", fitted_json(repair.fit.time_factor)},
           {"dead_time_shift", fitted_json(repair.fit.dead_time_shift)},
-          {"variance", {{"now", variances(repair.now)}, {"predicted", variances(repair.predicted)}}}};
+          {"variance", {{"now", variances(repair.now)}, {"predicted", variances(repair.predicted)}}},
+          {"worsens", worsened_cvs(study, repair.now, repair.predicted)},
+          {"information", information_json(of.information)}};
 }
 
 /// Numbers of the MVs; null where there is none.
@@ -136,9 +165,10 @@ std::string assessment_json(const RecordAssessment& assessment) {
             {"methods", Json::array()}};
   for (std::size_t m = 0; m < assessment.said.size(); ++m)
     json["methods"].push_back(method_json(assessment, m));
+  json["probabilities"] = odds_json(assessment.odds);
   json["model"] = model_json(assessment);
   json["controller"] = controller_json(assessment);
-  json["repair"] = assessment.repair ? repair_json(assessment.study, *assessment.repair) : Json();
+  json["repair"] = assessment.repair ? repair_json(assessment) : Json();
   json["trial"] = assessment.trial
                       ? Json{{"loops", assessment.trial->loops}, {"archive", assessment.trial->archive}}
                       : Json{{"loops", 0}, {"why", assessment.no_trial}};

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/repair_findings.hpp"
 #include "results/assess/record_assessment.hpp"
 #include "results/text/experiment_text.hpp"
 
@@ -36,11 +37,13 @@ std::string flag_sentence(const RecordAssessment& of) {
     case RecordVerdict::nothing:
       return fmt::format("{} finds nothing in this record that is worth a repair{}.", name, costs_text(of));
     case RecordVerdict::other_controller:
-      return fmt::format("The model is good; the controller in the study is not the one that ran{}.",
-                         costs_text(of));
+      return fmt::format(
+          "Nothing is wrong with the model: it explains the record. The controller in the study "
+          "is not the one that ran{}.",
+          costs_text(of));
     case RecordVerdict::unexplained_cost:
       return fmt::format(
-          "The model is good: it explains the record. Only the variances are not those of the "
+          "Nothing is wrong with the model: it explains the record. Only the variances are not those of the "
           "nominal loop{}.",
           costs_text(of));
     case RecordVerdict::fault:
@@ -57,6 +60,23 @@ NamedMismatch told_once(const RecordAssessment& of, NamedMismatch named) {
   return named;
 }
 
+/// How probable mismatch and disturbance are, given a fault.
+void add_odds(const RecordAssessment& of, Texts& sentences) {
+  const double fault = 1.0 - of.odds.number("p_healthy");
+  if (!of.odds.answered() || fault <= 0.0)
+    return;
+  const auto percent = [&](const char* name) {
+    return 100.0 * (of.odds.number(name) + of.odds.number("p_both")) / fault;
+  };
+  sentences.push_back(fmt::format(
+      "Given a fault, the likelihood sees a mismatch with a probability of {:.0f} %, a disturbance with "
+      "{:.0f} %{}.",
+      percent("p_mpm"), percent("p_ud"),
+      of.model_error > 0.0
+          ? fmt::format(" (errors of the model of {:.3g} % are integrated out)", 100.0 * of.model_error)
+          : std::string()));
+}
+
 void add_source(const RecordAssessment& of, Texts& sentences) {
   const AssessmentRecord& said = of.verdict();
   if (said.predicted_cv < 0)
@@ -64,17 +84,17 @@ void add_source(const RecordAssessment& of, Texts& sentences) {
   const std::string cv = cv_name(of.study, said.predicted_cv);
   switch (named_source(said)) {
     case FaultSource::mpm:
-      sentences.push_back(fmt::format("It is at {}, and it is the model: a model-plant mismatch.", cv));
+      sentences.push_back(fmt::format("It is at {}, and most likely the model: a model-plant mismatch.", cv));
       break;
     case FaultSource::ud:
-      sentences.push_back(fmt::format(
-          "It is at {}, and it is not the model: an unmeasured disturbance, which no repair of the model "
-          "takes away.",
-          cv));
+      sentences.push_back(
+          fmt::format("It is at {}, and most likely not the model: an unmeasured disturbance, which no "
+                      "repair of the model takes away.",
+                      cv));
       break;
     case FaultSource::mpm_ud:
       sentences.push_back(
-          fmt::format("It is at {}: a model-plant mismatch and an unmeasured disturbance.", cv));
+          fmt::format("It is at {}: most likely a model-plant mismatch and an unmeasured disturbance.", cv));
       break;
     case FaultSource::other:
       sentences.push_back(fmt::format(
@@ -135,6 +155,12 @@ std::string fitted_text(const Study& study, const PromisedRepair& repair) {
                              : *repair.only == MismatchParameter::time_constant ? time
                                                                                 : dead_time;
   return named + ", all else as in the model";
+}
+
+std::string parameter_words(MismatchParameter parameter) {
+  return parameter == MismatchParameter::gain            ? "gain"
+         : parameter == MismatchParameter::time_constant ? "time constants"
+                                                         : "dead time";
 }
 
 void add_repair(const RecordAssessment& of, Texts& sentences) {
@@ -203,12 +229,6 @@ void add_trust(const RecordAssessment& of, Texts& sentences) {
                     share_text(found.same_source)));
 }
 
-/// Would the repaired model make the loop worse in the sum over the CVs?
-bool raises_variances(const PromisedRepair& repair) {
-  return repair.now.size() > 0 && repair.predicted.size() > 0 &&
-         (repair.predicted.array() / repair.now.array()).mean() > 1.0;
-}
-
 void add_to_do(const RecordAssessment& of, Texts& sentences) {
   switch (of.found()) {
     case RecordVerdict::none:
@@ -230,8 +250,12 @@ void add_to_do(const RecordAssessment& of, Texts& sentences) {
       break;
   }
   add_repair(of, sentences);
-  if (of.repair && raises_variances(*of.repair))
-    sentences.emplace_back("Do not put this channel into the controller: the loop would vary more with it.");
+  if (of.repair && of.information)
+    sentences.push_back(information_sentence(of.study, of.repair->channel, *of.information));
+  if (const Texts worse = of.repair ? worsened_cvs(of.study, of.repair->now, of.repair->predicted) : Texts{};
+      !worse.empty())
+    sentences.push_back(fmt::format(
+        "Do not put this channel into the controller: {} would vary more with it.", fmt::join(worse, ", ")));
   else if (of.repair)
     sentences.emplace_back("Test this channel on the plant, and put it into the model if the test agrees.");
   else if (named_source(of.verdict()) == FaultSource::ud && of.verdict().predicted_cv >= 0)
@@ -356,6 +380,29 @@ std::vector<std::string> controller_sentences(const RecordAssessment& of) {
       difference_sentence(of)};
 }
 
+std::vector<std::string> worsened_cvs(const Study& study, const Eigen::VectorXd& now,
+                                      const Eigen::VectorXd& then) {
+  std::vector<std::string> worse;
+  for (Eigen::Index cv = 0; cv < std::min(now.size(), then.size()); ++cv)
+    if (then(cv) > kNoticeableChange * now(cv))
+      worse.push_back(cv_name(study, cv));
+  return worse;
+}
+
+std::string information_sentence(const Study& study, const Channel& channel, const ChannelInformation& told) {
+  constexpr double kActAlike = 1000.0;  // condition: a column is known from the others to 3 %
+  const std::string name = fmt::format("{}/{}", cv_name(study, channel.cv), mv_name(study, channel.mv));
+  const std::string measured =
+      fmt::format("rank {} of {}, condition {:.2g}", told.rank, told.parameters, told.condition);
+  if (told.rank == told.parameters && told.condition < kActAlike)
+    return fmt::format("The record tells the parameters of {} apart ({}).", name, measured);
+  Texts alike;
+  for (const MismatchParameter parameter : told.alike)
+    alike.push_back(parameter_words(parameter));
+  return fmt::format("The record does not tell {} of {} apart ({}): a test of the channel with steps would.",
+                     fmt::join(alike, " and "), name, measured);
+}
+
 AssessmentText verdict_text(const RecordAssessment& of) {
   AssessmentText text;
   text.asked.push_back(
@@ -371,6 +418,7 @@ AssessmentText verdict_text(const RecordAssessment& of) {
     text.found.push_back(std::move(sentence));
   add_candidates(of, text.found);
   add_to_do(of, text.to_do);
+  add_odds(of, text.sure);
   add_trust(of, text.sure);
   return text;
 }

@@ -10,6 +10,7 @@
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_record.hpp"
+#include "analysis/records/channel_information.hpp"
 #include "analysis/records/controller_check.hpp"
 #include "analysis/records/record_verdict.hpp"
 #include "results/document/document.hpp"
@@ -37,10 +38,12 @@ struct RecordAssessment {
   Eigen::Index unjudged = 0;           ///< samples at the start that only fill the memory of the model
   std::vector<AssessmentRecord> said;  ///< by each method; the first one is the verdict
   AssessmentRecord model;              ///< model_check_method()
+  AssessmentRecord odds = {};          ///< `likelihood`, of a record with a fault: of which kind it is
   ControllerCheck controller;
   double model_error = 0.0;  ///< RecordFrame::model_error
   DataOptions data;          ///< of the study, by which the record was read
   std::optional<PromisedRepair> repair;
+  std::optional<ChannelInformation> information = {};  ///< of the channel of the repair
   std::string no_repair;  ///< why there is none, of a verdict that names a channel; otherwise empty
   std::optional<RecordTrial> trial;
   std::string no_trial;  ///< why there is none
@@ -70,6 +73,12 @@ std::vector<std::string> verdict_sentences(const RecordAssessment& assessment);
 std::vector<std::string> controller_sentences(const RecordAssessment& assessment);
 /// The CV that a person looks at first: that of the verdict, or the one that the model explains least.
 Eigen::Index worst_cv(const RecordAssessment& assessment);
+
+/// The CVs whose variance (ny; empty: not known) rises by more than kNoticeableChange.
+std::vector<std::string> worsened_cvs(const Study& study, const Eigen::VectorXd& now,
+                                      const Eigen::VectorXd& then);
+/// What the excitation tells of a channel, and what it does not.
+std::string information_sentence(const Study& study, const Channel& channel, const ChannelInformation& told);
 
 /// The verdict, what it costs, what each method says and how far to trust it.
 Document assessment_document(const RecordAssessment& assessment);

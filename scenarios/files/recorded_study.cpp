@@ -135,7 +135,9 @@ toml::table spread(double low, double high) {
 
 /// A world for every loop of a kind. Uniform errors with the standard deviation e end at e sqrt 3.
 toml::table imperfect_worlds(const Study& study, const TrialPlan& plan) {
-  toml::table world{{"count", std::max({1, plan.healthy, plan.faulty})}, {"cost_loops", 1}};
+  // Nobody asks what the repair of each channel of a simulated record brings: one loop a channel.
+  toml::table world{
+      {"count", std::max({1, plan.healthy, plan.faulty})}, {"cost_loops", 1}, {"repair_loops", 0}};
   if (!study.nonlinear)
     for (const char* key : {"gain_factor", "time_constant_factor", "dead_time_factor"})
       world.insert(key,

@@ -1,10 +1,12 @@
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/records/channel_information.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/controller_check.hpp"
 #include "analysis/records/model_check.hpp"
@@ -131,6 +133,47 @@ TEST_CASE("a column that is late is named, and no other", "[records]") {
   const std::vector<std::string> said = column_lags(frame, late);
   REQUIRE(said.size() == 1);
   CHECK(said.front().starts_with("the column of S seems to be 2 samples too late"));
+}
+
+/// A loop whose first MV moves as `move` says, with the noise of the study and nothing else.
+AssessedLoop moved_loop(const Study& study, const std::function<double(Eigen::Index)>& move) {
+  const Eigen::MatrixXd noise = measurement_noise(study, 3);
+  AssessedLoop loop;
+  loop.u = Eigen::MatrixXd::Zero(study.mv_count(), noise.cols());
+  for (Eigen::Index k = 0; k < noise.cols(); ++k)
+    loop.u(0, k) = move(k);
+  loop.d = Eigen::MatrixXd::Zero(study.md_count(), noise.cols());
+  loop.y_sim = simulated_output(study.plant.G, study.controller.sample_time,
+                                Eigen::VectorXd::Zero(study.mv_count()), loop.u, loop.d);
+  loop.y = loop.y_sim + noise;
+  loop.y.leftCols(2 * slowest_settling(study)).setConstant(kNaN);
+  return loop;
+}
+
+TEST_CASE("one sine tells two numbers of a channel, steps tell three", "[records]") {
+  const Study study = find_study("wood-berry");
+  const AssessedLoop sine =
+      moved_loop(study, [](Eigen::Index k) { return 0.1 * std::sin(0.2 * static_cast<double>(k)); });
+  const ChannelInformation by_sine = channel_information(study, sine, {0, 0}, 0.05);
+  CHECK(by_sine.parameters == 3);
+  CHECK(by_sine.rank == 2);
+  CHECK(by_sine.condition > 1e6);
+  CHECK(by_sine.alike.size() >= 2);
+  const AssessedLoop steps = moved_loop(study, [](Eigen::Index k) { return k / 40 % 2 == 0 ? 0.1 : -0.1; });
+  const ChannelInformation by_steps = channel_information(study, steps, {0, 0}, 0.05);
+  CHECK(by_steps.rank == 3);
+  CHECK(by_steps.condition < 1000.0);
+}
+
+TEST_CASE("a record that begins in mid-movement near the operating point has a past", "[records]") {
+  const Study study = find_study("wood-berry");
+  const AssessedLoop whole = moved_loop(study, [](Eigen::Index k) { return k < 20 ? 0.0 : 0.1; });
+  AssessedLoop loop = whole;
+  loop.y = loop.y_sim + measurement_noise(study, 4);
+  const Eigen::Index settling = slowest_settling(study);
+  CHECK_FALSE(shows_a_past(loop, settling));
+  loop.y.row(0).head(30).array() += 5.0 * study.simulation.noise_standard_deviation(0);
+  CHECK(shows_a_past(loop, settling));
 }
 
 TEST_CASE("after a gap in all columns the memory of the model fills again", "[records]") {

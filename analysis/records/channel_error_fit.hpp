@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/model_errors.hpp"
+#include "scenarios/study/study.hpp"
+
+namespace mpm {
+
+/// The simulation errors of a CV as errors of its channels explain them, over the n samples that are there:
+///
+///   e = X a + n,    a ~ N(0, I)
+///
+/// with X (n x p) the responses to an error of gain, time constants and dead time of every channel by one
+/// standard deviation each (relative_errors()) under the recorded inputs, less what no record can tell
+/// (untold_columns()), which y_sim has.
+struct ChannelErrorFit {
+  std::vector<ChannelError> errors;  ///< p, of each column
+  Eigen::MatrixXd X;
+  double noise = 0.0;  ///< half of the mean squared difference of successive errors
+  Eigen::VectorXd a;   ///< the most likely errors, p
+  double left = 0.0;   ///< mean (e - X a)^2
+};
+
+/// Fits of the CVs of a study whose channels may be off by the relative size `delta`; 0: p = 0.
+class ChannelErrorFits {
+ public:
+  ChannelErrorFits(const Study& study, double delta);
+
+  /// Of a CV of a loop or a window. Throws InputError if no two samples follow each other.
+  ChannelErrorFit of(const AssessedLoop& loop, Eigen::Index cv) const;
+
+ private:
+  const Study& study_;
+  Eigen::Index settling_;
+  std::vector<ModelErrorPrior> priors_;
+  std::vector<ModelErrors> errors_;  ///< of each CV, before anything is seen; none: the model is exact
+};
+
+}  // namespace mpm
