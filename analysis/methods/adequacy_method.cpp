@@ -47,9 +47,9 @@ OptionKeys keys(AdequacyOptions& options) {
                  "channels whose repair is simulated: those whose error explains most of a CV")};
 }
 
-constexpr std::uint64_t kSeed = 43;
+constexpr std::uint64_t kDrawSeed = 43;
 /// Part of the mean square of a CV below which the error of a channel is not worth a simulation.
-constexpr double kFaint = 1e-3;
+constexpr double kFaintShare = 1e-3;
 
 /// Is the model still in the set of models with which this controller performs adequately (Mesbah, Bombois,
 /// Ludlage and Van den Hof, "Experiment design for batch-to-batch model-based learning control" and
@@ -103,7 +103,7 @@ class Adequacy final : public AssessmentMethod {
           continue;
         const double share =
             (response(found, mv) - response(model, mv)).squaredNorm() / y.row(cv).squaredNorm();
-        if (share > kFaint)
+        if (share > kFaintShare)
           all.push_back({{cv, mv}, share});
       }
     std::stable_sort(all.begin(), all.end(),
@@ -126,7 +126,7 @@ class Adequacy final : public AssessmentMethod {
     std::vector<std::vector<double>> all(channels.size());
     if (channels.empty())
       return all;
-    RandomStream random(kSeed, 0, StreamId::world);
+    RandomStream random(kDrawSeed, 0, StreamId::world);
     for (int draw = 0; draw < options_.draws; ++draw) {
       TransferMatrix plant = study_.plant.G;
       Eigen::MatrixXd left = whole.y;
