@@ -21,12 +21,18 @@ bool begins_with_number(const std::string& field) {
   return error == std::errc() && end != field.data();
 }
 
+/// Digits, and what may stand in a number: no unit such as 1/min.
+bool may_be_number(const std::string& field) {
+  return field.find_first_of("0123456789") != std::string::npos &&
+         field.find_first_not_of("+-0123456789.,eE' ") == std::string::npos;
+}
+
 /// Takes the rows of units away. A file that has nothing else keeps them.
 void take_units(RecordColumns& csv) {
   constexpr std::size_t kMostRows = 5;
   const auto says_nothing = [&csv](std::size_t row) {
     return std::none_of(csv.columns.begin(), csv.columns.end(), [&](const auto& column) {
-      return begins_with_number(column[row]) || is_date(column[row]);
+      return may_be_number(column[row]) || is_date(column[row]);
     });
   };
   std::size_t rows = 0;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "results/files/archive_error.hpp"
 #include "results/files/csv_text.hpp"
 #include "results/files/utf8.hpp"
 
@@ -54,11 +55,11 @@ class MatlabReader {
     RecordColumns made;
     made.file = file_;
     for (const MatlabArray& array : arrays_)
-      if (array.length() == rows)
+      if (rows > 1 && array.length() == rows)
         add(made, array, rows);
     made.lines.resize(rows);
     std::iota(made.lines.begin(), made.lines.end(), std::size_t{1});
-    if (rows < 2 || made.names.empty())
+    if (made.names.empty())
       throw InputError(
           file_, "no arrays of numbers with a row a sample",
           "vectors, matrices with names in a cell array, or the fields of a struct; a table or timetable as "
@@ -103,11 +104,16 @@ class MatlabReader {
   /// A cell array of texts; false when it holds something else.
   static bool take_texts(const Hdf5Group& group, const std::string& name, MatlabArray& array) {
     array.text = true;
-    for (const std::string& path : group.references(name)) {
-      if (path.empty() || group.text_attribute(path, "MATLAB_class") != "char")
-        return false;
-      const bool empty = group.number_attribute(path, "MATLAB_empty").value_or(0.0) != 0.0;
-      array.cells.push_back(empty ? "" : text_of_codes(group.numbers(path)));
+    const std::vector<std::string> paths = group.references(name);
+    try {
+      for (const std::string& path : paths) {
+        if (path.empty() || group.text_attribute(path, "MATLAB_class") != "char")
+          return false;
+        const bool empty = group.number_attribute(path, "MATLAB_empty").value_or(0.0) != 0.0;
+        array.cells.push_back(empty ? "" : text_of_codes(group.numbers(path)));
+      }
+    } catch (const ArchiveError&) {  // a group: a struct
+      return false;
     }
     return true;
   }

@@ -269,8 +269,10 @@ class RowsReader {
 
   /// A date, whose own midnight does not count, and a time of day.
   static std::string joined(std::string date, const std::string& time) {
-    if (const std::size_t colon = date.find(':'); colon != std::string::npos)
-      date.resize(date.find_last_of(" T", colon));
+    if (const std::size_t colon = date.find(':'); colon != std::string::npos) {
+      const std::size_t before = date.find_last_of(" T", colon);
+      date.resize(before == std::string::npos ? 0 : before);
+    }
     return date.empty() || time.empty() ? "" : date + " " + time;
   }
 

@@ -23,6 +23,7 @@ namespace mpm {
 namespace {
 
 constexpr double kSecondsOfDay = 86400.0;
+constexpr double kEarliestDate = -62167305600.0, kLatestDate = 253402387200.0;  // years 0 to 9999, and a day
 constexpr const char* kForms =
     "numbers (data.time_unit), or dates such as 2024-10-27 02:59:30, 2024-10-27T02:59:30Z, 27.10.2024 02:59, "
     "10/27/2024 2:59 PM, 27-Oct-24 02:59:30; data.time_format for others";
@@ -53,7 +54,7 @@ struct EpochUnit {
 
 constexpr EpochUnit kEpochUnits[] = {{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}};
 
-struct Range {
+struct StampRange {
   double low, high;
   /// Of those that there are: one at least.
   bool has_all(const std::vector<double>& values, double scale = 1.0) const {
@@ -66,7 +67,7 @@ struct Range {
   }
 };
 
-constexpr Range kEpoch{631152000.0, 4102444800.0};  // 1990 to 2099, s since 1970
+constexpr StampRange kEpoch{631152000.0, 4102444800.0};  // 1990 to 2099, s since 1970
 
 /// Programs that count days.
 struct DayCount {
@@ -75,7 +76,7 @@ struct DayCount {
 };
 
 constexpr DayCount kDayCounts[] = {{"spreadsheet", 25569.0}, {"matlab", 719529.0}};
-constexpr Range kDays{10957.0, 47482.0};  // 2000 to 2099, days since 1970
+constexpr StampRange kDaysOfDates{10957.0, 47482.0};  // 2000 to 2099, days since 1970
 
 double median_step(std::vector<double> values) {
   std::vector<double> steps;
@@ -112,7 +113,7 @@ TimeStamps from_days(std::vector<double> days, const DayCount& count, bool found
 
 TimeStamps from_numbers(std::vector<double> values, const StampRules& rules) {
   for (const DayCount& count : kDayCounts) {
-    const Range range{kDays.low + count.of_1970, kDays.high + count.of_1970};
+    const StampRange range{kDaysOfDates.low + count.of_1970, kDaysOfDates.high + count.of_1970};
     const bool found = rules.unit.empty() && range.has_all(values) && have_steps_of_days(values, rules);
     if (found || rules.unit == count.name)
       return from_days(std::move(values), count, found);
@@ -301,20 +302,7 @@ std::optional<Dates> compact_dates(const std::vector<std::string>& cells) {
   return dates;
 }
 
-}  // namespace
-
-StampRules stamp_rules(const DataOptions& data, char decimal, double sample_time,
-                       const std::string& time_unit) {
-  return {.order = data.date_order,
-          .decimal = decimal,
-          .unit = data.time_unit,
-          .format = data.time_format,
-          .zone = data.time_zone,
-          .sample_days = sample_time * days_in(time_unit).value_or(0.0),
-          .sample = sample_time};
-}
-
-TimeStamps parse_time_stamps(const StampSource& source, const StampRules& rules) {
+TimeStamps stamps_in(const StampSource& source, const StampRules& rules) {
   if (!rules.format.empty())
     return in_format(source, rules);
   if (rules.unit.empty())
@@ -339,6 +327,28 @@ TimeStamps parse_time_stamps(const StampSource& source, const StampRules& rules)
       refuse_stamp(source, row, "stamps of one form: all dates, or all numbers");
   }
   return has_dates ? from_dates(source, dates, rules) : from_numbers(std::move(numbers), rules);
+}
+
+}  // namespace
+
+StampRules stamp_rules(const DataOptions& data, char decimal, double sample_time,
+                       const std::string& time_unit) {
+  return {.order = data.date_order,
+          .decimal = decimal,
+          .unit = data.time_unit,
+          .format = data.time_format,
+          .zone = data.time_zone,
+          .sample_days = sample_time * days_in(time_unit).value_or(0.0),
+          .sample = sample_time};
+}
+
+TimeStamps parse_time_stamps(const StampSource& source, const StampRules& rules) {
+  TimeStamps stamps = stamps_in(source, rules);
+  if (stamps.calendar)
+    for (std::size_t row = 0; row < stamps.times.size(); ++row)
+      if (stamps.times[row] < kEarliestDate || stamps.times[row] >= kLatestDate)
+        refuse_stamp(source, row, "a time of the years 0 to 9999 (data.time_unit)");
+  return stamps;
 }
 
 bool are_dates_in_numbers(const std::vector<std::string>& cells, const StampRules& rules) {

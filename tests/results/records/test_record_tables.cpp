@@ -79,6 +79,7 @@ TEST_CASE("numbers are dates where they can be nothing else, or where the study 
   CHECK(read("2500", "ms").times == std::vector<double>{2.5});  // no dates, but a unit
   CHECK_FALSE(read("2500", "ms").calendar);
   CHECK_FALSE(read("1709294400", "min").calendar);
+  CHECK_THROWS_WITH(read("1e300", "spreadsheet"), Catch::Contains("data.time_unit"));
 }
 
 TEST_CASE("a form that the study gives is read to its end", "[records]") {
