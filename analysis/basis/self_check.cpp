@@ -49,7 +49,7 @@ std::string trouble_of_sensitivity(const Study& study, const BasisCase& basis) {
     const Eigen::Index cv = T0.active[a].cv;
     const std::string trouble = trouble_of_response(T0.step_response[a].row(cv), reachable);
     if (!trouble.empty())
-      return fmt::format("T0 of {} {}; more sensitivity.samples or another sensitivity.step_size may do",
+      return fmt::format("T0 of {} {}; try more sensitivity.samples or another sensitivity.step_size",
                          study.plant.cvs[static_cast<std::size_t>(cv)].name, trouble);
   }
   return "";
@@ -95,17 +95,16 @@ void check_basis(const Study& study, const QpSolverFactory& factory, BasisCase& 
   }
   basis.explanation = trouble_of_sensitivity(study, basis);
   if (basis.explanation.empty() && is_at_rest(study, basis.trajectory))
-    basis.explanation =
-        "the nominal loop stands still: it has neither noise nor excitation, and no index a meaning";
+    basis.explanation = "the nominal loop stands still: without noise and excitation no index has a meaning";
   if (!basis.explanation.empty())
     return;
   const bool repeated = options.self_check == SelfCheck::repeat;
   const Eigen::VectorXd ivar = repeated ? repeated_indices(study, basis, factory) : basis.diagnosis.ivar;
   const std::string what =
       repeated ? "Ivar_basis of the nominal loop with other noise" : "Ivar of the nominal loop";
-  std::string why = repeated ? "the record is too short to tell an impact from chance"
-                             : "noise outweighs the excitation, and every verdict of this study would be "
-                               "unreliable";
+  std::string why =
+      repeated ? "the record is too short to tell an impact from chance"
+               : "noise outweighs the excitation, so every verdict of this study would be unreliable";
   if (!repeated && !study.simulation.is_excited())
     why += "; diagnosis.self_check = \"repeat\" is the check of a study without excitation";
   Eigen::Index worst = 0;

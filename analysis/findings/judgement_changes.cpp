@@ -30,7 +30,7 @@ const Earlier& counterpart(const std::vector<Earlier>& before, const ExperimentD
                      "experiments of the earlier run");
   if (found->kind != now.kind || found->cv != now.true_cv())
     throw InputError(fmt::format("experiment {}", now.index), fault(now.kind, now.true_cv()),
-                     fmt::format("what the earlier run has, {}", fault(found->kind, found->cv)));
+                     fmt::format("those of the earlier run, {}", fault(found->kind, found->cv)));
   return *found;
 }
 

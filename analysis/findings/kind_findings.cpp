@@ -316,7 +316,7 @@ Collector<std::vector<KindFindings>> kind_collector(const Study& study, const As
 
 Finding unstable_row(const Endings& endings, Finding like) {
   like.label = "loop unstable";
-  like.meaning = "share of loops that are not stable under the active set of the basis case";
+  like.meaning = "share of loops that are unstable with the active set of the basis case";
   return like.with(endings.unstable);
 }
 
@@ -349,8 +349,9 @@ std::vector<Finding> rows_of(const KindFindings& kind, const Study& study, const
               kind.failed),
       like("infeasible", "infeasible", "share of infeasible experiments").with(kind.infeasible),
       prefix.empty()
-          ? like("impactful", "with impact", "share of impactful ones among the feasible").with(kind.flagged)
-          : like("flagged", "flagged", "share of flagged ones among those with a verdict")
+          ? like("impactful", "with impact", "share of the feasible experiments that have an impact")
+                .with(kind.flagged)
+          : like("flagged", "flagged", "share of the experiments with a verdict that are flagged")
                 .with(kind.flagged)};
   if (kind.unstable.total > 0)
     rows.push_back(unstable_row(kind, like("unstable", "", "", Prominence::detail)));
@@ -407,7 +408,7 @@ std::vector<Finding> rows_of(const std::vector<DominanceBin>& bins) {
     above.label =
         fmt::format("I_{{MPM}} above its threshold at dominance {:g} to {:g}", bin.lower, bin.upper);
     above.meaning =
-        fmt::format("share of experiments with I_MPM above its threshold at dominance {:g} to {:g}",
+        fmt::format("share of experiments at dominance {:g} to {:g} with I_MPM above its threshold",
                     bin.lower, bin.upper);
     above.prominence = Prominence::detail;
     rows.push_back(above.with(bin.above_threshold));

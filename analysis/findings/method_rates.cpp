@@ -155,81 +155,79 @@ struct Counts {
 };
 
 constexpr std::array<MethodRateInfo, 24> kRates{{
-    {"answered", "answered", "of all loops those on which the method gave a verdict", &MethodRates::answered},
-    {"detected", "detected", "of the loops with a fault those that are flagged", &MethodRates::detected},
-    {"detected_mpm", "detected, mismatch", "of the loops with a mismatch alone those that are flagged",
+    {"answered", "answered", "share of all loops on which the method gave a verdict", &MethodRates::answered},
+    {"detected", "detected", "share of the loops with a fault that are flagged", &MethodRates::detected},
+    {"detected_mpm", "detected, mismatch", "share of the loops with a mismatch alone that are flagged",
      &MethodRates::detected_mpm},
-    {"detected_ud", "detected, disturbance", "of the loops with a disturbance alone those that are flagged",
+    {"detected_ud", "detected, disturbance", "share of the loops with a disturbance alone that are flagged",
      &MethodRates::detected_ud},
     {"detected_impact", "detected, with impact",
-     "of the loops with a fault that has an impact those that are flagged", &MethodRates::detected_impact},
+     "share of the loops with a fault that has an impact that are flagged", &MethodRates::detected_impact},
     {"flagged_without_impact", "flagged, no impact",
-     "of the loops with a fault that has no impact those that are flagged",
+     "share of the loops with a fault that has no impact that are flagged",
      &MethodRates::flagged_without_impact},
     {"false_alarm_healthy", "false alarms, healthy",
-     "of the loops without a fault and with the tuning of the design those that are flagged",
+     "share of the loops without a fault and with the designed tuning that are flagged",
      &MethodRates::false_alarm_healthy},
     {"false_alarm_tuning", "false alarms, bad tuning",
-     "of the loops without a fault and with bad tuning those that are flagged",
+     "share of the loops without a fault and with bad tuning that are flagged",
      &MethodRates::false_alarm_tuning},
     {"located", "CV located",
-     "of the flagged loops in which a fault affects one CV those in which this CV has the largest score",
+     "share of the flagged loops with a fault on one CV in which this CV has the largest score",
      &MethodRates::located},
     {"source", "source right",
-     "of the flagged loops with a mismatch or a disturbance alone those whose located CV has the right "
-     "source",
+     "share of the flagged loops with a mismatch or a disturbance alone in which the located CV has the "
+     "right source",
      &MethodRates::source},
     {"channel", "channel named",
-     "of the flagged loops with one mismatch of an MV those in which its channel is named",
+     "share of the flagged loops with one mismatch of an MV in which its channel is named",
      &MethodRates::channel},
     {"channel_impact", "channel, with impact",
-     "of the loops with one mismatch of an MV that has an impact, flagged or not, those that are flagged and "
-     "whose channel is named",
+     "share of the loops with one mismatch of an MV that has an impact in which the loop is flagged and the "
+     "channel is named",
      &MethodRates::channel_impact},
     {"parameter_impact", "parameter, with impact",
-     "of the loops with one mismatch of an MV that has an impact, flagged or not, those that are flagged and "
-     "whose channel and parameter are those that the method is surest of",
+     "share of the loops with one mismatch of an MV that has an impact in which the loop is flagged and the "
+     "method is surest of the right channel and parameter",
      &MethodRates::parameter_impact},
     {"size_covered", "size in interval",
-     "of the flagged loops with one mismatch of an MV whose channel and parameter are named those in which "
-     "the interval of its size holds the true size",
+     "share of the flagged loops with one mismatch of an MV whose channel and parameter are named in which "
+     "the interval of the size holds the true size",
      &MethodRates::size_covered},
     {"candidate", "cause named",
-     "of the flagged loops with a disturbance that a logged signal drives those in which the method names "
+     "share of the flagged loops with a disturbance that a logged signal drives in which the method names "
      "this signal",
      &MethodRates::candidate, StudyFeature::candidates},
     {"source_all", "fault told, three ways",
-     "of the loops with a fault, with or without verdict, those that are flagged with the right source: "
-     "mismatch, disturbance or both; of another fault `other`, or none",
+     "share of all loops with a fault, with or without verdict, that are flagged with the right source: "
+     "mismatch, disturbance or both; for another fault, `other` or none",
      &MethodRates::source_all},
     {"abstained", "no source named",
-     "of the loops with a fault, with or without verdict, those of which no source is named",
+     "share of all loops with a fault, with or without verdict, in which no source is named",
      &MethodRates::abstained},
     {"false_alarm_calibrated", "calibrated: false alarms",
-     "of the loops without a fault and with the tuning of the design those above the threshold that is "
-     "calibrated for the false alarms of the study, calibration.false_alarms",
+     "share of the loops without a fault and with the designed tuning above the threshold calibrated for the "
+     "study's rate of false alarms, calibration.false_alarms",
      &MethodRates::false_alarm_calibrated, StudyFeature::calibration},
     {"power_01", "at 1 %: detected",
-     "of the loops with a fault those above the threshold that is calibrated for 1 % of false alarms",
+     "share of the loops with a fault above the threshold calibrated for 1 % false alarms",
      &MethodRates::power_01, StudyFeature::calibration},
     {"power_05", "at 5 %: detected",
-     "of the loops with a fault those above the threshold that is calibrated for 5 % of false alarms",
+     "share of the loops with a fault above the threshold calibrated for 5 % false alarms",
      &MethodRates::power_05, StudyFeature::calibration},
     {"power_05_impact", "at 5 %: with impact",
-     "of the loops with a fault that has an impact those above the threshold that is calibrated for 5 % of "
-     "false alarms",
+     "share of the loops with a fault that has an impact above the threshold calibrated for 5 % false alarms",
      &MethodRates::power_05_impact, StudyFeature::calibration},
     {"power_05_mpm", "at 5 %: mpm, not ud",
-     "of the loops with a mismatch alone those above the threshold that is calibrated for 5 % of false "
-     "alarms among loops without a fault and with a disturbance alone",
+     "share of the loops with a mismatch alone above the threshold calibrated for 5 % false alarms among "
+     "loops without a fault or with a disturbance alone",
      &MethodRates::power_05_mpm, StudyFeature::calibration},
     {"source_05_impact", "at 5 %: fault with impact told",
-     "of the loops with a fault that has an impact, with or without verdict, those above the threshold that "
-     "is "
-     "calibrated for 5 % of false alarms and with the right source, as for source_all",
+     "share of all loops with a fault that has an impact, with or without verdict, above the threshold "
+     "calibrated for 5 % false alarms and with the right source, as for source_all",
      &MethodRates::source_05_impact, StudyFeature::calibrated_worlds},
     {"monitored_impact", "windows: with impact",
-     "of the loops with a fault that has an impact those in which some window that ends after the onset is "
+     "share of the loops with a fault that has an impact in which a window that ends after the onset is "
      "flagged",
      &MethodRates::monitored_impact, StudyFeature::monitoring},
 }};
@@ -239,42 +237,37 @@ constexpr std::array<MethodEstimateInfo, 6> kEstimates{{
      "mean number of channels named, over the flagged loops with one mismatch of an MV",
      &MethodRates::channels_named, false},
     {"size_error", "error of the size, median",
-     "median error of the size over the deviation of the true one from the model, over the flagged loops "
-     "with "
-     "one mismatch of an MV whose channel and parameter are named",
+     "median of the error of the size divided by the true deviation from the model, over the flagged loops "
+     "with one mismatch of an MV whose channel and parameter are named",
      &MethodRates::size_error},
     {"repair_gain_share", "share of the repair's gain, mean",
-     "mean share of the best repair's gain that the repair of the channel it names brings, over the loops "
-     "with "
-     "mismatches that have an impact and a repair with a gain, with or without verdict; 0 where the loop is "
-     "not "
+     "mean share of the best repair's gain that repairing the named channel brings, over all loops with "
+     "mismatches that have an impact and a repair with a gain, with or without verdict; 0 if the loop is not "
      "flagged, no channel is named, or the repair brings nothing",
      &MethodRates::repair_gain_share, true, StudyFeature::worlds},
     {"repair_gain_share_05", "at 5 %: share of the repair's gain",
-     "the same where the loop counts as flagged above the threshold that is calibrated for 5 % of false "
-     "alarms",
+     "the same with the loop flagged if its score is above the threshold calibrated for 5 % false alarms",
      &MethodRates::repair_gain_share_05, true, StudyFeature::calibrated_worlds},
     {"detection_delay", "windows: delay, median",
      "median time from the onset to the end of the first flagged window, in the time unit of the plant, over "
-     "the loops with a fault that has an impact; infinite where no window is flagged",
+     "the loops with a fault that has an impact; infinite if no window is flagged",
      &MethodRates::detection_delay, true, StudyFeature::monitoring},
     {"false_alarms_a_day", "windows: alarms a day",
-     "alarms that begin in windows without a fault, over the time that these windows watch: before the "
-     "onset, "
-     "and in loops without a fault and with the tuning of the design",
+     "number of alarms that begin in windows without a fault, divided by the time that these windows watch: "
+     "before the onset, and in loops without a fault and with the designed tuning",
      &MethodRates::false_alarms_a_day, true, StudyFeature::monitoring},
 }};
 
 constexpr std::array<ThresholdInfo, 4> kThresholds{{
-    {"threshold_01", "score that 1 % of the loops without a fault exceed at most",
+    {"threshold_01", "score that at most 1 % of the loops without a fault exceed",
      &CalibratedThresholds::at_01},
-    {"threshold_05", "score that 5 % of the loops without a fault exceed at most",
+    {"threshold_05", "score that at most 5 % of the loops without a fault exceed",
      &CalibratedThresholds::at_05},
     {"threshold_calibrated",
-     "score that the share calibration.false_alarms of the loops without a fault exceeds at most",
+     "score that at most the share calibration.false_alarms of the loops without a fault exceeds",
      &CalibratedThresholds::chosen},
     {"threshold_05_mpm",
-     "score that 5 % of the loops without a fault and with a disturbance alone exceed at most",
+     "score that at most 5 % of the loops without a fault or with a disturbance alone exceed",
      &CalibratedThresholds::not_mpm},
 }};
 
@@ -424,9 +417,9 @@ std::vector<UnansweredPart> unanswered_parts(const Study& study, const MethodRat
   std::vector<UnansweredPart> parts;
   if (study.calibration && rates.thresholds.not_mpm.loops == 0)
     parts.push_back(
-        {"calibration", "no verdict on any calibration loop, and so no rate at a calibrated threshold"});
+        {"calibration", "no verdict on any calibration loop, so no rate at a calibrated threshold"});
   if (study.monitoring && rates.monitored_impact.total == 0 && rates.false_alarms_a_day.count == 0)
-    parts.push_back({"windows", "no verdict on any window, and so neither a delay nor alarms a day"});
+    parts.push_back({"windows", "no verdict on any window, so no delay and no alarms per day"});
   return parts;
 }
 

@@ -79,14 +79,14 @@ Correctness ask_parameter(const Study& study, const ExperimentRecord& record, co
 }
 
 constexpr std::array<VerdictQuestion, 6> kQuestions{{
-    {"flag, fault", "a loop with a fault is flagged, and no other", &ask_flag<FlagTruth::fault>},
-    {"flag, impact", "a loop with a fault that has an impact is flagged, and no other",
+    {"flag, fault", "loops with a fault are flagged, and no others", &ask_flag<FlagTruth::fault>},
+    {"flag, impact", "loops with a fault that has an impact are flagged, and no others",
      &ask_flag<FlagTruth::impact>},
-    {"CV", "the affected CV of a flagged loop is located; in a named scenario every CV is judged rightly",
+    {"CV", "the affected CV of a flagged loop is located; in a named scenario, every CV is judged correctly",
      &ask_location},
-    {"source", "mismatch or disturbance is told where there is one of them", &ask_source},
+    {"source", "the source is right in loops with either a mismatch or a disturbance", &ask_source},
     {"channel", "the channel of a single mismatch is named", &ask_channel},
-    {"parameter", "channel and parameter of a single mismatch are the named ones", &ask_parameter},
+    {"parameter", "the channel and parameter of a single mismatch are named", &ask_parameter},
 }};
 
 // --- Rates ---

@@ -96,10 +96,9 @@ void check_absolute(const Study& study, const std::vector<RecordedVariable>& var
         variable.is_limited() ? fmt::format("hard limits [{:g}, {:g}]", variable.lower, variable.upper)
                               : fmt::format("standard deviation {:.3g}", deviation_of(variable.present()));
     if (study.data.operating_point.contains(variable.name))
-      warnings.push_back(
-          fmt::format("{} is {:.4g} from its operating point on average ({}): look at data.operating_point "
-                      "and data.scale",
-                      variable.name, variable.present().mean(), range));
+      warnings.push_back(fmt::format(
+          "{} is on average {:.4g} from its operating point ({}): check data.operating_point and data.scale",
+          variable.name, variable.present().mean(), range));
     else
       found.push_back(
           fmt::format("{} with mean {:.6g} ({})", variable.name, recorded_mean(study, variable), range));
@@ -110,11 +109,12 @@ void check_absolute(const Study& study, const std::vector<RecordedVariable>& var
   for (const RecordedVariable& variable : variables)
     means.push_back(fmt::format("{} = {:.6g}", variable.name, recorded_mean(study, variable)));
   throw InputError(
-      "record", fmt::format("what looks like absolute values: {}", fmt::join(found, ", ")),
+      "record", fmt::format("values that look absolute: {}", fmt::join(found, ", ")),
       fmt::format("deviations from the operating point of the study, which [data] of the study file makes of "
-                  "absolute values. If the plant was there on average, with the means of the record:\n"
+                  "absolute values. If the plant was at its operating point on average, use the means of the "
+                  "record:\n"
                   "  [data]\n  operating_point = {{{}}}\n"
-                  "Of a variable that is recorded as a deviation it is 0; another unit belongs to data.scale",
+                  "For a variable recorded as a deviation it is 0; give a different unit in data.scale",
                   fmt::join(means, ", ")));
 }
 
@@ -125,10 +125,10 @@ void check_movement(const std::vector<RecordedVariable>& variables, std::vector<
       continue;
     if (variable.is_cv)
       throw InputError(variable.name, fmt::format("{:g} in every sample", values(0)),
-                       "a measurement that changes: a wrong tag, a frozen instrument, or a historian that "
-                       "keeps changes only (data.tags)");
+                       "a measurement that changes; this one may be a wrong tag, a frozen instrument, or a "
+                       "historian that keeps changes only (data.tags)");
     warnings.push_back(fmt::format(
-        "{} never moves: a wrong tag (data.tags), or it was held; nothing can be said of its channels",
+        "{} never moves: it was held, or the tag is wrong (data.tags); its channels cannot be judged",
         variable.name));
   }
 }
@@ -140,7 +140,7 @@ void refuse_twins(const std::vector<RecordedVariable>& variables) {
       const bool same = ((x.array() == z.array()) || (x.array().isNaN() && z.array().isNaN())).all();
       if (same && !is_constant(variables[a].present()))
         throw InputError(fmt::format("{} and {}", variables[a].name, variables[b].name),
-                         "the same values in both", "a column of its own each: one of their tags is wrong");
+                         "the same values in both", "a column for each; one of the tags is wrong");
     }
 }
 
@@ -161,8 +161,8 @@ void check_values(const RecordedVariable& variable, std::vector<std::string>& wa
         (values < variable.lower - tolerance || values > variable.upper + tolerance).cast<double>().mean();
     if (beyond > kOftenBeyond)
       warnings.push_back(
-          fmt::format("{} is beyond its hard limits [{:g}, {:g}] in {:.0f} % of the samples: "
-                      "another unit (data.scale), operating point, or limits than the study's",
+          fmt::format("{} is beyond its hard limits [{:g}, {:g}] in {:.0f} % of the samples: its unit "
+                      "(data.scale), operating point or limits differ from those of the study",
                       variable.name, variable.lower, variable.upper, 100.0 * beyond));
   }
   const Eigen::Index longest = longest_standstill(variable.values);
@@ -202,9 +202,8 @@ bool stays_away(const Eigen::RowVectorXd& y, double level) {
 void check_setpoints(const Study& study, const PlantRecord& record, std::vector<std::string>& warnings) {
   for (const Eigen::Index cv : cvs_away_from_setpoints(study, record))
     warnings.push_back(fmt::format(
-        "{} does not follow its setpoint {:g}, which is that of the study, since the record "
-        "has none: name its "
-        "column (data.setpoint), or else whatever moved the setpoint counts as a fault",
+        "{} does not follow its setpoint {:g}. The record has no setpoint, so this is that of the study: "
+        "name its column (data.setpoint), otherwise a moved setpoint counts as a fault",
         study.plant.cvs[static_cast<std::size_t>(cv)].name, study.simulation.initial_setpoint(cv)));
 }
 
@@ -265,15 +264,15 @@ class ExchangeSearch {
       Eigen::MatrixXd u = record_.u;
       u.row(mv) *= -1.0;
       if (explained(record_.y, simulated(study_, u, record_.d)) > explained_ + kFarMore)
-        found_.push_back(fmt::format(
-            "the model explains far more of the CVs with the sign of {} turned round: data.scale of it, or a "
-            "valve that closes where the model has it open",
-            study_.plant.mvs[static_cast<std::size_t>(mv)].name));
+        found_.push_back(
+            fmt::format("the model explains far more of the CVs with the sign of {} reversed: check its "
+                        "data.scale, or whether the valve closes where the model opens it",
+                        study_.plant.mvs[static_cast<std::size_t>(mv)].name));
     }
     if (found_.empty() && explains_nothing())
       found_.emplace_back(
-          "the model explains nothing of any CV: wrong tags, units, operating point or time stamps, or "
-          "faults larger than all that is right");
+          "the model explains nothing of any CV: the tags, units, operating point or time stamps are wrong, "
+          "or the faults outweigh the model");
     return std::move(found_);
   }
 
@@ -293,10 +292,9 @@ class ExchangeSearch {
     for (std::size_t a = 0; a < variables.size(); ++a)
       for (std::size_t b = a + 1; b < variables.size(); ++b)
         if (swapped(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) > explained_ + kFarMore)
-          found_.push_back(
-              fmt::format("the model explains far more of the CVs with {} and {} exchanged: look at their "
-                          "tags (data.tags)",
-                          variables[a].name, variables[b].name));
+          found_.push_back(fmt::format(
+              "the model explains far more of the CVs with {} and {} exchanged: check their tags (data.tags)",
+              variables[a].name, variables[b].name));
   }
 
   const Study& study_;

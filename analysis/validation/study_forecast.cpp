@@ -133,22 +133,22 @@ std::vector<StudyWarning> forecast_warnings(const Study& study, const StudyForec
   const Rate& feasible = forecast.feasible;
   if (feasible.value < 1.0 - kOftenInfeasible)
     warnings.push_back({"experiments",
-                        fmt::format("{} of {} loops of the pilot cannot be run to their end",
+                        fmt::format("{} of {} loops of the pilot do not run to their end",
                                     feasible.total - feasible.hits, feasible.total),
-                        "they are left out of every rate: widen hard limits, or draw smaller faults"});
+                        "every rate leaves them out: widen hard limits, or draw smaller faults"});
   for (std::size_t m = 0; m < forecast.methods.size(); ++m)
     if (const std::string reason = why_silent(pilot, m); !reason.empty())
-      warnings.push_back(
-          {"methods.names",
-           fmt::format("{} says nothing of any loop of the pilot: {}", forecast.methods[m].method, reason),
-           "leave it out, or give it what it needs"});
+      warnings.push_back({"methods.names",
+                          fmt::format("{} gives no verdict on any loop of the pilot: {}",
+                                      forecast.methods[m].method, reason),
+                          "leave it out, or give it what it needs"});
   if (study.names_scenarios())
     return warnings;
   if (forecast.impact.total > 0 && forecast.impact.hits == 0)
     warnings.push_back(
         {"experiments",
-         fmt::format("no fault of the pilot has an impact ({} of them)", forecast.impact.total),
-         "draw larger faults; rates over loops with impact will have no loops"});
+         fmt::format("none of the {} faults of the pilot has an impact", forecast.impact.total),
+         "draw larger faults; otherwise rates over loops with impact have no loops"});
   else if (forecast.impact.total > 0 && forecast.detection_width > kWideInterval)
     warnings.push_back(
         {"experiments",

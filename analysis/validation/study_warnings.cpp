@@ -80,34 +80,36 @@ void check_times(const Study& study, Warnings& warnings) {
     warnings.push_back({"controller.sample_time",
                         fmt::format("{} is above the time constant of {}, {}", with_unit(Ts, unit),
                                     fastest.channel, with_unit(fastest.time, unit)),
-                        fmt::format("times are in {}; a sample time of at most {} sees its response", unit,
-                                    with_unit(fastest.time / 3.0, unit))});
+                        fmt::format("times are in {}; use a sample time of at most {} to see its response",
+                                    unit, with_unit(fastest.time / 3.0, unit))});
   const ChannelTime longest =
       range_of(study, [](const TransferFunction& channel) { return channel.dead_time(); }).second;
   if (longest.time > 0.0 && longest.time < Ts)
-    warnings.push_back({"controller.sample_time",
-                        fmt::format("the longest dead time, {} of {}, is less than a sample of {}",
-                                    with_unit(longest.time, unit), longest.channel, with_unit(Ts, unit)),
-                        "the plant has it exactly, but a dead-time mismatch within a sample hardly shows"});
+    warnings.push_back(
+        {"controller.sample_time",
+         fmt::format("the longest dead time, {} of {}, is less than a sample of {}",
+                     with_unit(longest.time, unit), longest.channel, with_unit(Ts, unit)),
+         "the simulation handles it exactly, but a dead-time mismatch within one sample hardly shows"});
   const ChannelTime slowest = range_of(study, settling_time).second;
   const double horizon = Ts * study.controller.prediction_horizon;
   if (horizon < slowest.time)
-    warnings.push_back({"controller.prediction_horizon",
-                        fmt::format("{} samples, {}, are shorter than the settling time of {}, {}",
-                                    study.controller.prediction_horizon, with_unit(horizon, unit),
-                                    slowest.channel, with_unit(slowest.time, unit)),
-                        fmt::format("{} samples see it settle", count_text(std::ceil(slowest.time / Ts)))});
+    warnings.push_back(
+        {"controller.prediction_horizon",
+         fmt::format("{} samples, {}, are shorter than the settling time of {}, {}",
+                     study.controller.prediction_horizon, with_unit(horizon, unit), slowest.channel,
+                     with_unit(slowest.time, unit)),
+         fmt::format("use {} samples to see it settle", count_text(std::ceil(slowest.time / Ts)))});
   const int samples = study.simulation.samples;
   if (samples * Ts < 3.0 * slowest.time)
     warnings.push_back(
         {"simulation.samples",
          fmt::format("a record of {}, {:.1f} settling times of {}", with_unit(samples * Ts, unit),
                      samples * Ts / slowest.time, slowest.channel),
-         fmt::format("variances need several: {} samples are three of them",
+         fmt::format("variances need several settling times: {} samples are three of them",
                      count_text(std::ceil(3.0 * slowest.time / Ts)))});
   else if (samples < kFewSamples)
-    warnings.push_back(
-        {"simulation.samples", fmt::format("{}", samples), "variances of so few samples are mostly chance"});
+    warnings.push_back({"simulation.samples", fmt::format("{}", samples),
+                        "the variance of so few samples is mostly chance"});
 }
 
 // --- Setpoints and limits ---
@@ -116,11 +118,11 @@ void check_setpoint(const Study& study, Eigen::Index cv, double setpoint, const 
                     Warnings& warnings) {
   const Limits& hard = study.controller.cv_hard;
   if (setpoint < hard.lower(cv) || setpoint > hard.upper(cv))
-    warnings.push_back({key,
-                        fmt::format("{} for {} is outside of its hard limits [{}, {}]",
-                                    with_unit(setpoint, cv_unit(study, cv)), name_of(study.plant.cvs, cv),
-                                    hard.lower(cv), hard.upper(cv)),
-                        "the loop becomes infeasible or never gets there"});
+    warnings.push_back(
+        {key,
+         fmt::format("{} for {} is outside its hard limits [{}, {}]", with_unit(setpoint, cv_unit(study, cv)),
+                     name_of(study.plant.cvs, cv), hard.lower(cv), hard.upper(cv)),
+         "the loop becomes infeasible or never reaches it"});
 }
 
 /// The CV at rest, for all MVs within their hard limits: an interval.
@@ -144,10 +146,10 @@ void check_reach(const Study& study, Eigen::Index cv, double wanted_low, double 
   if (wanted_low > high || wanted_high < low)
     warnings.push_back(
         {key,
-         fmt::format(
-             "[{:.4g}, {:.4g}] {}, and the MVs within their hard limits bring {} to [{:.4g}, {:.4g}] only",
-             wanted_low, wanted_high, cv_unit(study, cv), name_of(study.plant.cvs, cv), low, high),
-         "look at the signs of the gains and of the limits"});
+         fmt::format("[{:.4g}, {:.4g}] {}, but within their hard limits the MVs can only bring {} to "
+                     "[{:.4g}, {:.4g}]",
+                     wanted_low, wanted_high, cv_unit(study, cv), name_of(study.plant.cvs, cv), low, high),
+         "check the signs of the gains and of the limits"});
 }
 
 void check_cvs(const Study& study, Warnings& warnings) {
@@ -205,7 +207,7 @@ void check_noise(const Study& study, Warnings& warnings) {
                           fmt::format("{} for {} is {} % of {}, {}", with_unit(noise, cv_unit(study, cv)),
                                       name_of(study.plant.cvs, cv), count_text(100.0 * noise / scale), what,
                                       with_unit(scale, cv_unit(study, cv))),
-                          "1 to 2 % are usual; is it a variance, or in another unit?"});
+                          "1 to 2 % is usual; check whether it is a variance or in another unit"});
   }
 }
 
@@ -213,13 +215,13 @@ void check_excitation(const Study& study, Warnings& warnings) {
   if (!study.simulation.is_excited() && study.diagnosis.self_check == SelfCheck::ivar)
     warnings.push_back(
         {"diagnosis.self_check", "\"ivar\" in a study without excitation",
-         "y0 has no variance there, and the self-check fails; \"repeat\" asks what the truth needs"});
+         "y0 has no variance there, so the self-check fails; \"repeat\" checks what the truth needs"});
 }
 
 void check_counts(const Study& study, Warnings& warnings) {
   if (!study.names_scenarios() && study.experiments.healthy == 0 && study.experiments.tuning == 0)
     warnings.push_back({"experiments.healthy", "0, and no bad tunings",
-                        "no false alarm can be counted, and a method that flags every loop looks perfect"});
+                        "no false alarm can be counted, so a method that flags every loop looks perfect"});
 }
 
 // --- The basis case ---
@@ -255,7 +257,7 @@ void check_noise_share(const Study& study, const BasisCase& basis, Warnings& war
           {"simulation.noise_standard_deviation",
            fmt::format("noise is {:.0f} % of the variance of {} in the basis case",
                        std::min(100.0, 100.0 * noise * noise / variance), name_of(study.plant.cvs, cv)),
-           "a fault there has an impact only when it outweighs the noise"});
+           "a fault there has an impact only if it outweighs the noise"});
   }
 }
 
@@ -271,7 +273,7 @@ void check_mvs(const Study& study, const BasisCase& basis, Warnings& warnings) {
     if (share > kOftenAtLimit)
       warnings.push_back({fmt::format("controller.mv.{}.hard", name_of(study.plant.mvs, mv)),
                           fmt::format("at a limit in {:.0f} % of the basis case", 100.0 * share),
-                          "S0 is that of another controller there; widen the limits, excite less, or use "
+                          "S0 does not describe the controller there; widen the limits, excite less, or use "
                           "sensitivity.structure = \"by-instant\""});
   }
 }
@@ -287,12 +289,11 @@ void check_worlds(const Study& study, const BasisCase& basis, Warnings& warnings
   const bool excluded = study.diagnosis.unstable == UnstableLoops::exclude;
   warnings.push_back(
       {"world",
-       fmt::format("{} of {} worlds are not stable without a fault, the first of them number {}",
+       fmt::format("{} of {} worlds are unstable without a fault, the first of them number {}",
                    unstable.size(), study.world->count, unstable.front()),
-       excluded ? "their experiments are left out; draw smaller errors, or detune the controller"
-                : "their benchmarks are those of a loop that nobody would leave in operation: "
-                  "diagnosis.unstable = "
-                  "\"exclude\" leaves them out"});
+       excluded
+           ? "the study leaves their experiments out; draw smaller errors, or detune the controller"
+           : "nobody would leave such loops in operation: diagnosis.unstable = \"exclude\" leaves them out"});
 }
 
 }  // namespace

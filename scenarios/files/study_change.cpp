@@ -75,7 +75,7 @@ void apply(toml::table& study, const StudyChange& change, const std::string& nam
   toml::table& owner = owner_of_last(study, parts, where);
   if (change.value.empty()) {
     if (owner.erase(parts.back()) == 0)
-      throw InputError(where, "no such key to take out", "keys that the study has");
+      throw InputError(where, "a key that the study does not have", "a key of the study");
     return;
   }
   toml::table value = parse_value(change.value, where);
@@ -87,7 +87,7 @@ void apply(toml::table& study, const StudyChange& change, const std::string& nam
 void refuse_missing(const std::string& what, const std::string& name, const std::string& label,
                     const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), name) == known.end())
-    throw InputError(label, fmt::format("a change that takes away {} {}", what, in_quotes(name)),
+    throw InputError(label, fmt::format("a change that removes {} {}", what, in_quotes(name)),
                      "changes that keep the scenarios, CVs and MVs of the table");
 }
 

@@ -23,8 +23,8 @@ namespace {
 OptionKeys heading_keys(Study& study) {
   constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
   return {key::name("name", study.name,
-                    "short name, part of file names; a shipped study has the name of its file"),
-          key::text("title", study.title, "one line for people").required(),
+                    "short name, used in file names; a shipped study has the name of its file"),
+          key::text("title", study.title, "title in one line").required(),
           key::whole("seed", study.seed, 0, kLargest, "master seed: the same seed gives the same experiments")
               .required()};
 }

@@ -71,18 +71,18 @@ OptionKeys sensitivity_keys(Study& study) {
                   "what T0 is: the step responses themselves, or models identified in a record with a moving "
                   "reference (A3.1, A3.2; not with the structure `\"by-instant\"`)"),
       key::whole("samples", options.samples, 2, kMaxResponse,
-                 "length of the step responses, long enough to settle: the static gain holds after it",
+                 "length of the step responses, long enough to settle: after it the static gain holds",
                  "samples"),
       key::number("step_size", options.step_size, NumberRule::positive(),
                   "size of the step of a soft limit; small, so that no other limit is met", "CV")
           .allow("> 0, at most the narrowest range between the soft limits of the active CVs"),
       key::choice("step_direction", options.step_direction, {"into-range", "out-of-range", "mean"},
-                  "which way the limit is stepped. Open: a range MPC answers the two "
-                  "differently (docs/methods.md, T0)"),
+                  "direction in which the limit is stepped. Open: a range MPC responds differently to the "
+                  "two (docs/methods.md, T0)"),
       key::some_of(
           "active_cvs", options.active_cvs, [&study] { return variable_names(study.plant.cvs); },
-          "CVs whose soft limit is active. Section 6.3: no more of them than MVs")
-          .otherwise("what the basis case shows")
+          "CVs whose soft limit is active. Section 6.3: at most as many as MVs")
+          .otherwise("those of the basis case")
           .allow("names of CVs with a soft limit, none twice, at most as many as MVs"),
       key::check(check_active),
       key::some_of(
@@ -91,14 +91,13 @@ OptionKeys sensitivity_keys(Study& study) {
           "hard limit")
           .otherwise("none")
           .allow("names of MVs, none twice"),
-      key::choice(
-          "structure", options.structure, {"operating-point", "by-instant"},
-          "whether S0 is that of the basis case throughout (assumption A), or at each sample that of the "
-          "setpoints, soft limits and MV limits that are active (assumption C)"),
+      key::choice("structure", options.structure, {"operating-point", "by-instant"},
+                  "whether S0 is that of the basis case throughout (assumption A), or at each sample that of "
+                  "the setpoints, soft limits and MV limits that are active there (assumption C)"),
       key::choice(
           "switching", options.switching, {"output", "input"},
-          "with `by-instant`: whether the S0 of a sample acts on the whole past, or every error goes on by "
-          "the S0 of its own time. Open; in table 3.7 the first is nearer to the basis case"),
+          "with `by-instant`: whether the S0 of a sample acts on the whole past, or each error propagates "
+          "with the S0 of its own time. Open; in table 3.7 the first is nearer to the basis case"),
       key::check(check_all)};
 }
 
@@ -127,11 +126,11 @@ OptionKeys s0_perturbation_keys(Study& study) {
               .required()
               .allow("1 to 1000 numbers > 0 that grow")
               .read(read_multipliers),
-          key::some_of("cvs", options.cvs, names(study.plant.cvs), "CVs whose experiments are looked at")
+          key::some_of("cvs", options.cvs, names(study.plant.cvs), "CVs whose experiments are examined")
               .otherwise("all at an active limit")
               .allow("names of CVs at an active soft limit, none twice"),
           key::band("tolerance", options.tolerance_lower, options.tolerance_upper, NumberRule::positive(),
-                    "multipliers over which the largest change is taken", "1"),
+                    "range of multipliers over which the largest change is taken", "1"),
           key::some_of("fixed_mvs", options.fixed_mvs, names(study.plant.mvs),
                        "MVs that are not available in a second control structure")
               .otherwise("none")
@@ -158,21 +157,21 @@ OptionKeys diagnosis_keys(DiagnosisOptions& options) {
                   "I_MPM (6.15) above it means a mismatch (figure 6.21)", "1"),
       key::band("windows", options.shortest_window, options.longest_window,
                 {.low = 0, .high = kMaxWindow, .high_included = true},
-                "shortest and longest moving window of (6.13) and (6.14). Skewness and kurtosis of fewer "
-                "than 4 values have no freedom",
+                "shortest and longest moving window of (6.13) and (6.14). Skewness and kurtosis need at "
+                "least 4 values",
                 "prediction horizons")
           .also("at least 4 samples"),
       key::whole("window_stride", options.window_stride, 1, kMaxResponse,
-                 "from one window length to the next. Open", "samples"),
+                 "step from one window length to the next. Open", "samples"),
       key::choice("source_population", options.source_population, {"impactful", "feasible"},
-                  "experiments over which the rates of I_MPM are counted. Open"),
-      key::choice(
-          "unstable", options.unstable, {"keep", "exclude"},
-          "what becomes of an experiment whose loop is not stable (`spectral_radius` of the archive 1 or "
-          "more): it counts like any other, or it is left out and counted as infeasible ones are"),
+                  "experiments for which the rates of I_MPM are counted. Open"),
+      key::choice("unstable", options.unstable, {"keep", "exclude"},
+                  "treatment of an experiment whose loop is unstable (`spectral_radius` of the archive 1 or "
+                  "more): it counts like any other, or it is left out like an infeasible one"),
       key::choice(
           "self_check", options.self_check, {"ivar", "repeat", "none"},
-          "what must lie in the band for every CV. `\"ivar\"`: Ivar (6.7) of the basis case. `\"repeat\"`: "
+          "index that must lie in the band for every CV. `\"ivar\"`: Ivar (6.7) of the basis case. "
+          "`\"repeat\"`: "
           "Ivar_basis (6.22) of the basis case with other noise, for studies without excitation "
           "([methods.md](methods_thesis.md#records-and-excitation)). `\"none\"`: nothing. With the first two "
           "T0 must have settled, too ([methods.md](methods_thesis.md#diagnosis))"),
@@ -184,13 +183,13 @@ OptionKeys aggregate_keys(AggregateOptions& options) {
   return {
       key::number("confidence", options.confidence, NumberRule::inside(0, 1), "confidence of all intervals"),
       key::whole("bootstrap_replications", options.bootstrap_replications, kFewestReplications,
-                 kMaxReplications, "resamplings for intervals that have no formula")};
+                 kMaxReplications, "number of resamplings for intervals without a formula")};
 }
 
 OptionKeys share_keys(ReportedValue& share) {
   return {key::number("value", share.value, NumberRule::share(), "the share").required(),
           key::whole("of", share.of, 1, std::numeric_limits<std::int32_t>::max(),
-                     "experiments that it is a share of")
+                     "number of experiments behind a reported share")
               .required()};
 }
 
@@ -247,7 +246,7 @@ OptionKey reference_key(Study& study) {
   const auto read = [&study](const TomlTable& document, const std::string& key) {
     read_reported(document, key, study.reported);
   };
-  return key::option("reference", "table", "reported numbers to show beside the results")
+  return key::option("reference", "table", "reported numbers, shown beside the results")
       .otherwise("none")
       .with("", reported_keys)
       .read(read);

@@ -22,22 +22,20 @@ OptionKeys assessment_keys(AssessmentOptions& options) {
   OptionKeys keys{
       key::choice(
           "setpoints", options.setpoints, {"controller", "optimizer"},
-          "what stands for the setpoint of a CV that is held in a range. `\"controller\"`: nothing, and a "
-          "method that needs setpoints does not apply; it is the default because a range has none. "
-          "`\"optimizer\"`: the steady state that the target optimizer computes (2.32), as chapter 2 of the "
-          "thesis does to show what comes of it"),
+          "setpoint of a CV that is held in a range. `\"controller\"`: none, as a range has none, so methods "
+          "that need setpoints do not apply. `\"optimizer\"`: the steady state that the target optimizer "
+          "computes (2.32), which chapter 2 of the thesis uses to show the consequences"),
       key::choice("model", options.model, {"automatic", "nominal", "benchmark"},
-                  "what methods take the plant without a fault for. `\"nominal\"`: the model, exactly. "
-                  "`\"benchmark\"`: a model of which the benchmark shows how wrong it is; what is "
-                  "new since then is looked for. `\"automatic\"`: `\"benchmark\"` where the study has "
-                  "`[world]`, otherwise `\"nominal\"`, because the study then says that the model is "
-                  "exact"),
+                  "what methods assume of the plant without a fault. `\"nominal\"`: it is exactly the model. "
+                  "`\"benchmark\"`: it differs from the model as the benchmark shows, and methods look for "
+                  "what is new since then. `\"automatic\"`: `\"benchmark\"` if the study has `[world]`, "
+                  "otherwise `\"nominal\"`, since the model of such a study is exact"),
       key::number("model_error", options.model_error, NumberRule::positive(),
-                  "standard deviation of gain and time constant of each channel before the benchmark "
-                  "is seen, relative; of its dead time, in parts of it or of a sample"),
-      key::number("bias", options.bias, NumberRule::at_least(0),
-                  "standard deviation of a constant error of each CV before the record is seen, in "
-                  "standard deviations of its noise")};
+                  "prior standard deviation of the gain and time constant of each channel, relative; of its "
+                  "dead time, as a fraction of the dead time or of a sample"),
+      key::number(
+          "bias", options.bias, NumberRule::at_least(0),
+          "prior standard deviation of a constant error of each CV, in standard deviations of its noise")};
   for (const MethodOptionTable& table : method_option_tables())
     keys.push_back(key::table(
         table.name, [&options, of_method = table.keys] { return of_method(options); }, table.meaning));
@@ -77,14 +75,15 @@ OptionKeys monitoring_keys(MonitoringOptions& options, const Study& study) {
   const std::int64_t samples = study.simulation.samples;
   options.window = static_cast<int>(std::min<std::int64_t>(options.window, samples));
   options.stride = static_cast<int>(std::min<std::int64_t>(options.stride, samples));
-  return {key::whole(
-              "window", options.window, std::min(kShortestMonitoringWindow, samples), samples,
-              "samples that a verdict looks back on. Methods that filter or simulate the loop do so from the "
-              "start of the record, and judge these samples. A longer window sees smaller faults, later")
-              .otherwise("200, or the whole record where it is shorter")
-              .allow("24 to `simulation.samples`"),
-          key::whole("stride", options.stride, 1, samples, "samples from one verdict to the next")
-              .allow("1 to `simulation.samples`")};
+  return {
+      key::whole(
+          "window", options.window, std::min(kShortestMonitoringWindow, samples), samples,
+          "number of samples that a verdict covers. Methods that filter or simulate the loop start at the "
+          "beginning of the record and judge these samples. A longer window sees smaller faults, but later")
+          .otherwise("200, or the whole record where it is shorter")
+          .allow("24 to `simulation.samples`"),
+      key::whole("stride", options.stride, 1, samples, "number of samples from one verdict to the next")
+          .allow("1 to `simulation.samples`")};
 }
 
 OptionKeys calibration_keys(CalibrationOptions& options, const Study& study) {
@@ -96,14 +95,14 @@ OptionKeys calibration_keys(CalibrationOptions& options, const Study& study) {
       table.refuse(key, fmt::format("{}, the seed of the study", *options.seed), "another one");
   };
   return {key::number("false_alarms", options.false_alarms, NumberRule::inside(0, 1),
-                      "share of healthy loops that a calibrated threshold flags at most, of the rate "
-                      "`false_alarm_calibrated`; the others are at 1 % and at 5 %"),
+                      "largest share of healthy loops that the threshold of the rate "
+                      "`false_alarm_calibrated` may flag; the other thresholds are at 1 % and 5 %"),
           key::whole("healthy", options.healthy, 1, kMaxCalibrationLoops,
-                     "loops without a fault. 1 % needs 99, 5 % needs 19; 200 leave the rate at 5 % within "
-                     "2.4 and 8.4 %"),
+                     "number of loops without a fault. A threshold at 1 % needs 99, one at 5 % needs 19; "
+                     "with 200 the rate at 5 % lies within 2.4 and 8.4 %"),
           key::whole("ud", options.ud, 0, kMaxCalibrationLoops,
-                     "loops with an unmeasured disturbance alone, for the thresholds of a monitor of the "
-                     "model, which is to leave them alone"),
+                     "number of loops with an unmeasured disturbance alone, for the thresholds of a monitor "
+                     "of the model, which should not flag them"),
           key::option("seed", "whole number", "seed of these loops")
               .otherwise("that of the study with the bits of 0x63616c6962726174 (\"calibrat\") flipped")
               .allow("not that of the study, nor of `run --seed`")
@@ -115,12 +114,12 @@ OptionKeys calibration_keys(CalibrationOptions& options, const Study& study) {
 OptionKeys method_keys(Study& study) {
   return {
       key::table(
-          "methods", [&study] { return methods_keys(study.methods); }, "which methods assess the loops"),
+          "methods", [&study] { return methods_keys(study.methods); }, "the methods that assess the loops"),
       key::table(
           "assessment", [&study] { return assessment_keys(study.assessment); },
           "the open choices of the methods of the literature"),
       random_part("monitoring", study, &Study::monitoring, monitoring_keys,
-                  "methods on a window that moves over the record: delay of detection, false alarms a day")
+                  "methods on a window that moves over the record: delay of detection, false alarms per day")
           .otherwise("none: methods see whole records only"),
       random_part("calibration", study, &Study::calibration, calibration_keys,
                   "loops of another seed on which the thresholds of the methods are calibrated")

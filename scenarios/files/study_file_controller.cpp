@@ -190,12 +190,10 @@ void refuse_long_dead_times(const TomlTable& controller, const Study& study) {
 }
 
 OptionKeys controller_program_keys(std::vector<std::string>& command, double& time_limit) {
-  return {
-      key::command(
-          "command", command,
-          "the program, which is looked for in PATH, and its arguments; it runs in the current folder"),
-      key::time_limit(time_limit,
-                      "seconds of the clock that an answer may take; a loop that needs more is `failed`")};
+  return {key::command("command", command,
+                       "the program, found in PATH, and its arguments; it runs in the current folder"),
+          key::time_limit(time_limit,
+                          "wall-clock seconds that an answer may take; a loop that needs more is `failed`")};
 }
 
 OptionKey program_key(std::optional<ControllerProgram>& program) {
@@ -263,8 +261,8 @@ OptionKeys controller_keys(Study& study) {
                       "one slack variable for each CV and sample, or for each CV. Open; with the "
                       "first T0 settles as in (6.24)"),
           key::number("target_violation_cost", options.target_violation_cost, NumberRule::positive(),
-                      "price of a unit of steady-state violation of a soft limit, in multiples of the "
-                      "largest `cost`. Open: (6.19) has no answer when no target keeps the limits",
+                      "price of one unit of steady-state violation of a soft limit, in multiples of the "
+                      "largest `cost`. Open: (6.19) has no solution if no target keeps the limits",
                       "1"),
           variable_tables<MvOptions>("mv", study.plant.mvs, take_mv, "one table for each MV, by name"),
           variable_tables<CvOptions>("cv", study.plant.cvs, take_cv, "one table for each CV, by name"),

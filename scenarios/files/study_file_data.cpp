@@ -129,7 +129,7 @@ OptionKeys data_keys(Study& study) {
           .allow("a name of the IANA time zone database"),
       key::choice("date_order", o.date_order,
                   {"automatic", "year-month-day", "day-month-year", "month-day-year"},
-                  "order of day, month and year; found where a number above 12 or points between them tell"),
+                  "order of day, month and year; detected from numbers above 12 or points between them"),
       key::option("skip", "whole number, or list of whole numbers",
                   "lines that are not read: so many at the start, or those of these numbers; rows of units "
                   "below the heading are found")
@@ -155,34 +155,35 @@ OptionKeys data_keys(Study& study) {
       columns("tags", o.tags, all, "of CVs, MVs and MDs")
           .otherwise("`y.NAME`, `u.NAME`, `d.NAME`, or `NAME`")
           .allow("columns"),
-      factors("operating_point", o.operating_point, all, "what the study calls 0, in the unit of the file")
+      factors("operating_point", o.operating_point, all,
+              "value that is 0 in the study, in the unit of the file")
           .otherwise("0")
           .allow("finite"),
       factors("scale", o.scale, all, "study value = scale (recorded value - operating point)")
           .otherwise("1")
           .allow("not 0"),
       key::check(refuse_zero),
-      columns("setpoint", o.setpoint, cvs, "setpoints of CVs that have one, recorded as the CV is")
+      columns("setpoint", o.setpoint, cvs, "setpoints of the CVs that have one, with the scale of the CV")
           .otherwise("`y_set.NAME`; none: that of the study")
           .allow("columns"),
       columns("lower", o.lower, cvs,
-              "lower soft limits of CVs at the time, recorded as the CV is; within the hard limits")
+              "lower soft limits of CVs over time, with the scale of the CV; within the hard limits")
           .otherwise("none: those of the study")
           .allow("columns"),
       columns("upper", o.upper, cvs, "upper soft limits, in the same way")
           .otherwise("none: those of the study")
           .allow("columns"),
-      columns("y_sim", o.y_sim, cvs, "output of the model for a CV, recorded as the CV is")
+      columns("y_sim", o.y_sim, cvs, "output of the model for a CV, with the scale of the CV")
           .otherwise("none: computed from MVs and MDs")
           .allow("columns"),
-      columns("target", o.target, mvs, "targets of MVs, recorded as the MV is")
+      columns("target", o.target, mvs, "targets of MVs, with the scale of the MV")
           .otherwise("`u_target.NAME`; none")
           .allow("columns"),
       columns("quality", o.quality, all, "quality of any variable, row by row")
           .otherwise("none: all is good")
           .allow("columns"),
       key::texts("good_quality", o.good_quality, "texts",
-                 "words of a good quality; capitals do not matter, and numbers count in any form (`192.0`). "
+                 "words for a good quality, in upper or lower case; numbers count in any form (`192.0`). "
                  "`opc`: words that begin with good, and the good codes of OPC, those of OPC UA if there is "
                  "one of 2^30 or above, otherwise those of OPC DA (192 and others)"),
       key::option("stored_on_change", "list of texts",
@@ -195,34 +196,33 @@ OptionKeys data_keys(Study& study) {
             for (const std::size_t place : read_some_of(data, key, names))
               o.stored_on_change.push_back(names[place]);
           }),
-      key::text("controller_on", o.controller_on, "is the controller on? CVs are not judged where it is not")
+      key::text("controller_on", o.controller_on,
+                "whether the controller is on; CVs are not judged while it is off")
           .otherwise("none: always on")
           .allow("a column"),
       key::texts("on_values", o.on_values, "texts",
-                 "words for a controller that is on; capitals do not matter"),
+                 "words for a controller that is on, in upper or lower case"),
       key::choice("cv_resampling", o.cv_resampling, {"mean", "nearest"},
                   "value of a CV at a sample, of the rows within half a sample time of it"),
       key::choice("start", o.start, {"automatic", "rest", "anywhere"},
-                  "does the record begin at rest at the operating point? Automatic: when MVs "
-                  "and MDs begin within half of their standard deviations of it. Anywhere: CVs "
-                  "are not judged until the slowest channel has settled"),
+                  "whether the record begins at rest at the operating point. Automatic: yes if MVs and MDs "
+                  "begin within half of their standard deviations of it. Anywhere: CVs are not judged until "
+                  "the slowest channel has settled"),
       key::number("most_missing", o.most_missing, NumberRule::inside(0, 1),
-                  "share of the samples of a variable that may be missing"),
+                  "largest share of the samples of a variable that may be missing"),
       key::texts("candidates", o.candidates, "columns",
-                 "signals that the model does not know, for the method `candidates`: inputs that may be "
-                 "missing in it")
+                 "signals outside the model, for the method `candidates`: inputs that the model may lack")
           .allow("columns"),
       fill_key(o.fill,
-               "what methods that need every sample find where a CV is missing: nothing, so that they do not "
-               "apply; the last value; or a straight line. Methods that bear gaps see them. The loops of the "
-               "calibration run are filled where the first method needs it"),
+               "what methods that need every sample get for a missing CV: nothing, so that they do not "
+               "apply; the last value; or a straight line. Methods that can handle gaps see them. The loops "
+               "of the calibration run are filled if the first method needs it"),
       key::option("period", "list of 2 texts", "what is assessed")
           .otherwise("the whole file")
           .allow("stamps as in the file")
           .read([&o](const TomlTable& data, const std::string& key) { o.period = read_period(data, key); }),
-      key::option(
-          "benchmark", "list of 2 texts, or text",
-          "period in which the controller did what it was designed for, for the methods that need one")
+      key::option("benchmark", "list of 2 texts, or text",
+                  "period in which the controller worked as designed, for the methods that need one")
           .otherwise("the simulated nominal loop")
           .allow("stamps as in the file, or `\"found\"`")
           .read(read_benchmark)};

@@ -76,7 +76,7 @@ OptionKeys experiments_keys(ExperimentCounts& counts) {
       count("ud", counts.ud, "experiments with an unmeasured disturbance").required(),
       count("mpm_ud", counts.mpm_ud, "experiments with both on one CV").required(),
       count("healthy", counts.healthy,
-            "experiments in which nothing is wrong: each has noise of its own, and the excitation of all"),
+            "experiments in which nothing is wrong: each has its own noise and the excitation of all others"),
       count("tuning", counts.tuning,
             "experiments in which model and plant agree and one weight of the controller is changed"),
       count("other", counts.other,
@@ -120,7 +120,7 @@ OptionKeys mismatch_ranges_keys(Study& study) {
   return {weights_key("parameter_weights", kRandomMismatchParameters, kClassic, ranges.parameter_weight,
                       {"relative frequency; they need not sum to 1", "the same", "the same",
                        "of a further lag", "of a right-half-plane zero", "of a gain with the other sign"},
-                      "how often each parameter is the one that is changed")
+                      "relative frequencies of the changed parameters")
               .otherwise("1 for the three of table 6.4"),
           refuse_no_weight("parameter_weights", ranges.parameter_weight),
           weights_key("extent_weights", kMismatchExtents, 0, ranges.extent_weight,
@@ -129,7 +129,7 @@ OptionKeys mismatch_ranges_keys(Study& study) {
                        "of one parameter of every channel from an MV to one CV, each by its own amount",
                        "of the gain of every channel of an MV, all by one factor: its actuator",
                        "of one parameter of every channel from an MV, each by its own amount: a drift"},
-                      "how often a mismatch reaches how far")
+                      "relative frequencies of the extents of a mismatch")
               .otherwise("`parameter` alone"),
           refuse_no_weight("extent_weights", ranges.extent_weight),
           key::distribution(
@@ -149,7 +149,7 @@ OptionKeys mismatch_ranges_keys(Study& study) {
                             "1"),
           key::distribution("inverse_response", ranges.inverse_response, positive,
                             "T of a right-half-plane zero, G (1 - T s) / (1 + T s), over the same", "1"),
-          impact_key(ranges.impact, "effect that every mismatch is scaled to: see below", "1"),
+          impact_key(ranges.impact, "effect to which every mismatch is scaled: see below", "1"),
           plant_parameters_key(ranges.plant_parameters, study)};
 }
 
@@ -174,19 +174,18 @@ OptionKeys disturbance_ranges_keys(DisturbanceRanges& ranges) {
            "of a ramp to the end of the record, which begins in the same part of it", "of summed white noise",
            "of a sine with a period of 8 samples to a quarter of the record: another loop that oscillates",
            "of white noise in bursts of 20 samples with 80 samples between them, on the average"},
-          "how often v has which shape")
+          "relative frequencies of the shapes of v")
           .otherwise("`white` alone"),
       refuse_no_weight("signal_weights", ranges.signal_weight),
       weights_key("place_weights", kDisturbancePlaces, 0, ranges.place_weight,
                   {"relative frequency of one CV; with a mismatch, its CV",
-                   "of an MV on its way to the plant, unseen by controller and record; `gain` is that of the "
-                   "CV with the "
-                   "largest gain from it",
+                   "of an MV on its way to the plant, invisible to controller and record; `gain` is that of "
+                   "the CV with the largest gain from it",
                    "of two or three CVs, each through its own G_d from the same v"},
-                  "how often a disturbance acts where")
+                  "relative frequencies of the places where a disturbance acts")
           .otherwise("`cv` alone"),
       refuse_no_weight("place_weights", ranges.place_weight),
-      impact_key(ranges.impact, "effect that every disturbance is scaled to, as that of a mismatch", "1")};
+      impact_key(ranges.impact, "effect to which every disturbance is scaled, as for a mismatch", "1")};
 }
 
 OptionKeys tuning_keys(Study& study) {
@@ -200,7 +199,7 @@ OptionKeys tuning_keys(Study& study) {
       weights_key("parameter_weights", kTuningParameters, kTuningParameters.size(), ranges.parameter_weight,
                   {"relative frequency, of MVs; the four need not sum to 1", "the same, of MVs with a target",
                    "the same, of CVs with a soft limit", "the same, of CVs with a setpoint"},
-                  "how often each parameter is the one that is changed")
+                  "relative frequencies of the changed parameters")
           .otherwise("all 1")
           .allow("above 0 for something that the controller has, where there are bad tunings"),
       key::distribution("factor", ranges.factor, NumberRule::positive(),
@@ -208,9 +207,9 @@ OptionKeys tuning_keys(Study& study) {
                         "1"),
       key::choice(
           "sensitivity", ranges.sensitivity, {"current", "design"},
-          "the controller whose S0 diagnoses the experiment. `\"current\"`: the one that runs; S0 belongs to "
-          "the controller and is determined anew when its tuning changes (appendix A2, scenario 4 of chapter "
-          "4). `\"design\"`: that of the study, which is what happens when nobody noticed the change"),
+          "the controller whose S0 diagnoses the experiment. `\"current\"`: the one that runs, since S0 "
+          "belongs to the controller and is determined again when its tuning changes (appendix A2, scenario "
+          "4 of chapter 4). `\"design\"`: that of the study, as if nobody had noticed the change"),
       key::check(refuse_no_tuning)};
 }
 
@@ -222,15 +221,14 @@ OptionKeys other_keys(Study& study) {
       table.refuse("weights", "a weight of 0 for everything that the loops can have", "at least one > 0");
   };
   return {
-      weights_key(
-          "weights", kOtherFaultKinds, 0, ranges.weight,
-          {"relative frequency of a sensor with a bias",
-           "of a sensor whose error grows along a line from the onset to the end of the record",
-           "of a valve with the two parameters S and J of Choudhury, Thornhill and Shah (2005)",
-           "of a valve with J = 0", "of an MD whose measurement has a wrong gain",
-           "of an MD whose measurement is noisy", "of a soft range that somebody moved in the controller",
-           "of an MV that an operator holds where it is, without the controller being told"},
-          "how often each kind is drawn")
+      weights_key("weights", kOtherFaultKinds, 0, ranges.weight,
+                  {"relative frequency of a sensor with a bias",
+                   "of a sensor whose error grows linearly from the onset to the end of the record",
+                   "of a valve with the two parameters S and J of Choudhury, Thornhill and Shah (2005)",
+                   "of a valve with J = 0", "of an MD whose measurement has a wrong gain",
+                   "of an MD whose measurement is noisy", "of a soft range that was moved in the controller",
+                   "of an MV that an operator holds where it is, without the controller being told"},
+                  "relative frequencies of the kinds")
           .otherwise("all 1")
           .allow("some kind > 0 that the loops can have"),
       key::distribution("sensor", ranges.sensor, positive,
@@ -246,9 +244,9 @@ OptionKeys other_keys(Study& study) {
       key::distribution(
           "limit", ranges.limit, positive,
           "shift of both soft limits of a CV over its range (1 where a side has none); either sign", "1"),
-      impact_key(
-          ranges.impact,
-          "effect that every fault is scaled to, as that of a mismatch; an MV that is held has no size", "1"),
+      impact_key(ranges.impact,
+                 "effect to which every fault is scaled, as for a mismatch; an MV that is held has no size",
+                 "1"),
       key::check(refuse_no_fault)};
 }
 
@@ -263,11 +261,11 @@ OptionKeys onset_keys(Study& study) {
                    "{constant = 0}: the parameters of a nonlinear plant change at once");
   };
   return {key::distribution("sample", ranges.sample, NumberRule::at_least(0),
-                            "where they begin, rounded down", "samples")
+                            "sample at which they begin, rounded down", "samples")
               .allow("draws >= 0 and below `simulation.samples`"),
           key::distribution("growth", ranges.growth, NumberRule::at_least(0),
-                            "over which they grow along a line; as long as the record: a drift. Valves, "
-                            "limits and held MVs change at once",
+                            "number of samples over which they grow linearly; as long as the record: a "
+                            "drift. Valves, limits and held MVs change at once",
                             "samples")
               .allow("draws >= 0; `{constant = 0}` for a nonlinear plant"),
           key::check(check_onset)};

@@ -55,16 +55,15 @@ OptionKey variables(const char* name, ForeignVariables& group,
 }
 
 OptionKeys common_keys(ForeignPlant& plant) {
-  return {
-      key::number("settle", plant.options.settle, NumberRule::positive(),
-                  "time for which inputs are held until the plant counts as at rest")
-          .required(),
-      key::number("settle_tolerance", plant.options.settle_tolerance, NumberRule::positive(),
-                  "largest move of an output over the last tenth of `settle`, in parts of max(1, abs(y)); a "
-                  "loop whose plant moves more is `failed`"),
-      key::time_limit(
-          plant.options.time_limit,
-          "seconds of the clock that one step or the start may take; a loop that needs more is `failed`")};
+  return {key::number("settle", plant.options.settle, NumberRule::positive(),
+                      "time for which inputs are held until the plant is taken to be at rest")
+              .required(),
+          key::number("settle_tolerance", plant.options.settle_tolerance, NumberRule::positive(),
+                      "largest change of an output over the last tenth of `settle`, relative to max(1, "
+                      "abs(y)); a loop whose plant changes more is `failed`"),
+          key::time_limit(
+              plant.options.time_limit,
+              "wall-clock seconds that one step or the start may take; a loop that needs more is `failed`")};
 }
 
 OptionKey name_key(ForeignVariable& entry, const char* meaning, const char* allowed) {
@@ -122,8 +121,7 @@ OptionKeys fmu_keys(ForeignPlant& plant, const PlantModel& model) {
           .required()
           .allow("an FMU with a library for linux64"),
       key::number("time_factor", plant.time_factor, NumberRule::positive(),
-                  "units of the time of the FMU, as a rule seconds, in one time unit of the study: 60 for "
-                  "`\"min\"`"),
+                  "time units of the FMU (usually seconds) in one time unit of the study: 60 for `\"min\"`"),
       key::option("step", "number",
                   "longest communication step, in the time of the FMU: a sample is as many equal ones as it "
                   "needs, with inputs held")
@@ -148,9 +146,9 @@ OptionKeys fmu_keys(ForeignPlant& plant, const PlantModel& model) {
 }
 
 OptionKeys program_keys(ForeignPlant& plant, const PlantModel&) {
-  OptionKeys keys{key::command(
-      "command", plant.command,
-      "the program, which is looked for in PATH, and its arguments; it runs in the current folder")};
+  OptionKeys keys{
+      key::command("command", plant.command,
+                   "the program, found in PATH, and its arguments; it runs in the current folder")};
   for (OptionKey& key : common_keys(plant))
     keys.push_back(std::move(key));
   keys.push_back(variables("input", plant.inputs, program_input_keys, "operating points, 1000 at most")

@@ -29,7 +29,7 @@ OptionKeys integration_keys(OdeOptions& options) {
       key::number("absolute_tolerance", options.absolute_tolerance, NumberRule::positive(),
                   "of the integration, in the unit of the state"),
       key::whole("step_limit", options.step_limit, 1, std::numeric_limits<int>::max(),
-                 "steps of the integration in a sample; a loop that needs more is `failed`")
+                 "integration steps allowed per sample; a loop that needs more is `failed`")
           .allow(">= 1")};
   for (OptionKey& key : keys)
     key.allowed += "; with `\"nonlinear\"`";
@@ -184,8 +184,8 @@ OptionKey plant_parameters_key(std::vector<PlantParameterRange>& ranges, const S
              "plant_parameter", kMaxParameters,
              [&study](ListedRange& listed) { return range_keys(listed.range, study); },
              [&ranges](const TomlTable&, ListedRange& listed) { ranges.push_back(listed.range); },
-             "the parameters of a nonlinear plant of which a mismatch changes one, all equally often; "
-             "channels are then not changed")
+             "parameters of a nonlinear plant, of which a mismatch changes one, all equally often; it then "
+             "changes no channels")
       .allow("of a nonlinear plant")
       .after(check_plant);
 }

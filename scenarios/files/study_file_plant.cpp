@@ -73,7 +73,7 @@ OptionKeys own_plant_keys(PlantModel& model) {
   };
   return {
       key::name("name", model.name, "short name"),
-      key::text("title", model.title, "one line for people").required(),
+      key::text("title", model.title, "title in one line").required(),
       key::text("time_unit", model.time_unit, "unit of all times in the study, such as `\"min\"`").required(),
       variables("cv", model.cvs, "controlled variables, in the order of the rows of `G0`").required(),
       variables("mv", model.mvs, "manipulated variables, in the order of the columns").required(),
@@ -81,7 +81,7 @@ OptionKeys own_plant_keys(PlantModel& model) {
       key::check([sized](const TomlTable&) { sized(); }),
       key::list<Channel>(
           "channel", kMaxVariables * kMaxVariables, [&model](Channel& at) { return channel_keys(at, model); },
-          take, "the channels of `G0`; those that are not listed are zero")
+          take, "channels of `G0`; those not listed are zero")
           .allow("one or more")
           .required()};
 }

@@ -15,10 +15,10 @@ constexpr double kMostOutliers = 0.5;  // beyond it the others are the outliers
 OptionKeys outliers_keys(RecordOptions& options) {
   return {
       key::number("share", options.outlier_share, {.low = 0, .high = kMostOutliers, .high_included = true},
-                  "probability that a sample of a CV is one", "1")
+                  "probability that a sample of a CV is an outlier", "1")
           .required(),
       key::distribution("size", options.outlier_size, NumberRule::positive(),
-                        "added to the sample, up or down", "noise standard deviations")};
+                        "deviation added to the sample, up or down", "noise standard deviations")};
 }
 
 OptionKeys missing_keys(RecordOptions& options) {
@@ -31,20 +31,20 @@ OptionKeys missing_keys(RecordOptions& options) {
                                largest, options.missing_length));
   };
   return {key::number("share", options.missing_share, NumberRule::inside(0, 1),
-                      "of the samples of each CV, in the long run", "1")
+                      "long-run share of the samples of each CV that is missing", "1")
               .required()
               .allow("above 0, at most `length` / (`length` + 1)"),
           key::number("length", options.missing_length, NumberRule::at_least(1),
                       "mean length of a gap; lengths are geometrically distributed", "samples"),
           key::check(check_share),
           fill_key(options.fill,
-                   "what the reader finds in a gap: nothing (NaN; methods that need every sample say that "
-                   "they do not apply), the last value, or a straight line")};
+                   "what fills a gap: nothing (NaN; methods that need every sample do not apply), the last "
+                   "value, or a straight line")};
 }
 
 OptionKeys candidates_keys(RecordOptions& options) {
   return {key::whole("count", options.candidates, 1, RecordOptions::kMostCandidates,
-                     "how many there are in each loop", "signals")
+                     "number of signals in each loop", "signals")
               .required(),
           key::number("share", options.candidate_share, NumberRule::share(),
                       "probability that one of them is the signal v that drives the first disturbance of an "
@@ -66,23 +66,22 @@ void refuse_without_noise(const TomlTable& record, const Study& study) {
 
 OptionKeys record_keys(Study& study) {
   RecordOptions& options = study.record;
-  return {
-      key::optional_table(
-          "outliers", [&options] { return outliers_keys(options); }, "single samples that are far off"),
-      key::number("quantisation", options.quantisation, NumberRule::at_least(0), "step between two values",
-                  "noise standard deviations")
-          .otherwise("0: none"),
-      key::optional_table(
-          "missing", [&options] { return missing_keys(options); }, "gaps, each CV with its own"),
-      key::number("compression", options.compression, NumberRule::at_least(0),
-                  "deviation that a swinging door allows itself. The reader interpolates between archived "
-                  "points, so that no sample is off by more",
-                  "noise standard deviations")
-          .otherwise("0: every sample is kept"),
-      key::optional_table(
-          "candidates", [&options] { return candidates_keys(options); },
-          "further signals, of which the model knows nothing: some drive a disturbance, others are decoys"),
-      key::check([&study](const TomlTable& table) { refuse_without_noise(table, study); })};
+  return {key::optional_table(
+              "outliers", [&options] { return outliers_keys(options); }, "single samples that are far off"),
+          key::number("quantisation", options.quantisation, NumberRule::at_least(0),
+                      "step between two values", "noise standard deviations")
+              .otherwise("0: none"),
+          key::optional_table(
+              "missing", [&options] { return missing_keys(options); }, "gaps, each CV with its own"),
+          key::number("compression", options.compression, NumberRule::at_least(0),
+                      "tolerance of the swinging-door compression. The reader interpolates between archived "
+                      "points, so no sample is off by more",
+                      "noise standard deviations")
+              .otherwise("0: every sample is kept"),
+          key::optional_table(
+              "candidates", [&options] { return candidates_keys(options); },
+              "further signals that the model does not have: some drive a disturbance, others are decoys"),
+          key::check([&study](const TomlTable& table) { refuse_without_noise(table, study); })};
 }
 
 }  // namespace
@@ -94,7 +93,7 @@ OptionKey fill_key(GapFill& fill, std::string meaning) {
 OptionKey record_key(Study& study) {
   return key::optional_table(
              "record", [&study] { return record_keys(study); },
-             "what the historian makes of the record that the methods see")
+             "how the historian degrades the record that the methods see")
       .otherwise("none: every sample as it was measured");
 }
 

@@ -33,7 +33,7 @@ def main(program, study):
 
         text = run("validate", wrong, "--experiments", 8, "--methods", "botelho,sun", "--quiet").stdout
         assert "warning: simulation.noise_standard_deviation: 0.1" in text and "% of the width" in text, text
-        assert "warning: methods.names: sun says nothing of any loop of the pilot: it needs setpoints" in text, text
+        assert "warning: methods.names: sun gives no verdict on any loop of the pilot: it needs setpoints" in text, text
         assert "cost:" in text and "archive:" in text, text
         assert "simulation.noise_standard_deviation" not in good, good
 

@@ -368,7 +368,7 @@ TEST_CASE("judgement changes: a part of the earlier run will do, other experimen
       "earlier run");
   now = {made_up_record(0, ExperimentKind::ud, 5, 0.2)};
   CHECK_THROWS_WITH(judgement_changes(before, now, location),
-                    "experiment 0: found ud on CV 5; allowed: what the earlier run has, mpm on CV 0");
+                    "experiment 0: found ud on CV 5; allowed: those of the earlier run, mpm on CV 0");
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST_CASE("a study as it should be has no warning, and each slip its own", "[val
       {[](Study& s) {
          s.simulation.limit_steps = {{0, 9, -1e3, -1e3}};
        },
-       "simulation.limit_step", "look at the signs"},
+       "simulation.limit_step", "check the signs"},
       {[](Study& s) { s.simulation.steps.clear(); }, "diagnosis.self_check", "without excitation"},
       {[](Study& s) { s.experiments.healthy = s.experiments.tuning = 0; }, "experiments.healthy",
        "no false alarm"},
@@ -142,12 +142,12 @@ TEST_CASE("a pilot says how many loops with impact there will be, and how well r
   CHECK(found.bytes_of_a_loop == (2 * 7 + 2 * 3 + 2) * 400 * 8);
   const std::vector<StudyWarning> warnings = forecast_warnings(study, found, pilot);
   REQUIRE(warnings.size() == 1);
-  CHECK_THAT(to_string(warnings[0]), Contains("5 of 20 loops of the pilot cannot be run to their end"));
+  CHECK_THAT(to_string(warnings[0]), Contains("5 of 20 loops of the pilot do not run to their end"));
 
   // No fault has an impact, and every loop runs.
   std::vector<ExperimentRecord> mild(5, made_up(study, ExperimentKind::mpm, 1.1));
   CHECK_THAT(to_string(forecast_warnings(study, forecast(study, mild), mild).front()),
-             Contains("no fault of the pilot has an impact (5 of them)"));
+             Contains("none of the 5 faults of the pilot has an impact"));
   // None of five is not none of all: the share may be up to 43 % (Wilson, 95 %).
   const Interval possible = forecast(study, mild).loops_with_impact_interval;
   CHECK(possible.lower == Approx(0.0).margin(1e-9));
@@ -200,7 +200,7 @@ TEST_CASE("a world whose loop is not stable is warned of", "[validation]") {
   study.world->gain_factor = Distribution::constant(8.0);
   CHECK_THAT(found(), Contains("2 of 2 worlds are not stable without a fault") && Contains("\"exclude\""));
   study.diagnosis.unstable = UnstableLoops::exclude;
-  CHECK_THAT(found(), Contains("their experiments are left out"));
+  CHECK_THAT(found(), Contains("the study leaves their experiments out"));
 }
 
 /// Two CVs of 300 samples, whose simulation errors are white with these deviations in three thirds.

@@ -99,7 +99,7 @@ TEST_CASE("a key that there is not is refused by its name", "[study_change]") {
       change_refusal({{"controller.mv.u2.move_supression", "10"}}),
       Catch::Contains("controller.mv.u2: found unknown key 'move_supression' (nearest: 'move_suppression')"));
   CHECK_THAT(change_refusal({{"simulation.none", ""}}),
-             Catch::Contains("s: simulation.none: found no such key to take out"));
+             Catch::Contains("s: simulation.none: found a key that the study does not have"));
   CHECK_THAT(change_refusal({{"scenario.Scen99.mismatch", "[]"}}),
              Catch::Contains("s: scenario.Scen99.mismatch: found 'Scen99'"));
   CHECK_THAT(change_refusal({{"simulation.step.first.level", "1"}}),
@@ -117,10 +117,10 @@ TEST_CASE("the studies of a table are changed after their variants", "[study_cha
   CHECK(table.studies.at("loud").simulation.noise_standard_deviation(0) == 0.25);
 }
 
-TEST_CASE("a change that takes away a scenario of the table is refused", "[study_change]") {
+TEST_CASE("a change that removes a scenario of the table is refused", "[study_change]") {
   ThesisTable table = small_table();
   CHECK_THROWS_WITH(change_studies(table, {{"scenario.Scen1.name", "\"other\""}}),
-                    Catch::Contains("a change that takes away scenario 'Scen1'"));
+                    Catch::Contains("a change that removes scenario 'Scen1'"));
 }
 
 }  // namespace mpm
