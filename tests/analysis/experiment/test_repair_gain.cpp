@@ -82,7 +82,7 @@ TEST_CASE(
 TEST_CASE("repair gain: that of a measured disturbance is that of the feed-forward that knows it",
           "[repair_gain]") {
   const Study study = exact_world();
-  const Eigen::Index md = study.mv_count() + 1;
+  const Eigen::Index md = study.mv_count();  // d1, which moves at sample 100
   ExperimentDraw draw = fault_of_gain(study, 1.0);
   draw.mismatches = {{2, md, MismatchParameter::gain, 3.0}};
   SolverStatistics pilots;
