@@ -225,6 +225,11 @@ NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
   return noise;
 }
 
+double slow_part(const BaseNoise& noise) {
+  const double state = noise.b / std::sqrt(1.0 - noise.a * noise.a);
+  return std::max(state, noise.phi / std::sqrt(1.0 - noise.phi * noise.phi));
+}
+
 void add_unseen_backgrounds(NoisePosterior& noise, Eigen::Index samples) {
   const NoiseModels grid = grid_of_models(samples);
   std::vector<Eigen::Index> small;

@@ -37,6 +37,9 @@ struct NoisePosterior {
 /// which healthy loops have too: it adds a quarter to the variance of the noise.
 inline constexpr double kLargestBackground = 0.5;
 
+/// Standard deviation of the slow part of a noise over that of its white part.
+double slow_part(const BaseNoise& noise);
+
 /// Counts backgrounds that the record does not show among those that are possible: a small part of the weight
 /// goes to each AR(1) state up to kLargestBackground, since a background may be another one next month.
 void add_unseen_backgrounds(NoisePosterior& noise, Eigen::Index samples);

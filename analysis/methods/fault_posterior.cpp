@@ -232,6 +232,8 @@ class FaultPosterior final : public AssessmentMethod {
     for (std::size_t i = 0; i < priors_.cvs.size(); ++i) {
       CvPrior& prior = priors_.cvs[i];
       const auto cv = static_cast<Eigen::Index>(i);
+      if (!context.learnt->of(cv).are_doubtful())
+        continue;
       double false_odds = 0.0;
       for (const bool first : {true, false}) {
         const auto learns = [&](Eigen::Index k) { return (k < middle) == first; };

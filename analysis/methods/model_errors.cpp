@@ -191,8 +191,11 @@ void ModelErrors::learn_noise(const Eigen::Ref<const Eigen::RowVectorXd>& left,
     return noise_posterior(left, deviation * strong(rows / deviation), least);
   };
   noise_ = under(unknown);
+  const bool doubtful = are_doubtful();
   double best = noise_.log_evidence + kSpeaksForWander, wander = 0.0;
   for (const double tried : kWanders) {
+    if (!doubtful)
+      break;
     wander_ = tried;
     const Eigen::MatrixXd wanders = wandering(model_, inputs, initial);
     Eigen::MatrixXd rows(unknown.rows() + wanders.rows(), unknown.cols());

@@ -68,6 +68,9 @@ class ModelErrors {
   const NoisePosterior& noises() const { return noise_; }
   /// Whether errors change along a healthy record, as those of a nonlinear plant do.
   bool wanders() const { return wander_ > 0.0; }
+  /// Whether the benchmark shows more than a background beside the errors, so that these may be others than
+  /// are looked for.
+  bool are_doubtful() const { return wanders() || slow_part(noise_.best) > kMostBackground; }
   /// Of the errors, without the constant.
   Eigen::Index count() const { return mean_.size(); }
   /// The model with errors out of their posterior, of `z` ~ N(0, I) of the size count().
@@ -88,6 +91,8 @@ class ModelErrors {
   Eigen::MatrixXd directions(const Eigen::Ref<const Eigen::MatrixXd>& slopes) const;
 
  private:
+  static constexpr double kMostBackground = 1.0;  ///< slow part of the noise over the white one
+
   /// The response to a change of one channel: of an error, over one standard deviation to either side.
   struct Slope {
     Eigen::Index input;
