@@ -15,7 +15,9 @@ namespace mpm {
 namespace {
 
 constexpr Eigen::Index kMostShift = 3;
-constexpr double kWorthNaming = 0.1;  // of the variance of the errors, in each CV
+/// Of the variance of what is left of the errors, in each CV. Of 26 healthy records
+/// (tests/reliability/records.py, seeds 2 and 3) one had such a shift.
+constexpr double kWorthNaming = 0.1;
 constexpr Eigen::Index kFewestErrors = 50;
 
 /// The row `shift` samples later; its ends keep the nearest value, or are missing.
