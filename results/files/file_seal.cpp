@@ -85,7 +85,7 @@ std::string read_seal(InputFile& file) {
   if (file.read<std::string>(0, kHdf5Signature.size()) != kHdf5Signature)
     file.refuse("not an HDF5 file, or not a whole one");
   file.refuse(
-      "no checksum at its end: the file is incomplete, was changed by another program, or comes from an "
+      "no checksum at its end: the file is not a whole one, was changed by another program, or comes from an "
       "early version of mpmbench; restore a copy, or run the study again");
 }
 

@@ -194,7 +194,7 @@ Table findings_table(const Study& study, const StudyFindings& findings) {
       fmt::format("Measured values with {:g} % intervals; {}", 100.0 * study.aggregate.confidence,
                   any ? "a number agrees with the reported one if its interval contains it. For shares, the "
                         "sampling error of the reported one counts too if its number of experiments is known."
-                      : "the study has no reported values."),
+                      : "the study names no values to compare with."),
       {{"name", Table::Align::left, Shown::text},
        {"Quantity", Table::Align::left, Shown::page},
        {"measured"},

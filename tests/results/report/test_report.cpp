@@ -165,8 +165,9 @@ TEST_CASE("report: a section without data says in one sentence why it is left ou
     ++left_out;
   }
   CHECK(left_out == 15);
-  CHECK_THAT(page_of(campaign, "f.h5"), Contains("Left out: it needs experiments with impact of both kinds; "
-                                                 "there are 0 with an MPM and 0 with a UD."));
+  CHECK_THAT(page_of(campaign, "f.h5"),
+             Contains("Left out: this needs experiments of both kinds with impact; "
+                      "there are 0 with an MPM and 0 with a UD."));
 }
 
 TEST_CASE("report: a study of named scenarios has their section in place of rates") {

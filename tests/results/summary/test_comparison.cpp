@@ -132,10 +132,10 @@ TEST_CASE("comparison of a study with a calibration: its rates, thresholds, and 
   for (const MethodRateInfo& info : counted_rates(findings.methods))
     CHECK_THAT(text, Contains(std::string("\n") + info.title));
   CHECK_THAT(text, Contains("Thresholds from 30 healthy loops and 100 with a disturbance, seed 77"));
-  CHECK_THAT(text, Contains("no threshold_01 of botelho: 30 calibration loops with a verdict are too few"));
-  CHECK_THAT(text, Contains("badwe2009: no verdict on any calibration loop, and so no rate at"));
-  CHECK_THAT(text, !Contains("no threshold_05 of badwe2009"));
-  CHECK_THAT(text, !Contains("no threshold_05 of sun"));
+  CHECK_THAT(text, Contains("no threshold_01 for botelho: 30 calibration loops with a verdict are too few"));
+  CHECK_THAT(text, Contains("badwe2009: no verdict on any calibration loop, so no rate at"));
+  CHECK_THAT(text, !Contains("no threshold_05 for badwe2009"));
+  CHECK_THAT(text, !Contains("no threshold_05 for sun"));
   const Json json = Json::parse(document_json(comparison_document(campaign, findings)));
   CHECK(json["calibration"]["seed"] == 77);
   CHECK(json["calibration"]["loops"] == 30);
