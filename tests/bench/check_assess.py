@@ -275,9 +275,10 @@ def check_trust(bench, study):
     assert first["repair"]["cv"] == "xB" and first["repair"]["mv"] == "S", first["repair"]
     assert first["repair"]["variance"]["predicted"][1] < 0.9 * first["repair"]["variance"]["now"][1], first["repair"]
     page = (bench.folder / "page.html").read_text()
-    for part in ("The verdict", "<dt>How sure</dt>", "<details", "What it costs", "How far to trust it", "<svg",
+    for part in ("The verdict", "<dt>How sure</dt>", "What it costs", "How far to trust it", "<svg",
                  *first["verdict"][:2]):
         assert part in page, part
+    assert ('<details class="fold">' in page) == bool(first["warnings"]), first["warnings"]
     assert first["found"] == "fault" and first["model"]["score"] > first["model"]["trust"]["threshold"], first["model"]
     assert first["controller"]["alike"] and min(first["controller"]["agreement"].values()) > 0.9, first["controller"]
     bench.run("summary", kept)  # an archive like any other
