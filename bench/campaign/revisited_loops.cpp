@@ -120,7 +120,7 @@ class Revisit {
     const LoopPlace place = loops_.place(key);
     const LoopResult for_process{.bytes = "", .unfinished = true};
     if (place.of_calibration) {
-      if (solver_ == "ipopt")
+      if (by_ipopt_alone_)
         return for_process;
       ExperimentRecord record = runners.calibration->run(place.index, loops_.calibration_store);
       return solver_ != "active-set" && needs_ipopt(record)
@@ -129,7 +129,7 @@ class Revisit {
     }
     ExperimentRecord record = records_.take(place.index);
     record.assessments.clear();
-    const bool by_ipopt = solver_ == "ipopt" || record.solver.fallbacks > 0;
+    const bool by_ipopt = by_ipopt_alone_ || record.solver.fallbacks > 0;
     if (by_ipopt && runners.experiments.runs_loops(record))
       return {.bytes = bytes_.to_bytes(record), .unfinished = true};
     return loops_.make(key, runners.experiments, std::move(record));
@@ -144,6 +144,7 @@ class Revisit {
 
   const RevisitedLoops& loops_;
   std::string solver_;
+  bool by_ipopt_alone_ = solver_ != "auto" && solver_ != "active-set";
   RecordBytes bytes_;  ///< without answers, which nobody asks for again
   RecordsInTurn records_;
 };

@@ -178,10 +178,12 @@ TEST_CASE("comparison: loops that Ipopt runs again give the same bits for any nu
   options.experiments = 3;
   options.store = StorePolicy::none;
   options.methods = {"sse", "botelho"};
-  const Campaign serial = run_serially(study, options);
+  Campaign serial = run_serially(study, options);
+  serial.info.solver = options.solver;
   options.methods = {"sse"};
   for (const int jobs : {1, 3}) {
     Campaign later = run_serially(study, options);
+    later.info.solver = options.solver;
     add_methods(later, {.methods = {"botelho"}, .jobs = jobs}, {});
     check_same(later.calibration, serial.calibration);
     const RecordBytes format(later.study, forms_of(later));
