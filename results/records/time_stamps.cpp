@@ -92,9 +92,9 @@ double median_step(std::vector<double> values) {
 
 /// Days whose steps suit the controller, and would be far too short for it in the unit of the plant.
 bool have_steps_of_days(const std::vector<double>& values, const StampRules& rules) {
-  constexpr double kMostSamples = 10.0, kFarTooShort = 0.01;
+  constexpr double kLongestStep = 10.0, kFarTooShort = 0.01;
   const double step = median_step(values);
-  return rules.sample_days > 0.0 && step > 0.0 && step <= kMostSamples * rules.sample_days &&
+  return rules.sample_days > 0.0 && step > 0.0 && step <= kLongestStep * rules.sample_days &&
          step < kFarTooShort * rules.sample;
 }
 
