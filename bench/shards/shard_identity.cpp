@@ -59,7 +59,7 @@ void require_same(const ShardIdentity& found, const ShardIdentity& expected, con
   const IdentityEntry none{"end", "nothing more"};
   const IdentityEntry& here = one == found.end() ? none : *one;
   const IdentityEntry& there = other == expected.end() ? none : *other;
-  throw OtherRun(fmt::format("{}: it belongs to a run with a different {}: found {}; allowed: {}", found_in,
+  throw OtherRun(fmt::format("{}: it belongs to a run with another {}: found {}; allowed: {}", found_in,
                              there.name, here.value, there.value));
 }
 

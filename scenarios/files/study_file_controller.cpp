@@ -250,9 +250,21 @@ OptionKeys controller_keys(Study& study) {
               .required()
               .allow("1 to `prediction_horizon`")
               .read(read_control_horizon),
-          key::wholes("move_blocks", options.move_blocks, 1, kMaxHorizon,
+          key::option("move_blocks", "list of whole numbers",
                       "samples for which each planned position of the MVs is held (move blocking); "
-                      "`control_horizon` numbers; the last one is held to the end of the horizon"),
+                      "`control_horizon` numbers; the last one is held to the end of the horizon",
+                      "samples")
+              .otherwise("none: one sample each")
+              .allow("1 or more each")
+              .read([&options](const TomlTable& table, const std::string& key) {
+                const NumberRule rule{
+                    .low = 1, .high = kMaxHorizon, .low_included = true, .high_included = true};
+                for (const double samples : read_numbers(table, key, rule, kMaxHorizon)) {
+                  if (samples != std::floor(samples))
+                    table.refuse(key, fmt::format("{}", samples), "whole numbers");
+                  options.move_blocks.push_back(static_cast<int>(samples));
+                }
+              }),
           key::choice(
               "weight_convention", options.weight_convention, {"direct", "squared"},
               "`abs(Q x)^2` in (6.20) as Q x^2 or as (Q x)^2. Open in the thesis; the first comes close to "

@@ -48,7 +48,7 @@ TEST_CASE("a study as it should be has no warning, and each slip its own", "[val
       {[](Study& s) { s.simulation.noise_standard_deviation(1) *= 10; },
        "simulation.noise_standard_deviation", "for y2 is 10 % of the width of its soft range"},
       {[](Study& s) { s.controller.cv_soft.lower(0) = s.controller.cv_soft.upper(0) = 1e3; },
-       "controller.cv.y1.soft", "the MVs within their hard limits bring y1 to"},
+       "controller.cv.y1.soft", "within their hard limits the MVs can only bring y1 to"},
       {[](Study& s) {
          s.simulation.limit_steps = {{0, 9, -1e3, -1e3}};
        },
@@ -72,7 +72,7 @@ TEST_CASE("setpoints are held against hard limits, and against what the MVs can 
   Study study = find_study("setpoint-methods");
   CHECK_THAT(warnings_of(study), !Contains("simulation.step"));
   study.controller.cv_hard.upper(0) = 1.0;
-  CHECK_THAT(warnings_of(study), Contains("simulation.step: 1.25 for y1 is outside of its hard limits"));
+  CHECK_THAT(warnings_of(study), Contains("simulation.step: 1.25 for y1 is outside its hard limits"));
   study = find_study("setpoint-methods");
   study.controller.mv_hard.lower.setZero();  // all gains are positive: nothing brings a CV below 0
   CHECK_THAT(warnings_of(study),
@@ -196,9 +196,9 @@ TEST_CASE("a world whose loop is not stable is warned of", "[validation]") {
       all += to_string(warning) + "\n";
     return all;
   };
-  CHECK_THAT(found(), !Contains("not stable"));
+  CHECK_THAT(found(), !Contains("unstable"));
   study.world->gain_factor = Distribution::constant(8.0);
-  CHECK_THAT(found(), Contains("2 of 2 worlds are not stable without a fault") && Contains("\"exclude\""));
+  CHECK_THAT(found(), Contains("2 of 2 worlds are unstable without a fault") && Contains("\"exclude\""));
   study.diagnosis.unstable = UnstableLoops::exclude;
   CHECK_THAT(found(), Contains("the study leaves their experiments out"));
 }

@@ -61,10 +61,12 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
        "study: found unknown key 'sed' (nearest: 'seed'); allowed: name, title, seed"},
       {"sample_time = 1", "sampletime = 1", "sampletime",
        "controller: found unknown key 'sampletime' (nearest: 'sample_time'); allowed: sample_time, "
-       "prediction_horizon, control_horizon, weight_convention, slack, target_violation_cost, mv, cv, "
+       "prediction_horizon, control_horizon, move_blocks, weight_convention, slack, target_violation_cost, "
+       "mv, cv, "
        "program"},
       {"cost = 6", "cost = 6\nzzz = 1", "zzz",
-       "controller.mv.cold: found unknown key 'zzz'; allowed: cost, move_suppression, target_weight, hard"},
+       "controller.mv.cold: found unknown key 'zzz'; allowed: cost, move_suppression, target_weight, "
+       "resting_value, resting_weight, hard, move_limit"},
       {"level = -0.25", "level = -0.25\nmv = 'hot'", "mv = 'hot'",
        "simulation.step[0]: found unknown key 'mv' (nearest: 'md'); allowed: md, cv, sample, level"},
       {"dead_time = 2", "dead_tim = 2", "dead_tim = 2",
