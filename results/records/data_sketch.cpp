@@ -28,6 +28,17 @@ std::string small_letters(std::string text) {
   return text;
 }
 
+/// Whether the word stands in the name with no letter or digit beside it, as "f" in "fi_f" and not in "flow".
+bool has_word(const std::string& name, const std::string& word) {
+  const auto is_border = [&](std::size_t at) {
+    return at >= name.size() || std::isalnum(static_cast<unsigned char>(name[at])) == 0;
+  };
+  for (std::size_t at = name.find(word); at != std::string::npos; at = name.find(word, at + 1))
+    if ((at == 0 || is_border(at - 1)) && is_border(at + word.size()))
+      return true;
+  return false;
+}
+
 double median_of(std::vector<double> values) {
   if (values.empty())
     return 0.0;
@@ -161,19 +172,25 @@ class DataSketcher {
     }
   }
 
-  /// The one column that has the variable in its name; of several the one of the measurement (PV).
+  /// The one column that has the variable as a word of its name ("FI_F"), or else anywhere in it; of several
+  /// the one of the measurement (PV).
   std::optional<std::size_t> only_column_with(const std::string& variable) const {
-    std::vector<std::size_t> all, measured;
+    std::vector<std::size_t> as_word, anywhere, measured;
+    const std::string sought = small_letters(variable);
     for (std::size_t column = 0; column < file().names.size(); ++column) {
       const std::string name = small_letters(file().names[column]);
-      if (name.find(small_letters(variable)) == std::string::npos)
+      if (has_word(name, sought))
+        as_word.push_back(column);
+      if (name.find(sought) == std::string::npos)
         continue;
-      all.push_back(column);
+      anywhere.push_back(column);
       if (name.ends_with("pv"))
         measured.push_back(column);
     }
-    const std::vector<std::size_t>& found = all.size() == 1 ? all : measured;
-    return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
+    for (const auto* found : {&as_word, &anywhere, &measured})
+      if (found->size() == 1)
+        return found->front();
+    return std::nullopt;
   }
 
   double step() const {

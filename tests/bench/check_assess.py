@@ -140,7 +140,7 @@ def check_columns(mistakes, right):
     mistakes.refused(plain, "xD and xB: found the same values in both", data="tags = {xD = 'xB'}")
     mistakes.warned(text_of(mistakes.changed(lambda k, r: r.update(xD=r["xB"], xB=r["xD"]))), "xD and xB exchanged")
     mistakes.warned(text_of(mistakes.changed(lambda k, r: r.update(R=r["S"], S=r["R"]))), "R and S exchanged")
-    mistakes.warned(text_of(mistakes.changed(lambda k, r: r.update(S=-r["S"]))), "the sign of S turned round")
+    mistakes.warned(text_of(mistakes.changed(lambda k, r: r.update(S=-r["S"]))), "the sign of S reversed")
     mistakes.warned(text_of(mistakes.changed(lambda k, r: r.update(R=100 * r["R"]))), "R is beyond its hard limits")
     mistakes.refused(text_of(mistakes.changed(lambda k, r: r.update(xD=0.25))), "xD: found 0.25 in every sample")
     mistakes.warned(text_of(mistakes.changed(lambda k, r: r.update(S=0.25))), "S never moves")

@@ -30,7 +30,7 @@ REQUESTS = """{"call": "reset", "parameters": {"area": 2.0}, "sample_time": 1.0}
 SHIM = """#!/bin/sh
 case "$1" in
   run) case "$*" in *heater.toml*) set -- "$@" --experiments 21 ;; *) set -- "$@" --experiments 8 ;; esac ;;
-  suite) set -- "$@" --experiments 2 --plants "$PLANT" --families exact ;;
+  suite) set -- "$@" --experiments 2 --plants wood-berry --families exact ;;
 esac
 exec "$MPMBENCH" "$@"
 """

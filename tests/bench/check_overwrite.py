@@ -96,7 +96,7 @@ def main(program, study):
         words = ["suite", suite, "-o", kept, "--experiments", 2, "--quiet"]
         run(*words)
         run(*words, "--methods", "botelho")  # the same cells
-        refused(kept / "column.one.h5", *words, "--seed", 2, found="another study")
+        refused(kept / "column.one.h5", *words, "--seed", 2, found="a different study")
         run(*words, "--seed", 2, "--overwrite")
 
         sweep, kept = folder / "noise.toml", folder / "sweep"
@@ -104,7 +104,7 @@ def main(program, study):
         sweep.write_text(SWEEP.format(value=0.01))
         run(*words)
         sweep.write_text(SWEEP.format(value=0.02))
-        refused(kept / "01.h5", *words, found="another study")
+        refused(kept / "01.h5", *words, found="a different study")
         run(*words, "--overwrite")
 
 

@@ -325,7 +325,7 @@ TEST_CASE("shard store: an experiment in two shards counts once, and is refused 
   leave_behind(folder / "record", {other});
   CHECK_THROWS_WITH(merged({folder / "one", folder / "two", folder / "record"}),
                     Contains((folder / "record" / "00000001.shard").string() + ": experiment 1") &&
-                        Contains("another solver_iterations than in " + (folder / "one").string()));
+                        Contains("solver_iterations that differ from those in " + (folder / "one").string()));
 }
 
 TEST_CASE("shard store: a shard that its run has packed meanwhile is gone, not damaged") {

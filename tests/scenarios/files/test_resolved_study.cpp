@@ -102,7 +102,10 @@ std::string random_study_text() {
     text += ", " + std::to_string(0.25 + 0.1 * i) + (i % 30 == 0 ? "\n" : "");
   text +=
       "]\n[monitoring]\nwindow = 30\nstride = 7\n[calibration]\nhealthy = 50\nseed = 8\n"
-      "[data]\ntime = 'stamp'\ntime_unit = 'h'\ndate_order = 'day-month-year'\nseparator = ';'\ndecimal = "
+      "[data]\ntime = 'stamp'\ndate = 'day'\ntime_format = '%H:%M'\ntime_zone = 'Europe/Berlin'\nskip = [2, "
+      "4]\n"
+      "tag_column = 'tag'\nvalue_column = 'value'\nstored_on_change = ['hot']\ntime_unit = 'h'\ndate_order = "
+      "'day-month-year'\nseparator = ';'\ndecimal = "
       "','\n"
       "tags = {level = 'LI 1', drain = 'FI 3'}\noperating_point = {heat = 80.5}\nscale = {hot = -2}\n"
       "setpoint = {level = 'LC 1'}\nlower = {level = 'lo'}\nupper = {heat = 'hi'}\ny_sim = {heat = 'model'}\n"
@@ -196,6 +199,7 @@ std::string fmu_study_text() {
 [plant.fmu]
 file = "not_here.fmu"
 settle = 3000
+step = 0.25
 input = [{name = "v1", operating = 3.2}, {name = "v2", operating = 3.15}, {name = "x1", operating = 0.43},
          {name = "x2", variable = "valve.2", operating = 0.34}]
 output = [{name = "h1", variable = "level[1]"}]
@@ -243,13 +247,24 @@ std::string world_tank_text() {
          "\n[world]\nplant_parameter = [{name = \"cd1\", factor = {uniform = [0.95, 1.05]}}]\n";
 }
 
+/// The small study with the limits and tunings of industrial controllers.
+std::string tuned_study_text() {
+  std::string text =
+      replaced(small_study(), "control_horizon = 5", "control_horizon = 3\nmove_blocks = [1, 4, 2]");
+  text = replaced(text, "[controller.mv.hot]\ncost = -1",
+                  "[controller.mv.hot]\nresting_value = 0.5\nresting_weight = 2");
+  text = replaced(text, "hard = [-4, 5]", "hard = [-4, 5]\nmove_limit = 0.5");
+  text = replaced(text, "slack_weight = 8\nsoft = [0, 1]", "setpoint_weight = 1\nreference_time = 4");
+  return replaced(text, "slack_weight = 9", "slack_weight = 9\nslack_cost = 6");
+}
+
 /// Studies of the tests, among them those with the keys that no shipped one has.
 std::vector<Study> of_tests() {
   std::vector<Study> studies;
   for (const std::string& text :
        {small_study(), random_study_text(), scenario_study_text(), nonlinear_study_text(), random_tank_text(),
         fmu_study_text(), program_study_text(), controller_program_text(), unexcited_study_text(),
-        world_study_text(), world_tank_text()})
+        world_study_text(), world_tank_text(), tuned_study_text()})
     studies.push_back(parse_study(text, "s.toml"));
   return studies;
 }
