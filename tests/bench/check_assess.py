@@ -153,7 +153,7 @@ def check_columns(mistakes, right):
 def check_absolute(mistakes, right):
     point = {"xD": 96.2, "xB": 0.5, "R": 1.95, "S": 1.71, "F": 2.45}
     absolute = text_of(mistakes.changed(lambda k, r: r.update({name: r[name] + point[name] for name in point})))
-    message = mistakes.refused(absolute, "absolute values: xD with mean 96.2", "F with mean 2.4")
+    message = mistakes.refused(absolute, "look absolute: xD with mean 96.2", "F with mean 2.4")
     given = ", ".join(f"{name} = {value}" for name, value in point.items())
     assert verdict(mistakes.assess(absolute, f"operating_point = {{{given}}}")) == right
     pasted = message[message.index("operating_point ="):].splitlines()[0]
