@@ -118,7 +118,7 @@ class Revisit {
 
   LoopResult in_thread(std::int64_t key, LoopRunners& runners) {
     const LoopPlace place = loops_.place(key);
-    const LoopResult for_process{.bytes = "", .unfinished = true};
+    LoopResult for_process{.bytes = "", .unfinished = true};
     if (place.of_calibration) {
       if (by_ipopt_alone_)
         return for_process;

@@ -145,7 +145,8 @@ FmuPackage::FmuPackage(const fs::path& file) {
 }
 
 fs::path FmuPackage::library() const {
-  const fs::path folder = folder_.path() / kBinaries, named = folder / (description_.identifier + ".so");
+  const fs::path folder = folder_.path() / kBinaries;
+  fs::path named = folder / (description_.identifier + ".so");
   std::error_code none;
   if (fs::is_regular_file(named, none))
     return named;

@@ -102,7 +102,7 @@ class RecordReader {
 
   Eigen::RowVectorXd cv(const std::string& name) {
     const RowSignal signal = signals_.variable(name, "y");
-    const Eigen::RowVectorXd values = grid_.measured(signal);
+    Eigen::RowVectorXd values = grid_.measured(signal);
     if (!signals_.on_change(name))
       return values;
     return values.array().isNaN().select(grid_.of_last_row(signals_.holding(name, "y", signal)), values);

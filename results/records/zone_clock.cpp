@@ -38,7 +38,7 @@ struct ZoneClock::Zone {
 };
 
 ZoneClock::ZoneClock(const std::string& name, const std::string& place)
-    : zone_(std::make_unique<const Zone>(zone_named(name, place))) {}
+    : zone_(std::make_unique<const Zone>(Zone{zone_named(name, place)})) {}
 ZoneClock::~ZoneClock() = default;
 ZoneClock::ZoneClock(ZoneClock&&) noexcept = default;
 ZoneClock& ZoneClock::operator=(ZoneClock&&) noexcept = default;

@@ -52,7 +52,7 @@ Table sweep_table(const std::vector<SweepRow>& rows) {
                             as_label(row.value)};
     cells.back().mark = row.healthy ? "" : " *";
     for (const Finding& column : columns)
-      cells.push_back(number_in(row.findings, column));
+      cells.emplace_back(number_in(row.findings, column));
     table.row(std::move(cells));
   }
   return table;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 namespace mpm {
 namespace {
@@ -28,20 +29,24 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
-  if (name.size() > kLongestMisspelt) {
+std::vector<std::string> nearest_names(std::string_view name, const std::vector<std::string>& names,
+                                       std::size_t most) {
+  if (name.size() > kLongestMisspelt)
     return {};
-  }
-  std::string nearest;
-  std::size_t smallest = name.size() / 2 + 1;
-  for (const std::string& candidate : names) {
-    const std::size_t distance = edit_distance(name, candidate);
-    if (distance < smallest) {
-      smallest = distance;
-      nearest = candidate;
-    }
-  }
+  std::vector<std::pair<std::size_t, std::size_t>> near;  // distance, place
+  for (std::size_t place = 0; place < names.size(); ++place)
+    if (const std::size_t distance = edit_distance(name, names[place]); distance <= name.size() / 2)
+      near.emplace_back(distance, place);
+  std::sort(near.begin(), near.end());
+  std::vector<std::string> nearest;
+  for (std::size_t i = 0; i < std::min(most, near.size()); ++i)
+    nearest.push_back(names[near[i].second]);
   return nearest;
+}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
+  const std::vector<std::string> nearest = nearest_names(name, names, 1);
+  return nearest.empty() ? std::string() : nearest.front();
 }
 
 }  // namespace mpm

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace mpm {
 
-/// The one of `names` that a misspelt `name` most likely means: fewest insertions, deletions and replacements
-/// of one character (Levenshtein distance), the first of several. Empty when none is near, that is, when more
-/// than half of `name` would have to change.
+/// Those of `names` that a misspelt `name` may mean, nearest first: fewest insertions, deletions and
+/// replacements of one character (Levenshtein distance), in the order of `names` where they are equally many.
+/// None of which more than half of `name` would have to change, and `most` at most.
+std::vector<std::string> nearest_names(std::string_view name, const std::vector<std::string>& names,
+                                       std::size_t most);
+
+/// The first of them, or an empty text.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names);
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
 #include <iterator>
 #include <utility>
 
@@ -130,8 +131,12 @@ void TomlTable::refuse(std::string_view key, const std::string& found, const std
 }
 
 std::string with_nearest(std::string_view name, const std::vector<std::string>& names) {
-  const std::string nearest = nearest_name(name, names);
-  return nearest.empty() ? in_quotes(name) : fmt::format("{} (nearest: '{}')", in_quotes(name), nearest);
+  constexpr std::size_t kReadAtOnce = 40;  // of more names a reader does not find the right one in the list
+  std::vector<std::string> nearest = nearest_names(name, names, names.size() > kReadAtOnce ? 3 : 1);
+  for (std::string& one : nearest)
+    one = fmt::format("'{}'", one);
+  return nearest.empty() ? in_quotes(name)
+                         : fmt::format("{} (nearest: {})", in_quotes(name), fmt::join(nearest, ", "));
 }
 
 }  // namespace mpm
