@@ -9,6 +9,7 @@
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
 #include "solvers/active_set_certificate.hpp"
+#include "solvers/equilibrated_program.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {
@@ -28,6 +29,10 @@ constexpr double kStiffer = 16.0;  // a power of two: taking it back is exact
 constexpr double kStiffest = 0x1p20;
 
 constexpr double kCertified = 1e-8;  // KKT residual up to which an answer counts as one
+
+// An error that is small in units of the program's own size may be large in the units of the caller: the
+// tolerance in the former is this share of that in the latter.
+constexpr double kEquilibratedTolerance = 1e-3;
 
 // Families of springs, in this order; those of kept slacks exist only when there are such slacks.
 constexpr std::size_t kSoft = 0, kHard = 1, kSlackUpper = 2;
@@ -49,7 +54,24 @@ QpStatus status_of(NewtonOutcome outcome) {
   return outcome == NewtonOutcome::iteration_limit ? QpStatus::iteration_limit : QpStatus::numerical_error;
 }
 
+bool has_answer(const QpResult& result) {
+  return result.status == QpStatus::solved || result.status == QpStatus::infeasible;
+}
+
 }  // namespace
+
+/// The program in other units, and its solver.
+struct ActiveSetSolver::Equilibrated {
+  Equilibrated(const QpStructure& structure, ActiveSetOptions options)
+      : program(structure), solver(program.structure(), [&] {
+          options.equilibrate = false;
+          options.tolerance *= kEquilibratedTolerance;
+          return options;
+        }()) {}
+
+  EquilibratedProgram program;
+  ActiveSetSolver solver;
+};
 
 void ActiveSetOptions::validate() const {
   if (!(tolerance > 0 && tolerance < 1))
@@ -78,6 +100,8 @@ ActiveSetSolver::ActiveSetSolver(std::shared_ptr<const QpStructure> structure,
     vertex_.emplace(this->structure());
 }
 
+ActiveSetSolver::~ActiveSetSolver() = default;
+
 void ActiveSetSolver::do_reset() {
   reset_newton();
   dual_.reset();
@@ -102,6 +126,8 @@ void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
     return;
   }
   search(data, result);
+  if (options_.equilibrate && !has_answer(result))
+    solve_equilibrated(data, result);
   if (vertex_ && result.status == QpStatus::solved)
     vertex_->take(data, result);
 }
@@ -121,6 +147,24 @@ void ActiveSetSolver::search(const QpData& data, QpResult& result) {
     return;
   const QpStatus status = result.status;
   if (!solve_by_dual(data, result))
+    result.status = status;
+}
+
+void ActiveSetSolver::solve_equilibrated(const QpData& data, QpResult& result) {
+  if (!equilibrated_)
+    equilibrated_ = std::make_unique<Equilibrated>(structure(), options_);
+  auto& [program, solver] = *equilibrated_;
+  solver.reset();  // the answer must not depend on which problem needed it before
+  const QpResult& scaled = solver.solve(program.scaled(data));
+  result.iterations += scaled.iterations;
+  if (!has_answer(scaled))
+    return;
+  const QpStatus status = result.status;
+  program.write_back(scaled, result);
+  program.write_certificate(solver.certificate(), change_);
+  const bool stands = result.status == QpStatus::solved ? has_residual_below(kCertified, data, result)
+                                                        : proves_infeasible(data, change_);
+  if (!stands)
     result.status = status;
 }
 

@@ -23,6 +23,8 @@ struct ActiveSetOptions {
   int iteration_limit = 1000;
   /// Rounds of multipliers and proximal centres of one solve.
   int round_limit = 200;
+  /// Whether a program without an answer is tried again in units in which its numbers are of one size.
+  bool equilibrate = true;
 
   /// Throws InputError when a number is out of range.
   void validate() const;
@@ -35,7 +37,8 @@ struct ActiveSetOptions {
 /// (hard limits, soft limits that share a slack) are handled by the method of multipliers around it, shared
 /// slacks by a dual active-set method first. Where the Hessian is only semidefinite (the target optimizer, a
 /// linear program) proximal terms are added and taken back (docs/active_set.md); while the active limits of a
-/// linear program stay, its next answer is their vertex.
+/// linear program stay, its next answer is their vertex. A program to which all this finds no answer is tried
+/// once more in other units (EquilibratedProgram).
 ///
 /// `infeasible` is returned only with a certificate, see `certificate`. `iteration_limit` and
 /// `numerical_error` say honestly that there is no answer; an unbounded problem ends so.
@@ -44,11 +47,13 @@ struct ActiveSetOptions {
 /// that H leaves open, provided that the proximal weight is small against the costs (Mangasarian & Meyer,
 /// SIAM J. Control Optim. 17 (1979) 745-752).
 ///
-/// `solve` allocates nothing. Solvers of different threads share nothing but the structure.
+/// `solve` allocates nothing, but for the first program that is tried in other units. Solvers of different
+/// threads share nothing but the structure.
 class ActiveSetSolver final : public QpSolver {
  public:
   /// Throws InputError when the structure or an option is not valid.
   ActiveSetSolver(std::shared_ptr<const QpStructure> structure, const ActiveSetOptions& options);
+  ~ActiveSetSolver() override;
 
   /// After an answer `infeasible`: y (m) with sum |y_i| = 1 that proves a violation of the hard limits, see
   /// `proven_violation`. Zero otherwise.
@@ -59,6 +64,7 @@ class ActiveSetSolver final : public QpSolver {
   void do_reset() override;
 
   void search(const QpData& data, QpResult& result);
+  void solve_equilibrated(const QpData& data, QpResult& result);
   void reset_newton();
   bool solve_by_dual(const QpData& data, QpResult& result);
   DualOutcome iterate_dual(const QpData& data, int& iterations);
@@ -84,6 +90,9 @@ class ActiveSetSolver final : public QpSolver {
   Eigen::VectorXd change_;  ///< of the multipliers of the hard rows in the last round
   Eigen::VectorXd scratch_;
   double stiffening_ = 1.0;  ///< of the springs with multipliers, in this solve
+
+  struct Equilibrated;
+  std::unique_ptr<Equilibrated> equilibrated_;  ///< made when first needed
 };
 
 }  // namespace mpm
