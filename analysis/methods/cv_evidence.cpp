@@ -414,4 +414,13 @@ CvEvidence CvLikelihood::of(const Eigen::Ref<const Eigen::RowVectorXd>& e,
       .evidence();
 }
 
+Eigen::MatrixXd CvLikelihood::healthy_series(const Eigen::Ref<const Eigen::RowVectorXd>& e,
+                                             const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                             const Eigen::Ref<const Eigen::VectorXd>& initial) const {
+  const Eigen::MatrixXd directions = model_.directions(model_.slopes(inputs, initial));
+  Eigen::MatrixXd series(1 + directions.rows(), e.size());
+  series << (e - model_.correction(inputs, initial)) / model_.noise().deviation, directions;
+  return series;
+}
+
 }  // namespace mpm
