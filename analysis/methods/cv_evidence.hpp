@@ -59,6 +59,13 @@ class CvLikelihood {
                                  const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                  const Eigen::Ref<const Eigen::VectorXd>& initial) const;
 
+  /// Adds to the evidence of mismatches that of growing_mismatches(), which are so probable among them as
+  /// `share` against those of the whole record. `series` is healthy_series().
+  void add_growing(const Eigen::Ref<const Eigen::MatrixXd>& series,
+                   const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                   const Eigen::Ref<const Eigen::VectorXd>& initial, double share,
+                   CvEvidence& evidence) const;
+
  private:
   ModelErrors model_;
   const CvPrior& prior_;

@@ -226,7 +226,13 @@ class FaultPosterior final : public AssessmentMethod {
     FaultProbabilities probabilities = fault_probabilities(priors_, evidence);
     if (!asks_more_ || !is_flagged(probabilities))
       return answer(probabilities, fault_probabilities(for_scores_, evidence), evidence);
-    probabilities = with_input_disturbance(std::move(probabilities), input_weight(evidence, errors, inputs));
+    const std::vector<Eigen::MatrixXd> series = healthy_series(errors, inputs);
+    const double of_input = input_weight(evidence, series);
+    for (std::size_t i = 0; i < likelihoods_.size(); ++i)
+      if (is_suspect(probabilities.cvs[i]))
+        likelihoods_[i]->add_growing(series[i], inputs.leftCols(series[i].cols()), initial_, kGrowingShare,
+                                     evidence[i]);
+    probabilities = with_input_disturbance(fault_probabilities(priors_, evidence), of_input);
     return answer(probabilities, probabilities, evidence);
   }
 
@@ -235,16 +241,27 @@ class FaultPosterior final : public AssessmentMethod {
     return 1.0 - probabilities.healthy > study_.assessment.of<LikelihoodOptions>().flag_probability;
   }
 
-  /// log of the weight of a disturbance on some MV against nothing.
-  double input_weight(const std::vector<CvEvidence>& evidence, const std::vector<Eigen::RowVectorXd>& errors,
-                      const Eigen::MatrixXd& inputs) const {
+  /// A CV in which something is wrong, and that not a disturbance beyond doubt.
+  static bool is_suspect(const FaultProbabilities::OfCv& cv) {
+    return cv.fault() > kSuspect && cv.ud < 1.0 - kSuspect;
+  }
+
+  /// CvLikelihood::healthy_series() of each CV.
+  std::vector<Eigen::MatrixXd> healthy_series(const std::vector<Eigen::RowVectorXd>& errors,
+                                              const Eigen::MatrixXd& inputs) const {
     std::vector<Eigen::MatrixXd> series;
-    double healthy = 0.0;
-    for (std::size_t i = 0; i < errors.size(); ++i) {
+    for (std::size_t i = 0; i < errors.size(); ++i)
       series.push_back(
           likelihoods_[i]->healthy_series(errors[i], inputs.leftCols(errors[i].size()), initial_));
-      healthy += evidence[i].healthy;
-    }
+    return series;
+  }
+
+  /// log of the weight of a disturbance on some MV against nothing.
+  double input_weight(const std::vector<CvEvidence>& evidence,
+                      const std::vector<Eigen::MatrixXd>& series) const {
+    double healthy = 0.0;
+    for (const CvEvidence& of_cv : evidence)
+      healthy += of_cv.healthy;
     const InputLikelihood likelihood(models_, series, study_.controller.sample_time, priors_.noise_freedom);
     double sum = -kInfinity;
     for (const InputEvidence& of_mv : likelihood.of_mvs(study_.mv_count()))
@@ -286,6 +303,8 @@ class FaultPosterior final : public AssessmentMethod {
     }
   }
 
+  static constexpr double kGrowingShare = 0.5;  ///< of mismatches that grow, against those that do not
+  static constexpr double kSuspect = 1e-3;      ///< probability from which a CV is looked at more closely
   static constexpr double kHalves = 2.0;  ///< of the benchmark in a record: log L grows with the samples
   /// Degrees of freedom of the variance of a noise that is taken from the benchmark.
   static constexpr double kUnknownNoise = 4.0;

@@ -15,7 +15,7 @@ namespace mpm {
 enum class FaultHypotheses : std::int8_t {
   learnt = 0,  ///< all where errors of the model are learnt, otherwise the basic ones
   basic = 1,   ///< none beside them
-  all = 2,     ///< a disturbance on an MV
+  all = 2,     ///< a mismatch that begins within the record and grows; a disturbance on an MV
 };
 
 /// Of the method `likelihood`, analysis/methods/likelihood_method.
