@@ -345,6 +345,36 @@ TEST_CASE("likelihood: a size that lies beyond what is looked for is a bound") {
   CHECK(named_where_the_gain_is(0.5) == SizeBound::none);
 }
 
+TEST_CASE(
+    "likelihood: a disturbance on an MV is one on all CVs, where its hypothesis is asked; exact models do "
+    "not") {
+  Study study = find_study("setpoint-methods");
+  study.simulation.samples = 300;
+  study.experiments = {};
+  study.experiments.ud = 1;
+  study.disturbance.place_weight = {0.0, 1.0, 0.0};
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessedLoop loop = assessed_loop(
+      study, basis.point, simulate_experiment(study, draw_experiment(study, 0), testing::kFactory));
+  const auto said_with = [&](FaultHypotheses hypotheses) {
+    Study asked = study;
+    asked.assessment.of<LikelihoodOptions>().hypotheses = hypotheses;
+    const AssessmentContext context = assessment_context(asked, basis, testing::kFactory);
+    return Assessor(assessment_method("likelihood"), context).assess(loop);
+  };
+  const Assessment basic = said_with(FaultHypotheses::basic);
+  const Assessment all = said_with(FaultHypotheses::all);
+  REQUIRE(basic.flagged);
+  CHECK(all.score > basic.score);
+  CHECK(all.number("p_ud") > 0.999);
+  for (std::size_t i = 0; i < all.cvs.size(); ++i) {
+    CHECK(all.cvs[i].flagged == basic.cvs[i].flagged);
+    if (all.cvs[i].flagged == true)
+      CHECK(all.cvs[i].source == FaultSource::ud);
+  }
+  CHECK(said_with(FaultHypotheses::learnt).score == basic.score);
+}
+
 // Seed 20150401: experiment 0 has a mismatch on y2, experiment 15 a disturbance on y1.
 TEST_CASE("likelihood: CV, source, channel, parameter and size of a mismatch, with gaps in the record, too") {
   const Study study = find_study("chapter6");
