@@ -91,8 +91,8 @@ class GrowingSearch {
     for (const Start& start : starts) {
       if (found.size() == kMostRefined || start.explained < starts.front().explained - 2.0 * kFarFromBest)
         break;
-      if (std::optional<GrowingMismatch> refined = refine(start))
-        found.push_back(*std::move(refined));
+      if (const std::optional<GrowingMismatch> refined = refine(start))
+        found.push_back(*refined);
     }
     return found;
   }
