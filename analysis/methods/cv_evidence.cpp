@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "analysis/methods/growing_mismatch.hpp"
 #include "plants/non_finite.hpp"
 
 namespace mpm {
@@ -412,6 +413,29 @@ CvEvidence CvLikelihood::of(const Eigen::Ref<const Eigen::RowVectorXd>& e,
   return RecordLikelihood(model_, prior_, {freedom_, samples}, starts_from_rest_, responses_, scaled, inputs,
                           initial)
       .evidence();
+}
+
+Eigen::MatrixXd CvLikelihood::healthy_series(const Eigen::Ref<const Eigen::RowVectorXd>& e,
+                                             const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                             const Eigen::Ref<const Eigen::VectorXd>& initial) const {
+  const Eigen::MatrixXd directions = model_.directions(model_.slopes(inputs, initial));
+  Eigen::MatrixXd series(1 + directions.rows(), e.size());
+  series << (e - model_.correction(inputs, initial)) / model_.noise().deviation, directions;
+  return series;
+}
+
+void CvLikelihood::add_growing(const Eigen::Ref<const Eigen::MatrixXd>& series,
+                               const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                               const Eigen::Ref<const Eigen::VectorXd>& initial, double share,
+                               CvEvidence& evidence) const {
+  const auto samples = static_cast<double>((!series.row(0).array().isNaN()).count());
+  for (const GrowingMismatch& found : growing_mismatches(
+           model_.noise(), starts_from_rest_, {freedom_, samples}, responses_, series, inputs, initial)) {
+    TruncatedNormal size = found.size;
+    size.log_mass += std::log(share);
+    add(evidence.mismatch_alone[found.mismatch], {size, found.best_size, found.log_likelihood});
+  }
+  evidence.mpm = sum_of(evidence.mismatch_alone);
 }
 
 }  // namespace mpm

@@ -53,6 +53,19 @@ class CvLikelihood {
                 const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                 const Eigen::Ref<const Eigen::VectorXd>& initial) const;
 
+  /// What a healthy loop has beside noise, in its standard deviations: e less the correction of the model,
+  /// and below it ModelErrors::directions(), (1 + q) x N.
+  Eigen::MatrixXd healthy_series(const Eigen::Ref<const Eigen::RowVectorXd>& e,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                 const Eigen::Ref<const Eigen::VectorXd>& initial) const;
+
+  /// Adds to the evidence of mismatches that of growing_mismatches(), which are so probable among them as
+  /// `share` against those of the whole record. `series` is healthy_series().
+  void add_growing(const Eigen::Ref<const Eigen::MatrixXd>& series,
+                   const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                   const Eigen::Ref<const Eigen::VectorXd>& initial, double share,
+                   CvEvidence& evidence) const;
+
  private:
   ModelErrors model_;
   const CvPrior& prior_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/methods/base_noise.hpp"
+#include "analysis/methods/input_disturbance.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
@@ -194,6 +195,9 @@ class FaultPosterior final : public AssessmentMethod {
       priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
     if (priors != FaultPriors::study && context.learnt)
       discount_false_faults(context);
+    const FaultHypotheses asked = study_.assessment.of<LikelihoodOptions>().hypotheses;
+    asks_more_ = priors != FaultPriors::study &&
+                 (asked == FaultHypotheses::all || (asked == FaultHypotheses::learnt && context.learnt));
     for_scores_ = priors == FaultPriors::study ? of_equal_kinds(study_, priors_) : priors_;
     if (priors == FaultPriors::study && !draws_known_faults(study_))
       priors_ = for_scores_;
@@ -207,6 +211,7 @@ class FaultPosterior final : public AssessmentMethod {
     require_numbers(loop);
     const Eigen::MatrixXd inputs = model_inputs(loop.from_start());
     std::vector<CvEvidence> evidence;
+    std::vector<Eigen::RowVectorXd> errors;
     for (std::size_t i = 0; i < likelihoods_.size(); ++i) {
       const auto cv = static_cast<Eigen::Index>(i);
       // A window is the record up to its end in which nothing is observed before it: what the inputs did
@@ -216,12 +221,54 @@ class FaultPosterior final : public AssessmentMethod {
       if (e.array().isNaN().all())
         return Assessment::failed("a CV has no sample");
       evidence.push_back(likelihoods_[i]->of(e, inputs.leftCols(e.size()), initial_));
+      errors.push_back(std::move(e));
     }
-    return answer(fault_probabilities(priors_, evidence), fault_probabilities(for_scores_, evidence),
-                  evidence);
+    FaultProbabilities probabilities = fault_probabilities(priors_, evidence);
+    if (!asks_more_ || !is_flagged(probabilities))
+      return answer(probabilities, fault_probabilities(for_scores_, evidence), evidence);
+    const std::vector<Eigen::MatrixXd> series = healthy_series(errors, inputs);
+    const double of_input = input_weight(evidence, series);
+    for (std::size_t i = 0; i < likelihoods_.size(); ++i)
+      if (is_suspect(probabilities.cvs[i]))
+        likelihoods_[i]->add_growing(series[i], inputs.leftCols(series[i].cols()), initial_, kGrowingShare,
+                                     evidence[i]);
+    probabilities = with_input_disturbance(fault_probabilities(priors_, evidence), of_input);
+    return answer(probabilities, probabilities, evidence);
   }
 
  private:
+  bool is_flagged(const FaultProbabilities& probabilities) const {
+    return 1.0 - probabilities.healthy > study_.assessment.of<LikelihoodOptions>().flag_probability;
+  }
+
+  /// A CV in which something is wrong, and that not a disturbance beyond doubt.
+  static bool is_suspect(const FaultProbabilities::OfCv& cv) {
+    return cv.fault() > kSuspect && cv.ud < 1.0 - kSuspect;
+  }
+
+  /// CvLikelihood::healthy_series() of each CV.
+  std::vector<Eigen::MatrixXd> healthy_series(const std::vector<Eigen::RowVectorXd>& errors,
+                                              const Eigen::MatrixXd& inputs) const {
+    std::vector<Eigen::MatrixXd> series;
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      series.push_back(
+          likelihoods_[i]->healthy_series(errors[i], inputs.leftCols(errors[i].size()), initial_));
+    return series;
+  }
+
+  /// log of the weight of a disturbance on some MV against nothing.
+  double input_weight(const std::vector<CvEvidence>& evidence,
+                      const std::vector<Eigen::MatrixXd>& series) const {
+    double healthy = 0.0;
+    for (const CvEvidence& of_cv : evidence)
+      healthy += of_cv.healthy;
+    const InputLikelihood likelihood(models_, series, study_.controller.sample_time, priors_.noise_freedom);
+    double sum = -kInfinity;
+    for (const InputEvidence& of_mv : likelihood.of_mvs(study_.mv_count()))
+      sum = log_sum(sum, log_weight(priors_.input, of_mv.log_evidence, healthy));
+    return sum;
+  }
+
   /// A fault must be more probable than the false ones that one half of the benchmark shows under what the
   /// other half teaches, in a record of the length of both: there the model of the errors is wrong (a
   /// nonlinear plant). Where it is right, the halves show none, and the priors stay.
@@ -252,9 +299,12 @@ class FaultPosterior final : public AssessmentMethod {
       prior.mpm *= left;
       prior.ud *= left;
       prior.both *= left;
+      priors_.input *= left;
     }
   }
 
+  static constexpr double kGrowingShare = 0.5;  ///< of mismatches that grow, against those that do not
+  static constexpr double kSuspect = 1e-3;      ///< probability from which a CV is looked at more closely
   static constexpr double kHalves = 2.0;  ///< of the benchmark in a record: log L grows with the samples
   /// Degrees of freedom of the variance of a noise that is taken from the benchmark.
   static constexpr double kUnknownNoise = 4.0;
@@ -263,7 +313,7 @@ class FaultPosterior final : public AssessmentMethod {
                     const std::vector<CvEvidence>& evidence) const {
     const auto& options = study_.assessment.of<LikelihoodOptions>();
     Assessment assessment;
-    assessment.flagged = 1.0 - probabilities.healthy > options.flag_probability;
+    assessment.flagged = is_flagged(probabilities);
     assessment.score = scores.log_odds;
     for (std::size_t i = 0; i < scores.cvs.size(); ++i)
       assessment.cvs.push_back({probabilities.cvs[i].fault() > options.flag_probability,
@@ -338,6 +388,7 @@ class FaultPosterior final : public AssessmentMethod {
   Eigen::VectorXd initial_;
   std::vector<ModelErrors> models_;
   FaultPriorSet priors_, for_scores_;
+  bool asks_more_ = false;  ///< beside the basic hypotheses
   std::vector<std::unique_ptr<CvLikelihood>> likelihoods_;
 };
 
@@ -346,6 +397,22 @@ class FaultPosterior final : public AssessmentMethod {
 FaultProbabilities fault_probabilities(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence) {
   const std::vector<CvWeights> weights = weights_of(priors, evidence);
   return priors.one_fault ? of_one_fault(weights) : of_several_faults(weights);
+}
+
+FaultProbabilities with_input_disturbance(FaultProbabilities probabilities, double log_weight) {
+  const double share = std::exp(log_weight - log_sum(log_sum(0.0, probabilities.log_odds), log_weight));
+  probabilities.healthy *= 1.0 - share;
+  probabilities.mpm *= 1.0 - share;
+  probabilities.ud += share * (1.0 - probabilities.ud);
+  probabilities.both *= 1.0 - share;
+  probabilities.log_odds = log_sum(probabilities.log_odds, log_weight);
+  for (FaultProbabilities::OfCv& cv : probabilities.cvs) {
+    const double fault = cv.fault();
+    cv.mpm *= 1.0 - share;
+    cv.both *= 1.0 - share;
+    cv.ud = fault - cv.mpm - cv.both;
+  }
+  return probabilities;
 }
 
 std::unique_ptr<AssessmentMethod> make_fault_posterior(const AssessmentContext& context, FaultPriors priors) {

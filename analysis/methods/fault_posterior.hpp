@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -9,9 +10,18 @@
 
 namespace mpm {
 
+/// Which faults the method `likelihood` takes for possible beside one wrong parameter of a channel, a
+/// disturbance on an output and both of them.
+enum class FaultHypotheses : std::int8_t {
+  learnt = 0,  ///< all where errors of the model are learnt, otherwise the basic ones
+  basic = 1,   ///< none beside them
+  all = 2,     ///< a mismatch that begins within the record and grows; a disturbance on an MV
+};
+
 /// Of the method `likelihood`, analysis/methods/likelihood_method.
 struct LikelihoodOptions {
   FaultPriors priors = FaultPriors::wide;
+  FaultHypotheses hypotheses = FaultHypotheses::learnt;
   double fault_probability = 0.5;  ///< of some fault in a loop, before the record is seen; of wide priors
   double flag_probability = 0.5;   ///< a loop or a CV is flagged when a fault is more probable than this
   /// A source is named when it is at least so probable, given that there is a fault; 0: always.
@@ -38,6 +48,11 @@ struct FaultProbabilities {
 /// probability, nothing is wrong in the loop with prod h_i, and there are mismatches alone with
 /// prod (h_i + m_i) - prod h_i.
 FaultProbabilities fault_probabilities(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence);
+
+/// The same when a disturbance on an MV, which moves several CVs at once, may be the only fault instead; its
+/// weight against nothing is e^`log_weight`. The CVs in which it shows are those that show a fault by
+/// themselves.
+FaultProbabilities with_input_disturbance(FaultProbabilities probabilities, double log_weight);
 
 /// The method `likelihood` and, with the priors of the study, the ceiling of what any method can do on it.
 std::unique_ptr<AssessmentMethod> make_fault_posterior(const AssessmentContext& context, FaultPriors priors);

@@ -24,6 +24,7 @@ constexpr double kBeyond = 1.1;  // of the largest factor, where the model has e
 constexpr double kSmallestDisturbance = 0.1, kLargestDisturbance = 1000.0;
 /// Of mismatch, disturbance and both, when there is a fault.
 constexpr std::array kWideShares{0.4, 0.4, 0.2};
+constexpr double kInputShare = 0.2;  // of a disturbance on an MV, against the others
 /// Standard deviation of the logarithm of the variance of the noise about that of the benchmark: 0.7, or a
 /// factor of 1.4 in the standard deviation.
 constexpr double kWideFreedom = 4.0;
@@ -186,6 +187,11 @@ double freedom_of(const Distribution& factor) {
   return variance > 0.0 ? 2.0 / variance : kInfinity;
 }
 
+/// A disturbance on some MV is as probable as all faults of CVs are, times its share.
+double input_weight(const Study& study, double fault_probability) {
+  return kInputShare * fault_probability / (1.0 - fault_probability) / static_cast<double>(study.mv_count());
+}
+
 /// The weights of the kinds of a study against its loops without a fault. The basis case is one of these, so
 /// that there always is one.
 CvPrior kinds_of(const Study& study) {
@@ -233,6 +239,7 @@ FaultPriorSet fault_priors(const Study& study, FaultPriors priors, double fault_
                            const Eigen::Ref<const Eigen::VectorXd>& noise, bool imperfect) {
   const bool drawn = priors == FaultPriors::study && !study.names_scenarios();
   FaultPriorSet set{{},
+                    drawn ? 0.0 : input_weight(study, fault_probability),
                     drawn && draws_one_fault(study),
                     drawn ? freedom_of(study.simulation.noise.factor) : kWideFreedom,
                     drawn};

@@ -59,6 +59,7 @@ struct CvPrior {
 /// benchmark is known within a factor of about two.
 struct FaultPriorSet {
   std::vector<CvPrior> cvs;  ///< ny
+  double input = 0.0;        ///< weight of a disturbance on each MV, against 1 for nothing; of wide priors
   bool one_fault = false;    ///< only one CV has a fault; otherwise each CV may, independently of the others
   /// nu of the scaled inverse chi-square distribution of the variance of the noise about the known one;
   /// infinity: it is known.

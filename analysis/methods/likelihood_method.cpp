@@ -11,6 +11,13 @@ OptionKeys keys(LikelihoodOptions& options) {
                   "faults before the record is seen: of any size, on one CV or several, or "
                   "those that the study draws, as often and as large as it draws them. "
                   "`\"wide\"` because nobody knows of a plant what its faults are drawn from"),
+      key::choice(
+          "hypotheses", options.hypotheses, {"learnt", "basic", "all"},
+          "what may be wrong beside one parameter of a channel, a disturbance on a CV, and both: `\"all\"` "
+          "asks of a flagged loop whether a mismatch that begins within the record and grows explains a CV, "
+          "and a disturbance on an MV all CVs at once. `\"learnt\"`: "
+          "all where errors of the model are learnt, else the basic ones. With `priors = \"study\"` "
+          "always the basic ones"),
       key::number(
           "fault_probability", options.fault_probability, NumberRule::inside(0, 1),
           "of some fault in a loop, before the record is seen; of wide priors. 0.5: nothing is known"),

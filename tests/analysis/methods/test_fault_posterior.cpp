@@ -157,7 +157,7 @@ TEST_CASE("posterior of a loop: one fault and several, from weights in closed fo
   const std::vector<CvEvidence> cvs{evidence(std::log(30.0), 0.0, 0.0),
                                     evidence(0.0, std::log(5.0), -kInfinity)};
   // Weights against nothing: 3, 0.2 and 0.05 of the first CV; 0.1, 1 and 0 of the second.
-  FaultPriorSet priors{{prior, prior}, true, kInfinity, true};
+  FaultPriorSet priors{{prior, prior}, 0.0, true, kInfinity, true};
   const FaultProbabilities one = fault_probabilities(priors, cvs);
   CHECK(one.healthy == Approx(1.0 / 5.35));
   CHECK(one.mpm == Approx(3.1 / 5.35));
@@ -182,6 +182,26 @@ TEST_CASE("posterior of a loop: one fault and several, from weights in closed fo
   const FaultProbabilities sure = fault_probabilities(priors, {evidence(5000.0, 0.0, 0.0), cvs[1]});
   CHECK(sure.mpm == Approx(1.0));
   CHECK(sure.log_odds == Approx(5000.0 + std::log(0.1)));
+}
+
+TEST_CASE(
+    "posterior of a loop: a disturbance on an MV takes its share of the probability, CVs keep their faults") {
+  // Weights against nothing: 9 before, of which 4 mismatches, 3 disturbances and 2 both; then 30 for the MV.
+  const FaultProbabilities before{0.1, 0.4, 0.3, 0.2, std::log(9.0), {{0.4, 0.3, 0.2, std::log(9.0)}}};
+  const FaultProbabilities after = with_input_disturbance(before, std::log(30.0));
+  CHECK(after.healthy == Approx(1.0 / 40.0));
+  CHECK(after.mpm == Approx(4.0 / 40.0));
+  CHECK(after.ud == Approx(33.0 / 40.0));
+  CHECK(after.both == Approx(2.0 / 40.0));
+  CHECK(after.log_odds == Approx(std::log(39.0)));
+  CHECK(after.cvs[0].mpm == Approx(0.1));
+  CHECK(after.cvs[0].fault() == Approx(0.9));
+  CHECK(after.cvs[0].log_odds == before.cvs[0].log_odds);
+  // Odds that no probability can have, and an MV that explains nothing.
+  FaultProbabilities sure = before;
+  sure.log_odds = 5000.0;
+  CHECK(with_input_disturbance(sure, 5010.0).ud == Approx(1.0).margin(1e-4));
+  CHECK(with_input_disturbance(sure, -kInfinity).mpm == sure.mpm);
 }
 
 TEST_CASE("ceiling: on faults that the study draws, its probabilities are those of the faults") {
@@ -323,6 +343,36 @@ TEST_CASE("likelihood: a size that lies beyond what is looked for is a bound") {
   };
   CHECK(named_where_the_gain_is(-1.0) == SizeBound::at_most);
   CHECK(named_where_the_gain_is(0.5) == SizeBound::none);
+}
+
+TEST_CASE(
+    "likelihood: a disturbance on an MV is one on all CVs, where its hypothesis is asked; exact models do "
+    "not") {
+  Study study = find_study("setpoint-methods");
+  study.simulation.samples = 300;
+  study.experiments = {};
+  study.experiments.ud = 1;
+  study.disturbance.place_weight = {0.0, 1.0, 0.0};
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessedLoop loop = assessed_loop(
+      study, basis.point, simulate_experiment(study, draw_experiment(study, 0), testing::kFactory));
+  const auto said_with = [&](FaultHypotheses hypotheses) {
+    Study asked = study;
+    asked.assessment.of<LikelihoodOptions>().hypotheses = hypotheses;
+    const AssessmentContext context = assessment_context(asked, basis, testing::kFactory);
+    return Assessor(assessment_method("likelihood"), context).assess(loop);
+  };
+  const Assessment basic = said_with(FaultHypotheses::basic);
+  const Assessment all = said_with(FaultHypotheses::all);
+  REQUIRE(basic.flagged);
+  CHECK(all.score > basic.score);
+  CHECK(all.number("p_ud") > 0.999);
+  for (std::size_t i = 0; i < all.cvs.size(); ++i) {
+    CHECK(all.cvs[i].flagged == basic.cvs[i].flagged);
+    if (all.cvs[i].flagged == true)
+      CHECK(all.cvs[i].source == FaultSource::ud);
+  }
+  CHECK(said_with(FaultHypotheses::learnt).score == basic.score);
 }
 
 // Seed 20150401: experiment 0 has a mismatch on y2, experiment 15 a disturbance on y1.

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plants/linear/zero_order_hold.hpp"
+
+namespace mpm {
+
+/// One of several series that the same disturbance x moves, each through a channel of its own,
+///
+///   z_i(k) = H_i x(k) + n_i(k) + white_i v_i(k),   n_i(k+1) = a_i n_i(k) + b_i w_i(k),
+///   x(k+1) = a x(k) + b w(k),
+///
+/// all of w and v independent, white, normal, variance 1, x and n stationary. The past of an integrating
+/// channel counts as about a thousand samples long.
+struct SharedOutput {
+  DiscreteChannel channel;        ///< H, unit of z a unit of x
+  double a = 0.0, b = 0.0;        ///< of the slow noise of the series; b = 0: it has none
+  double white = 1.0;             ///< standard deviation of the white one
+  const Eigen::MatrixXd* series;  ///< p_i x N: z, NaN where there is no sample, and what is whitened with it
+};
+
+/// Of the first row of all series, and of the rows below them, p = 1 + sum (p_i - 1) in all.
+struct SharedProducts {
+  Eigen::VectorXd log_determinant;        ///< of the innovations of each series
+  std::vector<Eigen::MatrixXd> products;  ///< of the whitened rows in the innovations of each series, p x p
+};
+
+/// Whitens series with a shared disturbance by a Kalman filter. The series are shifted against each other by
+/// the dead times of their channels, so that these need no states: a normal density does not depend on the
+/// order in which its samples are read. The rows below the first one of a series belong to this series alone.
+class SharedWhitening {
+ public:
+  /// The series must outlive this. Throws nothing; at least one series.
+  explicit SharedWhitening(std::vector<SharedOutput> outputs);
+
+  /// Under x with these a and b. `rows`: with the rows below the first ones; otherwise p = 1.
+  SharedProducts products(double a, double b, bool rows) const;
+
+ private:
+  class Filter;
+
+  std::vector<SharedOutput> outputs_;
+  Eigen::Index states_, rows_, longest_delay_;
+};
+
+}  // namespace mpm

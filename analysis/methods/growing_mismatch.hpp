@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/disturbance_scan.hpp"
+#include "analysis/methods/mismatch_responses.hpp"
+#include "analysis/statistics/truncated_normal.hpp"
+
+namespace mpm {
+
+/// The evidence for a mismatch that begins within the record and grows along a line until it is whole.
+struct GrowingMismatch {
+  std::size_t mismatch;  ///< its place among the responses
+  TruncatedNormal size;  ///< the posterior of its size, with the evidence as its mass
+  double best_size;
+  double onset, end;      ///< samples: where it begins, and where it is whole
+  double log_likelihood;  ///< at the best size, onset and end
+};
+
+/// What explains the simulation error of a CV by a mismatch that grows,
+///
+///   e(k) = r(k) m(theta)(k) + Z' z + n,   r(k) = 0 before the onset, 1 from the end on, a line between,
+///
+/// which is exact where the inputs and the response before the onset do not matter, as of a gain. The
+/// evidence is the integral over size, onset and end by Laplace's method. The onset is uniform over the
+/// record, the growth uniform up to its length. Onsets of a coarse grid are tried of every parameter, the
+/// best few are refined by Gauss and Newton.
+///
+/// | symbol | name      | shape         | unit                             |
+/// |--------|-----------|---------------|----------------------------------|
+/// | e, Z   | series    | (1 + q) x N   | standard deviations of the noise |
+/// | m      | responses | one a mismatch |                                 |
+/// | u      | inputs    | (nu + nd) x N |                                  |
+std::vector<GrowingMismatch> growing_mismatches(const BaseNoise& noise, bool starts_from_rest,
+                                                const ScaleLikelihood& likelihood,
+                                                const std::vector<MismatchResponses>& responses,
+                                                const Eigen::Ref<const Eigen::MatrixXd>& series,
+                                                const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                                const Eigen::Ref<const Eigen::VectorXd>& initial);
+
+}  // namespace mpm

@@ -1,0 +1,200 @@
+#include "analysis/methods/input_disturbance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+/// Standard deviation of the response at rest of the CV that moves most, in those of its noise.
+constexpr double kSmallestMove = 0.1, kLargestMove = 1000.0;
+/// The first look: shares of the logarithms of time constant and size.
+constexpr std::array kFirstTimes{0.25, 0.5, 0.8};
+constexpr std::array kFirstSizes{0.1, 0.3, 0.5, 0.7, 0.9};
+constexpr double kFarBehind = 40.0;   // of log L at the first look
+constexpr double kLookStep = 0.4;     // of the logarithms, in the quadratic model of log L
+constexpr double kLongestMove = 1.5;  // of a step of the search
+constexpr int kMostMoves = 4;
+constexpr double kStays = 0.1;
+
+using LogPoint = Eigen::Vector2d;  // logarithms of time constant and size
+
+double noise_white(const BaseNoise& noise) {
+  return noise.phi == 0.0 ? 1.0 : 0.0;
+}
+
+/// log L about a point, by differences.
+struct Quadratic {
+  double value;
+  LogPoint slope;
+  Eigen::Matrix2d curvature;  ///< -d2 log L
+};
+
+template <class LogLikelihood>
+Quadratic quadratic_about(const LogLikelihood& log_likelihood, const LogPoint& at) {
+  const auto off = [&](double x, double y) { return log_likelihood(at + kLookStep * LogPoint(x, y)); };
+  const double middle = log_likelihood(at);
+  const double right = off(1.0, 0.0), left = off(-1.0, 0.0), above = off(0.0, 1.0), below = off(0.0, -1.0);
+  const double mixed = off(1.0, 1.0) - right - above + middle;
+  Quadratic model{middle, LogPoint(right - left, above - below) / (2.0 * kLookStep), {}};
+  model.curvature << 2.0 * middle - right - left, -mixed, -mixed, 2.0 * middle - above - below;
+  model.curvature /= kLookStep * kLookStep;
+  return model;
+}
+
+/// With curvatures of at least one over the width of the prior squared.
+Eigen::Matrix2d at_least(const Eigen::Matrix2d& curvature, const LogPoint& width) {
+  Eigen::Matrix2d all = curvature;
+  for (Eigen::Index i = 0; i < 2; ++i)
+    all(i, i) = std::max(all(i, i), 1.0 / (width(i) * width(i)));
+  const double most = 0.95 * std::sqrt(all(0, 0) * all(1, 1));
+  all(0, 1) = all(1, 0) = std::clamp(all(0, 1), -most, most);
+  return all;
+}
+
+}  // namespace
+
+/// The work on one MV.
+class InputLikelihood::OfMv {
+ public:
+  OfMv(const InputLikelihood& all, Eigen::Index mv) : all_(all), whitening_(outputs(all, mv)) {
+    double most = 0.0;
+    Eigen::Index samples = 0;
+    for (std::size_t i = 0; i < all.models_.size(); ++i) {
+      const ModelErrors& model = all.models_[i];
+      const TransferFunction& channel = model.model()(0, mv);
+      const double gain = channel.is_integrating() ? 1.0 : channel.static_gain();
+      if (!channel.is_zero())
+        most = std::max(most, std::abs(gain) / model.noise().deviation);
+      samples = std::max(samples, all.series_[i].cols());
+      const auto observed = (!all.series_[i].row(0).array().isNaN()).count();
+      likelihoods_.push_back({all.freedom_, static_cast<double>(observed)});
+    }
+    moves_ = most > 0.0;
+    low_ = {std::log(all.sample_time_), std::log(kSmallestMove / most)};
+    high_ = {std::log(std::max(2.0, 0.5 * static_cast<double>(samples)) * all.sample_time_),
+             std::log(kLargestMove / most)};
+  }
+
+  bool moves() const { return moves_; }
+
+  /// The best of a few points by e alone: where to search, and log L there.
+  double first_look() {
+    double best = -kInfinity;
+    for (const double time : kFirstTimes)
+      for (const double size : kFirstSizes) {
+        const LogPoint at = low_ + LogPoint(time, size).cwiseProduct(high_ - low_);
+        const double found = log_likelihood(at, false);
+        if (found > best) {
+          best = found;
+          start_ = at;
+        }
+      }
+    return best;
+  }
+
+  InputEvidence evidence() const {
+    const auto of = [&](const LogPoint& at) { return log_likelihood(at, true); };
+    LogPoint at = start_;
+    Quadratic model = quadratic_about(of, at);
+    for (int step = 0; step < kMostMoves; ++step) {
+      LogPoint move = at_least(model.curvature, high_ - low_).llt().solve(model.slope);
+      move = move.cwiseMax(-kLongestMove).cwiseMin(kLongestMove);
+      const LogPoint next = (at + move).cwiseMax(low_).cwiseMin(high_);
+      if ((next - at).norm() < kStays)
+        break;
+      const Quadratic there = quadratic_about(of, next);
+      if (there.value < model.value)
+        break;
+      at = next;
+      model = there;
+    }
+    const LogPoint width = high_ - low_;
+    const double volume = 2.0 * std::numbers::pi / std::sqrt(at_least(model.curvature, width).determinant());
+    const auto [a, b] = parameters(at);
+    return {model.value + std::log(std::min(1.0, volume / (width(0) * width(1)))), a, b};
+  }
+
+ private:
+  static std::vector<SharedOutput> outputs(const InputLikelihood& all, Eigen::Index mv) {
+    std::vector<SharedOutput> outputs;
+    for (std::size_t i = 0; i < all.models_.size(); ++i) {
+      const BaseNoise& noise = all.models_[i].noise();
+      DiscreteChannel channel = discretise(all.models_[i].model()(0, mv), all.sample_time_);
+      channel.c /= noise.deviation;
+      channel.d /= noise.deviation;
+      const bool coloured = noise.phi != 0.0;
+      outputs.push_back({channel, coloured ? noise.phi : noise.a,
+                         coloured ? std::sqrt(1.0 - noise.phi * noise.phi) : noise.b, noise_white(noise),
+                         &all.series_[i]});
+    }
+    return outputs;
+  }
+
+  std::pair<double, double> parameters(const LogPoint& at) const {
+    const double a = std::exp(-all_.sample_time_ / std::exp(at(0)));
+    return {a, std::exp(at(1)) * std::sqrt(1.0 - a * a)};
+  }
+
+  double log_likelihood(const LogPoint& at, bool directions) const {
+    const auto [a, b] = parameters(at);
+    const SharedProducts sums = whitening_.products(a, b, directions);
+    const Eigen::Index q = sums.products.front().rows() - 1;
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(q);
+    double sum = 0.0;
+    if (q > 0) {
+      Eigen::MatrixXd all = Eigen::MatrixXd::Zero(q + 1, q + 1);
+      for (const Eigen::MatrixXd& products : sums.products)
+        all += products;
+      const Eigen::LLT<Eigen::MatrixXd> inner(all.bottomRightCorner(q, q) + Eigen::MatrixXd::Identity(q, q));
+      z = inner.solve(all.bottomLeftCorner(q, 1));
+      sum -= inner.matrixLLT().diagonal().array().log().sum();
+    }
+    Eigen::VectorXd weights(q + 1);
+    weights << 1.0, -z;
+    Eigen::Index own = 0;
+    for (std::size_t i = 0; i < likelihoods_.size(); ++i) {
+      const Eigen::Index count = q > 0 ? all_.series_[i].rows() - 1 : 0;
+      const double squares = weights.dot(sums.products[i] * weights) + z.segment(own, count).squaredNorm();
+      sum += likelihoods_[i](sums.log_determinant(static_cast<Eigen::Index>(i)), squares);
+      own += count;
+    }
+    return sum;
+  }
+
+  const InputLikelihood& all_;
+  SharedWhitening whitening_;
+  std::vector<ScaleLikelihood> likelihoods_;
+  bool moves_ = false;
+  LogPoint low_, high_, start_ = LogPoint::Zero();
+};
+
+InputLikelihood::InputLikelihood(const std::vector<ModelErrors>& models,
+                                 const std::vector<Eigen::MatrixXd>& series, double sample_time,
+                                 double noise_freedom)
+    : models_(models), series_(series), sample_time_(sample_time), freedom_(noise_freedom) {}
+
+std::vector<InputEvidence> InputLikelihood::of_mvs(Eigen::Index mvs) const {
+  std::vector<OfMv> each;
+  std::vector<double> first;
+  for (Eigen::Index mv = 0; mv < mvs; ++mv) {
+    each.emplace_back(*this, mv);
+    first.push_back(each.back().moves() ? each.back().first_look() : -kInfinity);
+  }
+  const double best = first.empty() ? -kInfinity : *std::max_element(first.begin(), first.end());
+  std::vector<InputEvidence> found;
+  for (std::size_t mv = 0; mv < each.size(); ++mv)
+    found.push_back(first[mv] > -kInfinity && first[mv] >= best - kFarBehind
+                        ? each[mv].evidence()
+                        : InputEvidence{-kInfinity, kNaN, kNaN});
+  return found;
+}
+
+}  // namespace mpm
