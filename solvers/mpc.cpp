@@ -52,6 +52,7 @@ Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& o
       scratch_(model_),
       qp_(model, mv_count, options),
       solver_(factory(qp_.structure())),
+      simulated_analysers_(options.analysers),
       setpoint_(Eigen::VectorXd::Zero(model.rows())),
       setpoint_weight_(options.setpoint_weight),
       cv_soft_(options.cv_soft) {
@@ -74,6 +75,7 @@ void Mpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<con
   require_signal("measured disturbances", d, md_gain_.cols());
   input_ << u, d;
   model_.reset(input_);
+  simulated_analysers_.reset(model_.output());
   is_pending_ = false;
   if (targets_)
     targets_->reset();
@@ -132,7 +134,9 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   if (is_pending_)
     model_.advance(input_);
   measured_ = y;
-  bias_ = y - model_.output();
+  bias_ = model_.output();
+  simulated_analysers_.pass(bias_);
+  bias_ = y - bias_;
   input_ << move_.u, d;
   move_.status = ControlStatus::ok;
   move_.kkt_residual = 0.0;

@@ -19,7 +19,8 @@ namespace mpm {
 /// have targets (thesis 2.4, 3.3, 6.3, 6.4).
 ///
 /// At sample k, from the measured CVs y(k) and MDs d(k):
-/// 1. Output-bias feedback: b(k) = y(k) - y_sim(k), y_sim = G0 (u, d), is added to every prediction.
+/// 1. Output-bias feedback: b(k) = y(k) - y_sim(k), y_sim = G0 (u, d), is added to every prediction. Of a CV
+///    of an analyser y_sim is that at the sample at which the analysis was taken.
 /// 2. The targets for the steady state K_d d(k) + b(k) + K u (6.19).
 /// 3. The moves from the free response with MVs held at u(k-1) and MDs held at d(k) (6.20). Setpoints are
 ///    those of this sample, held over the horizon: the controller does not know their changes beforehand.
@@ -58,7 +59,8 @@ class Mpc final : public Controller {
   MpcQp qp_;
   std::optional<TargetOptimizer> targets_;
   std::unique_ptr<QpSolver> solver_;
-  Eigen::VectorXd input_;    ///< (u(k-1), d(k)), then what acts, (u(k), d(k))
+  Eigen::VectorXd input_;  ///< (u(k-1), d(k)), then what acts, (u(k), d(k))
+  AnalyserHold simulated_analysers_;
   bool is_pending_ = false;  ///< input_ acts, and the model has not been advanced with it
   Eigen::VectorXd bias_, y_at_zero_, setpoint_, measured_;
   Eigen::VectorXd setpoint_weight_;

@@ -55,13 +55,13 @@ auto members(const Limits& limits) {
 
 auto members(const MpcOptions& options) {
   const auto& [sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
-               setpoint_weight, slack_weight, slack_cost, reference_time, move_blocks, weight_convention,
-               slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost, resting_value, resting_weight,
-               target_violation_cost] = options;
+               setpoint_weight, slack_weight, slack_cost, reference_time, analysers, move_blocks,
+               weight_convention, slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost, resting_value,
+               resting_weight, target_violation_cost] = options;
   return std::tie(sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
-                  setpoint_weight, slack_weight, slack_cost, reference_time, move_blocks, weight_convention,
-                  slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost, resting_value, resting_weight,
-                  target_violation_cost);
+                  setpoint_weight, slack_weight, slack_cost, reference_time, analysers, move_blocks,
+                  weight_convention, slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost,
+                  resting_value, resting_weight, target_violation_cost);
 }
 
 }  // namespace
@@ -144,6 +144,14 @@ void MpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) const {
     if (has_soft_limit(i) && slack_weight(i) == 0 && !has_slack_cost(i))
       throw InputError(fmt::format("slack_weight[{}]", i), "0", "a number > 0 for a CV with a soft limit");
   require_optional_weights("reference_time", reference_time, cv_count);
+  if (!analysers.empty() && static_cast<Eigen::Index>(analysers.size()) != cv_count)
+    throw InputError("analysers", fmt::format("{}", analysers.size()), fmt::format("{}, or none", cv_count));
+  for (const AnalyserTiming& timing : analysers)
+    if (timing.period < 1 || timing.delay < 0 || timing.first < 0 || timing.first >= timing.period)
+      throw InputError(
+          "analysers",
+          fmt::format("period {}, delay {}, first {}", timing.period, timing.delay, timing.first),
+          "period >= 1, delay >= 0, first from 0 to period - 1");
   require_optional_weights("resting_weight", resting_weight, mv_count);
   if (resting_weight.size() != resting_value.size() || !resting_value.allFinite())
     throw InputError("resting_value", fmt::format("{} numbers", resting_value.size()),

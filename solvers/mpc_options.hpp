@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "plants/analyser.hpp"
+
 namespace mpm {
 
 /// What a weight Q of the thesis multiplies: |Q x|^2 can be read either way (docs/methods.md).
@@ -61,6 +63,7 @@ struct Limits {
 /// | r_u, w_u | resting_value, resting_weight | nu | MV, 1 / MV^2        |
 /// | du_max   | move_limit         | nu    | MV a sample                 |
 /// | tau_ref  | reference_time     | ny    | time unit of the plant      |
+/// |          | analysers          | ny    | samples                     |
 struct MpcOptions {
   double sample_time = 1.0;
   int prediction_horizon = 1;
@@ -72,6 +75,9 @@ struct MpcOptions {
   Eigen::VectorXd slack_cost = {};  ///< linear cost of a slack; empty or 0: none
   /// Time constant with which the CV is asked to approach its setpoint from where it is; empty or 0: at once.
   Eigen::VectorXd reference_time = {};
+  /// Of CVs that an analyser measures: the output-bias feedback compares an analysis with the model at the
+  /// sample at which it was taken. Empty: none.
+  std::vector<AnalyserTiming> analysers = {};
   /// Samples for which each planned position of the MVs is held but the last, which is held to the end of the
   /// horizon (move blocking); empty: one sample each.
   std::vector<int> move_blocks = {};

@@ -39,6 +39,32 @@ Eigen::MatrixXd after_rest(const Eigen::MatrixXd& signal, Eigen::Index samples) 
   return longer;
 }
 
+/// The analyses of the CVs that have an analyser at the samples at which they were taken. A record of a plant
+/// says itself when that is.
+enum class FirstAnalysis { of_study, of_record };
+
+void take_analyses(const Study& study, FirstAnalysis first, Eigen::MatrixXd& y) {
+  const std::vector<AnalyserTiming>& timings = study.controller.analysers;
+  for (std::size_t i = 0; i < timings.size(); ++i) {
+    if (!timings[i].is_analyser())
+      continue;
+    auto shown = y.row(static_cast<Eigen::Index>(i));
+    shown = analyses(first == FirstAnalysis::of_study ? timings[i] : with_first_of(timings[i], shown), shown);
+  }
+}
+
+/// What was known of `y` and `y_sim` at each sample when an analysis was known `delay` samples after it was
+/// taken.
+void hold(Eigen::Index delay, Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> y,
+          Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> y_sim) {
+  const Eigen::RowVectorXd taken = y, simulated = y_sim;
+  for (Eigen::Index k = 1; k < y.size(); ++k) {
+    const bool is_new = k >= delay && !std::isnan(taken(k - delay));
+    y(k) = is_new ? taken(k - delay) : y(k - 1);
+    y_sim(k) = is_new ? simulated(k - delay) : y_sim(k - 1);
+  }
+}
+
 /// Samples of a CV, a round number: fewer hardly tell the noise from a dozen errors.
 constexpr Eigen::Index kFewestLearnt = 30;
 
@@ -75,6 +101,7 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
       simulated_output(study.plant.G, study.controller.sample_time, point.u, loop.u, loop.d);
   AssessedLoop assessed{
       .y = loop.y, .u = loop.u, .u_target = loop.u_target, .d = loop.d, .y_sim = y_sim, .y_set = {}};
+  take_analyses(study, FirstAnalysis::of_study, assessed.y);
   assessed.y_set =
       study.assessment.setpoints == AssessmentSetpoints::optimizer && study.controller.has_targets()
           ? optimizer_steady_state(study, loop, y_sim)
@@ -106,6 +133,7 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
                     .y_sim = where_recorded(record.y_sim, y_sim),
                     .y_set = Eigen::MatrixXd::Constant(record.y.rows(), record.samples(), kNaN),
                     .candidates = record.candidates};
+  take_analyses(study, FirstAnalysis::of_record, loop.y);
   loop.y.leftCols(std::min(unjudged, record.samples())).setConstant(kNaN);
   const Eigen::MatrixXd of_study = setpoints(study);
   for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
@@ -127,6 +155,16 @@ AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::In
           .candidates = cut(record.candidates),
           .whole = &record,
           .first = first};
+}
+
+AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, AnalysesHeld from,
+                                AssessedLoop& whole) {
+  whole = loop.from_start();
+  const std::vector<AnalyserTiming>& timings = study.controller.analysers;
+  for (std::size_t i = 0; i < timings.size(); ++i)
+    if (const auto cv = static_cast<Eigen::Index>(i); timings[i].is_analyser())
+      hold(from == AnalysesHeld::from_shown ? timings[i].delay : 0, whole.y.row(cv), whole.y_sim.row(cv));
+  return loop.whole ? window_of(whole, loop.first, loop.samples()) : whole;
 }
 
 Eigen::MatrixXd gaps_closed(Eigen::MatrixXd signals) {

@@ -21,7 +21,9 @@ class LearntModel;
 ///
 /// | symbol | member | shape  | meaning                                                       |
 /// |--------|--------|--------|---------------------------------------------------------------|
-/// | y      | y      | ny x N | measured CVs; NaN where a sample is missing                   |
+/// | y      | y      | ny x N | measured CVs; NaN where a sample is missing, or where the     |
+/// |        |        |        | analyser of the CV took none: analyses stand where the        |
+/// |        |        |        | stream was sampled, not where they were known                 |
 /// | u      | u      | nu x N | MVs, u(k) acts from sample k on                               |
 /// | u_target | u_target | nu x N | targets of the optimizer; zero without one               |
 /// | d      | d      | nd x N | measured disturbances, d(k) acts from sample k on             |
@@ -71,6 +73,15 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
 
 /// The window of `samples` samples of a record from sample `first` on. `record` must outlive it.
 AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::Index samples);
+
+/// From where on an analysis is held: the sample at which it was taken, or that at which it was shown.
+enum class AnalysesHeld { from_taken, from_shown };
+
+/// The loop with each analysis of a CV of an analyser, and y_sim at its sample, held to the next one, so that
+/// an exact model has no errors between them. `whole` is where the record of a window is kept; it must
+/// outlive the loop.
+AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, AnalysesHeld from,
+                                AssessedLoop& whole);
 
 /// Each row of `signals` with its gaps (NaN) filled by linear interpolation, and by the nearest value at both
 /// ends; a row without values is unchanged.

@@ -64,18 +64,33 @@ Assessor::Assessor(const AssessmentMethodInfo& info, const AssessmentContext& co
       locates_cvs_(info.locates_cvs),
       relative_(info.relative && context.learnt),
       context_(context),
-      make_(info.make) {}
+      make_(info.make),
+      holds_analyses_(requirements_.complete_record && has_analysers(context.study.controller.analysers)) {
+  if (!holds_analyses_ && !relative_)
+    return;
+  seen_ = std::make_unique<AssessmentContext>(context_);
+  if (holds_analyses_ && seen_->benchmark)
+    seen_->benchmark = with_held(*context_.benchmark, held_benchmark_);
+}
+
+AssessedLoop Assessor::with_held(const AssessedLoop& loop, AssessedLoop& whole) const {
+  return with_analyses_held(
+      context_.study, loop,
+      requirements_.analyses_as_shown ? AnalysesHeld::from_shown : AnalysesHeld::from_taken, whole);
+}
 
 Assessment Assessor::assess(const AssessedLoop& loop) {
-  if (const std::optional<std::string> unmet = unmet_requirement(requirements_, context_, loop))
+  return assess_seen(holds_analyses_ ? with_held(loop, held_) : loop);
+}
+
+Assessment Assessor::assess_seen(const AssessedLoop& loop) {
+  if (const std::optional<std::string> unmet = unmet_requirement(requirements_, seen(), loop))
     return Assessment::not_applicable(*unmet);
-  if (!method_ && relative_) {
-    corrected_ = std::make_unique<AssessmentContext>(context_);
-    if (context_.benchmark)
-      corrected_->benchmark = context_.learnt->corrected(*context_.benchmark, benchmark_);
+  if (!method_) {
+    if (relative_ && seen_->benchmark)
+      seen_->benchmark = context_.learnt->corrected(*seen_->benchmark, benchmark_);
+    method_ = make_(seen());
   }
-  if (!method_)
-    method_ = make_(relative_ ? *corrected_ : context_);
   try {
     Assessment assessment = method_->assess(relative_ ? context_.learnt->corrected(loop, whole_) : loop);
     assert(assessment.cvs.empty() || static_cast<Eigen::Index>(assessment.cvs.size()) == loop.y.rows());

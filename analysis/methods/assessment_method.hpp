@@ -25,6 +25,9 @@ struct AssessmentRequirements {
   bool moving_mvs = false;        ///< some MV moves during the record
   bool nominal_loop = false;      ///< the controller runs on its own model: S0, or the nominal loop
   bool complete_record = true;    ///< no sample of a CV is missing, in the record and in the benchmark
+  /// Analyses, held to be complete, stand where the controller saw them and not where they were taken: of a
+  /// method by T0.
+  bool analyses_as_shown = false;
 };
 
 /// The scope of a number: the whole loop, each CV, each channel, each CV at each lag, or each window of a
@@ -122,14 +125,20 @@ class Assessor {
   Assessment assess(const AssessedLoop& loop);
 
  private:
+  Assessment assess_seen(const AssessedLoop& loop);
+  AssessedLoop with_held(const AssessedLoop& loop, AssessedLoop& whole) const;
+  const AssessmentContext& seen() const { return seen_ ? *seen_ : context_; }
+
   AssessmentRequirements requirements_;
   bool locates_cvs_;
   bool relative_;
   const AssessmentContext& context_;
   std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext&)> make_;
-  std::unique_ptr<AssessmentContext> corrected_;  ///< of a method that is relative
-  AssessedLoop benchmark_, whole_;                ///< LearntModel::corrected
-  std::unique_ptr<AssessmentMethod> method_;      ///< made for the first loop to which it applies
+  bool holds_analyses_;
+  std::unique_ptr<AssessmentContext> seen_;   ///< of a method that is relative, or to which analyses are held
+  AssessedLoop held_benchmark_, held_;        ///< with_analyses_held()
+  AssessedLoop benchmark_, whole_;            ///< LearntModel::corrected
+  std::unique_ptr<AssessmentMethod> method_;  ///< made for the first loop to which it applies
 };
 
 }  // namespace mpm

@@ -90,6 +90,7 @@ AssessmentMethodInfo botelho_method() {
   info.title = "Botelho (2015)";
   info.verdict = "a modelling error has an impact: some Ivar lies outside the band of impact";
   info.requirements.nominal_loop = true;
+  info.requirements.analyses_as_shown = true;
   info.locates_cvs = true;
   info.tells_sources = true;
   info.numbers = chain_number_infos();

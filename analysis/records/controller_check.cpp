@@ -64,13 +64,13 @@ Eigen::MatrixXd chosen(const RecordFrame& frame, const PlantRecord& record, cons
 
 /// 1 where moves are compared, 0 elsewhere: in what is not judged, and where the controller may have seen
 /// other CVs, or may have been off, at this sample or the one before.
-Eigen::ArrayXd compared_samples(const RecordFrame& frame, const AssessedLoop& loop) {
-  Eigen::ArrayXd counts = Eigen::ArrayXd::Ones(loop.samples());
-  counts.head(std::min(loop.samples(), std::max<Eigen::Index>({1, frame.unjudged, frame.settling})))
+Eigen::ArrayXd compared_samples(const RecordFrame& frame, const PlantRecord& record) {
+  Eigen::ArrayXd counts = Eigen::ArrayXd::Ones(record.samples());
+  counts.head(std::min(record.samples(), std::max<Eigen::Index>({1, frame.unjudged, frame.settling})))
       .setZero();
-  for (Eigen::Index k = 0; k < loop.samples(); ++k)
-    if (loop.y.col(k).array().isNaN().any())
-      counts.segment(k, std::min<Eigen::Index>(2, loop.samples() - k)).setZero();
+  for (Eigen::Index k = 0; k < record.samples(); ++k)
+    if (record.y.col(k).array().isNaN().any())
+      counts.segment(k, std::min<Eigen::Index>(2, record.samples() - k)).setZero();
   return counts;
 }
 
@@ -134,7 +134,7 @@ ControllerCheck check_controller(const RecordFrame& frame, const PlantRecord& re
   const Eigen::MatrixXd u = chosen(frame, record, loop, check.failure);
   if (u.size() == 0)
     return check;
-  const Eigen::ArrayXd counts = compared_samples(frame, loop);
+  const Eigen::ArrayXd counts = compared_samples(frame, record);
   if (counts.sum() < static_cast<double>(kFewestMoves))
     return check;
   for (Eigen::Index mv = 0; mv < nu; ++mv) {

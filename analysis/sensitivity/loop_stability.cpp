@@ -199,7 +199,8 @@ bool has_linear_law(const Study& study, bool has_active_limits) {
   const bool one_slack = has_active_limits && study.controller.slack_form != SlackForm::per_sample;
   const MpcOptions& controller = study.controller;
   const bool other_terms = (controller.reference_time.array() > 0.0).any() ||
-                           (controller.slack_cost.array() > 0.0).any() || controller.has_resting_values();
+                           (controller.slack_cost.array() > 0.0).any() || controller.has_resting_values() ||
+                           has_analysers(controller.analysers);
   return !study.nonlinear && !study.controller_program && !one_slack && !other_terms;
 }
 

@@ -31,7 +31,15 @@ const NominalSensitivity& NominalEstimator::sensitivity_of(const ControlStructur
 }
 
 Eigen::MatrixXd NominalEstimator::simulated(const Trajectory& loop) const {
-  return simulated_output(study_.plant.G, study_.controller.sample_time, point_.u, loop.u, loop.d);
+  Eigen::MatrixXd y_sim =
+      simulated_output(study_.plant.G, study_.controller.sample_time, point_.u, loop.u, loop.d);
+  if (has_analysers(study_.controller.analysers)) {
+    AnalyserHold analysers(study_.controller.analysers);
+    analysers.reset(y_sim.col(0));
+    for (auto y : y_sim.colwise())
+      analysers.pass(y);
+  }
+  return y_sim;
 }
 
 NominalOutputs NominalEstimator::estimate(const Trajectory& loop) {

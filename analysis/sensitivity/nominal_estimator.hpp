@@ -27,7 +27,8 @@ class NominalEstimator {
   NominalEstimator(const Study& study, const OperatingPoint& point, const NominalSensitivity& sensitivity,
                    QpSolverFactory factory);
 
-  /// y_sim of a loop, zero inputs after its last sample included.
+  /// y_sim of a loop, zero inputs after its last sample included. Of a CV of an analyser, what this would
+  /// show of it, as T0 is that of what analysers show.
   Eigen::MatrixXd simulated(const Trajectory& loop) const;
 
   /// y_sim, y0 and y0_diag of a loop that ran to its end. Throws InputError as nominal_sensitivity().

@@ -185,6 +185,9 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
   plant.reset(input);
   controller.reset(u, d);
   const Eigen::VectorXd rest = plant.output();
+  AnalyserHold analysers(options.analysers);
+  analysers.reset(rest);
+  Eigen::VectorXd measured = rest;
 
   const auto move_reference = [&](double by) {
     if (reference.kind == ConstraintKind::setpoint) {
@@ -201,7 +204,9 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
   for (Eigen::Index k = 0; k + 1 < moves.size(); ++k) {
     if (k == 0 || moves(k) != moves(k - 1))
       move_reference(moves(k));
-    const ControlMove& move = controller.step(plant.output(), d);
+    measured = plant.output();
+    analysers.pass(measured);
+    const ControlMove& move = controller.step(measured, d);
     if (observer)
       observer(controller);
     if (move.status != ControlStatus::ok)

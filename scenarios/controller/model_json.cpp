@@ -45,6 +45,13 @@ Json model_json(const PlantModel& plant, double sample_time, Eigen::Index sample
   return {{"inputs", inputs}, {"transfer_functions", channels}, {"step_responses", steps}};
 }
 
+Json analyser_json(const MpcOptions& controller, int AnalyserTiming::*member) {
+  Json numbers = Json::array();
+  for (const AnalyserTiming& timing : controller.analysers)
+    numbers.push_back(timing.*member);
+  return numbers;
+}
+
 Json controller_json(const MpcOptions& controller) {
   return {{"prediction_horizon", controller.prediction_horizon},
           {"control_horizon", controller.control_horizon},
@@ -55,6 +62,8 @@ Json controller_json(const MpcOptions& controller) {
           {"slack_weight", vector_json(controller.slack_weight)},
           {"slack_cost", vector_json(controller.slack_cost)},
           {"reference_time", vector_json(controller.reference_time)},
+          {"analyser_period", analyser_json(controller, &AnalyserTiming::period)},
+          {"analyser_delay", analyser_json(controller, &AnalyserTiming::delay)},
           {"move_starts", controller.move_starts()},
           {"move_limit", vector_json(controller.move_limit)},
           {"resting_value", vector_json(controller.resting_value)},

@@ -74,6 +74,7 @@ OptionKeys keys(MvOptions& mv) {
 struct CvOptions {
   double setpoint_weight = 0.0, setpoint = 0.0, slack_weight = 0.0, slack_cost = 0.0, reference_time = 0.0;
   NumberPair soft{-kInfinity, kInfinity}, hard;
+  AnalyserTiming analyser;
 };
 
 /// A soft limit outside of the hard ones could never be reached.
@@ -114,31 +115,37 @@ void read_setpoint_and_range(const TomlTable& table, CvOptions& cv) {
 }
 
 OptionKeys keys(CvOptions& cv) {
-  return {key::option("setpoint_weight", "number", "Q_y of (2.26), W of (3.30)", "1 / CV^2")
-              .otherwise("none: no setpoint")
-              .allow("> 0"),
-          key::option("setpoint", "number", "setpoint at the start; `simulation.step` changes it", "CV")
-              .otherwise("0")
-              .allow("finite; with `setpoint_weight`"),
-          key::option("slack_weight", "number", "tau_y of (6.20)", "1 / CV^2")
-              .otherwise("required with `soft` and without `slack_cost`")
-              .allow("> 0"),
-          key::option("slack_cost", "number",
-                      "linear cost of a violation of the soft limits, beside or in place of `slack_weight`",
-                      "1 / CV")
-              .otherwise("none")
-              .allow("> 0"),
-          key::option("reference_time", "number",
-                      "time constant of the reference trajectory: the CV is asked to approach its setpoint "
-                      "from where it is",
-                      "time")
-              .otherwise("none: at once")
-              .allow("> 0; with `setpoint_weight`"),
-          key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
-              .otherwise("required without a setpoint")
-              .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
-          key::limits("hard", cv.hard, "hard limits; a loop that cannot keep them is infeasible", "CV"),
-          key::check([&cv](const TomlTable& table) { read_setpoint_and_range(table, cv); })};
+  return {
+      key::option("setpoint_weight", "number", "Q_y of (2.26), W of (3.30)", "1 / CV^2")
+          .otherwise("none: no setpoint")
+          .allow("> 0"),
+      key::option("setpoint", "number", "setpoint at the start; `simulation.step` changes it", "CV")
+          .otherwise("0")
+          .allow("finite; with `setpoint_weight`"),
+      key::option("slack_weight", "number", "tau_y of (6.20)", "1 / CV^2")
+          .otherwise("required with `soft` and without `slack_cost`")
+          .allow("> 0"),
+      key::option("slack_cost", "number",
+                  "linear cost of a violation of the soft limits, beside or in place of `slack_weight`",
+                  "1 / CV")
+          .otherwise("none")
+          .allow("> 0"),
+      key::option("reference_time", "number",
+                  "time constant of the reference trajectory: the CV is asked to approach its setpoint "
+                  "from where it is",
+                  "time")
+          .otherwise("none: at once")
+          .allow("> 0; with `setpoint_weight`"),
+      key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
+          .otherwise("required without a setpoint")
+          .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
+      key::whole("analyser_period", cv.analyser.period, 1, kMaxHorizon,
+                 "of a CV of an analyser: samples from one analysis to the next, between which it is held",
+                 "samples"),
+      key::whole("analyser_delay", cv.analyser.delay, 0, kMaxHorizon,
+                 "samples from taking a sample of the stream to the analysis", "samples"),
+      key::limits("hard", cv.hard, "hard limits; a loop that cannot keep them is infeasible", "CV"),
+      key::check([&cv](const TomlTable& table) { read_setpoint_and_range(table, cv); })};
 }
 
 /// One table for each of the variables, none more.
@@ -171,6 +178,7 @@ void resize(Study& study) {
   for (Eigen::VectorXd* of_cv : {&options.setpoint_weight, &options.slack_weight, &options.slack_cost,
                                  &options.reference_time, &study.simulation.initial_setpoint})
     of_cv->setZero(cvs);
+  options.analysers.assign(static_cast<std::size_t>(cvs), {});
   options.move_limit.setConstant(mvs, kInfinity);
   options.mv_hard = Limits::none(mvs);
   options.cv_hard = Limits::none(cvs);
@@ -234,6 +242,7 @@ OptionKeys controller_keys(Study& study) {
     options.slack_weight(i) = cv.slack_weight;
     options.slack_cost(i) = cv.slack_cost;
     options.reference_time(i) = cv.reference_time;
+    options.analysers[static_cast<std::size_t>(i)] = cv.analyser;
     study.simulation.initial_setpoint(i) = cv.setpoint;
     set_limits(options.cv_soft, i, cv.soft);
     set_limits(options.cv_hard, i, cv.hard);

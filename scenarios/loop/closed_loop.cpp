@@ -211,10 +211,14 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   Eigen::VectorXd u = input.head(study.mv_count());
   Eigen::VectorXd u_before = u;
   begin(plant, input, trajectory);
+  AnalyserHold analysers(study.controller.analysers);
+  if (trajectory.failure == LoopFailure::none)
+    analysers.reset(plant.output());
   if (study.controller_program)
     trajectory.solver.largest_kkt_residual = kNaN;
   for (Eigen::Index k = 0; k < samples && trajectory.failure == LoopFailure::none; ++k) {
     trajectory.y.col(k) = plant.output() + signals.y_d.col(k) + signals.noise.col(k);
+    analysers.pass(trajectory.y.col(k));
     if (signals.y_set.size() > 0)
       controller.set_setpoints(signals.y_set.col(k));
     surroundings.prepare(k, controller);

@@ -44,7 +44,7 @@ std::string_view to_string(LoopFailure failure);
 ///
 /// | symbol   | member   | shape  | meaning                                      |
 /// |----------|----------|--------|----------------------------------------------|
-/// | y        | y        | ny x N | measured CVs, noise included                 |
+/// | y        | y        | ny x N | measured CVs, noise included; as analysers show them |
 /// | u        | u        | nu x N | MVs, u(k) acts from sample k on              |
 /// | u_target | u_target | nu x N | targets of the optimizer                     |
 /// | d        | d        | nd x N | measured disturbances, d(k) acts from k on   |

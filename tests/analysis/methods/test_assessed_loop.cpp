@@ -302,4 +302,59 @@ TEST_CASE("a panel has its methods in the order in which they are named, and no 
                     Contains("found 'nobody'; allowed: botelho"));
 }
 
+namespace {
+
+/// The column with noise, its bottom product measured by an analyser: every 4 samples, 2 samples late.
+Study analysed_column() {
+  Study study = find_study("wood-berry");
+  study.controller.analysers = {{}, {4, 2}};
+  return study;
+}
+
+}  // namespace
+
+TEST_CASE("analyses stand where the stream was sampled, in a loop and in the record of it", "[analyser]") {
+  Study study = analysed_column();
+  study.simulation.noise_standard_deviation.setZero();
+  const OperatingPoint point = operating_point(study, testing::kFactory);
+  const Trajectory trajectory = simulate_experiment(study, {}, testing::kFactory);
+  const AssessedLoop loop = assessed_loop(study, point, trajectory);
+  CHECK_FALSE(loop.y.row(0).hasNaN());
+  for (Eigen::Index k = 0; k + 2 < loop.samples(); ++k) {
+    REQUIRE(std::isnan(loop.y(1, k)) == (k % 4 != 0));
+    if (k % 4 == 0)  // the model is exact
+      CHECK(loop.y(1, k) == Approx(loop.y_sim(1, k)).margin(1e-9));
+  }
+  // A record that begins 5 samples later does not say when the analyser takes its samples: it shows it.
+  const AssessedLoop recorded = assessed_loop(study, point, record_of(trajectory, 5), 0);
+  for (Eigen::Index k = 0; k + 2 < recorded.samples(); ++k) {
+    REQUIRE(std::isnan(recorded.y(1, k)) == ((k + 5) % 4 != 0));
+    if ((k + 5) % 4 == 0)
+      CHECK(recorded.y(1, k) == loop.y(1, k + 5));
+  }
+}
+
+TEST_CASE("a method that needs every sample gets analyses held, others what is there", "[analyser]") {
+  const Study study = analysed_column();
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
+  const AssessedLoop& healthy = *context.benchmark;
+  REQUIRE(healthy.y.row(1).hasNaN());
+  AssessedLoop whole;
+  const AssessedLoop held = with_analyses_held(study, healthy, AnalysesHeld::from_taken, whole);
+  CHECK(held.y.row(0) == healthy.y.row(0));
+  for (Eigen::Index k = 0; k + 6 < held.samples(); ++k) {
+    CHECK(held.y(1, k) == healthy.y(1, k / 4 * 4));
+    CHECK(held.y_sim(1, k) == healthy.y_sim(1, k / 4 * 4));
+  }
+  const AssessedLoop shown = with_analyses_held(study, healthy, AnalysesHeld::from_shown, whole);
+  const Eigen::Index samples = healthy.samples();
+  CHECK(shown.y.rightCols(samples - 2) == basis.trajectory.y.rightCols(samples - 2));
+  for (const char* name : {"botelho", "arx-oe", "sse", "likelihood", "variance-ratio"}) {
+    const Assessment said = Assessor(assessment_method(name), context).assess(healthy);
+    INFO(name << ": " << said.reason);
+    CHECK(said.status == AssessmentStatus::ok);
+  }
+}
+
 }  // namespace mpm

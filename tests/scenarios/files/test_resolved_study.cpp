@@ -237,7 +237,8 @@ std::string unexcited_study_text() {
 /// The small study in worlds, with an excitation of its own in each loop.
 std::string world_study_text() {
   return replaced(small_study(), "samples = 60", "samples = 60\nexcitation = \"each\"") +
-         "\n[world]\ncount = 3\ngain_factor = {uniform = [0.95, 1.05]}\n"
+         "\n[assessment.likelihood]\nhypotheses = \"all\"\n[world]\ncount = 3\ngain_factor = {uniform = "
+         "[0.95, 1.05]}\n"
          "background = {cv_size = {constant = 0.5}, time_constant = {constant = 10}}\n";
 }
 
@@ -247,7 +248,7 @@ std::string world_tank_text() {
          "\n[world]\nplant_parameter = [{name = \"cd1\", factor = {uniform = [0.95, 1.05]}}]\n";
 }
 
-/// The small study with the limits and tunings of industrial controllers.
+/// The small study with the limits, tunings and analysers of industrial controllers.
 std::string tuned_study_text() {
   std::string text =
       replaced(small_study(), "control_horizon = 5", "control_horizon = 3\nmove_blocks = [1, 4, 2]");
@@ -255,7 +256,8 @@ std::string tuned_study_text() {
                   "[controller.mv.hot]\nresting_value = 0.5\nresting_weight = 2");
   text = replaced(text, "hard = [-4, 5]", "hard = [-4, 5]\nmove_limit = 0.5");
   text = replaced(text, "slack_weight = 8\nsoft = [0, 1]", "setpoint_weight = 1\nreference_time = 4");
-  return replaced(text, "slack_weight = 9", "slack_weight = 9\nslack_cost = 6");
+  return replaced(text, "slack_weight = 9",
+                  "slack_weight = 9\nslack_cost = 6\nanalyser_period = 5\nanalyser_delay = 3");
 }
 
 /// Studies of the tests, among them those with the keys that no shipped one has.
