@@ -122,10 +122,11 @@ footer { margin-top: 3.5rem; padding-top: 1rem; border-top: 1px solid var(--rule
   body { padding: 1.4rem 1rem 3rem; }
   section { margin-top: 2.2rem; padding-top: 1.2rem; }
   table { font-size: 0.84rem; }
-  th, td { padding: 0.32rem 0.55rem; }
+  th, td { padding: 0.32rem 0.4rem; }
   .facts { grid-template-columns: 1fr; gap: 0.8rem; }
   tbody th { position: sticky; left: 0; background: var(--page); min-width: 2.2rem; }
-  tbody th:not(.number) { min-width: 7.5rem; }
+  tbody th:not(.number) { min-width: 5rem; }
+  td.text { min-width: 10rem; }
   .matrix tbody th { min-width: 0; }
 }
 @media print {
