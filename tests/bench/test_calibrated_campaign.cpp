@@ -165,10 +165,10 @@ TEST_CASE(
 
 TEST_CASE("comparison: loops that Ipopt runs again give the same bits for any number of worker processes") {
   const Study study = changed_study(find_study("wood-berry"),  // Ipopt takes its time
-                                    {{"simulation.samples", "80"},
-                                     {"controller.prediction_horizon", "20"},
-                                     {"controller.control_horizon", "4"},
-                                     {"sensitivity.samples", "60"},
+                                    {{"simulation.samples", "50"},
+                                     {"controller.prediction_horizon", "12"},
+                                     {"controller.control_horizon", "3"},
+                                     {"sensitivity.samples", "40"},
                                      {"calibration.healthy", "2"},
                                      {"calibration.ud", "1"}},
                                     "short");
