@@ -9,6 +9,7 @@
 #include "plants/error.hpp"
 #include "scenarios/study/assessment_options.hpp"
 #include "scenarios/toml/option_keys.hpp"
+#include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {
 
@@ -70,8 +71,8 @@ const AssessmentMethodInfo& assessment_method(std::string_view name) {
   for (const AssessmentMethodInfo& method : assessment_methods())
     if (method.name == name)
       return method;
-  throw InputError("method", fmt::format("'{}'", name),
-                   fmt::format("{}", fmt::join(assessment_method_names(), ", ")));
+  const std::vector<std::string> known = assessment_method_names();
+  throw InputError("method", with_nearest(name, known), fmt::format("{}", fmt::join(known, ", ")));
 }
 
 std::vector<std::string> study_methods(const Study& study) {
@@ -89,7 +90,7 @@ std::vector<std::string> known_methods(const std::vector<std::string>& names, co
     refuse("no method");
   for (auto name = names.begin(); name != names.end(); ++name) {
     if (std::find(known.begin(), known.end(), *name) == known.end())
-      refuse(fmt::format("'{}'", *name));
+      refuse(with_nearest(*name, known));
     if (std::find(names.begin(), name, *name) != name)
       refuse(fmt::format("'{}' twice", *name));
   }

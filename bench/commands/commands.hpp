@@ -12,6 +12,7 @@ using AddCommand = void(CommandSet& commands);
 
 AddCommand add_init;         // writes a study of a plant of one's own
 AddCommand add_init_method;  // writes a method of one's own, with one function to fill in
+AddCommand add_methods;      // the methods of assessment, and what one of them is told and says
 AddCommand add_run;          // runs a study and writes its archive
 AddCommand add_merge;        // makes the archive of parts that were run on several machines
 AddCommand add_validate;     // what is implausible in a study, what it will show and cost
@@ -41,7 +42,8 @@ struct Task {
 
 inline std::vector<Task> tasks() {
   return {{"Test methods on simulated loops",
-           {add_init, add_validate, add_run, add_merge, add_sweep, add_suite, add_compare, add_init_method}},
+           {add_init, add_validate, add_run, add_merge, add_sweep, add_suite, add_compare, add_methods,
+            add_init_method}},
           {"Look at the results", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
           {"Assess the records of a plant", {add_assess, add_identify, add_repair}},
           {"Shipped studies and the program itself",

@@ -96,14 +96,17 @@ struct PieceText {
   std::string operator()(const Table& table) const { return table_text(table, width); }
   std::string operator()(const Paragraph& paragraph) const { return paragraph_text(paragraph.words, width); }
   std::string operator()(const Facts& facts) const {
-    constexpr std::size_t kNameWidth = 14;
+    constexpr std::size_t kUsualWidth = 14;
+    std::size_t name_width = kUsualWidth;
+    for (const Facts::Fact& fact : facts.list)
+      name_width = std::max(name_width, words_text(fact.name).size() + 1);
     std::string text;
     for (const Facts::Fact& fact : facts.list) {
       const std::string value = words_text(fact.words + (fact.note.empty() ? "" : "; " + fact.note));
       std::string name = words_text(fact.name);
-      std::istringstream lines(wrapped(value, width - kNameWidth));
+      std::istringstream lines(wrapped(value, width - name_width));
       for (std::string line; std::getline(lines, line); name.clear())
-        text += fmt::format("{:<{}}{}\n", name, kNameWidth, line);
+        text += fmt::format("{:<{}}{}\n", name, name_width, line);
     }
     return text;
   }

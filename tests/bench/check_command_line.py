@@ -29,6 +29,22 @@ def stopped(number, *command):
     return error
 
 
+def check_methods(run):
+    """Every method with what it needs; of one of them the options, with the defaults of the manual, and the numbers."""
+    listed = json.loads(run("methods", "--json").stdout)["methods"]
+    text = run("methods").stdout
+    assert len(listed) > 20 and all(f"\n{method['name']} " in text for method in listed), text
+    sse = next(method for method in listed if method["name"] == "sse")
+    assert sse["needs"] == "a benchmark period" and sse["answers"] == "the CV", sse
+    one = json.loads(run("methods", "likelihood", "--json").stdout)
+    option = next(option for option in one["options"] if option["key"] == "assessment.likelihood.hypotheses")
+    assert option["default"] == '`"learnt"`', option
+    assert "p_healthy" in [number["name"] for number in one["numbers"]], one
+    text = run("methods", "likelihood").stdout
+    assert "hypotheses" in text and "p_healthy" in text, text
+    assert "(nearest: 'likelihood')" in run("methods", "likelyhood", code=2).stderr
+
+
 def main(program, chapter6):
     def run(*words, code=0):
         result = subprocess.run([program, *map(str, words)], capture_output=True, text=True, timeout=600)
@@ -39,6 +55,7 @@ def main(program, chapter6):
         folder = pathlib.Path(name)
         assert "chapter6" in run("list").stdout
         assert run("show", "chapter6").stdout == pathlib.Path(chapter6).read_text()
+        check_methods(run)
 
         archive = folder / "a.h5"
         text = run("run", "chapter6", "-o", archive, "--experiments", 6).stdout

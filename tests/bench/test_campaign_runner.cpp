@@ -158,7 +158,7 @@ TEST_CASE("campaign: the methods of the options take the place of the study's, a
   }
   options.methods = {"sse", "some"};
   CHECK_THROWS_WITH(run_campaign(study, options),
-                    Contains("--methods: found 'some'; allowed: each once: botelho"));
+                    Contains("--methods: found 'some' (nearest: 'sse'); allowed: each once: botelho"));
 }
 
 TEST_CASE("campaign: an experiment whose plant cannot rest where its loop begins costs itself only") {

@@ -210,7 +210,7 @@ TEST_CASE("command line: help names every command, and the defaults of each") {
   const CommandResult help = typed({"--help"});
   CHECK(help.code == ExitCode::done);
   for (const char* name : {"run", "replay", "summary", "sweep", "check", "report", "plot", "compare",
-                           "export", "reproduce", "list"}) {
+                           "export", "reproduce", "list", "methods"}) {
     CHECK_THAT(help.message, Contains(std::string("\n  ") + name + " "));
     CHECK(typed({name, "--help"}).code == ExitCode::done);
   }

@@ -39,6 +39,8 @@ TEST_CASE("methods by name: no method, an unknown one, and one twice are refused
   CHECK_THROWS_WITH(known_methods({"all", "sse"}, "k"), "k: found 'all'" + allowed);
   CHECK_THROWS_AS(known_methods({}, "k"), InputError);
   CHECK_THROWS_WITH(assessment_method("nobody"), "method: found 'nobody'; allowed: " + kKnown);
+  CHECK_THROWS_WITH(assessment_method("likelyhood"),
+                    "method: found 'likelyhood' (nearest: 'likelihood'); allowed: " + kKnown);
 }
 
 TEST_CASE("methods of a study: those of its file, the thesis's chain when it names none") {
