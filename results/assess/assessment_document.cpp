@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -122,17 +124,25 @@ Section verdict_section(const RecordAssessment& of) {
   return section;
 }
 
+/// Where the method sees the fault stands beside the costs if a fault was found: what it says of a CV alone
+/// is not the verdict.
 Section cvs_section(const RecordAssessment& of) {
   Section section{"cvs", "What it costs"};
-  Table table(
-      "Variance of each CV over that of the nominal loop (1: as designed), and where the method sees the "
-      "fault",
-      {{"CV", Table::Align::left}, {"variance"}, {"flagged"}, {"source"}, {"score"}});
-  for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
-    table.row(
-        {as_label(cv_name(of.study, cv)), Number{number_of_cv(of.verdict(), "ivar", cv), NumberForm::fixed},
-         word(number_of_cv(of.verdict(), "cv_flagged", cv)), source_words(source_of_cv(of.verdict(), cv)),
-         Number{number_of_cv(of.verdict(), "cv_score", cv), NumberForm::fixed}});
+  const bool has_fault = of.found() == RecordVerdict::fault;
+  Table table(std::string("Variance of each CV over that of the nominal loop (1: as designed)") +
+                  (has_fault ? ", and where the method sees the fault" : ""),
+              {{"CV", Table::Align::left}, {"variance"}});
+  if (has_fault)
+    table.columns.insert(table.columns.end(), {{"flagged"}, {"source"}, {"score"}});
+  for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv) {
+    std::vector<Cell> cells = {as_label(cv_name(of.study, cv)),
+                               Number{number_of_cv(of.verdict(), "ivar", cv), NumberForm::fixed}};
+    if (has_fault)
+      cells.insert(cells.end(), {word(number_of_cv(of.verdict(), "cv_flagged", cv)),
+                                 source_words(source_of_cv(of.verdict(), cv)),
+                                 Number{number_of_cv(of.verdict(), "cv_score", cv), NumberForm::fixed}});
+    table.row(std::move(cells));
+  }
   section.add(std::move(table));
   return section;
 }
