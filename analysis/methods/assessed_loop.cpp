@@ -39,10 +39,10 @@ Eigen::MatrixXd after_rest(const Eigen::MatrixXd& signal, Eigen::Index samples) 
   return longer;
 }
 
-/// The analyses of the CVs that have an analyser at the samples at which they were taken. A record of a plant
-/// says itself when that is.
+/// Who says when an analyser takes its samples: the study, or the changes of a record of a plant.
 enum class FirstAnalysis { of_study, of_record };
 
+/// Of the CVs that have an analyser, the analyses at the samples at which they were taken.
 void take_analyses(const Study& study, FirstAnalysis first, Eigen::MatrixXd& y) {
   const std::vector<AnalyserTiming>& timings = study.controller.analysers;
   for (std::size_t i = 0; i < timings.size(); ++i) {
@@ -53,15 +53,24 @@ void take_analyses(const Study& study, FirstAnalysis first, Eigen::MatrixXd& y) 
   }
 }
 
-/// What was known of `y` and `y_sim` at each sample when an analysis was known `delay` samples after it was
-/// taken.
-void hold(Eigen::Index delay, Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> y,
+/// `y` and `y_sim` at each sample as an analyser shows them that says what it found `delay` samples after
+/// taking its sample. Before the first analysis of a record it is the first one that is shown. Where the next
+/// analysis is missing, so are the samples until the one after it; only those that the record ends too early
+/// for are not.
+void hold(const AnalyserTiming& timing, Eigen::Index delay,
+          Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> y,
           Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> y_sim) {
   const Eigen::RowVectorXd taken = y, simulated = y_sim;
-  for (Eigen::Index k = 1; k < y.size(); ++k) {
-    const bool is_new = k >= delay && !std::isnan(taken(k - delay));
-    y(k) = is_new ? taken(k - delay) : y(k - 1);
-    y_sim(k) = is_new ? simulated(k - delay) : y_sim(k - 1);
+  const Eigen::Index unfinished = y.size() - (timing.delay - delay);
+  Eigen::Index last = 0;
+  while (last + 1 < std::min<Eigen::Index>(timing.period, y.size()) && std::isnan(taken(last)))
+    ++last;
+  for (Eigen::Index k = 0; k < y.size(); ++k) {
+    if (k >= delay && !std::isnan(taken(k - delay)))
+      last = k - delay;
+    const bool is_known = k - delay - last < timing.period || k >= unfinished;
+    y(k) = is_known ? taken(last) : kNaN;
+    y_sim(k) = simulated(last);
   }
 }
 
@@ -163,7 +172,8 @@ AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, An
   const std::vector<AnalyserTiming>& timings = study.controller.analysers;
   for (std::size_t i = 0; i < timings.size(); ++i)
     if (const auto cv = static_cast<Eigen::Index>(i); timings[i].is_analyser())
-      hold(from == AnalysesHeld::from_shown ? timings[i].delay : 0, whole.y.row(cv), whole.y_sim.row(cv));
+      hold(timings[i], from == AnalysesHeld::from_shown ? timings[i].delay : 0, whole.y.row(cv),
+           whole.y_sim.row(cv));
   return loop.whole ? window_of(whole, loop.first, loop.samples()) : whole;
 }
 

@@ -144,7 +144,7 @@ void add_methods(CommandSet& commands) {
   CLI::App& app =
       commands.add("methods", "List the methods, what they need and answer; or the options of one",
                    [options] { return describe_methods(*options); });
-  app.add_option("NAME", options->method, "Method: its options and its numbers");
+  app.add_option("NAME", options->method, "Show the options and numbers of this method");
   add_method_files(app, options->method_files);
   add_json(app, options->json);
 }

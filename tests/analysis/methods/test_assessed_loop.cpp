@@ -347,6 +347,11 @@ TEST_CASE("a method that needs every sample gets analyses held, others what is t
     CHECK(held.y(1, k) == healthy.y(1, k / 4 * 4));
     CHECK(held.y_sim(1, k) == healthy.y_sim(1, k / 4 * 4));
   }
+  AssessedLoop gap = healthy;
+  gap.y(1, 40) = kNaN;  // an analysis that is missing is not replaced by the one before it
+  const AssessedLoop with_gap = with_analyses_held(study, gap, AnalysesHeld::from_taken, whole);
+  CHECK(with_gap.y.row(1).segment(40, 4).array().isNaN().all());
+  CHECK(with_gap.y.row(1).array().isNaN().count() == 4);
   const AssessedLoop shown = with_analyses_held(study, healthy, AnalysesHeld::from_shown, whole);
   const Eigen::Index samples = healthy.samples();
   CHECK(shown.y.rightCols(samples - 2) == basis.trajectory.y.rightCols(samples - 2));
