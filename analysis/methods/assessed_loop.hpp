@@ -78,8 +78,8 @@ AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::In
 enum class AnalysesHeld { from_taken, from_shown };
 
 /// The loop with each analysis of a CV of an analyser, and y_sim at its sample, held to the next one, so that
-/// an exact model has no errors between them; NaN where an analysis is missing. `whole` is where the record of a window is kept; it must
-/// outlive the loop.
+/// an exact model has no errors between them; NaN where an analysis is missing. `whole` is where the record
+/// of a window is kept; it must outlive the loop.
 AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, AnalysesHeld from,
                                 AssessedLoop& whole);
 

@@ -11,6 +11,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
+#include "results/archive/method_json.hpp"
 #include "results/document/document.hpp"
 #include "results/document/document_json.hpp"
 #include "results/document/document_text.hpp"
@@ -28,22 +29,6 @@ struct MethodsArguments {
   bool json = false;
 };
 
-const char* scope_text(NumberScope scope) {
-  switch (scope) {
-    case NumberScope::loop:
-      return "the loop";
-    case NumberScope::cv:
-      return "a CV";
-    case NumberScope::channel:
-      return "a channel";
-    case NumberScope::cv_lag:
-      return "a CV and lag";
-    case NumberScope::window:
-      return "a window";
-  }
-  return "";
-}
-
 /// The table [assessment.NAME] of the study file.
 OptionKeys option_keys(const AssessmentMethodInfo& method) {
   // The texts of keys do not depend on the options that they refer to.
@@ -52,31 +37,17 @@ OptionKeys option_keys(const AssessmentMethodInfo& method) {
 }
 
 ordered_json json_of(const AssessmentMethodInfo& method) {
-  ordered_json numbers = ordered_json::array(), options = ordered_json::array();
-  for (const AssessmentNumberInfo& number : method.numbers)
-    numbers.push_back({{"name", number.name},
-                       {"of", scope_text(number.scope)},
-                       {"meaning", number.meaning},
-                       {"unit", number.unit}});
+  ordered_json json = ordered_json::parse(method_description_json(method));
+  json["options"] = ordered_json::array();
   for (const OptionKey& key : option_keys(method))
     if (!key.name.empty())
-      options.push_back({{"key", fmt::format("assessment.{}.{}", method.name, key.name)},
-                         {"type", key.type},
-                         {"meaning", key.meaning},
-                         {"unit", key.unit},
-                         {"default", key.fallback},
-                         {"allowed", key.allowed}});
-  ordered_json stated;
-  if (method.stated_false_alarms)
-    stated = *method.stated_false_alarms;
-  return {{"name", method.name},
-          {"title", method.title},
-          {"flagged", method.verdict},
-          {"needs", needs_text(method)},
-          {"answers", answers_text(method)},
-          {"stated_false_alarms", stated},
-          {"numbers", numbers},
-          {"options", options}};
+      json["options"].push_back({{"key", fmt::format("assessment.{}.{}", method.name, key.name)},
+                                 {"type", key.type},
+                                 {"meaning", key.meaning},
+                                 {"unit", key.unit},
+                                 {"default", key.fallback},
+                                 {"allowed", key.allowed}});
+  return json;
 }
 
 Section list_of(const std::vector<AssessmentMethodInfo>& methods) {
@@ -116,8 +87,7 @@ Section details_of(const AssessmentMethodInfo& method) {
 
   Facts numbers;
   for (const AssessmentNumberInfo& number : method.numbers)
-    numbers.add(as_label(number.name),
-                as_label(fmt::format("of {}: {}", scope_text(number.scope), number.meaning)));
+    numbers.add(as_label(number.name), as_label(number.meaning));
   if (!numbers.list.empty()) {
     section.say(fmt::format("Numbers, /methods/{} of an archive:", as_label(method.name)));
     section.add(std::move(numbers));

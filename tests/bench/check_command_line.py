@@ -35,7 +35,7 @@ def check_methods(run):
     text = run("methods").stdout
     assert len(listed) > 20 and all(f"\n{method['name']} " in text for method in listed), text
     sse = next(method for method in listed if method["name"] == "sse")
-    assert sse["needs"] == "a benchmark period" and sse["answers"] == "the CV", sse
+    assert sse["needs"]["benchmark"] and sse["answers"]["cv"] and not sse["answers"]["source"], sse
     one = json.loads(run("methods", "likelihood", "--json").stdout)
     option = next(option for option in one["options"] if option["key"] == "assessment.likelihood.hypotheses")
     assert option["default"] == '`"learnt"`', option
