@@ -84,6 +84,15 @@ std::vector<SuiteAxis> used(const std::vector<SuiteAxis>& axis, std::vector<Cell
   return kept;
 }
 
+MethodScores scores_of(const MethodRates& of) {
+  MethodScores scores{of.reason, {}};
+  for (const MethodRateInfo& info : method_rate_infos())
+    scores.rates.push_back(of.*info.rate);
+  for (const MethodEstimateInfo& info : method_estimate_infos())
+    scores.estimates.push_back(of.*info.estimate);
+  return scores;
+}
+
 void add_shares(const PooledScores& reference, PooledScores& scores) {
   for (const LeaderboardScore& score : leaderboard_scores()) {
     const Rate* const reached = scores.of(score.rate);
@@ -129,14 +138,27 @@ CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
                     .in_worlds = cell.study.world.has_value(),
                     .experiments = findings.experiments,
                     .failed = findings.failed,
-                    .infeasible = findings.infeasible.hits};
+                    .infeasible = findings.infeasible.hits,
+                    .truths = findings.truths,
+                    .worlds = findings.worlds};
   for (const MethodFindings& method : findings.methods) {
-    MethodScores& of_method = scores.methods.emplace_back(MethodScores{method.rates.reason, {}});
-    for (const MethodRateInfo& info : method_rate_infos())
-      of_method.rates.push_back(method.rates.*info.rate);
-    for (const MethodEstimateInfo& info : method_estimate_infos())
-      of_method.estimates.push_back(method.rates.*info.estimate);
+    MethodScores& of_method = scores.methods.emplace_back(scores_of(method.rates));
+    of_method.outcomes = method.rates.outcomes;
+    of_method.scope = outcome_scope(cell.study, method.form->method(), method.rates.thresholds);
   }
+  return scores;
+}
+
+MethodScores scores_of_outcomes(const CellScores& cell, std::string outcomes, const OutcomeScope& scope) {
+  OutcomeCounts counts;
+  for (std::size_t i = 0; i < outcomes.size(); ++i)
+    if (outcomes[i] != kNoLoop)
+      counts.add(scope, cell.worlds[i], *fault_truth(cell.truths[i]), *loop_outcome(outcomes[i]));
+  MethodRates rates{};
+  counts.put(rates, Leaderboard().confidence);
+  MethodScores scores = scores_of(rates);
+  scores.outcomes = std::move(outcomes);
+  scores.scope = scope;
   return scores;
 }
 
@@ -191,6 +213,10 @@ bool Leaderboard::in_worlds() const {
   return std::any_of(cells.begin(), cells.end(), ran) &&
          std::all_of(cells.begin(), cells.end(),
                      [&ran](const CellScores& cell) { return cell.in_worlds || !ran(cell); });
+}
+
+bool Leaderboard::is_own(std::size_t method) const {
+  return std::find(own.begin(), own.end(), methods[method]) != own.end();
 }
 
 std::vector<RankedMethod> ranking(const Leaderboard& board) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/findings/loop_outcome.hpp"
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/statistics/estimate.hpp"
@@ -22,6 +23,9 @@ struct MethodScores {
   /// In the order of method_estimate_infos(). Of several cells only means that keep their clusters: medians
   /// cannot be added up.
   std::vector<Estimate> estimates = {};
+  /// Of one cell: what it said of each loop (MethodRates::outcomes), and which rates that decides.
+  std::string outcomes = {};
+  OutcomeScope scope = {};
 
   /// The rate of this name; null when there is none.
   const Rate* of(std::string_view name) const;
@@ -41,11 +45,18 @@ struct CellScores {
   std::int64_t experiments = 0;
   std::int64_t failed = 0;
   std::int64_t infeasible = 0;
+  std::string truths = {};                 ///< of its loops, as in StudyFindings
+  std::vector<int> worlds = {};            ///< the same
   std::vector<MethodScores> methods = {};  ///< in the order of the leaderboard; empty in trouble
 };
 
 /// The scores of a cell that was run.
 CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings);
+
+/// The scores that the outcomes of a method on the loops of a cell decide, with the loops of `cell` for
+/// truth; its other rates and all estimates are of nothing. Errors: none; the letters must be those of a
+/// truth and an outcome, as many as loops.
+MethodScores scores_of_outcomes(const CellScores& cell, std::string outcomes, const OutcomeScope& scope);
 
 /// A method on all cells of a family, or of a plant: hits and loops of the cells are added up, so that each
 /// loop counts once, and Wilson's interval is taken of the sums.
@@ -119,13 +130,16 @@ struct Leaderboard {
   std::vector<SuiteAxis> plants = {};    ///< with a cell, in the order of the suite
   std::vector<SuiteAxis> families = {};  ///< with a cell, in the order of the suite
   std::vector<std::string> methods = {};
-  std::vector<CellScores> cells = {};                     ///< with places in `plants` and `families` above
+  std::vector<std::string> own = {};   ///< of them: those that a reader looks for
+  std::string finished_by = {};        ///< "mpmbench 1.0 (revision)": who ran the others; empty: this program
+  std::vector<CellScores> cells = {};  ///< with places in `plants` and `families` above
   std::vector<std::vector<PooledScores>> by_family = {};  ///< [method][family]
   std::vector<std::vector<PooledScores>> by_plant = {};   ///< [method][plant]
   std::vector<PooledScores> overall = {};                 ///< [method]
 
   /// All loops take place in worlds drawn at random: there are cells that were run, and all of them do.
   bool in_worlds() const;
+  bool is_own(std::size_t method) const;
 };
 
 /// A method among the others, over all families of a suite of worlds.

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "analysis/experiment/repair.hpp"
+#include "analysis/findings/loop_outcome.hpp"
 #include "analysis/findings/monitored_loop.hpp"
 #include "analysis/findings/world_counts.hpp"
 #include "analysis/statistics/holm.hpp"
@@ -31,11 +32,10 @@ class Count : public WorldCount {
   }
 };
 
+/// What OutcomeCounts does not count.
 struct Counts {
-  Count answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
-      false_alarm_healthy, false_alarm_tuning, located, source, channel, channel_impact, parameter_impact,
-      size_covered, candidate, source_all, abstained;
-  Count false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm, source_05_impact;
+  Count channel, channel_impact, parameter_impact, size_covered, candidate, abstained;
+  Count power_01, power_05_mpm;
   Count monitored_impact;
   WorldMean repair_gain_share, repair_gain_share_05;
   int world = 0;  ///< of the record at hand
@@ -48,23 +48,20 @@ struct Counts {
 
   void add(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
     world = record.draw.world;
-    answered.add(world, said.answered());
     if (study.world)
       add_repair(study, record, said);
     if (!is_faultless(record.draw.kind) && said.form->method().tells_sources)
-      add_source(study, record, said);
+      abstained.add(world, named_source(said) == FaultSource::none);
     if (!said.answered())
       return;
     if (!std::isnan(said.milliseconds))  // it would break the order for the median
       milliseconds.push_back(said.milliseconds);
     if (study.monitoring)
       add_windows(study, record, said);
-    if (record.draw.kind == ExperimentKind::tuning)
-      false_alarm_tuning.add(world, said.flagged);
-    else if (is_faultless(record.draw.kind))
-      add_healthy(said);
-    else
+    if (!is_faultless(record.draw.kind))
       add_fault(study, record, said);
+    else if (record.draw.kind == ExperimentKind::healthy)
+      healthy_scores.push_back(said.score);
   }
 
  private:
@@ -91,14 +88,6 @@ struct Counts {
     return said.answered() && threshold.exceeded_by(said.score);
   }
 
-  void add_source(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
-    source_all.add(world, tells_fault(record, said));
-    if (study.world && thresholds.at_05.value && has_impact(study.diagnosis, record))
-      source_05_impact.add(world,
-                           is_above(thresholds.at_05, said) && names_source(record, said.predicted_source));
-    abstained.add(world, named_source(said) == FaultSource::none);
-  }
-
   void add_windows(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
     if (record.draw.kind == ExperimentKind::tuning)
       return;
@@ -111,27 +100,12 @@ struct Counts {
     delays.push_back(found.delay);
   }
 
-  void add_healthy(const AssessmentRecord& said) {
-    healthy_scores.push_back(said.score);
-    false_alarm_healthy.add(world, said.flagged);
-    add_above(thresholds.chosen, said.score, false_alarm_calibrated);
-  }
-
   void add_fault(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
     const bool impact = has_impact(study.diagnosis, record);
     (impact ? impact_scores : no_impact_scores).push_back(said.score);
-    detected.add(world, said.flagged);
-    (impact ? detected_impact : flagged_without_impact).add(world, said.flagged);
     add_above(thresholds.at_01, said.score, power_01);
-    add_above(thresholds.at_05, said.score, power_05);
-    if (impact)
-      add_above(thresholds.at_05, said.score, power_05_impact);
-    if (record.draw.kind == ExperimentKind::mpm) {
-      detected_mpm.add(world, said.flagged);
+    if (record.draw.kind == ExperimentKind::mpm)
       add_above(thresholds.not_mpm, said.score, power_05_mpm);
-    }
-    if (record.draw.kind == ExperimentKind::ud)
-      detected_ud.add(world, said.flagged);
     const Judgement judgement = judge(study, record, said);
     if (said.flagged)
       add_diagnosis(judgement, said);
@@ -142,8 +116,6 @@ struct Counts {
   }
 
   void add_diagnosis(const Judgement& judgement, const AssessmentRecord& said) {
-    located.add(world, judgement.predicted_cv);
-    source.add(world, judgement.predicted_source);
     channel.add(world, judgement.channel);
     if (judgement.channel != Correctness::not_judged)
       channels_named.push_back(said.values("channel_flagged").sum());
@@ -318,8 +290,14 @@ class RateCounts {
 
   void add(const ExperimentRecord& record) {
     const AssessmentRecord& said = record.assessments[method_];
-    if (said.status == AssessmentStatus::not_assessed)
+    if (said.status == AssessmentStatus::not_assessed) {
+      outcomes_ += kNoLoop;
       return;
+    }
+    const LoopOutcome outcome = outcome_of(record, said, counts_.thresholds);
+    outcomes_ += letter_of(outcome);
+    outcome_counts_.add(outcome_scope(study_, said.form->method(), counts_.thresholds), record.draw.world,
+                        truth_of(study_, record), outcome);
     counts_.add(study_, record, said);
     if (reason_.empty())
       reason_ = said.reason;
@@ -328,29 +306,15 @@ class RateCounts {
   MethodRates result() {
     const double confidence = study_.aggregate.confidence;
     MethodRates rates{.reason = reason_,
-                      .answered = counts_.answered.rate(confidence),
-                      .detected = counts_.detected.rate(confidence),
-                      .detected_mpm = counts_.detected_mpm.rate(confidence),
-                      .detected_ud = counts_.detected_ud.rate(confidence),
-                      .detected_impact = counts_.detected_impact.rate(confidence),
-                      .flagged_without_impact = counts_.flagged_without_impact.rate(confidence),
-                      .false_alarm_healthy = counts_.false_alarm_healthy.rate(confidence),
-                      .false_alarm_tuning = counts_.false_alarm_tuning.rate(confidence),
-                      .located = counts_.located.rate(confidence),
-                      .source = counts_.source.rate(confidence),
+                      .outcomes = std::move(outcomes_),
                       .channel = counts_.channel.rate(confidence),
                       .channel_impact = counts_.channel_impact.rate(confidence),
                       .parameter_impact = counts_.parameter_impact.rate(confidence),
                       .size_covered = counts_.size_covered.rate(confidence),
                       .candidate = counts_.candidate.rate(confidence),
-                      .source_all = counts_.source_all.rate(confidence),
                       .abstained = counts_.abstained.rate(confidence),
-                      .false_alarm_calibrated = counts_.false_alarm_calibrated.rate(confidence),
                       .power_01 = counts_.power_01.rate(confidence),
-                      .power_05 = counts_.power_05.rate(confidence),
-                      .power_05_impact = counts_.power_05_impact.rate(confidence),
                       .power_05_mpm = counts_.power_05_mpm.rate(confidence),
-                      .source_05_impact = counts_.source_05_impact.rate(confidence),
                       .monitored_impact = counts_.monitored_impact.rate(confidence),
                       .detection_delay = median_estimate(std::move(counts_.delays), confidence),
                       .false_alarms_a_day = alarms_a_day(study_, counts_),
@@ -364,6 +328,7 @@ class RateCounts {
                       .repair_gain_share = counts_.repair_gain_share.mean(confidence),
                       .repair_gain_share_05 = counts_.repair_gain_share_05.mean(confidence),
                       .milliseconds = median_estimate(std::move(counts_.milliseconds), confidence).value};
+    outcome_counts_.put(rates, confidence);
     const SortedScores impact(std::move(counts_.impact_scores)),
         no_impact(std::move(counts_.no_impact_scores)), healthy(std::move(counts_.healthy_scores));
     rates.roc = roc_curve({impact, no_impact}, {healthy});
@@ -377,7 +342,8 @@ class RateCounts {
   const Study& study_;
   std::size_t method_;
   Counts counts_;
-  std::string reason_;
+  OutcomeCounts outcome_counts_;
+  std::string outcomes_, reason_;
 };
 
 }  // namespace

@@ -22,23 +22,26 @@ namespace mpm {
 struct MethodRates {
   std::string
       reason;  ///< why there was no verdict on the first loop without one; empty when it always gave one
-  Rate answered, detected, detected_mpm, detected_ud, detected_impact, flagged_without_impact,
-      false_alarm_healthy, false_alarm_tuning, located, source, channel, channel_impact, parameter_impact,
-      size_covered, candidate, source_all, abstained;
+  std::string outcomes =
+      {};  ///< a letter_of(LoopOutcome) for each record, in their order; kNoLoop: not assessed
+  Rate answered = {}, detected = {}, detected_mpm = {}, detected_ud = {}, detected_impact = {},
+       flagged_without_impact = {}, false_alarm_healthy = {}, false_alarm_tuning = {}, located = {},
+       source = {}, channel = {}, channel_impact = {}, parameter_impact = {}, size_covered = {},
+       candidate = {}, source_all = {}, abstained = {};
   // At calibrated thresholds; nothing is counted without one.
-  Rate false_alarm_calibrated, power_01, power_05, power_05_impact, power_05_mpm;
-  Rate source_05_impact;  // in worlds alone
+  Rate false_alarm_calibrated = {}, power_01 = {}, power_05 = {}, power_05_impact = {}, power_05_mpm = {};
+  Rate source_05_impact = {};  // in worlds alone
   // On moving windows; nothing is counted in a study that does not monitor.
-  Rate monitored_impact;
-  Estimate detection_delay, false_alarms_a_day;
+  Rate monitored_impact = {};
+  Estimate detection_delay = {}, false_alarms_a_day = {};
   CalibratedThresholds thresholds;
   RocCurve roc;       ///< of the score, loops with a fault against healthy ones
   Interval roc_area;  ///< of roc.area; NaN when there is no curve
   RocCurve
       roc_impact;  ///< loops with a fault that has an impact against those with another one and healthy ones
   Interval roc_impact_area;
-  Estimate channels_named, size_error;
-  Estimate repair_gain_share, repair_gain_share_05;  // in worlds alone
+  Estimate channels_named = {}, size_error = {};
+  Estimate repair_gain_share = {}, repair_gain_share_05 = {};  // in worlds alone
   double milliseconds;  ///< median processor time a loop, of those answered; NaN without
 };
 

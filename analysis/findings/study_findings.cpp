@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/findings/loop_outcome.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
@@ -178,7 +179,10 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
 
   records.each([&](const ExperimentRecord& record) {
     findings.add(record);
-    findings.assessed += std::any_of(record.assessments.begin(), record.assessments.end(), looked_at) ? 1 : 0;
+    const bool assessed = std::any_of(record.assessments.begin(), record.assessments.end(), looked_at);
+    findings.assessed += assessed ? 1 : 0;
+    findings.truths += assessed ? letter_of(truth_of(study, record)) : kNoLoop;
+    findings.worlds.push_back(record.draw.world);
     for (const MethodCollector& method : methods)
       method.add(record);
     pairs.add(record);

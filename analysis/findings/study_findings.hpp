@@ -30,7 +30,11 @@ struct MethodFindings {
 
 /// All that a study reports, computed once, each number with its uncertainty.
 struct StudyFindings : Endings {
-  std::int64_t assessed = 0;                ///< loops that some method has looked at
+  std::int64_t assessed = 0;  ///< loops that some method has looked at
+  /// Of each record in their order: a letter_of(FaultTruth), kNoLoop where no method has looked at it, and
+  /// its world (draw.world).
+  std::string truths;
+  std::vector<int> worlds;
   std::vector<MethodFindings> methods;      ///< in the order of the study
   std::vector<MethodPair> pairs;            ///< of all methods
   std::vector<DominanceBin> dominance;      ///< of the chain; empty without experiments of both faults

@@ -1,0 +1,88 @@
+#include "analysis/findings/finished_board.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace mpm {
+namespace {
+
+/// The same cell of the finished board; null where it has none that was run.
+const CellScores* finished_cell(const FinishedBoard& finished, const CellScores& cell) {
+  const auto found = std::find_if(
+      finished.cells.begin(), finished.cells.end(),
+      [&cell](const CellScores& each) { return each.plant == cell.plant && each.family == cell.family; });
+  return found == finished.cells.end() || !found->trouble.empty() ? nullptr : &*found;
+}
+
+std::size_t loops_that_differ(const CellScores& one, const CellScores& other) {
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < one.truths.size(); ++i)
+    differing += one.truths[i] != other.truths[i] ? 1 : 0;
+  return differing;
+}
+
+/// What a method of the finished board said, of the loops whose truth is the same in both.
+MethodScores on_same_loops(const CellScores& cell, const CellScores& theirs, const MethodScores& scores) {
+  std::string outcomes = scores.outcomes;
+  for (std::size_t i = 0; i < outcomes.size(); ++i)
+    if (cell.truths[i] != theirs.truths[i])
+      outcomes[i] = kNoLoop;
+  MethodScores same = scores_of_outcomes(cell, std::move(outcomes), scores.scope);
+  same.reason = scores.reason;
+  same.estimates = scores.estimates;
+  return same;
+}
+
+/// Can the two be held against each other loop by loop? Says why not.
+bool has_same_loops(const CellScores& cell, const CellScores* theirs, const std::string& name,
+                    std::vector<std::string>& notes) {
+  if (theirs == nullptr)
+    notes.push_back(fmt::format("{}: the finished board has no such cell", name));
+  else if (theirs->truths.size() != cell.truths.size() || theirs->worlds != cell.worlds)
+    notes.push_back(fmt::format("{}: the finished board has other loops: {} here, {} there", name,
+                                cell.truths.size(), theirs->truths.size()));
+  else {
+    if (const std::size_t differing = loops_that_differ(cell, *theirs); differing > 0)
+      notes.push_back(
+          fmt::format("{}: {} of the {} loops came out otherwise in the finished board, and count "
+                      "for your own methods alone",
+                      name, differing, cell.truths.size()));
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own,
+                        std::vector<CellScores> cells, const FinishedBoard& finished) {
+  JoinedBoard joined;
+  std::vector<std::size_t> places;  // in the finished board
+  for (std::size_t method = 0; method < finished.methods.size(); ++method)
+    if (std::find(own.begin(), own.end(), finished.methods[method]) == own.end()) {
+      places.push_back(method);
+      joined.methods.push_back(finished.methods[method]);
+    }
+  joined.methods.insert(joined.methods.end(), own.begin(), own.end());
+  for (CellScores& cell : cells) {
+    if (!cell.trouble.empty())
+      continue;
+    const std::string name =
+        fmt::format("{}.{}", suite.plants[cell.plant].name, suite.families[cell.family].name);
+    const CellScores* const theirs = finished_cell(finished, cell);
+    const bool same = has_same_loops(cell, theirs, name, joined.notes);
+    std::vector<MethodScores> methods;
+    for (const std::size_t place : places)
+      methods.push_back(same ? on_same_loops(cell, *theirs, theirs->methods[place])
+                             : scores_of_outcomes(cell, "", {}));
+    std::move(cell.methods.begin(), cell.methods.end(), std::back_inserter(methods));
+    cell.methods = std::move(methods);
+  }
+  joined.cells = std::move(cells);
+  return joined;
+}
+
+}  // namespace mpm

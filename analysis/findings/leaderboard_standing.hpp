@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "analysis/findings/leaderboard.hpp"
+#include "analysis/statistics/share_difference.hpp"
+
+namespace mpm {
+
+/// A method against another one on the same loops of a leaderboard.
+struct BoardDuel {
+  std::size_t other = 0;  ///< place in Leaderboard::methods
+  std::int64_t loops = 0;
+  /// The share of the method minus that of the other one: clustered_difference() of the worlds of each cell,
+  /// or of the cells where there are no worlds.
+  ShareDifference difference = {};
+
+  bool won() const { return difference.interval.lower > 0; }
+  bool lost() const { return difference.interval.upper < 0; }
+};
+
+/// Where a method stands on a leaderboard, at equal false alarms: at the threshold that is calibrated for 5 %
+/// of them.
+struct Standing {
+  std::size_t method = 0;  ///< place in Leaderboard::methods
+  /// What is counted, a name in method_rate_infos(): "source_05_impact" of a method that tells sources, on a
+  /// board of worlds; "power_05_impact" otherwise.
+  std::string_view rate = {};
+  std::vector<BoardDuel> duels =
+      {};         ///< with each method that has the rate, but for the reference; best first
+  int place = 0;  ///< 1 where no other one has a larger share of the loops in common
+
+  int won() const;
+  int lost() const;
+};
+
+/// None where the method has no calibrated threshold, or no other one has the rate.
+std::optional<Standing> standing_of(const Leaderboard& board, std::size_t method);
+
+}  // namespace mpm
