@@ -22,6 +22,7 @@ AddCommand add_summary;      // what a study found, as text or JSON
 AddCommand add_suite;        // plants and families of experiments, and the leaderboard of the methods
 AddCommand add_sweep;        // runs a study once for each value of its open choices
 AddCommand add_check;        // holds an archive against limits
+AddCommand add_check_board;  // can the results of a method stand on the finished board of a suite?
 AddCommand add_report;       // what a study found, as a page and figures
 AddCommand add_plot;         // draws the loop of one experiment
 AddCommand add_compare;      // several methods of assessment on the loops of an archive
@@ -42,8 +43,8 @@ struct Task {
 
 inline std::vector<Task> tasks() {
   return {{"Test methods on simulated loops",
-           {add_init, add_validate, add_run, add_merge, add_sweep, add_suite, add_compare, add_methods,
-            add_init_method}},
+           {add_init, add_validate, add_run, add_merge, add_sweep, add_suite, add_check_board, add_compare,
+            add_methods, add_init_method}},
           {"Look at the results", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
           {"Assess the records of a plant", {add_assess, add_identify, add_repair}},
           {"Shipped studies and the program itself",

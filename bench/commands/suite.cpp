@@ -1,15 +1,19 @@
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "analysis/findings/finished_board.hpp"
 #include "analysis/findings/leaderboard.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "bench/campaign/kept_campaign.hpp"
@@ -22,13 +26,17 @@
 #include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
+#include "plants/error.hpp"
 #include "results/document/document_html.hpp"
 #include "results/document/document_text.hpp"
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/figure_format.hpp"
 #include "results/plot/gnuplot.hpp"
+#include "results/suite/board_columns.hpp"
+#include "results/suite/board_file.hpp"
 #include "results/suite/leaderboard_output.hpp"
 #include "scenarios/files/suite_file.hpp"
+#include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {
 namespace {
@@ -42,14 +50,80 @@ struct SuiteArguments {
   std::string shard;  ///< which of the cells are run; empty: all of them, and the leaderboard
   RunOptions run;
   std::vector<std::string> method_files;
+  std::string join;                    ///< "finished", "none" or a file; empty: as board_to_join() has it
+  std::vector<std::string> highlight;  ///< methods that stand out; empty: those of one's own that are joined
   bool overwrite = false;
   bool dry_run = false;
+  bool full = false;
   bool json = false;
   bool quiet = false;
+
+  /// Nothing is to be run: the finished board is asked for.
+  bool only_looks() const {
+    return output.empty() && run.methods.empty() && method_files.empty() && !choice.seed &&
+           !run.experiments && shard.empty() && !overwrite && !dry_run;
+  }
 };
 
-/// The page and the figure. What has been computed is shown all the same without gnuplot.
-void write_pictures(const fs::path& folder, const Leaderboard& board, Progress& progress) {
+/// The finished board beside which one's own methods are shown; none: they stand alone. Without --join,
+/// methods of one's own join the board of the suite where their loops are those of the suite.
+std::optional<FinishedBoard> board_to_join(const SuiteArguments& options, const Suite& suite,
+                                           Progress& progress) {
+  const fs::path finished = finished_board_path(suite);
+  std::error_code no_status;
+  const bool same_loops = !options.choice.seed && !options.run.experiments;
+  const bool by_default = options.join.empty() && !options.method_files.empty() && same_loops &&
+                          options.shard.empty() && fs::is_regular_file(finished, no_status);
+  if (options.join == "none" || (options.join.empty() && !by_default))
+    return std::nullopt;
+  FinishedBoard board =
+      read_board(by_default || options.join == "finished" ? finished : fs::path(options.join), suite);
+  if (board.program != mpmbench_version())
+    progress.warn(fmt::format("the board to join is of mpmbench {}, this one is {}", board.program,
+                              mpmbench_version()));
+  return board;
+}
+
+/// Throws InputError for a method that the board does not have.
+void highlight(Leaderboard& board, const std::vector<std::string>& methods) {
+  for (const std::string& method : methods)
+    if (std::find(board.methods.begin(), board.methods.end(), method) == board.methods.end())
+      throw InputError("--highlight", with_nearest(method, board.methods),
+                       fmt::format("{}", fmt::join(board.methods, ", ")));
+  if (!methods.empty())
+    board.own = methods;
+}
+
+void show_board(const Leaderboard& board, const std::string& json, const SuiteArguments& options) {
+  if (options.json)
+    return print_result(json);
+  print_result(document_text(leaderboard_document(board), kLeaderboardWidth, options.full));
+  if (!options.full)
+    print_result(options.output.empty()
+                     ? "\nMore with --full.\n"
+                     : fmt::format("\nMore with --full, and in {}.\n",
+                                   (fs::path(options.output) / "leaderboard.html").string()));
+}
+
+/// The finished board of the suite, without a run.
+ExitCode show_finished_board(const SuiteArguments& options, const Suite& suite) {
+  const bool named = !options.join.empty() && options.join != "finished";
+  const fs::path path = named ? fs::path(options.join) : finished_board_path(suite);
+  std::error_code no_status;
+  if (options.join == "none" || (!named && !fs::is_regular_file(path, no_status)))
+    throw InputError(
+        "--output", "nothing",
+        fmt::format("a folder for the archives, since there is no finished board {}", path.string()));
+  Leaderboard board = leaderboard_of(suite, read_board(path, suite));
+  highlight(board, options.highlight);
+  show_board(board, leaderboard_json(board), options);
+  return ExitCode::done;
+}
+
+/// The page, the figure and the tables. What has been computed is shown all the same without gnuplot.
+void write_board(const fs::path& folder, const Leaderboard& board, Progress& progress) {
+  write_text(folder / "leaderboard.csv", leaderboard_csv(board));
+  write_text(folder / "leaderboard.tex", leaderboard_latex(board));
   try {
     write_text(folder / "leaderboard.html", document_html(leaderboard_document(board)));
     write_text(folder / "leaderboard.svg", draw_figure(leaderboard_figure(board), FigureFormat::svg));
@@ -70,12 +144,22 @@ std::vector<std::pair<const SuiteCell*, IntendedStudy>> cells_of(const Suite& su
 }
 
 /// Runs a suite, or what is missing of it, cell by cell, and shows its leaderboard, which is also left in the
-/// folder as a page and as JSON. An archive that is there and is what this run would make of the cell is kept
-/// as it is, so that the same command goes on, and the scores are those of one go.
-ExitCode run_suite(const SuiteArguments& options, const std::string& command_line) {
+/// folder as a page, as JSON, CSV and LaTeX, and as a board that others can join. An archive that is there
+/// and is what this run would make of the cell is kept as it is, so that the same command goes on, and the
+/// scores are those of one go.
+ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
   const Suite suite = find_suite(options.suite, options.choice);
+  if (options.only_looks())
+    return show_finished_board(options, suite);
+  if (options.output.empty())
+    options.output = "mpmbench-" + suite.name;
+  Progress progress(options.quiet);
+  const std::vector<std::string> programs = take_method_files(options.method_files);
+  const std::optional<FinishedBoard> finished = board_to_join(options, suite, progress);
   RunOptions run = options.run;
-  run.methods = with_programs(options.run.methods, suite.methods, take_method_files(options.method_files));
+  run.methods = finished && !programs.empty() && options.run.methods.empty()
+                    ? programs
+                    : with_programs(options.run.methods, suite.methods, programs);
   run.methods = known_methods(run.methods.empty() ? suite.methods : run.methods,
                               run.methods.empty() ? "suite.methods" : "--methods");
   const fs::path folder = options.output;
@@ -84,7 +168,6 @@ ExitCode run_suite(const SuiteArguments& options, const std::string& command_lin
   std::vector<IntendedStudy> studies;
   for (const auto& [cell, study] : cells)
     studies.push_back(study);
-  Progress progress(options.quiet);
   if (options.dry_run) {
     print_result(dry_run_text(studies, run, hooks_of(progress)));
     return ExitCode::done;
@@ -124,11 +207,21 @@ ExitCode run_suite(const SuiteArguments& options, const std::string& command_lin
                              suite.cells.size(), part->number, part->of));
     return ExitCode::done;
   }
-  const Leaderboard board = make_leaderboard(suite, run.methods, mpmbench_version(), std::move(scores));
+  Leaderboard board = make_leaderboard(suite, run.methods, mpmbench_version(), scores);
+  write_text(folder / board_file_name(suite), board_text(suite, board, source_revision()));
+  if (finished) {
+    JoinedBoard joined = join_boards(suite, run.methods, std::move(scores), *finished);
+    for (const std::string& note : joined.notes)
+      progress.warn(note);
+    board = make_leaderboard(suite, joined.methods, mpmbench_version(), std::move(joined.cells));
+    board.own = run.methods;
+    board.finished_by = finished->runner();
+  }
+  highlight(board, options.highlight);
   const std::string json = leaderboard_json(board);
   write_text(folder / "leaderboard.json", json);
-  write_pictures(folder, board, progress);
-  print_result(options.json ? json : document_text(leaderboard_document(board), kLeaderboardWidth));
+  write_board(folder, board, progress);
+  show_board(board, json, options);
   return ExitCode::done;
 }
 
@@ -144,8 +237,8 @@ void add_suite(CommandSet& commands) {
   add_path(app, "SUITE", options->suite, "Suite file, or name of a shipped suite: standard, exact, quick")
       ->required();
   add_path(app, "-o,--output", options->output,
-           "Folder for the archives and the leaderboard; finished cells in it are kept")
-      ->required();
+           "Folder for the archives and the leaderboard; finished cells in it are kept (default: "
+           "mpmbench-SUITE; without anything to run, the finished board is shown)");
   add_seed(app, options->choice.seed, "Another seed for the suite: a private suite");
   app.add_option("--plants", options->choice.plants, "Only these plants, separated by commas")
       ->delimiter(',');
@@ -157,9 +250,16 @@ void add_suite(CommandSet& commands) {
       app, options->run.methods,
       "Methods that assess the loops, separated by commas, or all (default: those of the suite)");
   add_method_files(app, options->method_files);
+  add_path(app, "--join", options->join,
+           "Show them beside the methods of a board: finished, none, or a file SUITE.board.json (default: "
+           "finished with --method-file, where the loops are those of the suite)");
+  app.add_option("--highlight", options->highlight,
+                 "Methods to mark and to rank, separated by commas (default: those that join a board)")
+      ->delimiter(',');
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_overwrite(app, options->overwrite);
   add_dry_run(app, options->dry_run);
+  app.add_flag("--full", options->full, "Text with all tables, not only the one of all loops");
   add_json(app, options->json);
   add_quiet(app, options->quiet);
 }

@@ -86,8 +86,8 @@ struct Cell {
   bool low_is_good = false;  ///< another colour
 };
 
-/// Who is told something.
-enum class Shown { everywhere, page, text };
+/// Who is told something. full: a page, and a text that is asked for in full.
+enum class Shown { everywhere, page, text, full };
 
 /// Cells in rows under named columns. A text has the columns that fit side by side, and the others below.
 struct Table {

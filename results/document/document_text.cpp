@@ -170,13 +170,13 @@ std::string table_text(const Table& whole, std::size_t width) {
   return text;
 }
 
-std::string document_text(const Document& document, std::size_t width) {
+std::string document_text(const Document& document, std::size_t width, bool full) {
   std::string text;
   for (const std::string* words : {&document.heading, &document.lead})
     if (!words->empty())
       text += paragraph_text(*words, width);
   for (const Section& section : document.sections) {
-    if (section.shown == Shown::page)
+    if (section.shown == Shown::page || (section.shown == Shown::full && !full))
       continue;
     if (!section.title.empty())
       text += "\n" + paragraph_text(section.title, width);

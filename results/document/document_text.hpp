@@ -14,8 +14,8 @@ inline constexpr std::size_t kUnlimitedWidth = 10000;
 std::string wrapped(const std::string& sentence, std::size_t width, const std::string& set_in = "");
 
 /// The document for a terminal of this many columns, without figures. A table that is wider has its columns
-/// one block below the other; only its texts may stick out.
-std::string document_text(const Document& document, std::size_t width = 100);
+/// one block below the other; only its texts may stick out. Sections of Shown::full are there if `full`.
+std::string document_text(const Document& document, std::size_t width = 100, bool full = true);
 
 /// One table in the same way.
 std::string table_text(const Table& table, std::size_t width = 100);

@@ -55,7 +55,7 @@ Table methods_table(const Leaderboard& board, std::string caption, const std::ve
     columns.push_back({as_label(head)});
   Table table(std::move(caption), std::move(columns));
   for (std::size_t method = 0; method < board.methods.size(); ++method) {
-    std::vector<Cell> cells{as_label(label_of(board.methods[method]))};
+    std::vector<Cell> cells{row_name(board, method)};
     for (std::size_t column = 0; column < heads.size(); ++column)
       cells.push_back(cell(method, column));
     table.row(std::move(cells));
@@ -77,7 +77,7 @@ Table axis_table(const Leaderboard& board, std::string caption, const std::vecto
 
 Section scores_section(const Leaderboard& board, const char* id, const char* title,
                        const std::vector<SuiteAxis>& axis, const AllScores& scores) {
-  Section section{id, title};
+  Section section{.id = id, .title = title, .shown = Shown::full};
   for (const LeaderboardScore& score : leaderboard_scores())
     section.add(axis_table(
         board, fmt::format("{}, % of loops with {:g} % interval", score.title, 100 * board.confidence), axis,
@@ -113,7 +113,7 @@ void add_legend(Section& section, const Leaderboard& board) {
 }
 
 Section passed_section(const Leaderboard& board) {
-  Section section{"passed", "Who passes what"};
+  Section section{.id = "passed", .title = "Who passes what", .shown = Shown::full};
   section.add(axis_table(board, "Passed: D detection, L location, S source", board.families, board.by_family,
                          passed_cell));
   add_legend(section, board);
@@ -131,33 +131,9 @@ Cell estimate_cell(const Estimate& estimate) {
 
 /// Of a suite of worlds: who tells the source of a fault, and who names the channel whose repair pays.
 Section ranking_section(const Leaderboard& board) {
-  Section section{"ranking", "Who is right in worlds"};
-  const std::vector<RankedMethod> ranked = ranking(board);
-  if (ranked.empty())
+  Section section{.id = "ranking", .title = "Who is right in worlds", .shown = Shown::full};
+  if (!board.in_worlds())
     return section;
-  const auto place = [](const std::optional<int>& rank) -> Cell {
-    return rank ? Cell(fmt::to_string(*rank)) : Cell(Number{});
-  };
-  Table table(
-      fmt::format("Ranks at equal false alarms, all families: at the threshold that is calibrated for 5 % "
-                  "of them; % with {:g} % interval",
-                  100 * board.confidence),
-      {{"Method", Table::Align::left},
-       {"Rank, source"},
-       {"Right source of the faults with an impact"},
-       {"Rank, repair"},
-       {"Share of the best repair's gain"},
-       {"Healthy loops, flagged"}});
-  for (const RankedMethod& each : ranked) {
-    const PooledScores& scores = board.overall[each.method];
-    const auto rate = [&scores](std::string_view name, bool low) {
-      return score_cell(scores, {name, "", low});
-    };
-    table.row({as_label(label_of(board.methods[each.method])), place(each.source),
-               rate(kRankingSource, false), place(each.repair),
-               estimate_cell(scores.estimate(kRankingRepair)), rate("false_alarm_calibrated", true)});
-  }
-  section.add(std::move(table));
   section.add(
       axis_table(board,
                  fmt::format("Faults with an impact at 5 % false alarms, the right source named, % of loops "
@@ -200,7 +176,7 @@ Cell delay_cell(const MethodScores& scores) {
 
 /// By plant, of the families in which methods watched moving windows.
 Section delays_section(const Leaderboard& board) {
-  Section section{"delays", "How long it takes"};
+  Section section{.id = "delays", .title = "How long it takes", .shown = Shown::full};
   for (std::size_t family = 0; family < board.families.size(); ++family) {
     std::vector<const CellScores*> cells;
     for (const CellScores& cell : board.cells)
@@ -226,7 +202,7 @@ Section delays_section(const Leaderboard& board) {
 
 /// A table a score, a column for each family that has a reference.
 Section reference_section(const Leaderboard& board) {
-  Section section{"reference", "Against the reference"};
+  Section section{.id = "reference", .title = "Against the reference", .shown = Shown::full};
   std::vector<std::string> heads;
   std::vector<std::size_t> families;
   for (std::size_t family = 0; family < board.families.size(); ++family)
@@ -248,7 +224,7 @@ Section reference_section(const Leaderboard& board) {
 
 /// What was not run, and which method gave no verdict on what.
 Section silences_section(const Leaderboard& board) {
-  Section section{"silences", "No verdict"};
+  Section section{.id = "silences", .title = "No verdict", .shown = Shown::full};
   Sentences sentences;
   for (std::size_t method = 0; method < board.methods.size(); ++method)
     if (const PooledScores& scores = board.overall[method]; !scores.reason.empty()) {
@@ -308,19 +284,23 @@ Document leaderboard_document(const Leaderboard& board) {
   const std::string name = fmt::format("{} {}", board.suite, board.version);
   Document document{
       name, as_label("Suite " + name),
-      fmt::format("{}: {} cells ({} plants, {} families), {} experiments, seed {}.", as_label(board.title),
-                  cells, board.plants.size(), board.families.size(), experiments, board.seed),
+      fmt::format("{}: {} cells ({} plants, {} families), {} experiments, seed {}.{}", as_label(board.title),
+                  cells, board.plants.size(), board.families.size(), experiments, board.seed,
+                  board.finished_by.empty()
+                      ? ""
+                      : fmt::format(" With the finished run of {}.", as_label(board.finished_by))),
       "Made by " + code("mpmbench suite") + ".", board.program};
-  Section figure{.id = "figure", .title = "Detection and false alarms", .shown = Shown::page};
+  Section figure{.id = "figure", .title = "The table as a figure", .shown = Shown::page};
   figure.add(leaderboard_figure(board));
   Section by_plant =
       scores_section(board, "by-plant", "By plant, pooled over the families", board.plants, board.by_plant);
   by_plant.shown = Shown::page;
-  for (Section section : {ranking_section(board), passed_section(board), std::move(figure),
-                          scores_section(board, "by-family", "By family, pooled over the plants",
-                                         board.families, board.by_family),
-                          std::move(by_plant), delays_section(board), reference_section(board),
-                          silences_section(board), cells_section(board)})
+  for (Section section :
+       {standing_section(board), std::move(figure), ranking_section(board), passed_section(board),
+        scores_section(board, "by-family", "By family, pooled over the plants", board.families,
+                       board.by_family),
+        std::move(by_plant), delays_section(board), reference_section(board), silences_section(board),
+        cells_section(board)})
     if (!section.content.empty())
       document.sections.push_back(std::move(section));
   return document;

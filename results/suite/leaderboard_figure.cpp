@@ -1,47 +1,51 @@
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "results/plot/panel_script.hpp"
-#include "results/plot/pens.hpp"
-#include "results/plot/plot_text.hpp"
+#include "results/suite/board_columns.hpp"
 #include "results/suite/leaderboard_output.hpp"
 
 namespace mpm {
 namespace {
 
-const Pen kLimit{colour::kGrey, Dash::dotted, Mark::none, 1.2};
+const Pen kOthers{colour::kBlue, Dash::solid, Mark::dot, 1.2, 0.7};
+const Pen kOwn{colour::kVermillion, Dash::solid, Mark::diamond, 2.4, 1.1};
 
-/// What a method flags of the faults with an impact against what it flags of the healthy loops; nothing
-/// where one of them was not counted.
-std::vector<NamedPoint> family_point(const std::string& method, const PooledScores& scores) {
-  const Rate* const detected = scores.of("detected_impact");
-  const Rate* const alarms = scores.of("false_alarm_healthy");
-  if (detected == nullptr || alarms == nullptr || detected->total == 0 || alarms->total == 0)
-    return {};
-  return {{100 * alarms->value, 100 * detected->value,
-           fmt::format("{}: {:.1f} % of {} faults with an impact flagged, and {:.1f} % of {} healthy loops",
-                       method, 100 * detected->value, detected->total, 100 * alarms->value, alarms->total)}};
-}
-
-Panel family_panel(const Leaderboard& board, std::size_t family) {
-  const std::vector<double> ticks{0, 20, 40, 60, 80, 100};
-  PanelScript panel(
-      fmt::format("family_{}", family), as_label(board.families[family].name),
-      {.label = "healthy loops flagged (%)", .lower = -3, .upper = 103, .ticks = ticks},
-      {.label = "faults with an impact flagged (%)", .lower = -3, .upper = 103, .ticks = ticks});
-  panel.across(100 * kPassingShare, kLimit);
-  panel.upright(100 * kPassingFalseAlarms, kLimit);
-  for (std::size_t method = 0; method < board.methods.size(); ++method) {
-    Pen pen = method_pen(method);
-    pen.size *= 1.3;
-    panel.points(family_point(label_of(board.methods[method]), board.by_family[method][family]), pen);
+/// A row a method, in the same order in all panels.
+Panel column_panel(const Leaderboard& board, const std::vector<std::size_t>& order,
+                   const BoardColumn& column) {
+  const auto rows = static_cast<double>(order.size());
+  Axis y{.label = "", .lower = -0.6, .upper = rows - 0.4};
+  for (const std::size_t method : order)
+    y.words.push_back(board.methods[method]);
+  std::reverse(y.words.begin(), y.words.end());  // the first one on top
+  PanelScript panel(std::string(column.name), std::string(column.title),
+                    {.label = column.low_is_good ? "% of loops, left is good" : "%, right is good",
+                     .lower = -2,
+                     .upper = 102,
+                     .ticks = {0, 20, 40, 60, 80, 100}},
+                    y);
+  std::vector<Whisker> own, others;
+  double at = rows;
+  for (const std::size_t method : order) {
+    const Number number = board_number(board, method, column);
+    at -= 1.0;
+    if (std::isnan(number.value))
+      continue;
+    const double value = 100 * number.value, lower = 100 * number.interval.lower,
+                 upper = 100 * number.interval.upper;
+    (board.is_own(method) ? own : others)
+        .push_back({at, value, lower, upper,
+                    fmt::format("{}: {:.1f} %, interval {:.1f} to {:.1f} %, of {} loops",
+                                board.methods[method], value, lower, upper, number.of)});
   }
-  return panel.finish(fmt::format("Faults that are detected against false alarms in the family {}, a mark a "
-                                  "method.",
-                                  board.families[family].name),
-                      300);
+  panel.level_whiskers(others, kOthers);
+  panel.level_whiskers(own, kOwn);
+  return panel.finish(fmt::format("{}, with intervals, one row a method.", column.title), 70.0 + 20.0 * rows);
 }
 
 }  // namespace
@@ -50,19 +54,14 @@ Figure leaderboard_figure(const Leaderboard& board) {
   Figure figure;
   figure.name = "leaderboard";
   figure.caption = fmt::format(
-      "Each family with the methods that answer on it: the upper left corner is where all faults with an "
-      "impact "
-      "are flagged and no healthy loop. Detection is passed to the upper left of the dotted lines ({:g} and "
-      "{:g} %).",
-      100 * kPassingShare, 100 * kPassingFalseAlarms);
-  figure.columns = 3;
-  for (std::size_t method = 0; method < board.methods.size(); ++method) {
-    Pen pen = method_pen(method);
-    pen.dash = Dash::none;
-    figure.legend.push_back({as_label(label_of(board.methods[method])), pen});
-  }
-  for (std::size_t family = 0; family < board.families.size(); ++family)
-    figure.panels.push_back(family_panel(board, family));
+      "Every method with {:g} % intervals over all loops of the suite, in the order of the table. Faults are "
+      "those with an impact; unless it says otherwise, methods are compared at 5 % false alarms.",
+      100 * board.confidence);
+  if (!board.own.empty())
+    figure.legend = {{"marked", kOwn}, {"others", kOthers}};
+  const std::vector<std::size_t> order = board_order(board);
+  for (const BoardColumn& column : board_columns(board))
+    figure.panels.push_back(column_panel(board, order, column));
   return figure;
 }
 

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/findings/leaderboard_standing.hpp"
 #include "analysis/findings/method_rates.hpp"
 #include "results/files/utf8.hpp"
 #include "results/suite/leaderboard_output.hpp"
@@ -75,6 +76,27 @@ SuiteJson ranking_json(const Leaderboard& board) {
   return json;
 }
 
+/// Of each of one's own methods that can be ranked.
+SuiteJson standing_json(const Leaderboard& board) {
+  SuiteJson json = SuiteJson::object();
+  for (std::size_t method = 0; method < board.methods.size(); ++method) {
+    const std::optional<Standing> standing = board.is_own(method) ? standing_of(board, method) : std::nullopt;
+    if (!standing)
+      continue;
+    SuiteJson duels = SuiteJson::array();
+    for (const BoardDuel& duel : standing->duels)
+      duels.push_back({{"method", board.methods[duel.other]},
+                       {"difference", duel.difference.value},
+                       {"lower", duel.difference.interval.lower},
+                       {"upper", duel.difference.interval.upper},
+                       {"loops", duel.loops}});
+    json[board.methods[method]] = {{"rate", standing->rate},           {"place", standing->place},
+                                   {"of", standing->duels.size() + 1}, {"beats", standing->won()},
+                                   {"loses_to", standing->lost()},     {"duels", duels}};
+  }
+  return json;
+}
+
 /// Of each method on the moving windows of a cell.
 SuiteJson delays_json(const Leaderboard& board, const CellScores& cell) {
   SuiteJson json{{"time_unit", cell.time_unit}, {"methods", SuiteJson::object()}};
@@ -128,6 +150,12 @@ std::string leaderboard_json(const Leaderboard& board) {
                  {"methods", methods}};
   if (board.in_worlds())
     json["ranking"] = ranking_json(board);
+  if (!board.finished_by.empty())
+    json["finished_by"] = board.finished_by;
+  if (!board.own.empty()) {
+    json["own"] = board.own;
+    json["standing"] = standing_json(board);
+  }
   return json.dump(1) + "\n";
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "analysis/findings/leaderboard.hpp"
@@ -17,10 +18,15 @@ Document leaderboard_document(const Leaderboard& board);
 /// The same as JSON (docs/suite.md), with all rates, by family and by plant.
 std::string leaderboard_json(const Leaderboard& board);
 
-/// Detection against false alarms, a panel a family.
+/// The columns of the table as dots with whiskers, a row a method.
 Figure leaderboard_figure(const Leaderboard& board);
 
 /// What a method is called where people read it: "reference" for kReferenceMethod.
 std::string label_of(const std::string& method);
+/// The same as words for the head of a row; one's own methods are marked.
+std::string row_name(const Leaderboard& board, std::size_t method);
+
+/// Who is best at what, where one's own methods stand, and the table of board_columns.hpp.
+Section standing_section(const Leaderboard& board);
 
 }  // namespace mpm

@@ -154,6 +154,7 @@ Suite load_suite(const fs::path& path, const SuiteChoice& choice) {
   const TomlTable document(toml, file_name, {"suite", "common", "plant", "family", "cell"});
   const TomlTable heading = document.table("suite", {"name", "version", "title", "seed", "methods"});
   Suite suite;
+  suite.path = path;
   suite.name = read_name(heading, "name");
   suite.version = read_text(heading, "version");
   suite.title = read_text(heading, "title");

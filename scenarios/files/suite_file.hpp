@@ -37,6 +37,7 @@ struct Suite {
   std::vector<SuiteAxis> plants;
   std::vector<SuiteAxis> families;
   std::vector<SuiteCell> cells;  ///< plant by plant, each in the order of the families
+  std::filesystem::path path;    ///< of its file
 
   std::string name_of(const SuiteCell& cell) const;  ///< "PLANT.FAMILY"
 };

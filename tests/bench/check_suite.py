@@ -71,6 +71,8 @@ for line in sys.stdin:
             answer = {"flagged": largest > THRESHOLD, "score": largest}
         print(json.dumps({"number": message["number"], **answer}), flush=True)
 """
+KEPT_RATES = {"answered", "detected", "detected_impact", "flagged_without_impact", "false_alarm_healthy", "located", "source",
+              "source_all"}
 CELLS = ["column.classic", "column.both", "shell.classic"]
 
 
@@ -123,8 +125,11 @@ def check_leaderboard(tiny):
 
 
 def check_texts(tiny):
-    text = tiny.run("one", "--quiet")
-    assert max(map(len, text.splitlines())) <= 120, text
+    short = tiny.run("one", "--quiet")
+    assert len(short.splitlines()) < 30 and "Best at finding faults: " in short and "sse " in short, short
+    assert "leaderboard.html" in short and "nobody passes" not in short, short
+    text = tiny.run("one", "--quiet", "--full")
+    assert max(map(len, (short + text).splitlines())) <= 120, text
     for part in "tiny 0.1", "classic", "botelho", "shell.noisy: not run: ", "nobody passes", "sun: ":
         assert part in text, (part, text)
     page = (tiny.folder / "one" / "leaderboard.html").read_text()
@@ -195,7 +200,7 @@ def check_program(tiny, source):
         assert estimate == compared[name] and estimate["count"] > 0, (name, estimate, compared)
 
     before = tiny.archives("program")
-    text = tiny.run("program", *words, "--quiet")
+    text = tiny.run("program", *words, "--quiet", "--full")
     assert tiny.archives("program") == before
     assert "watched: median time from the onset" in text and "column (min)" in text, text
     page = (tiny.folder / "program" / "leaderboard.html").read_text()
@@ -232,6 +237,85 @@ def check_program_method(tiny):
     assert own["all"]["rates"]["detected"]["hits"] == 0, own["all"]["rates"]["detected"]
 
 
+def known_rates(method):
+    """The rates that a finished board keeps."""
+    return {name: rate for name, rate in method["all"]["rates"].items() if name in KEPT_RATES}
+
+
+def check_joined(tiny, shown):
+    """A board without `sse`, joined by a run of `sse` alone, is the board of one go; what is not kept is not counted."""
+    board = tiny.folder / "one" / "tiny.board.json"
+    text = board.read_text()
+    finished = json.loads(text)
+    assert [method["name"] for method in finished["methods"]] == ["botelho", "sun", "sse"], finished["methods"]
+    finished["methods"] = [method for method in finished["methods"] if method["name"] != "sse"]
+    for cell in finished["cells"]:
+        cell.get("methods", {}).pop("sse", None)
+    others = tiny.folder / "others.board.json"
+    others.write_text(json.dumps(finished))
+    words = ["joined", "--methods", "sse", "--quiet", "--join", others]
+    joined, whole = json.loads(tiny.run(*words, "--json")), json.loads(shown)
+    assert joined["own"] == ["sse"] and joined["finished_by"].startswith("mpmbench "), joined
+    assert [method["name"] for method in joined["methods"]] == ["botelho", "sun", "sse"]
+    for ours, theirs in zip(joined["methods"], whole["methods"]):
+        assert known_rates(ours) == known_rates(theirs), ours["name"]
+        assert ours["all"]["reason"] == theirs["all"]["reason"], ours["name"]
+    # The files beside it, and what one submits: one's own method alone.
+    assert [each["name"] for each in json.loads((tiny.folder / "joined/tiny.board.json").read_text())["methods"]] == ["sse"]
+    rows = (tiny.folder / "joined" / "leaderboard.csv").read_text().splitlines()
+    assert len(rows) == 4 and sum(row.startswith("sse,1,") for row in rows) == 1, rows
+    assert "\\textbf{sse}" in (tiny.folder / "joined" / "leaderboard.tex").read_text()
+    assert "With the finished run of mpmbench" in tiny.run(*words)
+    # A finished board lies beside the file of the suite: it is shown at once, and checked against.
+    (tiny.folder / "tiny.board.json").write_text(json.dumps(finished))
+    look = [tiny.program, "suite", str(tiny.file), "--json", "--highlight", "sun"]
+    looked = json.loads(subprocess.run(look, capture_output=True, check=True, timeout=PATIENCE).stdout)
+    assert [known_rates(method) for method in looked["methods"]] == [known_rates(each) for each in whole["methods"][:2]]
+    check = [tiny.program, "check-board", str(tiny.folder / "joined/tiny.board.json"), "--suite", str(tiny.file)]
+    done = subprocess.run(check, capture_output=True, text=True, timeout=PATIENCE)
+    assert done.returncode == 0 and "can stand on the board" in done.stdout, done
+    done = subprocess.run([*check[:2], str(board), *check[3:]], capture_output=True, text=True, timeout=PATIENCE)
+    assert done.returncode == 1 and "sun: the finished board has a method of this name" in done.stdout, done
+    # Cells and loops that are not those of the finished board are named.
+    finished["cells"][0]["truths"] = finished["cells"][0]["truths"].replace("A", "-", 1)
+    for method in finished["cells"][0]["methods"].values():
+        place = finished["cells"][0]["truths"].index("-")
+        method["outcomes"] = method["outcomes"][:place] + "-" + method["outcomes"][place + 1:]
+    del finished["cells"][1]
+    others.write_text(json.dumps(finished))
+    said = subprocess.run(tiny.command(*words), capture_output=True, text=True, check=True, timeout=PATIENCE).stderr
+    assert "1 of the 12 loops came out otherwise" in said and "no such cell" in said, said
+    (tiny.folder / "tiny.board.json").unlink()
+
+
+def check_foreign_boards(tiny):
+    """What somebody else has written into a board is refused with file, key, what was found and what is allowed."""
+    text = (tiny.folder / "one" / "tiny.board.json").read_text()
+    file = tiny.folder / "foreign.board.json"
+    damages = [
+        (lambda board: board.update(version="0.2"), ["version: found \"0.2\"", "allowed: \"0.1\""]),
+        (lambda board: board.update(seed=-1), ["seed: found -1"]),
+        (lambda board: board.update(more=1), ["the unknown key 'more'"]),
+        (lambda board: board["cells"][0].pop("truths"), ["cells[0]: found no 'truths'"]),
+        (lambda board: board["cells"][0].update(study="0"), ["cells[0]: study: found \"0\"", "SHA-256"]),
+        (lambda board: board["cells"][0].update(truths="!" * 12), ["cells[0]: truths, loop 0: found '!'"]),
+        (lambda board: board["cells"][0]["methods"]["sse"].update(outcomes="B"), ["outcomes: found \"B\"", "12 letters"]),
+        (lambda board: board["cells"][0]["methods"].pop("sse"), ["methods: found no 'sse'"]),
+        (lambda board: board["cells"][0]["worlds"].append(0), ["worlds: found array of 13", "12 worlds"]),
+        (lambda board: board["cells"].append(board["cells"][0]), ["each cell once"]),
+        (lambda board: board["methods"].append(board["methods"][0]), ["each method once"]),
+    ]
+    for damage, parts in damages:
+        board = json.loads(text)
+        damage(board)
+        file.write_text(json.dumps(board))
+        error = tiny.run("one", "--join", file, "--quiet", code=2)
+        assert str(file) in error and all(part in error for part in parts), (error, parts)
+    for content in "", "[" * 100000, text[:-200]:
+        file.write_text(content)
+        assert "found no JSON" in tiny.run("one", "--join", file, "--quiet", code=2)
+
+
 def check_refusals(tiny):
     for words, message in ((["--methods", "botelo"], "botelo"), (["--families", "clasic"], "nearest: 'classic'")):
         error = tiny.run("refused", *words, code=2)
@@ -251,6 +335,8 @@ def main():
         check_parts(tiny, shown)
         check_program(tiny, source)
         check_program_method(tiny)
+        check_joined(tiny, shown)
+        check_foreign_boards(tiny)
         check_refusals(tiny)
 
 

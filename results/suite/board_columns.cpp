@@ -1,0 +1,130 @@
+#include "results/suite/board_columns.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "results/suite/leaderboard_output.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::array kColumns{
+    BoardColumn{kRankingSource, "Right source", "naming the source of a fault"},
+    BoardColumn{"power_05_impact", "Faults found", "finding faults"},
+    BoardColumn{kRankingRepair, "Best repair's gain", "naming the channel to repair"},
+    BoardColumn{"detected_impact", "Faults found", "finding faults", false, "power_05_impact"},
+    BoardColumn{"source_all", "Right source", "naming the source of a fault", false, kRankingSource},
+    BoardColumn{"false_alarm_calibrated", "Healthy, calibrated", "", true},
+    BoardColumn{"false_alarm_healthy", "Healthy, own threshold", "", true},
+};
+
+bool has_numbers(const Leaderboard& board, const BoardColumn& column) {
+  for (std::size_t method = 0; method < board.methods.size(); ++method)
+    if (!std::isnan(board_number(board, method, column).value))
+      return true;
+  return false;
+}
+
+std::string csv_number(double value) {
+  return std::isnan(value) ? "" : fmt::format("{}", value);
+}
+
+std::string latex_text(const std::string& text) {
+  std::string escaped;
+  for (const char letter : text) {
+    if (std::string_view("&%$#_{}").find(letter) != std::string_view::npos)
+      escaped += '\\';
+    escaped += letter;
+  }
+  return escaped;
+}
+
+/// "89 (86--90)"
+std::string latex_number(const Number& number) {
+  if (std::isnan(number.value))
+    return "--";
+  return fmt::format("{:.0f} ({:.0f}--{:.0f})", 100 * number.value, 100 * number.interval.lower,
+                     100 * number.interval.upper);
+}
+
+}  // namespace
+
+std::vector<BoardColumn> board_columns(const Leaderboard& board) {
+  std::vector<BoardColumn> columns;
+  for (const BoardColumn& column : kColumns)
+    if (has_numbers(board, column) &&
+        std::none_of(columns.begin(), columns.end(),
+                     [&column](const BoardColumn& other) { return other.name == column.unless; }))
+      columns.push_back(column);
+  return columns;
+}
+
+Number board_number(const Leaderboard& board, std::size_t method, const BoardColumn& column) {
+  const PooledScores& scores = board.overall[method];
+  if (const Rate* const rate = scores.of(column.name))
+    return rate->total == 0 ? Number{}
+                            : Number{rate->value, NumberForm::whole_percent, rate->interval, rate->total};
+  const Estimate estimate = scores.estimate(column.name);
+  return {estimate.value, NumberForm::whole_percent, estimate.interval, estimate.count};
+}
+
+std::vector<std::size_t> board_order(const Leaderboard& board) {
+  std::vector<std::size_t> order;
+  for (const RankedMethod& each : ranking(board))
+    order.push_back(each.method);
+  if (!order.empty())
+    return order;
+  for (std::size_t method = 0; method < board.methods.size(); ++method)
+    if (board.methods[method] != kReferenceMethod)
+      order.push_back(method);
+  if (const std::vector<BoardColumn> columns = board_columns(board); !columns.empty()) {
+    const auto value = [&](std::size_t method) {
+      const double found = board_number(board, method, columns.front()).value;
+      return std::isnan(found) ? -1.0 : found;
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return value(a) > value(b); });
+  }
+  return order;
+}
+
+std::string leaderboard_csv(const Leaderboard& board) {
+  const std::vector<BoardColumn> columns = board_columns(board);
+  std::string text = "method,own";
+  for (const BoardColumn& column : columns)
+    text += fmt::format(",{0},{0}_lower,{0}_upper,{0}_loops", column.name);
+  for (const std::size_t method : board_order(board)) {
+    text += fmt::format("\n{},{}", board.methods[method], board.is_own(method) ? 1 : 0);
+    for (const BoardColumn& column : columns) {
+      const Number number = board_number(board, method, column);
+      text += fmt::format(",{},{},{},{}", csv_number(number.value), csv_number(number.interval.lower),
+                          csv_number(number.interval.upper), std::max<std::int64_t>(number.of, 0));
+    }
+  }
+  return text + "\n";
+}
+
+std::string leaderboard_latex(const Leaderboard& board) {
+  const std::vector<BoardColumn> columns = board_columns(board);
+  std::string text = fmt::format(
+      "% {} {}, seed {}, mpmbench {}: % of loops with {:g} % intervals.\n"
+      "% \\usepackage{{booktabs}}\n\\begin{{tabular}}{{l{}}}\n\\toprule\nMethod",
+      board.suite, board.version, board.seed, board.program, 100 * board.confidence,
+      std::string(columns.size(), 'r'));
+  for (const BoardColumn& column : columns)
+    text += fmt::format(" & {}", column.title);
+  text += " \\\\\n\\midrule\n";
+  for (const std::size_t method : board_order(board)) {
+    const std::string name = latex_text(board.methods[method]);
+    text += board.is_own(method) ? fmt::format("\\textbf{{{}}}", name) : name;
+    for (const BoardColumn& column : columns)
+      text += " & " + latex_number(board_number(board, method, column));
+    text += " \\\\\n";
+  }
+  return text + "\\bottomrule\n\\end{tabular}\n";
+}
+
+}  // namespace mpm
