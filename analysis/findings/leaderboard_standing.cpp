@@ -11,7 +11,7 @@ namespace {
 enum class Asked { source, power };
 
 /// Is the loop one that the rate counts, and is it a hit? None: it is not counted.
-std::optional<bool> counted(Asked what, const FaultTruth& truth, const LoopOutcome& said) {
+std::optional<bool> hit_or_miss(Asked what, const FaultTruth& truth, const LoopOutcome& said) {
   if (!truth.faulty() || !truth.impact || (what == Asked::power && !said.answered))
     return std::nullopt;
   return said.above_05 && (what == Asked::power || said.right_source);
@@ -35,8 +35,8 @@ BoardDuel duel(const Leaderboard& board, Asked what, std::size_t method, std::si
       if (ours[i] == kNoLoop || theirs[i] == kNoLoop)
         continue;
       const FaultTruth truth = *fault_truth(cell.truths[i]);
-      const auto first = counted(what, truth, *loop_outcome(theirs[i])),
-                 second = counted(what, truth, *loop_outcome(ours[i]));
+      const auto first = hit_or_miss(what, truth, *loop_outcome(theirs[i])),
+                 second = hit_or_miss(what, truth, *loop_outcome(ours[i]));
       if (first && second)
         worlds.of(cell.worlds[i]).add(*first, *second);
     }
@@ -73,8 +73,8 @@ std::optional<Standing> standing_of(const Leaderboard& board, std::size_t method
   standing.rate = what == Asked::source ? kRankingSource : "power_05_impact";
   for (std::size_t other = 0; other < board.methods.size(); ++other)
     if (other != method && board.methods[other] != kReferenceMethod)
-      if (BoardDuel found = duel(board, what, method, other); found.loops > 0)
-        standing.duels.push_back(std::move(found));
+      if (const BoardDuel found = duel(board, what, method, other); found.loops > 0)
+        standing.duels.push_back(found);
   if (standing.duels.empty())
     return std::nullopt;
   std::stable_sort(standing.duels.begin(), standing.duels.end(), [](const BoardDuel& a, const BoardDuel& b) {

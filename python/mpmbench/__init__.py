@@ -13,7 +13,7 @@ matplotlib are imported when they are needed, so that a method that is a program
 """
 
 from .archive import Archive
-from .commands import assess, check, command, context, open, run, studies, suite
+from .commands import assess, board, check, command, context, open, run, studies, suite
 from .methods import Method, method, serve
 from .program import Error, InputError, ProgramWarning, Unfinished, program
 from .results import Assessment, Board, Comparison, Repair
@@ -21,5 +21,5 @@ from .signals import Loop
 from .version import __version__
 
 __all__ = ["Archive", "Assessment", "Board", "Comparison", "Error", "InputError", "Loop", "Method", "ProgramWarning",
-           "Repair", "Unfinished", "__version__", "assess", "check", "command", "context", "method", "open", "program",
-           "run", "serve", "studies", "suite"]
+           "Repair", "Unfinished", "__version__", "assess", "board", "check", "command", "context", "method", "open",
+           "program", "run", "serve", "studies", "suite"]

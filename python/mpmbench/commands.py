@@ -74,16 +74,26 @@ def open(path):  # as in xarray and h5py
 def suite(suite, *own, output=None, methods=None, quiet=False, **options):
     """Runs a suite of plants and families, and returns its leaderboard.
 
-    `suite`: a file, or the name of a shipped one ("quick", "standard"). `own`: methods of your own, beside those of the
-    suite, or beside `methods`. `output`: the folder of the archives; the same call resumes what is in it. `options`:
-    those of `mpmbench suite`, such as plants="wood-berry", families=["exact"], experiments=8."""
+    `suite`: a file, or the name of a shipped one ("quick", "standard"). `own`: methods of your own, which alone are run
+    and join the finished board of the suite; where there is none, or with other `experiments` or another `seed`, they run
+    beside those of the suite. `methods`: those to run beside your own. `output`: the folder of the archives; the same
+    call resumes what is in it. `options`: those of `mpmbench suite`, such as plants="wood-berry", families=["exact"],
+    experiments=8, join="none"."""
     output = pathlib.Path(output) if output is not None else temporary("suite")
     names, given = split(methods)
     own = [*split(own)[1], *given]
+    if own:
+        options.setdefault("highlight", [each.name for each in own])
     with Broker(own) as broker:
         said = run_program(["suite", suite, "-o", output, "--json", *words.options({"methods": names or None, **options}),
                             *broker.words()], broker=broker, quiet=quiet)
         return Board(said, output, [each.name for each in own], broker.seconds)
+
+
+def board(suite, **options):
+    """The finished board of a suite, without a run. `options`: those of `mpmbench suite`, such as families="worlds",
+    highlight="sse", join="other.board.json"."""
+    return Board(run_program(["suite", suite, "--json", *words.options(options)], quiet=True))
 
 
 def assess(study, record, *, page=None, quiet=False, **options):

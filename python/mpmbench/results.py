@@ -1,10 +1,8 @@
 """What comparisons, boards, assessments and repairs say."""
 
-import copy
 import functools
 import html
 import json
-import pathlib
 import statistics
 
 # In the order of the table: name, heading.
@@ -117,11 +115,11 @@ class Comparison(Rated):
 
 
 class Board(Rated):
-    """The leaderboard of a suite. `folder` has its archives and its page, leaderboard.html."""
+    """The leaderboard of a suite. `folder` has its archives and its page, leaderboard.html; None for a finished board."""
 
-    def __init__(self, text, folder, own, seconds):
-        super().__init__(text, own, seconds)
-        self.folder, self.page = folder, folder / "leaderboard.html"
+    def __init__(self, text, folder=None, own=(), seconds=None):
+        super().__init__(text, own, seconds or {})
+        self.folder, self.page = folder, folder and folder / "leaderboard.html"
 
     def _of(self, method):
         return method["all"]["rates"]
@@ -139,51 +137,27 @@ class Board(Rated):
     def archive(self, plant, family):
         """The archive of a cell."""
         from .archive import Archive
+        if self.folder is None:
+            raise ValueError("a finished board has no archives: run the suite, mpmbench.suite(...)")
         return Archive(self.folder / f"{plant}.{family}.h5")
 
-    def join(self, board):
-        """This board with the methods of another one of the same suite, a Board or the path of its JSON, such as the
-        finished docs/leaderboard.json: run the suite with `methods=mine` alone, and join. Methods of both are those of
-        this board. Raises ValueError unless suite, version, seed and number of experiments are the same."""
-        other = board.json if isinstance(board, Board) else json.loads(pathlib.Path(board).read_text(encoding="utf-8"))
-        for key in "suite", "version", "seed":
-            if other[key] != self.json[key]:
-                raise ValueError(f"{key}: found {other[key]} in the board to join; allowed: {self.json[key]}, that of this one")
-        theirs, ours = (experiments_of(each) for each in (other, self.json))
-        if theirs != ours:
-            raise ValueError(f"experiments: found {theirs} in the board to join; allowed: {ours}, those of this one")
-        joined = copy.copy(self)
-        joined.__dict__.pop("intervals", None)
-        joined.json = {**self.json, "methods": [each for each in other["methods"] if each["name"] not in self.methods] +
-                       self.json["methods"]}
-        return joined
-
-    def standing(self, method, rate="power_05_impact"):
-        """Where a method stands by a rate, in a sentence."""
-        ranked = self.rank(rate)["value"]
-        if method not in ranked.index:
-            return f"{method} has no loops for {rate}"
-        equal = int((ranked == ranked[method]).sum())
-        place = int((ranked.values == ranked[method]).argmax()) + 1
-        shared = f", with {equal - 1} other{'s' if equal > 2 else ''}" if equal > 1 else ""
-        worse = len(ranked) - place - equal + 1
-        return f"{method} is number {place} of {len(ranked)}{shared} by {SHOWN.get(rate, rate)}; {worse} are worse"
+    def standing(self, method):
+        """Where a method of one's own, or one that is highlighted, stands among the others, paired on the same loops: a
+        sentence. `json["standing"]` has the pairs."""
+        standing = self.json.get("standing", {})
+        if method not in standing:
+            raise KeyError(f"method: found '{method}'; allowed: {', '.join(standing) or 'none, since none is highlighted'}")
+        return standing[method]["says"]
 
     def _repr_html_(self):
-        loops = experiments_of(self.json)
-        said = "".join(f"<br>{html.escape(self.standing(name))}" for name in self.own)
+        loops = sum(cell["experiments"] for cell in self.json["cells"])
+        said = "".join(f"<br>{html.escape(self.standing(name))}" for name in self.json.get("own", []))
         plants, families = (", ".join(each["name"] for each in self.json[kind]) for kind in ("plants", "families"))
         return (f"<p><b>Suite {self.json['suite']} {self.json['version']}</b>: {html.escape(plants)} under "
                 f"{html.escape(families)}; {loops} loops, seed {self.json['seed']}{said}</p>{super()._repr_html_()}")
 
     def __repr__(self):
         return f"<mpmbench.Board of {self.json['suite']} {self.json['version']}: {', '.join(self.methods)}>"
-
-
-def experiments_of(board):
-    """How many loops the JSON of a board counts; one that is shipped has the sum."""
-    cells = board["cells"]
-    return board["experiments"] if isinstance(cells, int) else sum(cell["experiments"] for cell in cells)
 
 
 class Assessment:

@@ -154,7 +154,7 @@ class BoardEntry {
       refuse("a list");
     std::vector<BoardEntry> entries;
     for (std::size_t i = 0; i < value_.size(); ++i)
-      entries.push_back({value_[i], fmt::format("{}[{}]", place_, i)});
+      entries.emplace_back(value_[i], fmt::format("{}[{}]", place_, i));
     return entries;
   }
   std::string text() const {

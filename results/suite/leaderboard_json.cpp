@@ -5,6 +5,7 @@
 
 #include "analysis/findings/leaderboard_standing.hpp"
 #include "analysis/findings/method_rates.hpp"
+#include "results/document/words.hpp"
 #include "results/files/utf8.hpp"
 #include "results/suite/leaderboard_output.hpp"
 #include "results/text/number_json.hpp"
@@ -76,11 +77,15 @@ SuiteJson ranking_json(const Leaderboard& board) {
   return json;
 }
 
-/// Of each of one's own methods that can be ranked.
+/// Of each of one's own methods; only the sentence of one that cannot be ranked.
 SuiteJson standing_json(const Leaderboard& board) {
   SuiteJson json = SuiteJson::object();
   for (std::size_t method = 0; method < board.methods.size(); ++method) {
-    const std::optional<Standing> standing = board.is_own(method) ? standing_of(board, method) : std::nullopt;
+    if (!board.is_own(method))
+      continue;
+    const std::optional<Standing> standing = standing_of(board, method);
+    SuiteJson& of_method = json[board.methods[method]];
+    of_method["says"] = words_text(standing_sentence(board, method, standing));
     if (!standing)
       continue;
     SuiteJson duels = SuiteJson::array();
@@ -90,9 +95,12 @@ SuiteJson standing_json(const Leaderboard& board) {
                        {"lower", duel.difference.interval.lower},
                        {"upper", duel.difference.interval.upper},
                        {"loops", duel.loops}});
-    json[board.methods[method]] = {{"rate", standing->rate},           {"place", standing->place},
-                                   {"of", standing->duels.size() + 1}, {"beats", standing->won()},
-                                   {"loses_to", standing->lost()},     {"duels", duels}};
+    of_method.update({{"rate", standing->rate},
+                      {"place", standing->place},
+                      {"of", standing->duels.size() + 1},
+                      {"beats", standing->won()},
+                      {"loses_to", standing->lost()},
+                      {"duels", duels}});
   }
   return json;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "analysis/findings/leaderboard.hpp"
+#include "analysis/findings/leaderboard_standing.hpp"
 #include "results/document/document.hpp"
 #include "results/plot/figure.hpp"
 
@@ -25,6 +27,10 @@ Figure leaderboard_figure(const Leaderboard& board);
 std::string label_of(const std::string& method);
 /// The same as words for the head of a row; one's own methods are marked.
 std::string row_name(const Leaderboard& board, std::size_t method);
+
+/// "mine is number 3 of 11 ...": where a method stands, in words.
+std::string standing_sentence(const Leaderboard& board, std::size_t method,
+                              const std::optional<Standing>& standing);
 
 /// Who is best at what, where one's own methods stand, and the table of board_columns.hpp.
 Section standing_section(const Leaderboard& board);

@@ -53,22 +53,6 @@ const char* asked_of(const Standing& standing) {
                                          : "by the faults with an impact that it finds";
 }
 
-std::string standing_sentence(const Leaderboard& board, std::size_t method,
-                              const std::optional<Standing>& standing) {
-  const std::string name = strong(as_label(board.methods[method]));
-  if (!standing)
-    return fmt::format(
-        "{} cannot be ranked: it has no score above a threshold that is calibrated for 5 % "
-        "false alarms, or there is no other method.",
-        name);
-  const auto others = static_cast<int>(standing->duels.size());
-  return fmt::format(
-      "{} is number {} of {} {}, at 5 % false alarms. Paired on the same loops it beats {} of the {} "
-      "others, loses to {}, and cannot be told from {}.",
-      name, standing->place, others + 1, asked_of(*standing), standing->won(), others, standing->lost(),
-      others - standing->won() - standing->lost());
-}
-
 Table duels_table(const Leaderboard& board, const Standing& standing) {
   Table table(
       fmt::format("{} against the others on the same loops, {}, at 5 % false alarms: its share minus "
@@ -89,6 +73,22 @@ Table duels_table(const Leaderboard& board, const Standing& standing) {
 std::string row_name(const Leaderboard& board, std::size_t method) {
   const std::string name = as_label(label_of(board.methods[method]));
   return board.is_own(method) ? strong(name) + " <-" : name;
+}
+
+std::string standing_sentence(const Leaderboard& board, std::size_t method,
+                              const std::optional<Standing>& standing) {
+  const std::string name = strong(as_label(board.methods[method]));
+  if (!standing)
+    return fmt::format(
+        "{} cannot be ranked: it has no score above a threshold that is calibrated for 5 % "
+        "false alarms, or there is no other method.",
+        name);
+  const auto others = static_cast<int>(standing->duels.size());
+  return fmt::format(
+      "{} is number {} of {} {}, at 5 % false alarms. Paired on the same loops it beats {} of the {} "
+      "others, loses to {}, and cannot be told from {}.",
+      name, standing->place, others + 1, asked_of(*standing), standing->won(), others, standing->lost(),
+      others - standing->won() - standing->lost());
 }
 
 Section standing_section(const Leaderboard& board) {

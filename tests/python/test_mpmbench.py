@@ -252,7 +252,7 @@ class Boards(unittest.TestCase):
         self.assertEqual(board.json, json.loads(pathlib.Path("board/leaderboard.json").read_text()))
         self.assertEqual(board.family("shapes").loc[("sse", "detected")].to_dict(),
                          next(m for m in board.json["methods"] if m["name"] == "sse")["families"]["shapes"]["rates"]["detected"])
-        self.assertRegex(board.standing("mine"), r"mine is number \d of 3, with ")
+        self.assertRegex(board.standing("mine"), r"^mine is number 1 of 3 by the faults .* cannot be told from \d\.$")
         best = board.rank("power_05_impact")["value"]
         self.assertTrue(best.is_monotonic_decreasing and len(best) == 3)
         self.assertTrue(board.rank("false_alarm_healthy")["value"].is_monotonic_increasing)
@@ -262,27 +262,24 @@ class Boards(unittest.TestCase):
 
 
     def test_a_method_joins_a_finished_board(self):
-        words_of = {"plants": [STUDY], "families": ["classic"], "experiments": 8, "quiet": True}
-        finished = mpmbench.suite("exact", methods=["sse", "botelho"], **words_of)
-        alone = mpmbench.suite("exact", methods=mine, **words_of)
-        self.assertEqual(alone.methods, ["mine"])
-        # as docs/leaderboard.json has it
-        shipped = {**finished.json, "cells": 1, "experiments": 8, "methods": [
-            {"name": each["name"], "all": {"rates": {name: {key: rate[key] for key in ("value", "lower", "upper")}
-                                                     for name, rate in each["all"]["rates"].items()}}}
-            for each in finished.json["methods"]]}
-        pathlib.Path("shipped.json").write_text(json.dumps(shipped))
-        for each in finished, "shipped.json":
-            joined = alone.join(each)
-            self.assertEqual(joined.methods, ["sse", "botelho", "mine"])
-            self.assertEqual(joined.rates.loc["mine", "detected"], finished.rates.loc["sse", "detected"])
-            self.assertRegex(joined.standing("mine"), r"^mine is number \d of 3, with .*; \d are worse$")
-            self.assertIn("<b>mine</b>", joined._repr_html_())
-            self.assertEqual(len(joined.plot().axes[0].get_yticklabels()), 3)
-        for key, value in ("version", "1999.1"), ("seed", 3), ("experiments", 9):
-            pathlib.Path("other.json").write_text(json.dumps({**shipped, key: value}))
-            with self.assertRaisesRegex(ValueError, f"^{key}: found {value} in the board to join; allowed:"):
-                alone.join("other.json")
+        words_of = {"plants": "wood-berry", "families": "exact", "quiet": True}
+        finished = mpmbench.board("quick", plants="wood-berry", families="exact", highlight="sse")
+        joined = mpmbench.suite("quick", mine, **words_of)
+        self.assertEqual(joined.methods, [*finished.methods, "mine"])
+        for rate in "power_05_impact", "false_alarm_healthy", "located":
+            self.assertEqual(joined.rates.loc["mine", rate], finished.rates.loc["sse", rate])
+            self.assertEqual(joined.rates.loc["botelho", rate], finished.rates.loc["botelho", rate])
+        duel = next(each for each in joined.json["standing"]["mine"]["duels"] if each["method"] == "sse")
+        self.assertEqual((duel["difference"], joined.own), (0, ["mine"]))
+        self.assertIn("sse is number", finished.standing("sse"))
+        self.assertIn(f"<br>{joined.standing('mine')}", joined._repr_html_())
+        self.assertIn("<b>mine</b>", joined._repr_html_())
+        self.assertEqual(len(joined.plot().axes[0].get_yticklabels()), len(joined.methods))
+        self.assertEqual(mpmbench.suite("quick", methods=mine, join="none", **words_of).methods, ["mine"])
+        with self.assertRaisesRegex(KeyError, "found 'botelho'; allowed: sse"):
+            finished.standing("botelho")
+        with self.assertRaisesRegex(ValueError, "no archives"):
+            finished.archive("wood-berry", "exact")
 
 
 class Records(unittest.TestCase):

@@ -1,0 +1,61 @@
+"""The finished boards that ship with the program are of this program: every cell has the study that the program has for it,
+no cell is missing, and a cell that is run again comes out as it stands there.
+
+usage: check_shipped_boards.py MPMBENCH SOURCES
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+PATIENCE = 300
+AGAIN = ("quick", "wood-berry", "exact")
+# Another processor may round a number that lies at a threshold to its other side.
+MOST_OTHER_LETTERS = 0.01
+
+
+def run(program, *words, code=0):
+    done = subprocess.run([program, *words], capture_output=True, text=True, timeout=PATIENCE)
+    assert done.returncode == code, (words, done)
+    return done.stdout
+
+
+def check_board(program, path):
+    suite = path.name.removesuffix(".board.json")
+    board = json.loads(run(program, "suite", suite, "--json"))
+    methods = [method["name"] for method in board["methods"]]
+    assert methods == [method["name"] for method in json.loads(path.read_text())["methods"]]
+    assert all(method["all"]["rates"]["answered"]["total"] > 0 for method in board["methods"] if method["name"] != "ceiling")
+    # That its methods stand on the finished board already is all that may be wrong.
+    said = run(program, "check-board", str(path), code=1)
+    complaints = [line for line in said.splitlines() if line.startswith("- ")]
+    assert len(complaints) == len(methods) and all("a method of this name" in line for line in complaints), said
+
+
+def check_again(program, boards):
+    suite, plant, family = AGAIN
+    with tempfile.TemporaryDirectory() as folder:
+        run(program, "suite", suite, "--plants", plant, "--families", family, "-o", folder, "--quiet")
+        (again,) = json.loads((pathlib.Path(folder) / f"{suite}.board.json").read_text())["cells"]
+    shipped = next(cell for cell in json.loads((boards / f"{suite}.board.json").read_text())["cells"]
+                   if (cell["plant"], cell["family"]) == (plant, family))
+    for key in "study", "experiments", "worlds", "truths":
+        assert again[key] == shipped[key], (key, again[key], shipped[key])
+    letters = [pair for name, of_method in shipped["methods"].items()
+               for pair in zip(of_method["outcomes"], again["methods"][name]["outcomes"], strict=True)]
+    other = sum(one != two for one, two in letters)
+    assert other <= MOST_OTHER_LETTERS * len(letters), f"{other} of {len(letters)} letters"
+
+
+def main(program, sources):
+    boards = pathlib.Path(sources) / "scenarios" / "suites"
+    found = sorted(boards.glob("*.board.json"))
+    assert boards / "quick.board.json" in found and boards / "standard.board.json" in found, found
+    for path in found:
+        check_board(program, path)
+    check_again(program, boards)
+
+
+main(*sys.argv[1:])
