@@ -57,31 +57,34 @@ bool has_same_loops(const CellScores& cell, const CellScores* theirs, const std:
 
 }  // namespace
 
-JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own,
+JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own, const std::string& program,
                         std::vector<CellScores> cells, const FinishedBoard& finished) {
-  JoinedBoard joined;
+  std::vector<std::string> methods, notes;
   std::vector<std::size_t> places;  // in the finished board
   for (std::size_t method = 0; method < finished.methods.size(); ++method)
     if (std::find(own.begin(), own.end(), finished.methods[method]) == own.end()) {
       places.push_back(method);
-      joined.methods.push_back(finished.methods[method]);
+      methods.push_back(finished.methods[method]);
     }
-  joined.methods.insert(joined.methods.end(), own.begin(), own.end());
+  methods.insert(methods.end(), own.begin(), own.end());
   for (CellScores& cell : cells) {
     if (!cell.trouble.empty())
       continue;
     const std::string name =
         fmt::format("{}.{}", suite.plants[cell.plant].name, suite.families[cell.family].name);
     const CellScores* const theirs = finished_cell(finished, cell);
-    const bool same = has_same_loops(cell, theirs, name, joined.notes);
-    std::vector<MethodScores> methods;
+    const bool same = has_same_loops(cell, theirs, name, notes);
+    std::vector<MethodScores> scores;
     for (const std::size_t place : places)
-      methods.push_back(same ? on_same_loops(cell, *theirs, theirs->methods[place])
-                             : scores_of_outcomes(cell, "", {}));
-    std::move(cell.methods.begin(), cell.methods.end(), std::back_inserter(methods));
-    cell.methods = std::move(methods);
+      scores.push_back(same ? on_same_loops(cell, *theirs, theirs->methods[place])
+                            : scores_of_outcomes(cell, "", {}));
+    std::move(cell.methods.begin(), cell.methods.end(), std::back_inserter(scores));
+    cell.methods = std::move(scores);
   }
-  joined.cells = std::move(cells);
+  JoinedBoard joined{make_leaderboard(suite, methods, program, std::move(cells)), std::move(notes)};
+  if (!places.empty())
+    joined.board.own = own;
+  joined.board.finished_by = finished.runner();
   return joined;
 }
 

@@ -18,17 +18,17 @@ struct FinishedBoard {
   std::string runner() const { return "mpmbench " + program + " (" + revision + ")"; }
 };
 
-/// The cells of one's own run with the methods of a finished board beside one's own.
+/// The cells of one's own run, with the methods of a finished board beside one's own.
 struct JoinedBoard {
-  std::vector<std::string> methods = {};  ///< those of the finished board that are not one's own, and these
-  std::vector<CellScores> cells = {};     ///< those of one's own run
-  std::vector<std::string> notes = {};    ///< what could not be joined, in sentences
+  Leaderboard board;  ///< methods: those of the finished board that are not one's own, and these
+  std::vector<std::string> notes = {};  ///< what could not be joined, in sentences
 };
 
 /// Puts the methods of `finished` beside `own`, the methods of each of `cells`, cell by cell. A method in
 /// both is that of `cells`. A loop whose truth is another one in the two counts for one's own methods alone;
-/// so does a whole cell that the finished board lacks, or whose loops or worlds are not the same.
-JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own,
+/// so does a whole cell that the finished board lacks, or whose loops or worlds are not the same. `program`:
+/// the version that has run `cells`.
+JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own, const std::string& program,
                         std::vector<CellScores> cells, const FinishedBoard& finished);
 
 }  // namespace mpm

@@ -52,7 +52,7 @@ ExitCode check_board(const CheckBoardArguments& options) {
   const Suite suite = find_suite(options.suite.empty() ? suite_of_board(options.board) : options.suite);
   const FinishedBoard board = read_board(options.board, suite);
   const FinishedBoard finished = read_board(finished_board_path(suite), suite);
-  JoinedBoard joined = join_boards(suite, board.methods, board.cells, finished);
+  const JoinedBoard joined = join_boards(suite, board.methods, board.program, board.cells, finished);
   const std::vector<std::string> troubles = troubles_of(suite, board, finished, joined);
 
   std::int64_t experiments = 0;
@@ -65,11 +65,8 @@ ExitCode check_board(const CheckBoardArguments& options) {
     text += wrapped("- " + trouble, kLeaderboardWidth, "  ");
   text += troubles.empty() ? "It can stand on the board.\n" : "It cannot stand on the board as it is.\n";
 
-  Leaderboard all = make_leaderboard(suite, joined.methods, mpmbench_version(), std::move(joined.cells));
-  all.own = board.methods;
-  all.finished_by = finished.runner();
   Document standing;
-  standing.sections.push_back(standing_section(all));
+  standing.sections.push_back(standing_section(joined.board));
   print_result(text + document_text(standing, kLeaderboardWidth));
   return troubles.empty() ? ExitCode::done : ExitCode::comparison_failed;
 }

@@ -105,16 +105,27 @@ void show_board(const Leaderboard& board, const std::string& json, const SuiteAr
                                    (fs::path(options.output) / "leaderboard.html").string()));
 }
 
-/// The finished board of the suite, without a run.
-ExitCode show_finished_board(const SuiteArguments& options, const Suite& suite) {
-  const bool named = !options.join.empty() && options.join != "finished";
-  const fs::path path = named ? fs::path(options.join) : finished_board_path(suite);
+/// The finished board of the suite, without a run; with a named board its methods join.
+ExitCode show_finished_board(const SuiteArguments& options, const Suite& suite, Progress& progress) {
+  const fs::path path = finished_board_path(suite);
   std::error_code no_status;
-  if (options.join == "none" || (!named && !fs::is_regular_file(path, no_status)))
+  const bool finished = fs::is_regular_file(path, no_status);
+  const bool named = !options.join.empty() && options.join != "finished";
+  if (options.join == "none" || (!named && !finished))
     throw InputError(
         "--output", "nothing",
         fmt::format("a folder for the archives, since there is no finished board {}", path.string()));
-  Leaderboard board = leaderboard_of(suite, read_board(path, suite));
+  FinishedBoard shown = read_board(named ? fs::path(options.join) : path, suite);
+  Leaderboard board;
+  if (named && finished) {
+    JoinedBoard joined =
+        join_boards(suite, shown.methods, shown.program, std::move(shown.cells), read_board(path, suite));
+    for (const std::string& note : joined.notes)
+      progress.warn(note);
+    board = std::move(joined.board);
+  } else {
+    board = leaderboard_of(suite, std::move(shown));
+  }
   highlight(board, options.highlight);
   show_board(board, leaderboard_json(board), options);
   return ExitCode::done;
@@ -149,11 +160,11 @@ std::vector<std::pair<const SuiteCell*, IntendedStudy>> cells_of(const Suite& su
 /// scores are those of one go.
 ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
   const Suite suite = find_suite(options.suite, options.choice);
+  Progress progress(options.quiet);
   if (options.only_looks())
-    return show_finished_board(options, suite);
+    return show_finished_board(options, suite, progress);
   if (options.output.empty())
     options.output = "mpmbench-" + suite.name;
-  Progress progress(options.quiet);
   const std::vector<std::string> programs = take_method_files(options.method_files);
   const std::optional<FinishedBoard> finished = board_to_join(options, suite, progress);
   RunOptions run = options.run;
@@ -210,12 +221,10 @@ ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
   Leaderboard board = make_leaderboard(suite, run.methods, mpmbench_version(), scores);
   write_text(folder / board_file_name(suite), board_text(suite, board, source_revision()));
   if (finished) {
-    JoinedBoard joined = join_boards(suite, run.methods, std::move(scores), *finished);
+    JoinedBoard joined = join_boards(suite, run.methods, mpmbench_version(), std::move(scores), *finished);
     for (const std::string& note : joined.notes)
       progress.warn(note);
-    board = make_leaderboard(suite, joined.methods, mpmbench_version(), std::move(joined.cells));
-    board.own = run.methods;
-    board.finished_by = finished->runner();
+    board = std::move(joined.board);
   }
   highlight(board, options.highlight);
   const std::string json = leaderboard_json(board);

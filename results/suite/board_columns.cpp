@@ -42,12 +42,18 @@ std::string latex_text(const std::string& text) {
   return escaped;
 }
 
-/// "89 (86--90)"
-std::string latex_number(const Number& number) {
+/// A heading in two lines, so that the table fits a page: "\shortstack[r]{Healthy,\\own threshold}"
+std::string latex_heading(std::string_view heading) {
+  const std::size_t space = heading.find(' ');
+  return fmt::format("\\shortstack[r]{{{}\\\\{}}}", heading.substr(0, space), heading.substr(space + 1));
+}
+
+/// "89 (86--90)", with a mark for a method that does not answer on all loops.
+std::string latex_number(const Number& number, bool in_part) {
   if (std::isnan(number.value))
     return "--";
-  return fmt::format("{:.0f} ({:.0f}--{:.0f})", 100 * number.value, 100 * number.interval.lower,
-                     100 * number.interval.upper);
+  return fmt::format("{:.0f} ({:.0f}--{:.0f}){}", 100 * number.value, 100 * number.interval.lower,
+                     100 * number.interval.upper, in_part ? "$^\\sim$" : "");
 }
 
 }  // namespace
@@ -111,17 +117,19 @@ std::string leaderboard_latex(const Leaderboard& board) {
   const std::vector<BoardColumn> columns = board_columns(board);
   std::string text = fmt::format(
       "% {} {}, seed {}, mpmbench {}: % of loops with {:g} % intervals.\n"
+      "% $\\sim$: it gives verdicts on fewer than {:g} % of the loops.\n"
       "% \\usepackage{{booktabs}}\n\\begin{{tabular}}{{l{}}}\n\\toprule\nMethod",
-      board.suite, board.version, board.seed, board.program, 100 * board.confidence,
+      board.suite, board.version, board.seed, board.program, 100 * board.confidence, 100 * kFewestAnswers,
       std::string(columns.size(), 'r'));
   for (const BoardColumn& column : columns)
-    text += fmt::format(" & {}", column.title);
+    text += " & " + latex_heading(column.title);
   text += " \\\\\n\\midrule\n";
   for (const std::size_t method : board_order(board)) {
     const std::string name = latex_text(board.methods[method]);
     text += board.is_own(method) ? fmt::format("\\textbf{{{}}}", name) : name;
     for (const BoardColumn& column : columns)
-      text += " & " + latex_number(board_number(board, method, column));
+      text +=
+          " & " + latex_number(board_number(board, method, column), board.overall[method].answers_in_part());
     text += " \\\\\n";
   }
   return text + "\\bottomrule\n\\end{tabular}\n";

@@ -1,6 +1,6 @@
 """Runs every command of README.md, docs/tutorial.md and docs/gates.md, page by page, each in an empty folder, and the
-Python of all other pages, page by page, beside a small archive. The leaderboards of README.md and docs/suite.md
-must be that of docs/leaderboard.json.
+Python of all other pages, page by page, beside a small archive. The tables of the leaderboards must be those of the
+finished boards.
 
 usage: check_documents.py MPMBENCH SOURCES
 
@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 
-from worlds_board import blocks as blocks_of, with_blocks
+import board_tables
 
 PAGES = ["README.md", "docs/tutorial.md", "docs/gates.md"]
 RUN_ELSEWHERE = {"docs/file_format.md"}  # by tests/results/archive/check_reading_page.py, which checks its numbers
@@ -122,16 +122,14 @@ def check_python(program, sources):
     assert {"docs/methods_thesis.md", "docs/own_plant.md"} <= set(ran), ran
 
 
-def check_board(sources):
-    """The tables of the standard suite have the shares of its board."""
-    board = json.loads((sources / "docs/leaderboard.json").read_text())
-    for name, tables in blocks_of(board).items():
-        page = (sources / name).read_text(encoding="utf-8")
-        assert page == with_blocks(page, tables), f"{name}: run tests/bench/worlds_board.py"
+def check_boards(program, sources):
+    """The tables of the suites have the shares of their finished boards."""
+    for path, page in board_tables.pages(program, sources).items():
+        assert path.read_text(encoding="utf-8") == page, f"{path.name}: run tests/bench/board_tables.py"
 
 
 def main(program, sources):
-    check_board(pathlib.Path(sources))
+    check_boards(program, pathlib.Path(sources))
     check_python(program, pathlib.Path(sources))
     with tempfile.TemporaryDirectory() as name:
         shims = pathlib.Path(name)

@@ -271,6 +271,11 @@ def check_joined(tiny, shown):
     look = [tiny.program, "suite", str(tiny.file), "--json", "--highlight", "sun"]
     looked = json.loads(subprocess.run(look, capture_output=True, check=True, timeout=PATIENCE).stdout)
     assert [known_rates(method) for method in looked["methods"]] == [known_rates(each) for each in whole["methods"][:2]]
+    # With a named board its methods join, as in the run that has made it.
+    look = [tiny.program, "suite", str(tiny.file), "--json", "--join", str(tiny.folder / "joined/tiny.board.json")]
+    again = json.loads(subprocess.run(look, capture_output=True, check=True, timeout=PATIENCE).stdout)
+    assert again["own"] == ["sse"] and again["standing"] == joined["standing"], again
+    assert [each["name"] for each in again["methods"]] == ["botelho", "sun", "sse"]
     check = [tiny.program, "check-board", str(tiny.folder / "joined/tiny.board.json"), "--suite", str(tiny.file)]
     done = subprocess.run(check, capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 0 and "can stand on the board" in done.stdout, done

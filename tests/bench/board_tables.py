@@ -1,34 +1,18 @@
-"""The board of the suite `standard` in the documents: docs/leaderboard.json, and the tables of README.md and docs/suite.md
-that stand between `<!-- worlds: NAME -->` and `<!-- end -->`.
+"""The tables of the finished boards in the documents, between `<!-- board: NAME -->` and `<!-- end -->`: those of
+README.md and docs/suite.md are of the suite `standard`, that of docs/suite_exact.md of the suite `exact`.
 
-usage: worlds_board.py SOURCES [LEADERBOARD|- [LEARNED]]
+usage: board_tables.py MPMBENCH SOURCES [LEARNED]
 
-With LEADERBOARD, the leaderboard.json that `mpmbench suite standard -o FOLDER` has written, first makes
-docs/leaderboard.json of it: shares rounded to whole percent. With LEARNED, the learned.json of
-examples/learned_reference.py, puts its numbers there as well; without it, and with - in the place of LEADERBOARD, those
-that are there stay. Then writes the tables. The sentences around them are to be read again. check_documents.py compares the tables with the JSON.
+Writes them from what `mpmbench suite NAME --json` says. With LEARNED, the learned.json of
+examples/learned_reference.py, first puts its numbers into docs/learned.json. The sentences around the tables are to be
+read again. check_documents.py compares.
 """
 
 import json
 import pathlib
 import re
+import subprocess
 import sys
-
-SHARES = {
-    "answered": "verdict given",
-    "detected_impact": "faults with an impact, flagged",
-    "power_05": "faults, flagged at 5 % false alarms",
-    "power_05_impact": "faults with an impact, flagged at 5 % false alarms",
-    "false_alarm_healthy": "healthy loops, flagged",
-    "false_alarm_calibrated": "healthy loops, flagged at the calibrated threshold",
-    "located": "flagged, the affected CV named",
-    "source": "flagged, the right source named",
-    "source_all": "all faults, the right source named",
-    "source_05_impact": "faults with an impact, the right source named at 5 % false alarms",
-    "repair_gain_share": "share of the best repair's gain, mean",
-    "repair_gain_share_05": "share of the best repair's gain at 5 % false alarms, mean",
-}
-
 
 # Where each method is from, for README.md.
 ORIGINS = {"mpmbench": "ours", "likelihood": "ours", "order": "ours", "counterfactual": "ours", "excitation": "ours",
@@ -37,22 +21,26 @@ ORIGINS = {"mpmbench": "ours", "likelihood": "ours", "order": "ours", "counterfa
            "badwe2009": "Badwe et al.", "badwe2010": "Badwe et al.", "yu-qin": "Yu and Qin", "sun": "Sun et al.",
            "mqi-channels": "model quality"}
 REFERENCE = "ceiling"
+LEARNED = "docs/learned.json"
+
+
+SHARE = "value", "lower", "upper"
 
 
 def rounded(number):
-    return {key: round(number[key], 2) for key in ("value", "lower", "upper")}
+    return {key: round(number[key], 2) for key in SHARE}
 
 
-def scores(entry):
-    """What of the scores of a method the documents keep; what was counted on no loop is left out."""
-    numbers = {**entry["rates"], **entry.get("estimates", {})}
-    kept = {name: rounded(numbers[name]) for name in SHARES
-            if numbers.get(name) and numbers[name].get("total", numbers[name].get("count"))}
-    return {"passes": entry["passes"], "rates": kept}
+def counted(rate):
+    return rate and rate.get("value") is not None and rate.get("total", rate.get("count", 1))
+
+
+def numbers(entry):
+    return {**entry["rates"], **entry.get("estimates", {})}
 
 
 def learned_cell(cell):
-    """What of a learned reference the documents keep: shares rounded to whole percent."""
+    """What of a learned reference docs/learned.json keeps: shares rounded to whole percent."""
     def kept(rates):
         return {name: rounded(rate) for name, rate in rates.items()
                 if isinstance(rate, dict) and rate.get("value") is not None}
@@ -61,27 +49,9 @@ def learned_cell(cell):
             "methods": {name: kept(rates) for name, rates in cell["methods"].items()}}
 
 
-def document(board):
-    """docs/leaderboard.json of a leaderboard.json."""
-    families = [family["name"] for family in board["families"]]
-    return {
-        **{key: board[key] for key in ("suite", "version", "title", "seed", "confidence")},
-        "cells": len(board["cells"]),
-        "experiments": sum(cell["experiments"] for cell in board["cells"]),
-        "rounded_to": 0.01,
-        "families": families,
-        "rates": SHARES,
-        "passed_by_nobody": board["passed_by_nobody"],
-        "ranking": board["ranking"],
-        "methods": [{"name": method["name"], "all": scores(method["all"]),
-                     "families": {name: scores(method["families"][name]) for name in families}}
-                    for method in board["methods"]],
-    }
-
-
 def percents(rate):
-    """A share as the tables show it."""
-    return "{} ({} to {})".format(*(round(100 * rate[key]) for key in ("value", "lower", "upper"))) if rate else None
+    """A share as the tables show it; None if it was counted on no loop."""
+    return "{} ({} to {})".format(*(round(100 * rate[key]) for key in SHARE)) if counted(rate) else None
 
 
 def table(heads, rows):
@@ -95,14 +65,14 @@ def columns(board, wanted, silent):
     for title, rate, families in wanted:
         first = True
         for family in families:
-            if family != "all" and family not in board["families"]:
+            if family != "all" and family not in [each["name"] for each in board["families"]]:
                 continue
             head = f"{title}: {'all' if family == 'all' else f'`{family}`'}" if first else f"`{family}`"
             first = False
 
             def cell(method, rate=rate, family=family):
                 entry = method["all"] if family == "all" else method["families"][family]
-                return percents(entry["rates"].get(rate)) or silent.get(rate, "-")
+                return percents(numbers(entry).get(rate)) or silent.get(rate, "-")
             found.append((head, cell))
     return [head for head, _ in found], [cell for _, cell in found]
 
@@ -150,57 +120,78 @@ def readme(board):
         for entry in board["ranking"]])
 
 
-def curve(board):
+def curve(cells):
     """The learned reference by the number of its training loops."""
     rates = {"source_05_impact": "right source of the faults with an impact", "power_05_impact": "impact found",
              "false_alarms": "healthy, flagged", "right": "right answer of all loops"}
     return table(["cell", "classifier", "trained on (worlds)", *rates.values()], [
         [f"`{cell['cell']}`", cell["classifier"], f"{each['loops']} ({each['worlds']})",
-         *(percents(each.get(rate)) or "-" for rate in rates)] for cell in board["learned"] for each in cell["curve"]])
+         *(percents(each.get(rate)) or "-" for rate in rates)] for cell in cells for each in cell["curve"]])
 
 
-def learned(board):
+def learned(cells):
     """The learned reference beside the methods, on the loops of the cells."""
     names = [name for name, _ in sorted(
-        {name: sum(cell["methods"].get(name, {}).get("source_05_impact", {}).get("value", 0) for cell in board["learned"])
-         for cell in board["learned"] for name, rates in cell["methods"].items() if "source_05_impact" in rates
+        {name: sum(cell["methods"].get(name, {}).get("source_05_impact", {}).get("value", 0) for cell in cells)
+         for cell in cells for name, rates in cell["methods"].items() if "source_05_impact" in rates
          and name not in (REFERENCE, "learned")}.items(), key=lambda each: -each[1])]
     return table(["cell", "learned (reference)", *(f"`{name}`" for name in names)], [
         [f"`{cell['cell']}`", *(percents(cell["methods"].get(name, {}).get("source_05_impact")) or "-"
-                                for name in ["learned", *names])] for cell in board["learned"]])
+                                for name in ["learned", *names])] for cell in cells])
 
 
-def blocks(board):
-    """The tables by page and name."""
-    suite = {"detection": detection(board), "ranking": ranking(board)}
-    if "learned" in board:
-        suite.update(curve=curve(board), learned=learned(board))
-    return {"README.md": {"board": readme(board)}, "docs/suite.md": suite}
+def exact(board):
+    """What each method passes by family, and its rates over all of them."""
+    families = [family["name"] for family in board["families"]]
+    letters = {"detection": "D", "location": "L", "source": "S"}
+
+    def passed(scores):
+        return "".join(letter for task, letter in letters.items() if scores["passes"][task]) or "-"
+
+    def row(method):
+        if method["name"] == REFERENCE:
+            counted_in = [name for name in families if method["families"][name]["cells"]]
+            return ["reference", *(passed(method["families"][name]) if name in counted_in else "" for name in families), "", ""]
+        rates = method["all"]["rates"]
+        return [f"`{method['name']}`" + (" ~" if method["all"]["answers_in_part"] else ""),
+                *(passed(method["families"][name]) for name in families),
+                percents(rates["false_alarm_healthy"]), percents(rates["power_05_impact"])]
+
+    return table(["method", *(f"`{name}`" for name in families), "healthy, flagged", "with an impact, at 5 %"],
+                 [row(method) for method in board["methods"]])
 
 
-def with_blocks(page, tables):
+def finished(program, suite):
+    return json.loads(subprocess.run([program, "suite", suite, "--json"], check=True, capture_output=True, text=True).stdout)
+
+
+def pages(program, sources):
+    """The pages as they should be, by path."""
+    standard, cells = finished(program, "standard"), json.loads((sources / LEARNED).read_text())
+    tables = {"README.md": {"standard": readme(standard)},
+              "docs/suite.md": {"detection": detection(standard), "ranking": ranking(standard), "curve": curve(cells),
+                                "learned": learned(cells)},
+              "docs/suite_exact.md": {"exact": exact(finished(program, "exact"))}}
+    return {sources / name: with_tables((sources / name).read_text(encoding="utf-8"), of_page)
+            for name, of_page in tables.items()}
+
+
+def with_tables(page, tables):
     """The page with these tables; each of them must have its place."""
     for name, text in tables.items():
-        page, places = re.subn(rf"(<!-- worlds: {name} -->\n).*?(<!-- end -->)", lambda found: found[1] + text + found[2],
+        page, places = re.subn(rf"(<!-- board: {name} -->\n).*?(<!-- end -->)", lambda found: found[1] + text + found[2],
                                page, flags=re.DOTALL)
         assert places == 1, name
     return page
 
 
-def main(sources, leaderboard=None, learned_file=None):
-    kept = pathlib.Path(sources) / "docs/leaderboard.json"
-    board = before = json.loads(kept.read_text())
-    if leaderboard and leaderboard != "-":
-        board = document(json.loads(pathlib.Path(leaderboard).read_text()))
-        if "learned" in before:
-            board["learned"] = before["learned"]
+def main(program, sources, learned_file=None):
+    sources = pathlib.Path(sources)
     if learned_file:
-        board["learned"] = [learned_cell(cell) for cell in json.loads(pathlib.Path(learned_file).read_text())]
-    if leaderboard or learned_file:
-        kept.write_text(json.dumps(board, indent=1) + "\n")
-    for name, tables in blocks(board).items():
-        page = pathlib.Path(sources) / name
-        page.write_text(with_blocks(page.read_text(encoding="utf-8"), tables), encoding="utf-8")
+        kept = [learned_cell(cell) for cell in json.loads(pathlib.Path(learned_file).read_text())]
+        (sources / LEARNED).write_text(json.dumps(kept, indent=1) + "\n")
+    for path, page in pages(program, sources).items():
+        path.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":
