@@ -82,9 +82,10 @@ JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own,
     cell.methods = std::move(scores);
   }
   JoinedBoard joined{make_leaderboard(suite, methods, program, std::move(cells)), std::move(notes)};
-  if (!places.empty())
+  if (!places.empty()) {
     joined.board.own = own;
-  joined.board.finished_by = finished.runner();
+    joined.board.finished_by = finished.runner();
+  }
   return joined;
 }
 

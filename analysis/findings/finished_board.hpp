@@ -27,7 +27,8 @@ struct JoinedBoard {
 /// Puts the methods of `finished` beside `own`, the methods of each of `cells`, cell by cell. A method in
 /// both is that of `cells`. A loop whose truth is another one in the two counts for one's own methods alone;
 /// so does a whole cell that the finished board lacks, or whose loops or worlds are not the same. `program`:
-/// the version that has run `cells`.
+/// the version that has run `cells`. Where every method of `finished` is one's own too, nothing of it is
+/// shown, and nobody is marked.
 JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own, const std::string& program,
                         std::vector<CellScores> cells, const FinishedBoard& finished);
 

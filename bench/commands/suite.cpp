@@ -105,6 +105,13 @@ void show_board(const Leaderboard& board, const std::string& json, const SuiteAr
                                    (fs::path(options.output) / "leaderboard.html").string()));
 }
 
+/// Says what could not be joined.
+Leaderboard joined_board(JoinedBoard joined, Progress& progress) {
+  for (const std::string& note : joined.notes)
+    progress.warn(note);
+  return std::move(joined.board);
+}
+
 /// The finished board of the suite, without a run; with a named board its methods join.
 ExitCode show_finished_board(const SuiteArguments& options, const Suite& suite, Progress& progress) {
   const fs::path path = finished_board_path(suite);
@@ -116,16 +123,10 @@ ExitCode show_finished_board(const SuiteArguments& options, const Suite& suite, 
         "--output", "nothing",
         fmt::format("a folder for the archives, since there is no finished board {}", path.string()));
   FinishedBoard shown = read_board(named ? fs::path(options.join) : path, suite);
-  Leaderboard board;
-  if (named && finished) {
-    JoinedBoard joined =
-        join_boards(suite, shown.methods, shown.program, std::move(shown.cells), read_board(path, suite));
-    for (const std::string& note : joined.notes)
-      progress.warn(note);
-    board = std::move(joined.board);
-  } else {
-    board = leaderboard_of(suite, std::move(shown));
-  }
+  Leaderboard board = named && finished ? joined_board(join_boards(suite, shown.methods, shown.program,
+                                                                   shown.cells, read_board(path, suite)),
+                                                       progress)
+                                        : leaderboard_of(suite, std::move(shown));
   highlight(board, options.highlight);
   show_board(board, leaderboard_json(board), options);
   return ExitCode::done;
@@ -220,12 +221,9 @@ ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
   }
   Leaderboard board = make_leaderboard(suite, run.methods, mpmbench_version(), scores);
   write_text(folder / board_file_name(suite), board_text(suite, board, source_revision()));
-  if (finished) {
-    JoinedBoard joined = join_boards(suite, run.methods, mpmbench_version(), std::move(scores), *finished);
-    for (const std::string& note : joined.notes)
-      progress.warn(note);
-    board = std::move(joined.board);
-  }
+  if (finished)
+    board = joined_board(join_boards(suite, run.methods, mpmbench_version(), std::move(scores), *finished),
+                         progress);
   highlight(board, options.highlight);
   const std::string json = leaderboard_json(board);
   write_text(folder / "leaderboard.json", json);

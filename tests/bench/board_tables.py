@@ -150,8 +150,8 @@ def exact(board):
 
     def row(method):
         if method["name"] == REFERENCE:
-            counted_in = [name for name in families if method["families"][name]["cells"]]
-            return ["reference", *(passed(method["families"][name]) if name in counted_in else "" for name in families), "", ""]
+            of_families = [method["families"][name] for name in families]
+            return ["reference", *(passed(scores) if scores["cells"] else "" for scores in of_families), "", ""]
         rates = method["all"]["rates"]
         return [f"`{method['name']}`" + (" ~" if method["all"]["answers_in_part"] else ""),
                 *(passed(method["families"][name]) for name in families),
@@ -162,7 +162,8 @@ def exact(board):
 
 
 def finished(program, suite):
-    return json.loads(subprocess.run([program, "suite", suite, "--json"], check=True, capture_output=True, text=True).stdout)
+    """What the program says of a finished board."""
+    return json.loads(subprocess.check_output([program, "suite", suite, "--json"], text=True))
 
 
 def pages(program, sources):
@@ -179,8 +180,8 @@ def pages(program, sources):
 def with_tables(page, tables):
     """The page with these tables; each of them must have its place."""
     for name, text in tables.items():
-        page, places = re.subn(rf"(<!-- board: {name} -->\n).*?(<!-- end -->)", lambda found: found[1] + text + found[2],
-                               page, flags=re.DOTALL)
+        page, places = re.subn(rf"(<!-- board: {name} -->\n).*?(<!-- end -->)",
+                               lambda found: found[1] + text + found[2], page, flags=re.DOTALL)
         assert places == 1, name
     return page
 
