@@ -58,7 +58,7 @@ bool has_same_loops(const CellScores& cell, const CellScores* theirs, const std:
 }  // namespace
 
 JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own, const std::string& program,
-                        std::vector<CellScores> cells, const FinishedBoard& finished) {
+                        std::vector<CellScores> cells, const FinishedBoard& finished, double confidence) {
   std::vector<std::string> methods, notes;
   std::vector<std::size_t> places;  // in the finished board
   for (std::size_t method = 0; method < finished.methods.size(); ++method)
@@ -81,7 +81,8 @@ JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own,
     std::move(cell.methods.begin(), cell.methods.end(), std::back_inserter(scores));
     cell.methods = std::move(scores);
   }
-  JoinedBoard joined{make_leaderboard(suite, methods, program, std::move(cells)), std::move(notes)};
+  JoinedBoard joined{make_leaderboard(suite, methods, program, std::move(cells), confidence),
+                     std::move(notes)};
   if (!places.empty()) {
     joined.board.own = own;
     joined.board.finished_by = finished.runner();

@@ -30,6 +30,7 @@ struct JoinedBoard {
 /// the version that has run `cells`. Where every method of `finished` is one's own too, nothing of it is
 /// shown, and nobody is marked.
 JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own, const std::string& program,
-                        std::vector<CellScores> cells, const FinishedBoard& finished);
+                        std::vector<CellScores> cells, const FinishedBoard& finished,
+                        double confidence = kBoardConfidence);
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
@@ -15,6 +16,7 @@ namespace mpm {
 struct JudgementPair {
   std::int64_t index;
   Correctness before, now;
+  std::string cell = {};  ///< of the suite, "PLANT.FAMILY"; empty: of a study
 };
 
 /// How the judgements on the same experiments differ between two runs of a study.
@@ -25,17 +27,24 @@ struct JudgementChanges {
   std::int64_t pairs = 0;             ///< experiments that are judged in one of the runs at least
   std::vector<JudgementPair> lost;    ///< right before and not now
   std::vector<JudgementPair> gained;  ///< right now and not before
-  WorldPairs worlds = {};             ///< all of them, world by world
-  McNemarTest test;                   ///< of these two numbers: clustered_mcnemar()
+  WorldPairs clusters = {};           ///< all of them; a cluster is a world
+
+  /// Of the hypothesis that a changed one is as likely lost as gained: clustered_mcnemar().
+  McNemarTest test() const { return clusters.mcnemar(); }
+  /// Counts a pair, unless it is judged in neither run.
+  void add(JudgementPair pair, int cluster);
 };
 
 /// One question to an experiment, such as whether its CV is located.
 using Question = std::function<Correctness(const ExperimentRecord&)>;
 
-/// Compares the experiments of `now` with the same ones of `before`, which may have more of them; both in the
-/// order of the index.
-/// @throws InputError for an experiment that `before` has not, or has with another fault
-JudgementChanges judgement_changes(const RecordRange& before, const RecordRange& now,
-                                   const Question& question);
+/// The experiments of a run in the order of the index, and what is asked of each.
+struct JudgedRun {
+  RecordRange records;
+  Question question;
+};
+
+/// Compares the experiments that are in both; the same must be wrong in both (pair_runs()).
+JudgementChanges judgement_changes(const JudgedRun& before, const JudgedRun& now);
 
 }  // namespace mpm

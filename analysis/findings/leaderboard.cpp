@@ -155,7 +155,7 @@ MethodScores scores_of_outcomes(const CellScores& cell, std::string outcomes, co
     if (outcomes[i] != kNoLoop)
       counts.add(scope, cell.worlds[i], *fault_truth(cell.truths[i]), *loop_outcome(outcomes[i]));
   MethodRates rates{};
-  counts.put(rates, Leaderboard().confidence);
+  counts.put(rates, kBoardConfidence);
   MethodScores scores = scores_of(rates);
   scores.outcomes = std::move(outcomes);
   scores.scope = scope;
@@ -262,12 +262,13 @@ bool has_reference(const Leaderboard& board) {
 }
 
 Leaderboard make_leaderboard(const Suite& suite, const std::vector<std::string>& methods,
-                             const std::string& program, std::vector<CellScores> cells) {
+                             const std::string& program, std::vector<CellScores> cells, double confidence) {
   Leaderboard board{.suite = suite.name,
                     .version = suite.version,
                     .title = suite.title,
                     .seed = suite.seed,
                     .program = program,
+                    .confidence = confidence,
                     .methods = methods};
   board.plants = used(suite.plants, cells, &CellScores::plant);
   board.families = used(suite.families, cells, &CellScores::family);

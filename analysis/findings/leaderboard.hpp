@@ -16,6 +16,9 @@
 
 namespace mpm {
 
+/// Of the intervals, unless a reader asks for another one.
+inline constexpr double kBoardConfidence = 0.95;
+
 /// How often a method was right on some loops.
 struct MethodScores {
   std::string reason;       ///< why there was no verdict on the first loop without one; empty: on every loop
@@ -126,7 +129,7 @@ struct Leaderboard {
   std::string title;
   std::uint64_t seed = 0;
   std::string program;  ///< version of the program
-  double confidence = 0.95;
+  double confidence = kBoardConfidence;
   std::vector<SuiteAxis> plants = {};    ///< with a cell, in the order of the suite
   std::vector<SuiteAxis> families = {};  ///< with a cell, in the order of the suite
   std::vector<std::string> methods = {};
@@ -162,6 +165,7 @@ std::vector<std::string> passed_by_nobody(const Leaderboard& board, LeaderboardT
 /// Pools the cells of a suite. `cells` are those of `suite`, in any number and order; `methods` those of each
 /// cell that was run, in its order.
 Leaderboard make_leaderboard(const Suite& suite, const std::vector<std::string>& methods,
-                             const std::string& program, std::vector<CellScores> cells);
+                             const std::string& program, std::vector<CellScores> cells,
+                             double confidence = kBoardConfidence);
 
 }  // namespace mpm

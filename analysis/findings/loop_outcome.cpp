@@ -1,8 +1,9 @@
 #include "analysis/findings/loop_outcome.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <string_view>
-#include <utility>
 
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/method_rates.hpp"
@@ -133,23 +134,38 @@ void OutcomeCounts::add_fault(const OutcomeScope& scope, int world, const FaultT
     source_.add(world, said.right_source);
 }
 
+/// Every count once, with the rate that it makes.
+struct OutcomeCounts::Place {
+  Rate MethodRates::*rate;
+  WorldCount OutcomeCounts::*count;
+};
+
+constexpr OutcomeCounts::Place OutcomeCounts::kPlaces[] = {
+    {&MethodRates::answered, &OutcomeCounts::answered_},
+    {&MethodRates::detected, &OutcomeCounts::detected_},
+    {&MethodRates::detected_mpm, &OutcomeCounts::detected_mpm_},
+    {&MethodRates::detected_ud, &OutcomeCounts::detected_ud_},
+    {&MethodRates::detected_impact, &OutcomeCounts::detected_impact_},
+    {&MethodRates::flagged_without_impact, &OutcomeCounts::flagged_without_impact_},
+    {&MethodRates::false_alarm_healthy, &OutcomeCounts::false_alarm_healthy_},
+    {&MethodRates::false_alarm_tuning, &OutcomeCounts::false_alarm_tuning_},
+    {&MethodRates::false_alarm_calibrated, &OutcomeCounts::false_alarm_calibrated_},
+    {&MethodRates::located, &OutcomeCounts::located_},
+    {&MethodRates::source, &OutcomeCounts::source_},
+    {&MethodRates::source_all, &OutcomeCounts::source_all_},
+    {&MethodRates::power_05, &OutcomeCounts::power_05_},
+    {&MethodRates::power_05_impact, &OutcomeCounts::power_05_impact_},
+    {&MethodRates::source_05_impact, &OutcomeCounts::source_05_impact_},
+};
+
 void OutcomeCounts::put(MethodRates& rates, double confidence) const {
-  for (const auto& [rate, count] : {std::pair(&MethodRates::answered, &answered_),
-                                    {&MethodRates::detected, &detected_},
-                                    {&MethodRates::detected_mpm, &detected_mpm_},
-                                    {&MethodRates::detected_ud, &detected_ud_},
-                                    {&MethodRates::detected_impact, &detected_impact_},
-                                    {&MethodRates::flagged_without_impact, &flagged_without_impact_},
-                                    {&MethodRates::false_alarm_healthy, &false_alarm_healthy_},
-                                    {&MethodRates::false_alarm_tuning, &false_alarm_tuning_},
-                                    {&MethodRates::false_alarm_calibrated, &false_alarm_calibrated_},
-                                    {&MethodRates::located, &located_},
-                                    {&MethodRates::source, &source_},
-                                    {&MethodRates::source_all, &source_all_},
-                                    {&MethodRates::power_05, &power_05_},
-                                    {&MethodRates::power_05_impact, &power_05_impact_},
-                                    {&MethodRates::source_05_impact, &source_05_impact_}})
-    rates.*rate = count->rate(confidence);
+  for (const Place& place : kPlaces)
+    rates.*place.rate = (this->*place.count).rate(confidence);
+}
+
+bool OutcomeCounts::decide(Rate MethodRates::*rate) {
+  return std::any_of(std::begin(kPlaces), std::end(kPlaces),
+                     [rate](const Place& place) { return place.rate == rate; });
 }
 
 }  // namespace mpm

@@ -70,8 +70,13 @@ class OutcomeCounts {
   void add(const OutcomeScope& scope, int world, const FaultTruth& truth, const LoopOutcome& said);
   /// Puts them in their places; the other rates stay as they are.
   void put(MethodRates& rates, double confidence) const;
+  /// Is it one of these rates?
+  static bool decide(Rate MethodRates::*rate);
 
  private:
+  struct Place;
+  static const Place kPlaces[];
+
   void add_fault(const OutcomeScope& scope, int world, const FaultTruth& truth, const LoopOutcome& said);
 
   WorldCount answered_, detected_, detected_mpm_, detected_ud_, detected_impact_, flagged_without_impact_,

@@ -398,14 +398,19 @@ bool answers_and_detects(const MethodRates& rates) {
          (rates.false_alarm_healthy.total == 0 || detected.value > rates.false_alarm_healthy.value);
 }
 
+Finding method_finding(const std::string& method, const std::string& name, const std::string& label,
+                       const std::string& meaning) {
+  return {.name = fmt::format("compare.{}.{}", method, name),
+          .label = label,
+          .meaning = fmt::format("{}: {}", method, meaning),
+          .group = FindingGroup::method,
+          .method = method};
+}
+
 std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method) {
   std::vector<Finding> rows;
   const auto like = [&](const char* name, const std::string& label, const char* meaning) {
-    return Finding{.name = fmt::format("compare.{}.{}", method.name, name),
-                   .label = label,
-                   .meaning = fmt::format("{}: {}", method.name, meaning),
-                   .group = FindingGroup::method,
-                   .method = method.name};
+    return method_finding(method.name, name, label, meaning);
   };
   for (const MethodRateInfo& info : method_rate_infos(study))
     rows.push_back(like(info.name, info.title, info.meaning).with(rates.*info.rate));

@@ -116,6 +116,10 @@ inline constexpr double kFewestAnswers = 0.9;
 /// than of the healthy loops. One that flags next to nothing may be right in all that it flags.
 bool answers_and_detects(const MethodRates& rates);
 
+/// The row "compare.METHOD.NAME", without a value.
+Finding method_finding(const std::string& method, const std::string& name, const std::string& label,
+                       const std::string& meaning);
+
 /// Its rows: "compare.METHOD.RATE" for each rate that the study can have, "compare.METHOD.roc_area",
 /// "compare.METHOD.roc_area_impact", the estimates, and in a study with a calibration the thresholds.
 std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method);

@@ -161,26 +161,9 @@ std::vector<RateChange> corrected(std::vector<RateChange> changes) {
 
 // --- Verdicts ---
 
-/// One more loop for a question.
-void add_verdict(VerdictChange& verdict, int world, const JudgementPair& pair) {
-  JudgementChanges& changes = verdict.changes;
-  if (pair.before == Correctness::not_judged && pair.now == Correctness::not_judged)
-    return;
-  ++changes.pairs;
-  const bool was = pair.before == Correctness::right, is = pair.now == Correctness::right;
-  changes.worlds.add(world, was, is);
-  verdict.right_in_both += was && is ? 1 : 0;
-  if (was && !is)
-    changes.lost.push_back(pair);
-  if (is && !was)
-    changes.gained.push_back(pair);
-}
-
-/// Those that were judged, with the tests of their changes.
-std::vector<VerdictChange> tested(std::vector<VerdictChange> verdicts) {
+/// Those that were judged.
+std::vector<VerdictChange> judged(std::vector<VerdictChange> verdicts) {
   std::erase_if(verdicts, [](const VerdictChange& verdict) { return verdict.changes.pairs == 0; });
-  for (VerdictChange& verdict : verdicts)
-    verdict.changes.test = verdict.changes.worlds.mcnemar();
   return verdicts;
 }
 
@@ -288,9 +271,9 @@ class MethodComparison {
     rates_.add(now.draw.world, before_.rates().of(std::span(&before, 1)),
                now_.rates().of(std::span(&now, 1)));
     for (VerdictChange& verdict : verdicts_)
-      add_verdict(verdict, now.draw.world,
-                  {now.draw.index, verdict.question->ask(before_.run.study, before, was),
-                   verdict.question->ask(now_.run.study, now, is)});
+      verdict.changes.add({now.draw.index, verdict.question->ask(before_.run.study, before, was),
+                           verdict.question->ask(now_.run.study, now, is)},
+                          now.draw.world);
     numbers_.add(now.draw.index, was, is);
   }
 
@@ -306,7 +289,7 @@ class MethodComparison {
       return change;
     }
     change.rates = corrected(rates_.changes(confidence));
-    change.verdicts = tested(std::move(verdicts_));
+    change.verdicts = judged(std::move(verdicts_));
     change.numbers = std::move(numbers_).finish(confidence);
     return change;
   }
@@ -324,7 +307,7 @@ void correct_questions(std::vector<MethodChange>& methods) {
   std::vector<double> p;
   for (const MethodChange& method : methods)
     for (const VerdictChange& verdict : method.verdicts)
-      p.push_back(verdict.changes.test.p_two_sided);
+      p.push_back(verdict.changes.test().p_two_sided);
   const std::vector<double> adjusted = holm_adjusted(p);
   auto next = adjusted.begin();
   for (MethodChange& method : methods)

@@ -60,7 +60,6 @@ std::span<const VerdictQuestion> verdict_questions();
 /// What became of one question over paired loops.
 struct VerdictChange {
   const VerdictQuestion* question;
-  std::int64_t right_in_both = 0;
   JudgementChanges changes = {};
   double p_holm = 1.0;  ///< two-sided, corrected for all questions of all methods
 };

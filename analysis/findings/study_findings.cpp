@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/loop_outcome.hpp"
@@ -238,7 +237,7 @@ void check_reported(const Study& study) {
   for (const ReportedValue& reported : study.reported)
     if (std::find(names.begin(), names.end(), reported.name) == names.end())
       throw InputError(reported.where, "unknown finding " + with_nearest(reported.name, names),
-                       fmt::format("{}", fmt::join(names, ", ")));
+                       listed(names));
 }
 
 }  // namespace mpm

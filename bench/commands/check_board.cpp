@@ -49,7 +49,7 @@ std::vector<std::string> troubles_of(const Suite& suite, const FinishedBoard& bo
 /// Reads the results of methods, holds them against the finished board of their suite, and says whether they
 /// could stand on it, and where.
 ExitCode check_board(const CheckBoardArguments& options) {
-  const Suite suite = find_suite(options.suite.empty() ? suite_of_board(options.board) : options.suite);
+  const Suite suite = find_suite(options.suite.empty() ? board_heading(options.board).suite : options.suite);
   const FinishedBoard board = read_board(options.board, suite);
   const FinishedBoard finished = read_board(finished_board_path(suite), suite);
   const JoinedBoard joined = join_boards(suite, board.methods, board.program, board.cells, finished);

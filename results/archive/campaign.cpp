@@ -36,6 +36,10 @@ RecordRange records_of(const Campaign& campaign) {
   return campaign.streamed ? *campaign.streamed : RecordRange(campaign.records);
 }
 
+StudyRun study_run(const Campaign& campaign, const AssessmentForms& forms) {
+  return {campaign.study, forms, records_of(campaign), campaign.calibration};
+}
+
 StudyFindings findings_of(const Campaign& campaign) {
   return study_findings(campaign.study, forms_of(campaign), records_of(campaign), campaign.calibration);
 }

@@ -10,6 +10,7 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/record_range.hpp"
 #include "analysis/findings/calibration.hpp"
+#include "analysis/findings/run_change.hpp"
 #include "analysis/findings/study_findings.hpp"
 #include "scenarios/loop/audit.hpp"
 #include "scenarios/study/study.hpp"
@@ -69,6 +70,9 @@ std::size_t chain_place(const Campaign& campaign);
 
 /// Its records, wherever they are.
 RecordRange records_of(const Campaign& campaign);
+
+/// All of it that is compared with another run. `forms`: forms_of(campaign), which must outlive it.
+StudyRun study_run(const Campaign& campaign, const AssessmentForms& forms);
 
 /// What it has found.
 StudyFindings findings_of(const Campaign& campaign);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/findings/run_change.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
@@ -12,80 +13,50 @@
 namespace mpm {
 namespace {
 
-Finding plain_value(std::string name, std::string meaning, double value, std::int64_t count) {
-  const Finding finding{
-      .name = std::move(name), .label = {}, .meaning = std::move(meaning), .has_interval = false};
-  return finding.with(value, {kNaN, kNaN}, count);
-}
-
-Gate limit(const Finding& value, double minimum, double maximum) {
-  Gate gate{value.name, minimum, maximum};
-  gate.reason = value.meaning;
-  return gate;
-}
-
-constexpr double kNoLimit = kInfinity;
-
-/// Without these a campaign could pass because the experiments that would have failed a gate are missing.
-void judge_campaign(const Campaign& campaign, const StudyFindings& total, const GateFile& file,
-                    std::vector<GateResult>& results) {
-  const Finding healthy =
-      plain_value("self_check", "1: the basis case is healthy; otherwise no number has a meaning",
-                  campaign.basis.healthy ? 1.0 : 0.0, 1);
-  const Finding experiments = plain_value("experiments", "number of experiments",
-                                          static_cast<double>(total.experiments), total.experiments);
-  const Finding failed = plain_value("failed", "number of experiments without a result",
-                                     static_cast<double>(total.failed), total.experiments);
-  results.push_back(judge(limit(healthy, 1.0, kNoLimit), healthy));
-  results.push_back(
-      judge(limit(experiments, static_cast<double>(file.minimum_experiments), kNoLimit), experiments));
-  results.push_back(judge(limit(failed, -kNoLimit, static_cast<double>(file.maximum_failed)), failed));
-}
-
-void require_same_study(const Campaign& campaign, const Campaign& baseline, const std::string& archive) {
-  if (campaign.study.source != baseline.study.source)
-    throw InputError(fmt::format("baseline {}", archive),
-                     fmt::format("another study file (study '{}')", baseline.study.name),
-                     fmt::format("a run of exactly the same study file (study '{}'): only then are its "
-                                 "experiments the same ones",
-                                 campaign.study.name));
-  if (campaign.study.seed != baseline.study.seed)
-    throw InputError(fmt::format("baseline {}", archive), fmt::format("seed {}", baseline.study.seed),
-                     fmt::format("the seed of the archive that is checked, {}", campaign.study.seed));
+Question question_of(const Study& study, Correctness (Judgement::*of)() const) {
+  return [&study, of](const ExperimentRecord& record) {
+    const AssessmentRecord* const chain = record.diagnosed();
+    return chain == nullptr ? Correctness::not_judged : (judge(study, record, *chain).*of)();
+  };
 }
 
 BaselineComparison compare(const Campaign& campaign, const Campaign& baseline, const std::string& archive) {
-  require_same_study(campaign, baseline, archive);
-  const auto question = [&](Correctness (Judgement::*of)() const) {
-    return [&study = campaign.study, of](const ExperimentRecord& record) {
-      const AssessmentRecord* const chain = record.diagnosed();
-      return chain == nullptr ? Correctness::not_judged : (judge(study, record, *chain).*of)();
-    };
+  const AssessmentForms forms = forms_of(campaign), baseline_forms = forms_of(baseline);
+  const StudyRun before = study_run(baseline, baseline_forms), now = study_run(campaign, forms);
+  const std::string where = fmt::format("baseline {}", archive);
+  const RunPairing pairing = pair_runs(before, now);
+  if (!pairing.paired())
+    throw InputError(where, pairing.obstacle,
+                     fmt::format("a run of the study '{}' with seed {} in which the same is wrong in each "
+                                 "experiment",
+                                 campaign.study.name, campaign.study.seed));
+  if (pairing.loops < static_cast<std::int64_t>(now.records.size()))
+    throw InputError(where, fmt::format("{} of the experiments that are checked", pairing.loops),
+                     fmt::format("all {}", now.records.size()));
+  const auto changes = [&](Correctness (Judgement::*of)() const) {
+    return judgement_changes({before.records, question_of(baseline.study, of)},
+                             {now.records, question_of(campaign.study, of)});
   };
-  try {
-    return {archive,
-            baseline.info,
-            {{"located", "located",
-              judgement_changes(records_of(baseline), records_of(campaign), question(&Judgement::location))},
-             {"source_recognised", "source recognised",
-              judgement_changes(records_of(baseline), records_of(campaign), question(&Judgement::source))}}};
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("baseline {}: {}", archive, error.what()));
-  }
+  return {archive,
+          fmt::format("mpmbench {} ({}), solver {}", baseline.info.mpmbench_version,
+                      baseline.info.git_sha.empty() ? "unknown revision" : baseline.info.git_sha,
+                      baseline.info.solver),
+          baseline.study.source == campaign.study.source ? std::vector<StudyDifference>()
+                                                         : study_differences(baseline.study, campaign.study),
+          {{"located", "located", changes(&Judgement::location)},
+           {"source_recognised", "source recognised", changes(&Judgement::source)}}};
 }
 
 void judge_changes(const BaselineChanges& question, const BaselineLimits& limits,
                    std::vector<GateResult>& results) {
   const JudgementChanges& changes = question.changes;
   const std::string of = fmt::format("baseline.{}", question.name);
-  const Finding p_worse = plain_value(of + ".p_worse", "exact p-value of lost against gained verdicts",
-                                      changes.test.p_worse, changes.pairs);
-  results.push_back(judge(limit(p_worse, limits.significance, kNoLimit), p_worse));
-  if (!limits.maximum_lost)
-    return;
-  const Finding lost = plain_value(of + ".lost", "verdicts that were right in the baseline",
-                                   static_cast<double>(changes.lost.size()), changes.pairs);
-  results.push_back(judge(limit(lost, -kNoLimit, static_cast<double>(*limits.maximum_lost)), lost));
+  results.push_back(judge_number(of + ".p_worse", "exact p-value of lost against gained verdicts",
+                                 changes.test().p_worse, changes.pairs, limits.significance, kInfinity));
+  if (limits.maximum_lost)
+    results.push_back(judge_number(of + ".lost", "verdicts that were right in the baseline",
+                                   static_cast<double>(changes.lost.size()), changes.pairs, -kInfinity,
+                                   static_cast<double>(*limits.maximum_lost)));
 }
 
 }  // namespace
@@ -116,26 +87,51 @@ std::vector<Finding> gate_findings(const Campaign& campaign) {
   return study_findings(campaign.study, forms_of(campaign), {}).rows;
 }
 
+GateResult judge_number(const std::string& name, const std::string& meaning, double value, std::int64_t count,
+                        double minimum, double maximum) {
+  const Finding finding{.name = name, .label = {}, .meaning = meaning, .has_interval = false};
+  Gate gate{name, minimum, maximum};
+  gate.reason = meaning;
+  return judge(gate, finding.with(value, {kNaN, kNaN}, count));
+}
+
+GateCheck judge_gates(GateCheck run, const GateFile& file, const std::vector<Finding>& findings) {
+  assert(file.baseline.has_value() == run.baseline.has_value());
+  run.inconclusive = file.inconclusive;
+  for (const Gate& gate : file.gates) {
+    const Finding* const finding = find_finding(findings, gate.name);
+    assert(finding != nullptr);
+    run.results.push_back(judge(gate, *finding));
+  }
+  if (run.baseline)
+    for (const BaselineChanges& question : run.baseline->questions)
+      judge_changes(question, *file.baseline, run.results);
+  return run;
+}
+
 GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Campaign* baseline) {
-  assert(file.baseline.has_value() == (baseline != nullptr));
-  GateCheck check;
-  check.inconclusive = file.inconclusive;
   Study study = campaign.study;
-  study.aggregate.confidence = check.confidence = file.confidence.value_or(study.aggregate.confidence);
+  study.aggregate.confidence = file.confidence.value_or(study.aggregate.confidence);
   const StudyFindings total =
       study_findings(study, forms_of(campaign), records_of(campaign), campaign.calibration);
-  judge_campaign(campaign, total, file, check.results);
-  for (const Gate& gate : file.gates) {
-    const Finding* const finding = find_finding(total.rows, gate.name);
-    assert(finding != nullptr);
-    check.results.push_back(judge(gate, *finding));
-  }
-  if (file.baseline) {
-    check.baseline = compare(campaign, *baseline, file.baseline->archive.string());
-    for (const BaselineChanges& question : check.baseline->questions)
-      judge_changes(question, *file.baseline, check.results);
-  }
-  return check;
+  GateCheck run{.name = study.name,
+                .title = {},
+                .properties = {{"seed", fmt::format("{}", study.seed)},
+                               {"solver", campaign.info.solver},
+                               {"mpmbench_version", campaign.info.mpmbench_version},
+                               {"git_sha", campaign.info.git_sha}},
+                .confidence = study.aggregate.confidence};
+  // Without these a campaign could pass because the experiments that would have failed a gate are missing.
+  run.results = {
+      judge_number("self_check", "1: the basis case is healthy; otherwise no number has a meaning",
+                   campaign.basis.healthy ? 1.0 : 0.0, 1, 1.0, kInfinity),
+      judge_number("experiments", "number of experiments", static_cast<double>(total.experiments),
+                   total.experiments, static_cast<double>(file.minimum_experiments), kInfinity),
+      judge_number("failed", "number of experiments without a result", static_cast<double>(total.failed),
+                   total.experiments, -kInfinity, static_cast<double>(file.maximum_failed))};
+  if (file.baseline)
+    run.baseline = compare(campaign, *baseline, file.baseline->archive.string());
+  return judge_gates(std::move(run), file, total.rows);
 }
 
 }  // namespace mpm

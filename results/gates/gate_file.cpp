@@ -35,10 +35,10 @@ void require_assessed(const TomlTable& table, const std::vector<Finding>& findin
         std::none_of(findings.begin(), findings.end(),
                      [&](const Finding& f) { return f.method == method.name; }))
       table.refuse(
-          "aggregate", fmt::format("'{}', of a method that has not assessed the archive", name->get()),
-          fmt::format(
-              "this number of an archive written by `mpmbench compare ARCHIVE --methods {} -o OUT.h5`",
-              method.name));
+          "aggregate", fmt::format("'{}', of a method that has not assessed the loops", name->get()),
+          fmt::format("this number after `mpmbench compare ARCHIVE -o OUT.h5` or `mpmbench suite` with "
+                      "`--methods {}`",
+                      method.name));
 }
 
 const Finding& finding_of(const TomlTable& table, const std::vector<Finding>& findings) {
@@ -95,7 +95,7 @@ OptionKeys baseline_keys(BaselineLimits& limits, const std::filesystem::path& fo
   const auto read_lost = [&limits](const TomlTable& table, const std::string& key) {
     limits.maximum_lost = read_whole(table, key, 0, kMaxCount);
   };
-  return {key::option("archive", "text", "the earlier archive")
+  return {key::option("archive", "text", "the earlier archive, or for a suite its earlier folder or board")
               .required()
               .allow("a path, relative to the gate file")
               .read(read_archive),
@@ -140,7 +140,7 @@ OptionKeys gate_file_keys(GateFile& file, const std::vector<Finding>& findings,
               .otherwise("required, unless there is a `[baseline]`")
               .allow("one or more")
               .after(require_gates),
-          key::option("baseline", "table", "an earlier archive to compare with")
+          key::option("baseline", "table", "an earlier run to compare with")
               .otherwise("none")
               .with("", below_baseline)
               .read(read_baseline)};

@@ -15,11 +15,10 @@ void set_attribute(pugi::xml_node element, const char* name, const std::string& 
   element.append_attribute(name) = plain_text(value).c_str();
 }
 
-void add_case(pugi::xml_node suite, const GateCheck& check, const GateResult& result,
-              const std::string& study) {
+void add_case(pugi::xml_node suite, const GateCheck& check, const GateResult& result) {
   const std::string sentence = explanation(result, check.confidence);
   pugi::xml_node test_case = suite.append_child("testcase");
-  set_attribute(test_case, "classname", study);
+  set_attribute(test_case, "classname", check.name);
   set_attribute(test_case, "name",
                 fmt::format("{} {}{}", result.gate.name, limit_text(result),
                             result.gate.with_confidence ? " with confidence" : ""));
@@ -43,7 +42,7 @@ void add_property(pugi::xml_node properties, const std::string& name, const std:
 
 }  // namespace
 
-std::string gates_junit(const GateCheck& check, const Campaign& campaign, const std::string& archive) {
+std::string gates_junit(const GateCheck& check, const std::string& archive) {
   const auto failures = std::count_if(check.results.begin(), check.results.end(),
                                       [&](const GateResult& result) { return check.stops(result); });
   const auto skipped =
@@ -52,19 +51,17 @@ std::string gates_junit(const GateCheck& check, const Campaign& campaign, const 
       });
   pugi::xml_document document;
   pugi::xml_node suite = document.append_child("testsuites").append_child("testsuite");
-  set_attribute(suite, "name", "mpmbench check " + campaign.study.name);
+  set_attribute(suite, "name", "mpmbench check " + check.name);
   set_attribute(suite, "tests", fmt::format("{}", check.results.size()));
   set_attribute(suite, "failures", fmt::format("{}", failures));
   set_attribute(suite, "errors", "0");
   set_attribute(suite, "skipped", fmt::format("{}", skipped));
   pugi::xml_node properties = suite.append_child("properties");
   add_property(properties, "archive", archive);
-  add_property(properties, "seed", fmt::format("{}", campaign.study.seed));
-  add_property(properties, "solver", campaign.info.solver);
-  add_property(properties, "mpmbench_version", campaign.info.mpmbench_version);
-  add_property(properties, "git_sha", campaign.info.git_sha);
+  for (const auto& [name, value] : check.properties)
+    add_property(properties, name, value);
   for (const GateResult& result : check.results)
-    add_case(suite, check, result, campaign.study.name);
+    add_case(suite, check, result);
 
   std::ostringstream text;
   document.save(text, "  ", pugi::format_default, pugi::encoding_utf8);

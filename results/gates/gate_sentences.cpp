@@ -97,8 +97,9 @@ std::string changes_text(const JudgementChanges& changes) {
   std::string text;
   for (const auto* list : {&changes.lost, &changes.gained})
     for (const JudgementPair& pair : *list)
-      text += fmt::format("  {:>5}  {:<6}  {} -> {}\n", pair.index, list == &changes.lost ? "lost" : "gained",
-                          to_string(pair.before), to_string(pair.now));
+      text +=
+          fmt::format("  {:>5}  {:<6}  {} -> {}{}{}\n", pair.index, list == &changes.lost ? "lost" : "gained",
+                      to_string(pair.before), to_string(pair.now), pair.cell.empty() ? "" : "  ", pair.cell);
   return text;
 }
 

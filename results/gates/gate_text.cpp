@@ -28,21 +28,31 @@ std::string gate_table(const GateCheck& check) {
   return table_text(table, kUnlimitedWidth);
 }
 
-std::string changes_heading(const char* question, const JudgementChanges& changes) {
-  return fmt::format("{}: {} lost, {} gained among {} experiments, p = {:.3g} (two-sided {:.3g})\n", question,
-                     changes.lost.size(), changes.gained.size(), changes.pairs, changes.test.p_worse,
-                     changes.test.p_two_sided);
+std::string changes_heading(const BaselineChanges& question) {
+  const JudgementChanges& changes = question.changes;
+  const McNemarTest test = changes.test();
+  return fmt::format("{}: {} lost, {} gained among {} experiments, p = {:.3g} (two-sided {:.3g})\n",
+                     question.title, changes.lost.size(), changes.gained.size(), changes.pairs, test.p_worse,
+                     test.p_two_sided);
+}
+
+/// The keys that differ, a line each: "  diagnosis.mpm_threshold: 0.1 -> 0.9".
+std::string edited_text(const BaselineComparison& baseline) {
+  if (baseline.edited.empty())
+    return "";
+  std::string text = "the study was edited since:\n";
+  for (const StudyDifference& each : baseline.edited)
+    text += fmt::format("  {}: {} -> {}\n", each.key, each.before.empty() ? "not there" : each.before,
+                        each.now.empty() ? "not there" : each.now);
+  return text;
 }
 
 std::string baseline_text(const BaselineComparison& baseline) {
-  std::string text;
+  std::string text = fmt::format("\nagainst the baseline {} ({}):\n{}", baseline.path, baseline.run_by,
+                                 edited_text(baseline));
   for (const BaselineChanges& each : baseline.questions)
-    text += changes_heading(each.title, each.changes) + changes_text(each.changes);
-  return fmt::format("\nagainst the baseline {} (mpmbench {} ({}), solver {}):\n", baseline.archive,
-                     baseline.info.mpmbench_version,
-                     baseline.info.git_sha.empty() ? "unknown revision" : baseline.info.git_sha,
-                     baseline.info.solver) +
-         text;
+    text += changes_heading(each) + changes_text(each.changes);
+  return text;
 }
 
 std::string verdict_line(const GateCheck& check) {
@@ -62,7 +72,7 @@ std::string verdict_line(const GateCheck& check) {
 }  // namespace
 
 std::string gates_text(const GateCheck& check) {
-  std::string text = gate_table(check);
+  std::string text = (check.title.empty() ? "" : check.title + "\n\n") + gate_table(check);
   std::string reasons;
   for (const GateResult& result : check.results)
     if (result.outcome != GateOutcome::pass)

@@ -27,10 +27,6 @@ struct Change {
   bool is_beyond_chance(double p) const { return p < 1.0 - now.study.aggregate.confidence; }
 };
 
-StudyRun run_of(const Campaign& campaign, const AssessmentForms& forms) {
-  return {campaign.study, forms, records_of(campaign), campaign.calibration};
-}
-
 std::string p_text(double p) {
   return std::isnan(p) ? "-" : fmt::format("{:.2g}", p);
 }
@@ -235,9 +231,9 @@ Table count_table(const Change& change) {
       continue;
     table.group(as_label(method.name));
     for (const VerdictChange& verdict : method.verdicts)
-      table.row({as_label(verdict.question->name), verdict.changes.pairs, verdict.right_in_both,
+      table.row({as_label(verdict.question->name), verdict.changes.pairs, verdict.changes.clusters.sum().both,
                  verdict.changes.lost.size(), verdict.changes.gained.size(),
-                 p_text(verdict.changes.test.p_two_sided), p_text(verdict.p_holm)});
+                 p_text(verdict.changes.test().p_two_sided), p_text(verdict.p_holm)});
   }
   return table;
 }
@@ -342,7 +338,7 @@ std::string change_html(const Campaign& before, const std::filesystem::path& bef
     return same_name ? file.string() : file.filename().string();
   };
   const AssessmentForms before_forms = forms_of(before), now_forms = forms_of(now);
-  const StudyRun first = run_of(before, before_forms), second = run_of(now, now_forms);
+  const StudyRun first = study_run(before, before_forms), second = study_run(now, now_forms);
   Change change{before, now, shown(before_file), shown(now_file), pair_runs(first, second), {}};
   change.methods = method_changes(first, second, change.pairing);
   const std::string names = fmt::format("A {}, B {}", code(change.before_file), code(change.now_file));

@@ -28,6 +28,7 @@ namespace {
 
 using BoardJson = nlohmann::ordered_json;
 
+constexpr const char* kBoardEnding = ".board.json";
 constexpr const char* kFormat = "mpmbench board 1";
 constexpr auto kReplace = BoardJson::error_handler_t::replace;  // what is no UTF-8
 constexpr std::size_t kLongestWord = 2000;                      // bytes of a name or a reason
@@ -371,7 +372,7 @@ FinishedBoard board_in(const BoardEntry& entry, const Suite& suite) {
 }  // namespace
 
 std::string board_file_name(const Suite& suite) {
-  return suite.name + ".board.json";
+  return suite.name + kBoardEnding;
 }
 
 std::string board_text(const Suite& suite, const Leaderboard& board, const std::string& revision) {
@@ -403,12 +404,30 @@ std::string board_text(const Suite& suite, const Leaderboard& board, const std::
 
 std::filesystem::path finished_board_path(const Suite& suite) {
   std::filesystem::path path = suite.path;
-  return path.replace_extension(".board.json");
+  return path.replace_extension(kBoardEnding);
 }
 
-std::string suite_of_board(const std::filesystem::path& path) {
+std::optional<std::filesystem::path> find_board(const std::filesystem::path& path) {
+  const auto is_board = [](const std::filesystem::path& file) {
+    return file.filename().string().ends_with(kBoardEnding);
+  };
+  if (is_board(path))
+    return path;
+  std::optional<std::filesystem::path> found;
+  std::error_code no_folder;
+  for (const auto& entry : std::filesystem::directory_iterator(path, no_folder))
+    if (is_board(entry.path())) {
+      if (found)
+        throw InputError(path.string(), "boards of several suites", "the board of one of them");
+      found = entry.path();
+    }
+  return found;
+}
+
+BoardHeading board_heading(const std::filesystem::path& path) {
   const BoardJson json = board_json(path);
-  return BoardEntry(json, path.string()).at("suite").text();
+  const BoardEntry entry(json, path.string());
+  return {entry.at("suite").text(), static_cast<std::uint64_t>(entry.at("seed").whole())};
 }
 
 FinishedBoard read_board(const std::filesystem::path& path, const Suite& suite) {

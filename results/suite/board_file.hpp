@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "analysis/findings/finished_board.hpp"
@@ -17,8 +19,17 @@ std::string board_file_name(const Suite& suite);
 /// The finished board that lies beside the file of the suite, whether it is there or not.
 std::filesystem::path finished_board_path(const Suite& suite);
 
-/// The suite that such a file says it is of. Errors: as read_board().
-std::string suite_of_board(const std::filesystem::path& path);
+/// Such a file itself, or the one in the folder of a run; none where it is neither. Errors: InputError for a
+/// folder with several.
+std::optional<std::filesystem::path> find_board(const std::filesystem::path& path);
+
+/// The suite that such a file says it is of, and the seed of the run.
+struct BoardHeading {
+  std::string suite;
+  std::uint64_t seed;
+};
+/// Errors: as read_board().
+BoardHeading board_heading(const std::filesystem::path& path);
 
 /// The text of such a file. `board` is of cells of this suite. Shares of repairs and delays are rounded to
 /// four digits.

@@ -15,6 +15,8 @@
 namespace mpm {
 namespace {
 
+constexpr std::size_t kReadAtOnce = 40;  // of more names a reader does not find the right one in the list
+
 std::uint32_t line_of(const toml::node* node, std::uint32_t fallback) {
   return node != nullptr && node->source().begin.line > 0 ? node->source().begin.line : fallback;
 }
@@ -130,8 +132,12 @@ void TomlTable::refuse(std::string_view key, const std::string& found, const std
   throw InputError(where(key), found, allowed);
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  return names.size() > kReadAtOnce ? fmt::format("one of {} names", names.size())
+                                    : fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::string with_nearest(std::string_view name, const std::vector<std::string>& names) {
-  constexpr std::size_t kReadAtOnce = 40;  // of more names a reader does not find the right one in the list
   std::vector<std::string> nearest = nearest_names(name, names, names.size() > kReadAtOnce ? 3 : 1);
   for (std::string& one : nearest)
     one = fmt::format("'{}'", one);

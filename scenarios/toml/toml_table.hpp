@@ -93,5 +93,7 @@ class TomlTable {
 /// "'abc'", followed by the nearest of `names` if there is one: " (nearest: 'abd')". Of a list of more than
 /// 40 names, such as those of findings, the nearest three.
 std::string with_nearest(std::string_view name, const std::vector<std::string>& names);
+/// All of `names`, or of more than 40 how many there are.
+std::string listed(const std::vector<std::string>& names);
 
 }  // namespace mpm

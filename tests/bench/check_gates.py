@@ -120,16 +120,20 @@ def check_refusals(check, archive):
     check.run("check", archive, "--gates", check.folder / "gates.toml", "--junit", check.folder / "no" / "a.xml", code=3)
 
 
-def check_baseline(check, archive, other_study):
+def check_baseline(check, archive, edited):
     baseline = '[baseline]\narchive = "{}"\nmaximum_lost = 4\n'.format
     text, _ = check.check(archive, baseline(archive.name), code=0)  # relative to the gate file
     assert "located: 0 lost, 0 gained" in text, text
     error, _ = check.check(archive, baseline("none.h5"), code=2)
     assert "none.h5: no such file" in error, error
-    error, _ = check.check(archive, baseline(other_study.name), code=2)
-    assert "found another study file" in error, error
+    # An edited study: the same loops, judged otherwise.
+    text, _ = check.check(edited, baseline(archive.name).replace("= 4", "= 3"), code=1)
+    assert "diagnosis.mpm_threshold: 0.1 -> 0.9" in text, text
+    assert "baseline.source_recognised.lost: fail" in text and "located: 0 lost, 0 gained" in text, text
     error, _ = check.check(archive, baseline(check.campaign("chapter6", "seed.h5", "--seed", 7).name), code=2)
-    assert "found seed 7; allowed: the seed of the archive that is checked, 20150401" in error, error
+    assert "found the seeds differ, 7 and 20150401" in error, error
+    error, _ = check.check(archive, baseline(check.campaign("setpoint-methods", "other.h5").name), code=2)
+    assert "found the plants have different variables" in error, error
 
     # The five first experiments that were located are not any more.
     worse = check.folder / "worse.h5"

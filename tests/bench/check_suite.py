@@ -151,6 +151,26 @@ def check_kept(tiny, shown):
     check_same(tiny.folder / "private" / "column.classic.h5", tiny.folder / "one" / "column.classic.h5")
 
 
+def check_gated(tiny):
+    """`check` judges the folder of a run: cells that could not be run, rates of one's own suite, and a baseline."""
+    gates, junit = tiny.folder / "gates.toml", tiny.folder / "gates.xml"
+
+    def check(output, text, code):
+        gates.write_text(text)
+        command = [tiny.program, "check", tiny.folder / output, "--suite", tiny.file, "--gates", gates, "--junit", junit]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
+        assert done.returncode == code, done
+        return done.stdout + done.stderr
+
+    answered = '[[gate]]\naggregate = "compare.sse.classic.answered"\nminimum = 1\n'
+    assert "4 of 4 cells" in check("one", answered, 1) and "cells_not_run: fail" in junit.read_text()
+    assert "1 of 4 cells" in check("private", answered + '[baseline]\narchive = "one"\nmaximum_lost = 0\n', 0)
+    assert "baseline.sse.detected.lost" in junit.read_text() and 'name="mpmbench check tiny"' in junit.read_text()
+    assert "no results of the cell" in check("one", '[baseline]\narchive = "private"\n', 2)
+    assert "no board of a suite" in check("one", '[baseline]\narchive = "one/column.classic.h5"\n', 2)
+    assert "nearest: 'compare.sse.classic.answered'" in check("one", answered.replace("classic", "clasic"), 2)
+
+
 def check_damaged(tiny, shown):
     """An archive that cannot be read is named, and made anew."""
     archive = tiny.folder / "one" / "column.classic.h5"
@@ -335,6 +355,7 @@ def main():
         shown = check_leaderboard(tiny)
         check_texts(tiny)
         check_kept(tiny, shown)
+        check_gated(tiny)
         check_damaged(tiny, shown)
         check_interrupted(tiny, shown)
         check_parts(tiny, shown)

@@ -98,7 +98,7 @@ TEST_CASE(
   CHECK(cv.changes.lost[0].now == Correctness::wrong);
   CHECK(cv.changes.lost[1].now == Correctness::not_judged);
   CHECK(cv.changes.gained.empty());
-  CHECK(cv.right_in_both == 18);
+  CHECK(cv.changes.clusters.sum().both == 18);
   CHECK(change.changed());
   const MethodChange back = change_of(now, before);
   CHECK(verdict_of(back, "CV").changes.gained.size() == 2);

@@ -5,6 +5,7 @@
 #include "plants/error.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_report.hpp"
+#include "scenarios/files/study_file.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {
@@ -114,22 +115,38 @@ TEST_CASE("gate check: against a baseline five lost verdicts are a regression an
   CHECK(check_gates(baseline, file, &campaign).passed());  // the other way round it is progress
 }
 
-TEST_CASE("gate check: a baseline of another study, seed or other experiments is refused") {
+TEST_CASE("gate check: an edited study is held against its baseline, and the keys that differ are named") {
+  Campaign baseline = good_campaign();
+  Campaign campaign = baseline;
+  const std::string text = baseline.study.source;
+  baseline.study = parse_study(text + "\n[diagnosis]\nmpm_threshold = 0.2\n", "before");
+  campaign.study = parse_study(text + "\n[diagnosis]\nmpm_threshold = 0.3\n", "now");
+  mislocate(campaign, ExperimentKind::mpm, 5);
+  const GateCheck check =
+      check_gates(campaign, gates(campaign, "[baseline]\narchive = \"old.h5\"\n"), &baseline);
+  CHECK_FALSE(check.passed());
+  REQUIRE(check.baseline->edited.size() == 1);
+  CHECK_THAT(gates_text(check),
+             Contains("the study was edited since:\n  diagnosis.mpm_threshold: 0.2 -> 0.3\n"));
+}
+
+TEST_CASE("gate check: a baseline of another seed, with other faults or fewer experiments is refused") {
   const Campaign campaign = good_campaign();
   const GateFile file = gates(campaign, "[baseline]\narchive = \"old.h5\"\n");
   Campaign baseline = campaign;
   baseline.study.seed = 7;
-  CHECK_THROWS_WITH(check_gates(campaign, file, &baseline),
-                    "baseline old.h5: found seed 7; allowed: the seed of the archive that is checked, "
-                    "18446744073709551615");
+  CHECK_THROWS_WITH(
+      check_gates(campaign, file, &baseline),
+      Contains("baseline old.h5: found the seeds differ, 7 and 18446744073709551615; allowed: "));
   baseline = campaign;
-  baseline.study.source += " ";
+  baseline.records[3].draw.mismatches.clear();
+  baseline.records[3].draw.disturbances.clear();
   CHECK_THROWS_WITH(check_gates(campaign, file, &baseline),
-                    Contains("baseline old.h5: found another study file"));
+                    Contains("experiment 3 does not have the same fault in both"));
   baseline = campaign;
   baseline.records.pop_back();
   CHECK_THROWS_WITH(check_gates(campaign, file, &baseline),
-                    Contains("baseline old.h5: experiments: found number 39"));
+                    "baseline old.h5: found 39 of the experiments that are checked; allowed: all 40");
   CHECK(check_gates(baseline, file, &campaign).passed());
 }
 
@@ -180,7 +197,7 @@ TEST_CASE("gate report: JUnit has a failure for what stops the campaign and skip
   Campaign campaign = good_campaign();
   mislocate(campaign, ExperimentKind::ud, 2);
   const auto junit = [&](const std::string& text) {
-    return gates_junit(check_gates(campaign, gates(campaign, text)), campaign, "<a&b>.h5");
+    return gates_junit(check_gates(campaign, gates(campaign, text)), "<a&b>.h5");
   };
   CHECK_THAT(junit(kSure), Contains("failures=\"1\" errors=\"0\" skipped=\"0\"") &&
                                Contains("type=\"inconclusive\"") && Contains("&lt;a&amp;b>.h5"));

@@ -148,7 +148,7 @@ TEST_CASE("gate file: mistakes are refused with line, key, what was found and wh
   const std::string unknown = refused("[[gate]]\naggregate = \"mpm.locatd\"\nminimum = 0\n");
   CHECK_THAT(unknown,
              Catch::StartsWith("g.toml:2: gate[0].aggregate: found 'mpm.locatd' (nearest: 'mpm.located', ") &&
-                 Catch::Contains("); allowed: experiments, "));
+                 Catch::Contains("); allowed: one of "));
   CHECK(refused(kGate) == "accepted");
   CHECK_THROWS_WITH(load_gates("none.toml", findings()),
                     "none.toml: found no such file; allowed: a gate file");

@@ -1,0 +1,230 @@
+#include "results/gates/board_gates.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/findings/leaderboard_standing.hpp"
+#include "analysis/findings/loop_outcome.hpp"
+#include "analysis/findings/method_rates.hpp"
+#include "plants/error.hpp"
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+/// The methods of the run beside the others.
+Leaderboard joined(const BoardRun& run, double confidence) {
+  const FinishedBoard& board = run.board;
+  return run.finished
+             ? join_boards(run.suite, board.methods, board.program, board.cells, *run.finished, confidence)
+                   .board
+             : make_leaderboard(run.suite, board.methods, board.program, board.cells, confidence);
+}
+
+/// "" over all loops, "FAMILY." of a family.
+void add_scores(const std::string& method, const std::string& family, const PooledScores& scores,
+                std::vector<Finding>& findings) {
+  const auto rates = method_rate_infos();
+  for (std::size_t i = 0; i < rates.size(); ++i)
+    if (OutcomeCounts::decide(rates[i].rate))
+      findings.push_back(method_finding(method, family + rates[i].name, rates[i].title, rates[i].meaning)
+                             .with(scores.rates[i]));
+  const auto estimates = method_estimate_infos();
+  for (std::size_t i = 0; i < scores.estimates.size(); ++i)
+    if (estimates[i].of == StudyFeature::worlds || estimates[i].of == StudyFeature::calibrated_worlds)
+      findings.push_back(
+          method_finding(method, family + estimates[i].name, estimates[i].title, estimates[i].meaning)
+              .with(scores.estimates[i].value, scores.estimates[i].interval, scores.estimates[i].count));
+}
+
+void add_standing(const Leaderboard& board, std::size_t method, std::vector<Finding>& findings) {
+  const std::optional<Standing> standing = standing_of(board, method);
+  const auto add = [&](const char* name, const char* meaning, double value) {
+    Finding finding = method_finding(board.methods[method], name, name, meaning);
+    finding.has_interval = false;
+    findings.push_back(
+        finding.with(value, {kNaN, kNaN}, standing ? static_cast<std::int64_t>(standing->duels.size()) : 0));
+  };
+  add("place", "its place among the methods of the board, at 5 % false alarms",
+      standing ? standing->place : kNaN);
+  add("beats", "methods of the board that it is better than beyond chance, on the same loops",
+      standing ? standing->won() : kNaN);
+  add("loses_to", "methods of the board that it is worse than beyond chance, on the same loops",
+      standing ? standing->lost() : kNaN);
+}
+
+struct BoardQuestion {
+  const char* name;
+  bool OutcomeScope::*scope;  ///< which methods can be asked; null: all
+  Correctness (*ask)(const FaultTruth& truth, const LoopOutcome& said);
+};
+
+Correctness right_or_wrong(bool asked, bool right) {
+  if (!asked)
+    return Correctness::not_judged;
+  return right ? Correctness::right : Correctness::wrong;
+}
+
+constexpr BoardQuestion kBoardQuestions[] = {
+    {"quiet", nullptr,
+     [](const FaultTruth& truth, const LoopOutcome& said) {
+       return right_or_wrong(said.answered && truth.kind == ExperimentKind::healthy, !said.flagged);
+     }},
+    {"detected", nullptr,
+     [](const FaultTruth& truth, const LoopOutcome& said) {
+       return right_or_wrong(said.answered && truth.impact, said.flagged);
+     }},
+    {"located", &OutcomeScope::locates_cvs,
+     [](const FaultTruth& truth, const LoopOutcome& said) {
+       return right_or_wrong(said.flagged && truth.one_cv, said.right_cv);
+     }},
+    {"source", &OutcomeScope::tells_sources,
+     [](const FaultTruth& truth, const LoopOutcome& said) {
+       return right_or_wrong(truth.faulty(), said.flagged && said.right_source);
+     }},
+};
+
+/// A cell of a run, and what one method said of its loops.
+struct MethodLoops {
+  const CellScores& cell;
+  const MethodScores& scores;
+
+  Correctness ask(const BoardQuestion& question, std::size_t loop) const {
+    if (scores.outcomes[loop] == kNoLoop)
+      return Correctness::not_judged;
+    return question.ask(*fault_truth(cell.truths[loop]), *loop_outcome(scores.outcomes[loop]));
+  }
+};
+
+/// The cells of two runs whose loops are the same ones.
+struct PairedCell {
+  std::string name;
+  const CellScores &before, &now;
+};
+
+std::vector<PairedCell> paired_cells(const BoardRun& run, const FinishedBoard& baseline,
+                                     const std::string& where) {
+  std::vector<PairedCell> pairs;
+  for (const CellScores& cell : run.board.cells) {
+    if (!cell.trouble.empty())
+      continue;
+    const std::string name =
+        fmt::format("{}.{}", run.suite.plants[cell.plant].name, run.suite.families[cell.family].name);
+    const auto found =
+        std::find_if(baseline.cells.begin(), baseline.cells.end(), [&cell](const CellScores& each) {
+          return each.plant == cell.plant && each.family == cell.family && each.trouble.empty();
+        });
+    if (found == baseline.cells.end())
+      throw InputError(where, fmt::format("no results of the cell {}", name), "all cells that are checked");
+    if (found->truths.size() < cell.truths.size() ||
+        !std::equal(cell.worlds.begin(), cell.worlds.end(), found->worlds.begin()))
+      throw InputError(where, fmt::format("{}: {} loops", name, found->truths.size()),
+                       fmt::format("the {} loops that are checked", cell.truths.size()));
+    pairs.push_back({name, *found, cell});
+  }
+  return pairs;
+}
+
+/// One method of both runs; its places in them.
+JudgementChanges changes_of(const std::vector<PairedCell>& cells, const BoardQuestion& question,
+                            std::size_t place_before, std::size_t place_now) {
+  JudgementChanges changes;
+  int clusters = 0;
+  for (const PairedCell& cell : cells) {
+    const MethodLoops before{cell.before, cell.before.methods[place_before]};
+    const MethodLoops now{cell.now, cell.now.methods[place_now]};
+    if (question.scope != nullptr && !(now.scores.scope.*question.scope))
+      continue;
+    int largest = -1;
+    for (std::size_t loop = 0; loop < cell.now.truths.size(); ++loop) {
+      const int world = cell.now.worlds[loop];
+      changes.add(
+          {static_cast<std::int64_t>(loop), before.ask(question, loop), now.ask(question, loop), cell.name},
+          clusters + world);
+      largest = std::max(largest, world);
+    }
+    clusters += largest + 2;  // there may be a world -1, the exact one
+  }
+  return changes;
+}
+
+BaselineComparison compare_boards(const BoardRun& run, const FinishedBoard& baseline,
+                                  const std::string& path) {
+  const std::string where = fmt::format("baseline {}", path);
+  const std::vector<PairedCell> cells = paired_cells(run, baseline, where);
+  BaselineComparison comparison{path, baseline.runner(), {}, {}};
+  bool in_common = false;
+  for (std::size_t now = 0; now < run.board.methods.size(); ++now) {
+    const std::string& method = run.board.methods[now];
+    const auto found = std::find(baseline.methods.begin(), baseline.methods.end(), method);
+    if (found == baseline.methods.end())
+      continue;
+    in_common = true;
+    for (const BoardQuestion& question : kBoardQuestions) {
+      JudgementChanges changes =
+          changes_of(cells, question, static_cast<std::size_t>(found - baseline.methods.begin()), now);
+      if (changes.pairs > 0)
+        comparison.questions.push_back({fmt::format("{}.{}", method, question.name),
+                                        fmt::format("{}, {}", method, question.name), std::move(changes)});
+    }
+  }
+  if (!in_common)
+    throw InputError(
+        where, fmt::format("{}", fmt::join(baseline.methods, ", ")),
+        fmt::format("a run of one of the methods that are checked: {}", fmt::join(run.board.methods, ", ")));
+  return comparison;
+}
+
+}  // namespace
+
+std::vector<Finding> gate_findings(const BoardRun& run, double confidence) {
+  const Leaderboard board = joined(run, confidence);
+  std::vector<Finding> findings;
+  for (std::size_t method = 0; method < board.methods.size(); ++method) {
+    const std::string& name = board.methods[method];
+    if (std::find(run.board.methods.begin(), run.board.methods.end(), name) == run.board.methods.end())
+      continue;
+    add_scores(name, "", board.overall[method], findings);
+    for (std::size_t family = 0; family < board.families.size(); ++family)
+      add_scores(name, board.families[family].name + ".", board.by_family[method][family], findings);
+    add_standing(board, method, findings);
+  }
+  return findings;
+}
+
+GateCheck check_gates(const BoardRun& run, const GateFile& file, const FinishedBoard* baseline) {
+  const Suite& suite = run.suite;
+  std::int64_t experiments = 0, failed = 0, not_run = 0;
+  for (const CellScores& cell : run.board.cells) {
+    experiments += cell.experiments;
+    failed += cell.failed;
+    not_run += cell.trouble.empty() ? 0 : 1;
+  }
+  const auto cells = static_cast<std::int64_t>(run.board.cells.size());
+  GateCheck check{
+      .name = suite.name,
+      .title = fmt::format("suite {} {}, seed {}: {} of {} cells, by {}", suite.name, suite.version,
+                           suite.seed, cells, suite.cells.size(), run.board.runner()),
+      .properties = {{"seed", fmt::format("{}", suite.seed)},
+                     {"suite_version", suite.version},
+                     {"mpmbench_version", run.board.program},
+                     {"git_sha", run.board.revision}},
+      .confidence = file.confidence.value_or(kBoardConfidence)};
+  check.results = {
+      judge_number("experiments", "number of experiments", static_cast<double>(experiments), experiments,
+                   static_cast<double>(file.minimum_experiments), kInfinity),
+      judge_number("failed", "number of experiments without a result", static_cast<double>(failed),
+                   experiments, -kInfinity, static_cast<double>(file.maximum_failed)),
+      judge_number("cells_not_run", "number of cells that could not be run", static_cast<double>(not_run),
+                   cells, -kInfinity, 0.0)};
+  if (file.baseline)
+    check.baseline = compare_boards(run, *baseline, file.baseline->archive.string());
+  return judge_gates(std::move(check), file, gate_findings(run, check.confidence));
+}
+
+}  // namespace mpm
