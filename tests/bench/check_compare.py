@@ -162,7 +162,7 @@ def check_other_commands(compare, archive, later):
     gates = compare.folder / "gates.toml"
     gates.write_text('[[gate]]\naggregate = "compare.sse.answered"\nminimum = 1\n', encoding="utf-8")
     assert "compare.sse.answered" in compare.run("check", later, "--gates", gates)
-    assert "a method that has not assessed the archive" in compare.run("check", archive, "--gates", gates, code=2)
+    assert "a method that has not assessed the loops" in compare.run("check", archive, "--gates", gates, code=2)
     gates.write_text('[[gate]]\naggregate = "compare.botelho.answered"\nmaximum = 0.5\n', encoding="utf-8")
     compare.run("check", later, "--gates", gates, code=1)
 
