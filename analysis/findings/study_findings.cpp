@@ -237,7 +237,7 @@ void check_reported(const Study& study) {
   for (const ReportedValue& reported : study.reported)
     if (std::find(names.begin(), names.end(), reported.name) == names.end())
       throw InputError(reported.where, "unknown finding " + with_nearest(reported.name, names),
-                       listed(names));
+                       allowed_names(names));
 }
 
 }  // namespace mpm

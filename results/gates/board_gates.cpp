@@ -224,7 +224,8 @@ GateCheck check_gates(const BoardRun& run, const GateFile& file, const FinishedB
                    cells, -kInfinity, 0.0)};
   if (file.baseline)
     check.baseline = compare_boards(run, *baseline, file.baseline->archive.string());
-  return judge_gates(std::move(check), file, gate_findings(run, check.confidence));
+  const std::vector<Finding> findings = gate_findings(run, check.confidence);
+  return judge_gates(std::move(check), file, findings);
 }
 
 }  // namespace mpm

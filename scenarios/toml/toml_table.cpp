@@ -132,7 +132,7 @@ void TomlTable::refuse(std::string_view key, const std::string& found, const std
   throw InputError(where(key), found, allowed);
 }
 
-std::string listed(const std::vector<std::string>& names) {
+std::string allowed_names(const std::vector<std::string>& names) {
   return names.size() > kReadAtOnce ? fmt::format("one of {} names", names.size())
                                     : fmt::format("{}", fmt::join(names, ", "));
 }

@@ -94,6 +94,6 @@ class TomlTable {
 /// 40 names, such as those of findings, the nearest three.
 std::string with_nearest(std::string_view name, const std::vector<std::string>& names);
 /// All of `names`, or of more than 40 how many there are.
-std::string listed(const std::vector<std::string>& names);
+std::string allowed_names(const std::vector<std::string>& names);
 
 }  // namespace mpm

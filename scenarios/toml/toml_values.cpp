@@ -63,7 +63,7 @@ bool is_name(const std::string& text) {
 /// The position of the text `node`, which stands under `key`, in `names`.
 std::size_t position_of(const TomlTable& table, std::string_view key, const toml::node& node,
                         const std::vector<std::string>& names) {
-  const std::string allowed = listed(names);
+  const std::string allowed = allowed_names(names);
   const toml::value<std::string>* text = node.as_string();
   if (text == nullptr) {
     table.refuse(key, describe(node), allowed);
