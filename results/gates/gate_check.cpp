@@ -24,6 +24,11 @@ BaselineComparison compare(const Campaign& campaign, const Campaign& baseline, c
   const AssessmentForms forms = forms_of(campaign), baseline_forms = forms_of(baseline);
   const StudyRun before = study_run(baseline, baseline_forms), now = study_run(campaign, forms);
   const std::string where = fmt::format("baseline {}", archive);
+  for (const Campaign* run : {&campaign, &baseline})
+    if (chain_place(*run) == run->methods.size())
+      throw InputError(
+          where, "no verdicts of the chain to compare in one of the two archives",
+          "two archives that a method with the diagnosis of the thesis, such as botelho, has assessed");
   const RunPairing pairing = pair_runs(before, now);
   if (!pairing.paired())
     throw InputError(where, pairing.obstacle,

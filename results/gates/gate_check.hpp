@@ -67,7 +67,7 @@ GateCheck judge_gates(GateCheck run, const GateFile& file, const std::vector<Fin
 /// run is judged by its own study.
 ///
 /// Errors: InputError unless the baseline can be paired with the campaign (pair_runs()) and has all of its
-/// experiments.
+/// experiments, and a method that diagnoses has assessed both.
 GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Campaign* baseline = nullptr);
 
 }  // namespace mpm

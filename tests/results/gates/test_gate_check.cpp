@@ -147,6 +147,9 @@ TEST_CASE("gate check: a baseline of another seed, with other faults or fewer ex
   baseline.records.pop_back();
   CHECK_THROWS_WITH(check_gates(campaign, file, &baseline),
                     "baseline old.h5: found 39 of the experiments that are checked; allowed: all 40");
+  Campaign without_chain = made_up_campaign();
+  remove_methods(without_chain, [](const std::string& name) { return name != "sse"; });
+  CHECK_THROWS_WITH(check_gates(without_chain, file, &campaign), Contains("found no verdicts of the chain"));
   CHECK(check_gates(baseline, file, &campaign).passed());
 }
 
