@@ -9,14 +9,6 @@
 namespace mpm {
 namespace {
 
-/// The same cell of the finished board; null where it has none that was run.
-const CellScores* finished_cell(const FinishedBoard& finished, const CellScores& cell) {
-  const auto found = std::find_if(
-      finished.cells.begin(), finished.cells.end(),
-      [&cell](const CellScores& each) { return each.plant == cell.plant && each.family == cell.family; });
-  return found == finished.cells.end() || !found->trouble.empty() ? nullptr : &*found;
-}
-
 std::size_t loops_that_differ(const CellScores& one, const CellScores& other) {
   std::size_t differing = 0;
   for (std::size_t i = 0; i < one.truths.size(); ++i)
@@ -57,6 +49,13 @@ bool has_same_loops(const CellScores& cell, const CellScores* theirs, const std:
 
 }  // namespace
 
+const CellScores* FinishedBoard::same_cell(const CellScores& cell) const {
+  const auto found = std::find_if(cells.begin(), cells.end(), [&cell](const CellScores& each) {
+    return each.plant == cell.plant && each.family == cell.family;
+  });
+  return found == cells.end() || !found->trouble.empty() ? nullptr : &*found;
+}
+
 JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own, const std::string& program,
                         std::vector<CellScores> cells, const FinishedBoard& finished, double confidence) {
   std::vector<std::string> methods, notes;
@@ -70,9 +69,8 @@ JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own,
   for (CellScores& cell : cells) {
     if (!cell.trouble.empty())
       continue;
-    const std::string name =
-        fmt::format("{}.{}", suite.plants[cell.plant].name, suite.families[cell.family].name);
-    const CellScores* const theirs = finished_cell(finished, cell);
+    const std::string name = suite.name_of(cell.plant, cell.family);
+    const CellScores* const theirs = finished.same_cell(cell);
     const bool same = has_same_loops(cell, theirs, name, notes);
     std::vector<MethodScores> scores;
     for (const std::size_t place : places)

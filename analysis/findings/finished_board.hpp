@@ -14,6 +14,8 @@ struct FinishedBoard {
   std::vector<std::string> methods = {};
   std::vector<CellScores> cells = {};  ///< with places in Suite::plants and Suite::families
 
+  /// The same cell here; null where there is none that was run.
+  const CellScores* same_cell(const CellScores& cell) const;
   /// "mpmbench 1.0 (revision)"
   std::string runner() const { return "mpmbench " + program + " (" + revision + ")"; }
 };

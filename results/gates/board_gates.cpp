@@ -18,12 +18,11 @@ namespace mpm {
 namespace {
 
 /// The methods of the run beside the others.
-Leaderboard joined(const BoardRun& run, double confidence) {
+JoinedBoard joined(const BoardRun& run, double confidence) {
   const FinishedBoard& board = run.board;
-  return run.finished
-             ? join_boards(run.suite, board.methods, board.program, board.cells, *run.finished, confidence)
-                   .board
-             : make_leaderboard(run.suite, board.methods, board.program, board.cells, confidence);
+  if (run.finished)
+    return join_boards(run.suite, board.methods, board.program, board.cells, *run.finished, confidence);
+  return {make_leaderboard(run.suite, board.methods, board.program, board.cells, confidence)};
 }
 
 /// "" over all loops, "FAMILY." of a family.
@@ -113,13 +112,9 @@ std::vector<PairedCell> paired_cells(const BoardRun& run, const FinishedBoard& b
   for (const CellScores& cell : run.board.cells) {
     if (!cell.trouble.empty())
       continue;
-    const std::string name =
-        fmt::format("{}.{}", run.suite.plants[cell.plant].name, run.suite.families[cell.family].name);
-    const auto found =
-        std::find_if(baseline.cells.begin(), baseline.cells.end(), [&cell](const CellScores& each) {
-          return each.plant == cell.plant && each.family == cell.family && each.trouble.empty();
-        });
-    if (found == baseline.cells.end())
+    const std::string name = run.suite.name_of(cell.plant, cell.family);
+    const CellScores* const found = baseline.same_cell(cell);
+    if (found == nullptr)
       throw InputError(where, fmt::format("no results of the cell {}", name), "all cells that are checked");
     if (found->truths.size() < cell.truths.size() ||
         !std::equal(cell.worlds.begin(), cell.worlds.end(), found->worlds.begin()))
@@ -180,10 +175,8 @@ BaselineComparison compare_boards(const BoardRun& run, const FinishedBoard& base
   return comparison;
 }
 
-}  // namespace
-
-std::vector<Finding> gate_findings(const BoardRun& run, double confidence) {
-  const Leaderboard board = joined(run, confidence);
+/// Of the methods of the run.
+std::vector<Finding> board_findings(const BoardRun& run, const Leaderboard& board) {
   std::vector<Finding> findings;
   for (std::size_t method = 0; method < board.methods.size(); ++method) {
     const std::string& name = board.methods[method];
@@ -195,6 +188,12 @@ std::vector<Finding> gate_findings(const BoardRun& run, double confidence) {
     add_standing(board, method, findings);
   }
   return findings;
+}
+
+}  // namespace
+
+std::vector<Finding> gate_findings(const BoardRun& run) {
+  return board_findings(run, joined(run, kBoardConfidence).board);
 }
 
 GateCheck check_gates(const BoardRun& run, const GateFile& file, const FinishedBoard* baseline) {
@@ -224,8 +223,10 @@ GateCheck check_gates(const BoardRun& run, const GateFile& file, const FinishedB
                    cells, -kInfinity, 0.0)};
   if (file.baseline)
     check.baseline = compare_boards(run, *baseline, file.baseline->archive.string());
-  const std::vector<Finding> findings = gate_findings(run, check.confidence);
-  return judge_gates(std::move(check), file, findings);
+  const JoinedBoard joined_board = joined(run, check.confidence);
+  for (const std::string& note : joined_board.notes)
+    check.title += "\n" + note;
+  return judge_gates(std::move(check), file, board_findings(run, joined_board.board));
 }
 
 }  // namespace mpm

@@ -14,26 +14,26 @@ namespace mpm {
 struct BoardRun {
   Suite suite;
   FinishedBoard board;  ///< of this run
-  std::optional<FinishedBoard> finished =
-      {};  ///< of the same loops: its methods stand beside those of the run
+  /// Of the same loops: its methods stand beside those of the run.
+  std::optional<FinishedBoard> finished = {};
 };
 
 /// The findings that a gate can be put on, of each method of the run: "compare.METHOD.RATE" over all loops
 /// and "compare.METHOD.FAMILY.RATE", for each rate that OutcomeCounts decide and each pooled estimate; and
 /// "compare.METHOD.place", ".beats" and ".loses_to" (standing_of()) beside the methods of `finished`.
-std::vector<Finding> gate_findings(const BoardRun& run, double confidence = kBoardConfidence);
+std::vector<Finding> gate_findings(const BoardRun& run);
 
 /// Judges a run of a suite. Beside the gates of the file, every run has the gates `experiments` (at least
 /// minimum_experiments), `failed` (at most maximum_failed) and `cells_not_run` (none). With [baseline], which
 /// `baseline` must then be, it also has `baseline.METHOD.QUESTION.p_worse` and `.lost`, as a campaign has,
 /// for each method of both runs and each question that its outcomes answer:
 ///
-/// | question | loops                                           | right when              |
-/// |----------|-------------------------------------------------|-------------------------|
-/// | quiet    | healthy ones, with a verdict                    | not flagged             |
-/// | detected | with a fault that has an impact and a verdict   | flagged                 |
-/// | located  | flagged ones whose fault affects one CV         | this CV is named        |
-/// | source   | with a fault                                    | flagged, source is named |
+/// | question | loops                                      | right when                            |
+/// |----------|--------------------------------------------|---------------------------------------|
+/// | quiet    | healthy, with a verdict                    | not flagged                           |
+/// | detected | with a verdict, a fault that has an impact | flagged                               |
+/// | located  | flagged, a fault that affects one CV       | this CV is named                      |
+/// | source   | with a fault                               | flagged, and the right source is named |
 ///
 /// The clusters of the test are the worlds of each cell, or the cells where there are no worlds.
 ///

@@ -31,7 +31,7 @@ BaselineComparison compare(const Campaign& campaign, const Campaign& baseline, c
           "two archives that a method with the diagnosis of the thesis, such as botelho, has assessed");
   const RunPairing pairing = pair_runs(before, now);
   if (!pairing.paired())
-    throw InputError(where, pairing.obstacle,
+    throw InputError(where, "runs that cannot be paired: " + pairing.obstacle,
                      fmt::format("a run of the study '{}' with seed {} in which the same is wrong in each "
                                  "experiment",
                                  campaign.study.name, campaign.study.seed));

@@ -33,8 +33,8 @@ struct BaselineComparison {
 
 /// What the gates say of a run.
 struct GateCheck {
-  std::string name;                                             ///< of the study or suite
-  std::string title;                                            ///< for people, a line; empty: nothing to say
+  std::string name;   ///< of the study or suite
+  std::string title;  ///< for people, in lines; empty: nothing to say
   std::vector<std::pair<std::string, std::string>> properties;  ///< by whom and how it was run
   std::vector<GateResult> results =
       {};  ///< gates that every run has, then those of the file, then [baseline]

@@ -12,12 +12,12 @@
 
 namespace mpm {
 
-/// Whether a gate that is neither shown to hold nor to fail lets a campaign through.
+/// Whether a gate that is neither shown to hold nor to fail lets a run through.
 enum class InconclusivePolicy { fail, pass };
 
-/// [baseline]: an earlier campaign, and how far the verdicts may fall behind it.
+/// [baseline]: an earlier run, and how far the verdicts may fall behind it.
 struct BaselineLimits {
-  std::filesystem::path archive;
+  std::filesystem::path archive;  ///< or the folder or board of a suite
   /// Smallest exact p-value (McNemarTest::p_worse) of lost and gained verdicts that is no regression.
   double significance = 0.05;
   std::optional<std::int64_t> maximum_lost;  ///< verdicts of each question; no limit without it

@@ -144,8 +144,8 @@ std::vector<std::string> shipped_suites(const fs::path& folder) {
 
 }  // namespace
 
-std::string Suite::name_of(const SuiteCell& cell) const {
-  return fmt::format("{}.{}", plants[cell.plant].name, families[cell.family].name);
+std::string Suite::name_of(std::size_t plant, std::size_t family) const {
+  return fmt::format("{}.{}", plants[plant].name, families[family].name);
 }
 
 Suite load_suite(const fs::path& path, const SuiteChoice& choice) {

@@ -39,7 +39,9 @@ struct Suite {
   std::vector<SuiteCell> cells;  ///< plant by plant, each in the order of the families
   std::filesystem::path path;    ///< of its file
 
-  std::string name_of(const SuiteCell& cell) const;  ///< "PLANT.FAMILY"
+  /// "PLANT.FAMILY", of a cell with these places in `plants` and `families`.
+  std::string name_of(std::size_t plant, std::size_t family) const;
+  std::string name_of(const SuiteCell& cell) const { return name_of(cell.plant, cell.family); }
 };
 
 /// What of a suite is run; what is left out changes nothing in the rest.

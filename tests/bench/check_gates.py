@@ -131,9 +131,9 @@ def check_baseline(check, archive, edited):
     assert "diagnosis.mpm_threshold: 0.1 -> 0.9" in text, text
     assert "baseline.source_recognised.lost: fail" in text and "located: 0 lost, 0 gained" in text, text
     error, _ = check.check(archive, baseline(check.campaign("chapter6", "seed.h5", "--seed", 7).name), code=2)
-    assert "found the seeds differ, 7 and 20150401" in error, error
+    assert "runs that cannot be paired: the seeds differ, 7 and 20150401" in error, error
     error, _ = check.check(archive, baseline(check.campaign("setpoint-methods", "other.h5").name), code=2)
-    assert "found the plants have different variables" in error, error
+    assert "runs that cannot be paired: the plants have different variables" in error, error
 
     # The five first experiments that were located are not any more.
     worse = check.folder / "worse.h5"

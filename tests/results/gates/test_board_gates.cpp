@@ -82,6 +82,25 @@ TEST_CASE("board gates: rates of all loops and of a family, and the place among 
   CHECK_THROWS_WITH(outcome_of_last(run, "detekted\"\nminimum = 1\n"), Contains("compare.mine.detected'"));
 }
 
+TEST_CASE("board gates: without worlds the cells are the clusters of the test", "[gates]") {
+  Suite suite = suite_of_one_cell();
+  suite.families.push_back({"inputs", ""});
+  suite.cells.resize(2);
+  const auto two_cells = [](int in_first, int in_second) {
+    FinishedBoard board = board_of({"mine"}, {first_found(in_first)});
+    board.cells.push_back(board_of({"mine"}, {first_found(in_second)}).cells[0]);
+    board.cells[1].family = 1;
+    return board;
+  };
+  const FinishedBoard better = two_cells(25, 25);
+  const GateCheck check = judged({suite, two_cells(20, 25)}, "[baseline]\narchive = \"old\"\n", &better);
+  // All five are lost in one of two cells: t = 1 with one degree of freedom, where 1/32 of single loops is p.
+  for (const GateResult& result : check.results)
+    if (result.gate.name == "baseline.mine.detected.p_worse")
+      CHECK(result.measured.value == Approx(0.25));
+  CHECK(check.passed());
+}
+
 TEST_CASE("board gates: what failed or was not run stops every suite", "[gates]") {
   BoardRun run{suite_of_one_cell(), board_of({"mine"}, {first_found(24)})};
   const std::string easy = "[[gate]]\naggregate = \"compare.mine.answered\"\nminimum = 0.1\n";

@@ -135,9 +135,9 @@ TEST_CASE("gate check: a baseline of another seed, with other faults or fewer ex
   const GateFile file = gates(campaign, "[baseline]\narchive = \"old.h5\"\n");
   Campaign baseline = campaign;
   baseline.study.seed = 7;
-  CHECK_THROWS_WITH(
-      check_gates(campaign, file, &baseline),
-      Contains("baseline old.h5: found the seeds differ, 7 and 18446744073709551615; allowed: "));
+  CHECK_THROWS_WITH(check_gates(campaign, file, &baseline),
+                    Contains("baseline old.h5: found runs that cannot be paired: the seeds differ, 7 and "
+                             "18446744073709551615; allowed: "));
   baseline = campaign;
   baseline.records[3].draw.mismatches.clear();
   baseline.records[3].draw.disturbances.clear();
