@@ -65,6 +65,46 @@ std::string unknown_command(const std::string& word, const CommandSet& commands)
                      fmt::join(names, ", "));
 }
 
+/// The word that no option or argument of the command takes; an option before others. Empty: none.
+std::string unknown_word(const CLI::App& command) {
+  const std::vector<std::string> words = command.remaining();
+  const auto option =
+      std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); });
+  return option != words.end() ? option->substr(0, option->find('=')) : words.empty() ? "" : words.front();
+}
+
+/// "--methods", "-o": those of the command and of its groups.
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* const group : command.get_subcommands({}))
+    if (group->get_name().empty())
+      for (std::string& name : option_names(*group))
+        names.push_back(std::move(name));
+  for (const CLI::Option* const option : command.get_options()) {
+    for (const std::string& name : option->get_lnames())
+      names.push_back("--" + name);
+    for (const std::string& name : option->get_snames())
+      names.push_back("-" + name);
+  }
+  return names;
+}
+
+/// What is wrong with the words behind the command.
+std::string wrong_usage(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string help =
+      fmt::format("mpmbench{} --help", command.get_parent() == nullptr ? "" : " " + command.get_name());
+  if (const std::string word = unknown_word(command); !word.empty())
+    return fmt::format("mpmbench: {}: found {}; allowed: those of `{}`\n",
+                       word.starts_with('-') ? "option" : "argument",
+                       with_nearest(word, option_names(command)), help);
+  std::string text = error.what();
+  if (const std::size_t end = text.find(" is required");
+      dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && end != std::string::npos)
+    if (const CLI::Option* const option = command.get_option_no_throw(text.substr(0, end)))
+      text = fmt::format("{}: found nothing; allowed: {}", text.substr(0, end), option->get_description());
+  return fmt::format("mpmbench: {}\n{} lists the options\n", text, help);
+}
+
 }  // namespace
 
 CommandResult execute(int argc, const char* const* argv) {
@@ -90,9 +130,12 @@ CommandResult execute(int argc, const char* const* argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::vector<CLI::App*> named = program.get_subcommands();
+    if (error.get_exit_code() != 0)
+      return {ExitCode::bad_input, wrong_usage(named.empty() ? program : *named.front(), error)};
     std::ostringstream text;
-    const bool wrong_usage = program.exit(error, text, text) != 0;
-    return {wrong_usage ? ExitCode::bad_input : ExitCode::done, text.str()};
+    program.exit(error, text, text);
+    return {ExitCode::done, text.str()};
   }
   if (!commands.has_work())
     return {ExitCode::bad_input, program.help()};

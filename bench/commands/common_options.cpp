@@ -92,9 +92,7 @@ void add_jobs(CLI::App& app, int& jobs, const std::string& description) {
 }
 
 void add_solver(CLI::App& app, std::string& solver) {
-  app.add_option("--solver", solver, "QP solver")
-      ->check(CLI::IsMember(qp_solver_names()))
-      ->capture_default_str();
+  app.add_option("--solver", solver, "QP solver")->check(one_of(qp_solver_names()))->capture_default_str();
 }
 
 void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description) {
@@ -159,6 +157,10 @@ void add_overwrite(CLI::App& app, bool& overwrite) {
   app.add_flag("--overwrite", overwrite,
                "Replace any existing file; without it, the command refuses to replace the archive of another "
                "study or seed");
+}
+
+void add_full(CLI::App& app, bool& full) {
+  app.add_flag("--full", full, "All tables, not only the first one");
 }
 
 void add_json(CLI::App& app, bool& json) {

@@ -53,6 +53,7 @@ struct CompareArguments {
   bool overwrite = false;
   bool dry_run = false;
   double shard_interval = RunOptions().shard_interval;
+  bool full = false;
   bool json = false;
   bool quiet = false;
 };
@@ -225,7 +226,7 @@ std::string found_text(const ComparisonTask& task) {
   const CompareArguments& options = task.options;
   const auto text = [&](const Campaign& shown, const StudyFindings& findings) {
     const Document document = comparison_document(shown, findings);
-    return options.json ? document_json(document) : document_text(document);
+    return options.json ? document_json(document) : document_text(document, kTerminalWidth, options.full);
   };
   const bool shows_all = task.asked == method_names(task.campaign) && !options.experiments;
   std::string found;
@@ -366,6 +367,7 @@ void add_compare(CommandSet& commands) {
   add_shard_interval(app, options->shard_interval);
   add_jobs(app, options->jobs, "How many loops are assessed at once");
   add_untimed_dry_run(app, options->dry_run);
+  add_full(app, options->full);
   add_json(app, options->json);
   add_quiet(app, options->quiet);
 }

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "bench/campaign/campaign_runner.hpp"
+#include "bench/commands/study_series.hpp"
 #include "bench/parts/part_folder.hpp"
 
 namespace CLI {
@@ -30,13 +30,6 @@ struct IntendedRun {
 /// What the run would do: loops, methods, time, memory and files. The time is that of a few loops, which are
 /// run and timed; nothing is written. Errors: as run_campaign().
 std::string dry_run_text(const IntendedRun& intended, const CampaignHooks& hooks);
-
-/// One of the studies that a command runs one after the other, and keeps.
-struct IntendedStudy {
-  std::string name;
-  const Study& study;
-  std::filesystem::path archive;
-};
 
 /// The same of several studies, with the time that they take together: a few loops of some of them are run
 /// and timed.

@@ -20,6 +20,7 @@
 #include "results/archive/archive.hpp"
 #include "results/document/document_text.hpp"
 #include "results/summary/summary.hpp"
+#include "results/text/experiment_text.hpp"
 
 namespace mpm {
 namespace {
@@ -38,9 +39,9 @@ struct MergeArguments {
 
 std::string missing_text(const PartMerge& parts) {
   const LoopRanges missing = parts.missing();
-  std::string text = fmt::format("{}, seed {}: {} of {} loops in {} part{}\n", parts.study().name,
+  std::string text = fmt::format("{}, seed {}: {} of {} loops in {}\n", parts.study().name,
                                  parts.study().seed, parts.loops() - size_of(missing), parts.loops(),
-                                 parts.part_count(), parts.part_count() == 1 ? "" : "s");
+                                 counted(static_cast<std::int64_t>(parts.part_count()), "part"));
   if (missing.empty())
     return text;
   text += fmt::format("missing: --range {}\n", to_string(missing));

@@ -1,13 +1,17 @@
 #include "bench/commands/option_checks.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/parts/whole_number.hpp"
+#include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {
 namespace {
@@ -50,6 +54,16 @@ CLI::Validator positive_number() {
     return fits ? std::string() : fmt::format("found {}; allowed: a number > 0", word);
   };
   return {check, "> 0"};
+}
+
+CLI::Validator one_of(std::vector<std::string> words) {
+  const std::string all = fmt::format("{}", fmt::join(words, ","));
+  const auto check = [words = std::move(words)](const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end()
+               ? std::string()
+               : fmt::format("found {}; allowed: {}", with_nearest(word, words), fmt::join(words, ", "));
+  };
+  return {check, "{" + all + "}"};
 }
 
 }  // namespace mpm

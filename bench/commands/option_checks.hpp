@@ -18,6 +18,9 @@ CLI::Validator number_between(double lowest, double highest);
 /// A number > 0, not infinite.
 CLI::Validator positive_number();
 
+/// One of these words.
+CLI::Validator one_of(std::vector<std::string> words);
+
 /// An option that takes one of several words, each of which stands for a value; its value now is the default.
 template <class Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
@@ -36,7 +39,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
         value = meaning;
   };
   return app.add_option_function<std::string>(name, take, description)
-      ->check(CLI::IsMember(words))
+      ->check(one_of(words))
       ->default_str(now);
 }
 

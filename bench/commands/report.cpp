@@ -12,6 +12,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/experiment_loop.hpp"
+#include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
@@ -103,7 +104,7 @@ void add_report(CommandSet& commands) {
       add_path(*outputs, "--figures", options->figures, "Folder to write the figures into, one file each");
   outputs->require_option(1, 2);
   app.add_option("--format", options->format, "Format of the figures")
-      ->check(CLI::IsMember(figure_format_names()))
+      ->check(one_of(figure_format_names()))
       ->needs(figures)
       ->capture_default_str();
 }

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -16,14 +15,13 @@
 #include "analysis/findings/finished_board.hpp"
 #include "analysis/findings/leaderboard.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
+#include "bench/commands/study_series.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
-#include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
@@ -98,11 +96,8 @@ void show_board(const Leaderboard& board, const std::string& json, const SuiteAr
   if (options.json)
     return print_result(json);
   print_result(document_text(leaderboard_document(board), kLeaderboardWidth, options.full));
-  if (!options.full)
-    print_result(options.output.empty()
-                     ? "\nMore with --full.\n"
-                     : fmt::format("\nMore with --full, and in {}.\n",
-                                   (fs::path(options.output) / "leaderboard.html").string()));
+  if (!options.output.empty())
+    print_result(fmt::format("The page: {}\n", (fs::path(options.output) / "leaderboard.html").string()));
 }
 
 /// Says what could not be joined.
@@ -144,14 +139,12 @@ void write_board(const fs::path& folder, const Leaderboard& board, Progress& pro
   }
 }
 
-/// The cells of this part of the suite, each with its archive in this folder.
-std::vector<std::pair<const SuiteCell*, IntendedStudy>> cells_of(const Suite& suite, const fs::path& folder,
-                                                                 const std::optional<PartNumber>& part) {
-  std::vector<std::pair<const SuiteCell*, IntendedStudy>> cells;
+/// The cells of this part of the suite.
+std::vector<const SuiteCell*> cells_of(const Suite& suite, const std::optional<PartNumber>& part) {
+  std::vector<const SuiteCell*> cells;
   for (std::size_t place = 0; place < suite.cells.size(); ++place)
-    if (const SuiteCell& cell = suite.cells[place]; is_in_part(place, part))
-      cells.emplace_back(&cell, IntendedStudy{suite.name_of(cell), cell.study,
-                                              folder / fmt::format("{}.h5", suite.name_of(cell))});
+    if (is_in_part(place, part))
+      cells.push_back(&suite.cells[place]);
   return cells;
 }
 
@@ -176,43 +169,26 @@ ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
                               run.methods.empty() ? "suite.methods" : "--methods");
   const fs::path folder = options.output;
   const std::optional<PartNumber> part = part_of_option(options.shard);
-  const auto cells = cells_of(suite, folder, part);
+  const std::vector<const SuiteCell*> cells = cells_of(suite, part);
   std::vector<IntendedStudy> studies;
-  for (const auto& [cell, study] : cells)
-    studies.push_back(study);
+  for (const SuiteCell* const cell : cells)
+    studies.push_back({fmt::format("cell {} of {}", cell - suite.cells.data() + 1, suite.cells.size()),
+                       suite.name_of(*cell), cell->study,
+                       folder / fmt::format("{}.h5", suite.name_of(*cell))});
   if (options.dry_run) {
     print_result(dry_run_text(studies, run, hooks_of(progress)));
     return ExitCode::done;
   }
-  make_output_folder(folder, "archives");
-  for (const IntendedStudy& study : studies) {
-    require_output_archive(study.archive, "archive");
-    if (!options.overwrite)
-      require_replaceable(study.archive, study_to_run(study.study, run), Unreadable::replaced);
-  }
-
+  require_archives(studies, folder, run, options.overwrite);
   std::vector<CellScores> scores;
-  std::vector<std::string> troubles;
-  for (const auto& [cell, study] : cells)
-    try {
-      const std::string name =
-          fmt::format("cell {} of {}: {}", cell - suite.cells.data() + 1, suite.cells.size(), study.name);
-      const KeptRun kept = run_unless_kept(
-          study.archive, study.study, run, hooks_of(progress), command_line,
-          [&progress, &name](bool is_there) { progress.note(name + (is_there ? ", done already" : "")); });
-      scores.push_back(kept.campaign ? cell_scores(*cell, findings_of(*kept.campaign))
-                                     : CellScores{.plant = cell->plant,
-                                                  .family = cell->family,
-                                                  .seed = cell->study.seed,
-                                                  .trouble = kept.trouble});
-      if (!kept.trouble.empty())
-        troubles.push_back(fmt::format("{}: {}", study.name, kept.trouble));
-    } catch (const Interrupted& error) {
-      throw std::runtime_error(fmt::format("{}, in {}{}", progress.explain(error), study.name,
-                                           how_to_go_on("in " + options.output, command_line)));
-    }
-  for (const std::string& trouble : troubles)
-    progress.warn(trouble);
+  run_series(studies, run, progress, options.output, command_line, [&](std::size_t place, KeptRun kept) {
+    const SuiteCell& cell = *cells[place];
+    scores.push_back(kept.campaign ? cell_scores(cell, findings_of(*kept.campaign))
+                                   : CellScores{.plant = cell.plant,
+                                                .family = cell.family,
+                                                .seed = cell.study.seed,
+                                                .trouble = std::move(kept.trouble)});
+  });
 
   if (part) {
     print_result(fmt::format("{}: {} of {} cells, part {} of {}\n", options.output, scores.size(),
@@ -266,7 +242,7 @@ void add_suite(CommandSet& commands) {
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_overwrite(app, options->overwrite);
   add_dry_run(app, options->dry_run);
-  app.add_flag("--full", options->full, "Text with all tables, not only the one of all loops");
+  add_full(app, options->full);
   add_json(app, options->json);
   add_quiet(app, options->quiet);
 }

@@ -1,7 +1,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,15 +8,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "bench/campaign/campaign_runner.hpp"
-#include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
+#include "bench/commands/study_series.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
-#include "bench/files/replaced_archive.hpp"
 #include "bench/parts/launcher.hpp"
 #include "results/document/document_json.hpp"
 #include "results/document/document_markdown.hpp"
@@ -44,60 +41,39 @@ std::string label(const SweepVariant& variant) {
   return variant.choice.empty() ? "as shipped" : fmt::format("{} = {}", variant.choice, variant.value);
 }
 
-fs::path archive_of(const fs::path& folder, std::size_t place) {
-  return folder / fmt::format("{:02}.h5", place);
-}
-
-std::vector<IntendedStudy> intended(const Sweep& sweep, const std::optional<PartNumber>& part,
-                                    const fs::path& folder) {
-  std::vector<IntendedStudy> studies;
-  for (std::size_t i = 0; i < sweep.variants.size(); ++i)
-    if (is_in_part(i, part))
-      studies.push_back({label(sweep.variants[i]), sweep.variants[i].study, archive_of(folder, i)});
-  return studies;
-}
-
 /// Runs every study and writes its archive, one after the other, and at the end the table of all of them
 /// (`sweep.md`, and on stdout). A part of the studies leaves its archives only, which another call finds.
 ExitCode run_sweep(const SweepArguments& options, const std::string& command_line) {
   const Sweep sweep = find_sweep(options.sweep);
   const std::optional<PartNumber> part = part_of_option(options.shard);
   const fs::path folder = options.output;
+  std::vector<const SweepVariant*> variants;
+  std::vector<IntendedStudy> studies;
+  for (std::size_t i = 0; i < sweep.variants.size(); ++i)
+    if (is_in_part(i, part)) {
+      const SweepVariant& variant = *variants.emplace_back(&sweep.variants[i]);
+      studies.push_back({fmt::format("study {} of {}", i + 1, sweep.variants.size()), label(variant),
+                         variant.study, folder / fmt::format("{:02}.h5", i)});
+    }
+  Progress progress(options.quiet);
   if (options.dry_run) {
-    Progress progress(options.quiet);
-    print_result(dry_run_text(intended(sweep, part, folder), options.run, hooks_of(progress)));
+    print_result(dry_run_text(studies, options.run, hooks_of(progress)));
     return ExitCode::done;
   }
-  make_output_folder(folder, "archives");
-  for (const IntendedStudy& study : intended(sweep, part, folder)) {
-    require_output_archive(study.archive, "archive");
-    if (!options.overwrite)
-      require_replaceable(study.archive, study_to_run(study.study, options.run), Unreadable::replaced);
-  }
-  Progress progress(options.quiet);
+  require_archives(studies, folder, options.run, options.overwrite);
   std::vector<SweepRow> rows;
-  for (std::size_t i = 0; i < sweep.variants.size(); ++i) {
-    if (!is_in_part(i, part))
-      continue;
-    const SweepVariant& variant = sweep.variants[i];
-    const std::string name = fmt::format("study {} of {}: {}", i + 1, sweep.variants.size(), label(variant));
-    SweepRow& row = rows.emplace_back(SweepRow{
-        .choice = variant.choice, .value = variant.value, .healthy = true, .trouble = "", .findings = {}});
-    try {
-      KeptRun run = run_unless_kept(archive_of(folder, i), variant.study, options.run, hooks_of(progress),
-                                    command_line, [&](bool) { progress.note(name); });
-      row.trouble = std::move(run.trouble);
-      if (run.campaign) {
-        row.healthy = run.campaign->basis.healthy;
-        row.findings = findings_of(*run.campaign).rows;
-      }
-    } catch (const Interrupted& error) {
-      throw std::runtime_error(fmt::format("{}, in {}{}", progress.explain(error), name,
-                                           how_to_go_on("in " + options.output, command_line)));
-    }
-    if (!row.trouble.empty())
-      progress.warn(fmt::format("{}: {}", name, row.trouble));
-  }
+  run_series(studies, options.run, progress, options.output, command_line,
+             [&](std::size_t place, KeptRun run) {
+               SweepRow& row = rows.emplace_back(SweepRow{.choice = variants[place]->choice,
+                                                          .value = variants[place]->value,
+                                                          .healthy = true,
+                                                          .trouble = std::move(run.trouble),
+                                                          .findings = {}});
+               if (run.campaign) {
+                 row.healthy = run.campaign->basis.healthy;
+                 row.findings = findings_of(*run.campaign).rows;
+               }
+             });
   if (part) {
     print_result(fmt::format("{}: {} of {} studies, part {} of {}\n", options.output, rows.size(),
                              sweep.variants.size(), part->number, part->of));

@@ -29,12 +29,21 @@ Progress::~Progress() {
   end_line();
 }
 
+void Progress::plan(std::int64_t total) {
+  planned_ = total;
+  in_pieces_ = true;
+}
+
 void Progress::begin(std::int64_t total, std::int64_t done) {
   end_line();
+  finished_ += done_ - earlier_;
+  planned_ -= total;
   total_ = total;
   earlier_ = done_ = done;
   failed_ = 0;
-  start_ = shown_ = Clock::now();
+  shown_ = Clock::now();
+  if (!in_pieces_ || finished_ == 0)
+    start_ = shown_;
   if (done > 0)
     note(fmt::format("{} of {} {} are done already", done, total, what_));
 }
@@ -72,10 +81,12 @@ void Progress::end_when_requested() const {
 void Progress::show() {
   shown_ = Clock::now();
   const double seconds = std::chrono::duration<double>(shown_ - start_).count();
-  const double rate = static_cast<double>(done_ - earlier_) / std::max(seconds, 1e-9);
-  const std::string text = fmt::format("{}/{} {}, {:.3g}/s, {} left{}", done_, total_, what_, rate,
-                                       duration(static_cast<double>(total_ - done_) / rate),
-                                       failed_ > 0 ? fmt::format(", {} failed", failed_) : "");
+  const std::int64_t finished = in_pieces_ ? finished_ : 0, planned = in_pieces_ ? planned_ : 0;
+  const double rate = static_cast<double>(finished + done_ - earlier_) / std::max(seconds, 1e-9);
+  const std::string text =
+      fmt::format("{}/{} {}, {:.3g}/s, {} left{}{}", done_, total_, what_, rate,
+                  duration(static_cast<double>(total_ - done_ + planned) / rate),
+                  planned > 0 ? " in all" : "", failed_ > 0 ? fmt::format(", {} failed", failed_) : "");
   if (terminal_) {
     constexpr int kWidth = 30;
     const auto filled = static_cast<int>(kWidth * done_ / std::max<std::int64_t>(total_, 1));

@@ -135,7 +135,7 @@ def stop(process):
 
 def message(text):
     """What the program says of its error, without its name."""
-    lines = [line for line in text.strip().splitlines() if line != "Run with --help for more information."]
+    lines = [line for line in text.strip().splitlines() if not line.endswith(" --help lists the options")]
     first = max((i for i, line in enumerate(lines) if line.startswith("mpmbench: ")), default=0)
     return re.sub(r"^mpmbench: ", "", "\n".join(lines[first:])) or "the program mpmbench ended without a message"
 

@@ -42,8 +42,8 @@ Section warnings_section(const RecordAssessment& of) {
   Sentences words;
   for (const std::string& warning : of.warnings)
     words.words.push_back(as_label(warning));
-  section.add(fmt::format("<details class=\"fold\"><summary>{} warning{}</summary>\n", of.warnings.size(),
-                          of.warnings.size() == 1 ? "" : "s"));
+  section.add(fmt::format("<details class=\"fold\"><summary>{}</summary>\n",
+                          counted(std::ssize(of.warnings), "warning")));
   section.add(std::move(words));
   section.add("</details>\n");
   return section;

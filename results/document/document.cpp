@@ -30,6 +30,11 @@ Number number(const Rate& rate, NumberForm form) {
   return rate.total == 0 ? Number{} : Number{rate.value, form, rate.interval};
 }
 
+std::string share_words(const Rate& rate) {
+  return fmt::format("{:.1f} % ({:.1f} to {:.1f})", 100 * rate.value, 100 * rate.interval.lower,
+                     100 * rate.interval.upper);
+}
+
 Number number_of(const Rate& rate, NumberForm form) {
   return rate.total == 0 ? Number{} : Number{rate.value, form, rate.interval, rate.total};
 }

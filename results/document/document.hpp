@@ -56,6 +56,8 @@ inline Number fixed(double value, const Interval& interval = {kNaN, kNaN}) {
 inline Number share(double value) {
   return {value, NumberForm::share};
 }
+/// "97.1 % (94.5 to 98.5)": in a sentence.
+std::string share_words(const Rate& rate);
 /// A rate without loops is a dash.
 Number number(const Rate& rate, NumberForm form = NumberForm::share);
 /// With the number of its loops.

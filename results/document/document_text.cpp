@@ -172,12 +172,17 @@ std::string table_text(const Table& whole, std::size_t width) {
 
 std::string document_text(const Document& document, std::size_t width, bool full) {
   std::string text;
+  bool is_whole = true;
   for (const std::string* words : {&document.heading, &document.lead})
     if (!words->empty())
       text += paragraph_text(*words, width);
   for (const Section& section : document.sections) {
-    if (section.shown == Shown::page || (section.shown == Shown::full && !full))
+    if (section.shown == Shown::page)
       continue;
+    if (section.shown == Shown::full && !full) {
+      is_whole = false;
+      continue;
+    }
     if (!section.title.empty())
       text += "\n" + paragraph_text(section.title, width);
     bool after_table = false;
@@ -188,7 +193,7 @@ std::string document_text(const Document& document, std::size_t width, bool full
         after_table = is_table;
       }
   }
-  return text;
+  return is_whole ? text : text + "\nMore with --full.\n";
 }
 
 }  // namespace mpm

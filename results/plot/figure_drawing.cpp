@@ -17,9 +17,9 @@
 namespace mpm {
 namespace {
 
-constexpr double kLegendRow = 20;   // pixels
-constexpr double kHeadingRow = 18;  // pixels
-constexpr double kPixelsPerInch = 96;
+constexpr double kLegendRow = 18;      // pixels
+constexpr double kHeadingRow = 18;     // pixels
+constexpr double kColumnInches = 3.5;  // of a two-column paper: one panel fills it, two fill the page
 
 /// What all plots have in common: two thin axes, a pale grid, no box.
 constexpr const char* kHouseStyle = R"(reset
@@ -44,8 +44,10 @@ std::string terminal(FigureFormat format, double width, double height) {
       return fmt::format("set terminal svg size {},{} fixed enhanced font 'Arial,12' background '#FFFFFF'\n",
                          width, height);
     case FigureFormat::pdf:
-      return fmt::format("set terminal pdfcairo size {}in,{}in enhanced font 'Arial,9' linewidth 0.75\n",
-                         width / kPixelsPerInch, height / kPixelsPerInch);
+      return fmt::format(
+          "set terminal pdfcairo size {}in,{}in enhanced font 'Arial,7.2' fontscale 0.75 linewidth 0.6 "
+          "pointscale 0.8\n",
+          width * kColumnInches / kPanelWidth, height * kColumnInches / kPanelWidth);
     case FigureFormat::png:
       return fmt::format(
           "set terminal pngcairo size {},{} enhanced font 'Arial,9' fontscale 2 linewidth 2 pointscale 2\n",
@@ -89,16 +91,17 @@ std::string heading_script(const std::vector<std::string>& heading, double heigh
   return script + "plot NaN notitle\n";
 }
 
-/// The legend as a plot of its own that has nothing but a key.
-std::string legend_script(const std::vector<LegendEntry>& legend) {
+/// The legend as a plot of its own that has nothing but a key. Its rows are kLegendRow high: the terminal for
+/// SVG makes them 1.25 times as high as the others.
+std::string legend_script(const std::vector<LegendEntry>& legend, FigureFormat format) {
   std::vector<std::string> items;
   for (const LegendEntry& entry : legend)
     items.push_back(legend_item(entry));
   return fmt::format(
       "set margins 0, 0, 0, 0\nunset border\nunset tics\nunset grid\n"
-      "set key center center horizontal Left reverse samplen 2.2 maxcols {}\n"
+      "set key center center horizontal Left reverse samplen 2.2 maxcols {} spacing {}\n"
       "set xrange [0:1]\nset yrange [0:1]\nplot NaN notitle, {}\n",
-      legend.size(), fmt::join(items, ", "));
+      legend.size(), format == FigureFormat::svg ? 1.0 : 1.25, fmt::join(items, ", "));
 }
 
 /// Where things stand in the grid of a figure, in pixels from the top.
@@ -139,7 +142,8 @@ std::string figure_script(const Figure& figure, FigureFormat format) {
               heading_script(figure.heading, layout.height);
   top += layout.heading;
   if (!figure.legend.empty())
-    script += kHouseStyle + layout.place(0, top, layout.width, layout.legend) + legend_script(figure.legend);
+    script += kHouseStyle + layout.place(0, top, layout.width, layout.legend) +
+              legend_script(figure.legend, format);
   top += layout.legend;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const double height = layout.row_heights[i / layout.columns];

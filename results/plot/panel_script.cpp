@@ -15,7 +15,7 @@ namespace {
 /// are wider than letters are in the mean.
 int left_margin(const Axis& y) {
   if (y.words.empty())
-    return 8;
+    return 10;
   std::size_t longest = 0;
   for (const std::string& word : y.words)
     longest = std::max(longest, plain_label(word).size());

@@ -12,7 +12,7 @@ namespace mpm {
 /// up. The one that a panel is about is thick.
 Pen cv_pen(Eigen::Index cv, bool thick = false);
 
-/// How a method is drawn among others: neighbours differ in dash and mark as well.
+/// How a method is drawn among others: 21 differ in colour, and neighbours in dash and mark as well.
 Pen method_pen(std::size_t method);
 
 /// A threshold of the study, or an edge of its band.

@@ -15,6 +15,9 @@ namespace {
 
 using Methods = std::vector<MethodFindings>;
 
+/// Rows of more methods stand closer.
+constexpr std::size_t kFewMethods = 8;
+
 /// A curve in the pen of its method.
 Pen curve_pen(std::size_t method) {
   Pen pen = method_pen(method);
@@ -64,7 +67,7 @@ Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
       panel.level_whiskers({rate_whisker(methods[place], rate, at)}, whisker_pen(place));
   }
   return panel.finish(fmt::format("Share of loops with its interval, one row a method: {}.", info.meaning),
-                      70.0 + 28.0 * rows);
+                      70.0 + (places.size() > kFewMethods ? 18.0 : 28.0) * rows);
 }
 
 /// The curve with at most kMostPoints points, of which the first and the last are always there.

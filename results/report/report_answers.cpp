@@ -7,6 +7,7 @@
 
 #include "results/document/words.hpp"
 #include "results/plot/plot_text.hpp"
+#include "results/summary/comparison.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
@@ -14,25 +15,6 @@ namespace {
 
 double confidence_of(const ReportInput& input) {
   return input.campaign.study.aggregate.confidence;
-}
-
-/// The method that is right most often, of those that answer and detect; null when there is none. The first
-/// one wins a tie.
-const MethodFindings* best_method(const ReportInput& input, Rate MethodRates::*member) {
-  const MethodFindings* best = nullptr;
-  for (const MethodFindings& method : input.findings().methods)
-    if ((method.rates.*member).total > 0 && answers_and_detects(method.rates) &&
-        (best == nullptr || (method.rates.*member).value > (best->rates.*member).value))
-      best = &method;
-  return best;
-}
-
-/// Is there a method that was right or wrong on some loop?
-bool was_judged(const ReportInput& input) {
-  const std::vector<MethodFindings>& methods = input.findings().methods;
-  return std::any_of(methods.begin(), methods.end(), [](const MethodFindings& method) {
-    return method.rates.located.total > 0 || method.rates.source.total > 0;
-  });
 }
 
 std::string asked(const ReportInput& input) {
@@ -51,7 +33,7 @@ std::string asked(const ReportInput& input) {
 
 /// Where no method names a source: of the one that finds the CV most often. Empty when none names a CV.
 std::string found_of_cvs(const ReportInput& input) {
-  const MethodFindings* const best = best_method(input, &MethodRates::located);
+  const MethodFindings* const best = best_method(input.findings(), &MethodRates::located);
   if (best == nullptr)
     return "";
   return fmt::format(
@@ -75,7 +57,7 @@ std::string found(const ReportInput& input) {
   if (const Rate source = input.findings().source_recognised; source.total > 0)
     text += fmt::format("{}the source of a single fault in {}",
                         text.empty() ? "the chain of the thesis names " : " and ", share_words(source));
-  if (const MethodFindings* const best = best_method(input, &MethodRates::source);
+  if (const MethodFindings* const best = best_method(input.findings(), &MethodRates::source);
       best != nullptr && best != input.findings().chain())
     text += fmt::format("{}{} names the source most often, in {} of the loops it flags",
                         text.empty() ? "" : "; ", code(best->name()), share_words(best->rates.source));
@@ -83,7 +65,7 @@ std::string found(const ReportInput& input) {
     text = found_of_cvs(input);
   if (!text.empty())
     return text + ".";
-  return was_judged(input) ? "no method both answers nearly always and detects most faults."
+  return was_judged(input.findings()) ? "no method both answers nearly always and detects most faults."
                            : "no loop has a verdict that can be judged.";
 }
 
@@ -108,7 +90,7 @@ std::string advice(const ReportInput& input) {
     return "do not use these numbers: the basis case failed its self-check. Repair the study first.";
   if (input.campaign.study.names_scenarios())
     return "read the scenarios that went wrong, one by one.";
-  const MethodFindings* const best = best_method(input, &MethodRates::source);
+  const MethodFindings* const best = best_method(input.findings(), &MethodRates::source);
   if (best != nullptr && best != input.findings().chain())
     return advice_on(code(best->name()), best->rates.located, best->rates.source);
   if (input.kinds().empty())
@@ -130,11 +112,6 @@ std::string by_kind(const ReportInput& input, Rate KindFindings::*member) {
 }
 
 }  // namespace
-
-std::string share_words(const Rate& rate) {
-  return fmt::format("{:.1f} % ({:.1f} to {:.1f})", 100.0 * rate.value, 100.0 * rate.interval.lower,
-                     100.0 * rate.interval.upper);
-}
 
 std::string verdict_html(const ReportInput& input) {
   std::string html;
@@ -238,24 +215,6 @@ std::string fault_size_answer(const std::vector<SizedFault>& faults, double conf
                               "but assigned to a wrong CV or source.",
                               total, share_words(rate(missed, total, confidence)),
                               share_words(rate(wrong, total, confidence)));
-}
-
-std::string comparison_answer(const ReportInput& input) {
-  std::string text;
-  const auto best = [&](const char* what, Rate MethodRates::*member) {
-    if (const MethodFindings* const method = best_method(input, member))
-      text += fmt::format("{}{} by {}, {}", text.empty() ? "" : "; ", what, code(method->name()),
-                          share_words(method->rates.*member));
-  };
-  best("the CV is found most often", &MethodRates::located);
-  best("the source", &MethodRates::source);
-  best("the channel", &MethodRates::channel);
-  if (text.empty())
-    return was_judged(input)
-               ? "No method both answers nearly always and detects most faults, so none is called best."
-               : "";
-  text.front() = 'T';
-  return text + ". The table shows the false alarms that each one costs.";
 }
 
 std::string s0_answer(const ReportInput& input) {

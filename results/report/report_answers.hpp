@@ -13,8 +13,6 @@
 
 namespace mpm {
 
-/// "97.1 % (94.5 to 98.5)", the interval with the confidence of the study.
-std::string share_words(const Rate& rate);
 
 /// The first three sentences of the page: what was asked, what came out, and what to do.
 std::string verdict_html(const ReportInput& input);
@@ -28,7 +26,6 @@ std::string dominance_answer(const ReportInput& input);
 std::string roc_answer(const RocCurve& curve, const Interval& area, const RocPoint& at_study);
 /// `faults`: all experiments with a single fault, whatever its size is measured by.
 std::string fault_size_answer(const std::vector<SizedFault>& faults, double confidence);
-std::string comparison_answer(const ReportInput& input);
 std::string s0_answer(const ReportInput& input);
 std::string interaction_answer(const ReportInput& input, const LoopInteraction& interaction);
 

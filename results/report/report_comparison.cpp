@@ -50,7 +50,7 @@ Section comparison_section(const ReportInput& input) {
     section.leave_out("no experiment ran to its end.");
     return section;
   }
-  section.answer = comparison_answer(input);
+  section.answer = comparison_answer(summary);
   section.say(fmt::format(
       "Every method has assessed the same {} of {} experiments, those that ran to their end. It saw of each "
       "what a historian would have kept. Judge detection and false alarms together: a method that flags "

@@ -284,8 +284,9 @@ Document leaderboard_document(const Leaderboard& board) {
   const std::string name = fmt::format("{} {}", board.suite, board.version);
   Document document{
       name, as_label("Suite " + name),
-      fmt::format("{}: {} cells ({} plants, {} families), {} experiments, seed {}.{}", as_label(board.title),
-                  cells, board.plants.size(), board.families.size(), experiments, board.seed,
+      fmt::format("{}: {} ({}, {}), {} experiments, seed {}.{}", as_label(board.title),
+                  counted(cells, "cell"), counted(std::ssize(board.plants), "plant"),
+                  counted(std::ssize(board.families), "family", "families"), experiments, board.seed,
                   board.finished_by.empty()
                       ? ""
                       : fmt::format(" With the finished run of {}.", as_label(board.finished_by))),

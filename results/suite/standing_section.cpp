@@ -85,9 +85,10 @@ std::string standing_sentence(const Leaderboard& board, std::size_t method,
         name);
   const auto others = static_cast<int>(standing->duels.size());
   return fmt::format(
-      "{} is number {} of {} {}, at 5 % false alarms. Paired on the same loops it beats {} of the {} "
-      "others, loses to {}, and cannot be told from {}.",
-      name, standing->place, others + 1, asked_of(*standing), standing->won(), others, standing->lost(),
+      "{} is number {} of {} {}, at 5 % false alarms. Paired on the same loops with {} it beats {}, "
+      "loses to {}, and cannot be told from {}.",
+      name, standing->place, others + 1, asked_of(*standing),
+      others == 1 ? "the other" : fmt::format("the {} others", others), standing->won(), standing->lost(),
       others - standing->won() - standing->lost());
 }
 

@@ -8,6 +8,19 @@
 
 namespace mpm {
 
+/// The method that is right most often, of those that answer and detect; null when there is none. The first
+/// one wins a tie.
+const MethodFindings* best_method(const StudyFindings& findings, Rate MethodRates::*rate);
+
+/// Is there a method that was right or wrong on some loop?
+bool was_judged(const StudyFindings& findings);
+
+/// Words: which method finds the CV, the source and the channel most often; empty where no loop was judged.
+std::string comparison_answer(const StudyFindings& findings);
+
+/// The rates that matter most, one row a method, for one screen.
+Section comparison_overview(const Campaign& campaign, const StudyFindings& findings);
+
 /// How often each method of the campaign is right, side by side, and which of two is right where the other is
 /// not.
 Section comparison_section(const Campaign& campaign, const StudyFindings& findings);
@@ -15,7 +28,7 @@ Section comparison_section(const Campaign& campaign, const StudyFindings& findin
 /// "wood-berry: 12 of 14 experiments compared"
 std::string comparison_heading(const Study& study, const StudyFindings& findings);
 
-/// The section under this heading. Its data have an array `methods`, one object a method, and an array
+/// The overview under this heading, and the whole comparison for those who ask for it. Its data have an array `methods`, one object a method, and an array
 /// `pairs`. `campaign` and `findings` must outlive it.
 Document comparison_document(const Campaign& campaign, const StudyFindings& findings);
 

@@ -161,7 +161,7 @@ std::vector<MethodRateInfo> counted_rates(const Methods& methods) {
 }
 
 Section comparison_section(const Campaign& campaign, const StudyFindings& findings) {
-  Section section{"comparison", "Which method is right most often?"};
+  Section section{"comparison-rates", "All rates"};
   section.add(rates_table(campaign.study, findings.methods));
   section.say(whose_intervals(campaign.study.world.has_value()));
   add_marks(section, findings.methods);
@@ -178,9 +178,11 @@ std::string comparison_heading(const Study& study, const StudyFindings& findings
 }
 
 Document comparison_document(const Campaign& campaign, const StudyFindings& findings) {
-  Section section = comparison_section(campaign, findings);
-  section.data = [&](nlohmann::ordered_json& json) { put_comparison(json, campaign, findings); };
-  return {.heading = comparison_heading(campaign.study, findings), .sections = {std::move(section)}};
+  Section overview = comparison_overview(campaign, findings), whole = comparison_section(campaign, findings);
+  overview.data = [&](nlohmann::ordered_json& json) { put_comparison(json, campaign, findings); };
+  whole.shown = Shown::full;
+  return {.heading = comparison_heading(campaign.study, findings),
+          .sections = {std::move(overview), std::move(whole)}};
 }
 
 }  // namespace mpm

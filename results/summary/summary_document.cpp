@@ -9,6 +9,7 @@
 #include "results/summary/summary_content.hpp"
 #include "results/summary/summary_data.hpp"
 #include "results/summary/summary_sections.hpp"
+#include "results/text/experiment_text.hpp"
 
 namespace mpm {
 namespace {
@@ -55,8 +56,8 @@ Section findings_section(const Campaign& campaign, const SummaryContent& parts) 
 
 /// A table of the first ones, and how many there are.
 void add_first(Section& section, const std::string& what, Table table, std::size_t count) {
-  section.say(
-      fmt::format("{} experiment{} {}{}", count, count == 1 ? "" : "s", what, table.rows.empty() ? "" : ":"));
+  section.say(fmt::format("{} {}{}", counted(static_cast<std::int64_t>(count), "experiment"), what,
+                          table.rows.empty() ? "" : ":"));
   add_table(section, std::move(table));
   if (count > kMostListed)
     section.say(fmt::format("and {} more", count - kMostListed));
@@ -102,6 +103,7 @@ Document summary_document(const Campaign& campaign, const StudyFindings& finding
   };
   if (findings.methods.size() > 1 || findings.chain() == nullptr) {
     document.sections.push_back({"compared", comparison_heading(campaign.study, findings)});
+    document.sections.push_back(comparison_overview(campaign, findings));
     document.sections.push_back(comparison_section(campaign, findings));
   }
   return document;

@@ -23,10 +23,6 @@ bool is_own(const StudyFindings& findings, const std::string& method) {
 
 namespace {
 
-std::string plural(std::int64_t count, const std::string& thing) {
-  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
-}
-
 /// Where the controller works, and how its loops interact there.
 std::string interaction_words(const Study& study, const BasisCase& basis) {
   const LoopInteraction interaction = loop_interaction(study, basis.point, basis.sensitivity);
@@ -127,14 +123,14 @@ std::string audit_words(const SummaryContent& parts, const CampaignInfo& info) {
   const AuditSummary& audit = parts.audit;
   const std::string fallbacks = parts.fallbacks == 0
                                     ? "no problem fell back to Ipopt"
-                                    : plural(parts.fallbacks, "problem") + " fell back to Ipopt";
+                                    : counted(parts.fallbacks, "problem") + " fell back to Ipopt";
   if (audit.steps == 0)
     return fallbacks + "; no step audited";
   return fmt::format(
       "{}; {} also solved by Ipopt: {} with another status, moves differ by at most {:.1e}, targets by "
       "{:.1e}, "
       "objectives by {:.1e}; {:.1f} s of processor time",
-      fallbacks, plural(audit.steps, "step"), audit.disagreements, audit.largest_move, audit.largest_target,
+      fallbacks, counted(audit.steps, "step"), audit.disagreements, audit.largest_move, audit.largest_target,
       audit.largest_objective, info.audit_seconds);
 }
 
@@ -157,8 +153,8 @@ Facts run_facts(const Campaign& campaign, const SummaryContent& parts) {
   Facts facts;
   facts.add("study", as_label(fmt::format("{}: {}", study.name, study.title)));
   facts.add("plant", as_label(plant.name),
-            fmt::format("{}, {}, {}", plural(std::ssize(plant.cvs), "CV"),
-                        plural(std::ssize(plant.mvs), "MV"), plural(std::ssize(plant.mds), "MD")));
+            fmt::format("{}, {}, {}", counted(std::ssize(plant.cvs), "CV"),
+                        counted(std::ssize(plant.mvs), "MV"), counted(std::ssize(plant.mds), "MD")));
   facts.add("controller", controller_words(study),
             fmt::format("sample time {:g} {}, prediction horizon {}, control horizon {}",
                         study.controller.sample_time, as_label(plant.time_unit),
@@ -178,7 +174,7 @@ Facts run_facts(const Campaign& campaign, const SummaryContent& parts) {
   if (!info.outside_files.empty())
     facts.add("from outside", as_label(info.outside_files));
   facts.add("run", fmt::format("{}, {:.1f} s with {}", as_label(info.created), info.seconds,
-                               plural(std::max(info.jobs, 0), "job")));
+                               counted(std::max(info.jobs, 0), "job")));
   if (info.solver == "auto" && !study.controller_program)
     facts.add("audit", audit_words(parts, info));
   if (campaign.basis.sensitivity_direct)

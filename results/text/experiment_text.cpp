@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -99,8 +100,7 @@ std::string signal_text(const Study& study, const DisturbanceSignal& signal) {
     return fmt::format("random walk of {:.3g}", walk->factor * study.disturbance.v_standard_deviation);
   if (const auto* bursts = std::get_if<Bursts>(&signal))
     return fmt::format("bursts of {:.3g}", bursts->factor * study.disturbance.v_standard_deviation);
-  const std::size_t steps = std::get<StepSequence>(signal).steps.size();
-  return fmt::format("{} step{}", steps, steps == 1 ? "" : "s");
+  return counted(std::ssize(std::get<StepSequence>(signal).steps), "step");
 }
 
 /// The white signal of a random disturbance is not worth a word.
@@ -155,6 +155,10 @@ std::string whose_intervals(bool in_worlds) {
                    : "Intervals hold for the one benchmark from which the methods of this study have learnt. "
                      "Over 14 benchmarks, the number of false alarms of sse, likelihood and arx-oe, and "
                      "under coloured noise, had 3 to 6 times the variance of a binomial number.";
+}
+
+std::string counted(std::int64_t count, const std::string& thing, const std::string& things) {
+  return fmt::format("{} {}", count, count == 1 ? thing : things.empty() ? thing + "s" : things);
 }
 
 std::string kind_name(ExperimentKind kind) {

@@ -12,6 +12,9 @@ namespace mpm {
 /// One sentence.
 std::string whose_intervals(bool in_worlds);
 
+/// "1 cell", "3 cells", "2 families": with an s unless `things` is given.
+std::string counted(std::int64_t count, const std::string& thing, const std::string& things = "");
+
 // How reports name experiments and what is in them; plain text. Foreign names in it are as in the study.
 
 /// "healthy", "MPM", "UD", "MPM+UD", "tuning".

@@ -60,6 +60,22 @@ TEST_CASE("progress: the last experiment is shown, with those that failed, and e
   CHECK_THAT(on_terminal, EndsWith(", 1 failed\033[K\r\nstudy 2\r\n"));
 }
 
+TEST_CASE("progress: of work in pieces, the time left is that of all of them") {
+  const std::string text = shown(Screen::pipe, [] {
+    Progress progress(false);
+    progress.plan(1000012);
+    progress.skip(2);
+    progress.begin(2);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    progress.advance();
+    progress.advance();  // at most 100 a second: 10000 seconds or more are left
+    progress.begin(1000000, 999999);
+    progress.advance();  // eight are left
+  });
+  CHECK_THAT(text, Contains("2/2 experiments, ") && Contains(" h left in all\n"));
+  CHECK_THAT(text, Contains("1000000/1000000 experiments, ") && Contains(" s left in all\n"));
+}
+
 TEST_CASE("progress: an exception ends the line on a terminal") {
   const std::string text = shown(Screen::terminal, [] {
     try {

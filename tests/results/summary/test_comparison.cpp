@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "analysis/findings/method_rates.hpp"
@@ -67,6 +68,21 @@ TEST_CASE(
     CHECK(end - start <= 110);
     start = end + 1;
   }
+}
+
+TEST_CASE("comparison text: without the rest, a screen with one row a method that has a verdict") {
+  const Campaign campaign = four_methods();
+  const StudyFindings findings = findings_of(campaign);
+  const std::string text = document_text(comparison_document(campaign, findings), kTerminalWidth, false);
+  CHECK(std::count(text.begin(), text.end(), '\n') <= 20);
+  const Rate& located = findings.methods[0].rates.located;
+  REQUIRE(located.total > 0);
+  CHECK_THAT(text, Contains(fmt::format("{:.0f} [{:.0f}, {:.0f}]", 100 * located.value,
+                                        100 * located.interval.lower, 100 * located.interval.upper)));
+  for (const MethodFindings& method : findings.methods)
+    CHECK_THAT(text, Contains("\n" + method.name() + " "));
+  CHECK_THAT(text, !Contains("Healthy flagged") && Contains("No loop was healthy"));
+  CHECK_THAT(text, !Contains("McNemar") && Catch::EndsWith("\nMore with --full.\n"));
 }
 
 TEST_CASE("comparison text: one method has no pairs, and what was not counted is left out") {
