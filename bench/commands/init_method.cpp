@@ -21,7 +21,7 @@
 namespace mpm {
 namespace {
 
-// {0} is the name of the method in both.
+// {0} is the name of the method in both, {1} in Python the folder of the package.
 
 constexpr std::string_view kPythonMethod =
     R"("""{0}: a method of assessment for mpmbench, by the Python package mpmbench (docs/python.md).
@@ -31,8 +31,12 @@ constexpr std::string_view kPythonMethod =
 In a notebook: mpmbench.open("ARCHIVE.h5").compare(assess).
 """
 
-import mpmbench
+import sys
+
 import numpy
+
+sys.path.append({1:?})  # of the mpmbench that wrote this file; a package that is installed comes before
+import mpmbench  # noqa: E402
 
 
 def mean_squares(loop):
@@ -86,6 +90,15 @@ std::filesystem::path octave_folder() {
                                                                : data.parent_path() / "octave";
 }
 
+/// The folder of the Python package: that of an installed program, or of its source tree.
+std::filesystem::path python_folder() {
+  const std::filesystem::path data = study_directory().parent_path();
+  const std::filesystem::path installed = data.parent_path().parent_path() / "lib/python3/dist-packages";
+  std::error_code error;
+  return std::filesystem::is_directory(installed / "mpmbench", error) ? installed
+                                                                      : data.parent_path() / "python";
+}
+
 /// What runs a method in the language of this file; empty: none is known.
 std::vector<std::string> command_of(const std::filesystem::path& file) {
   if (file.extension() == ".py")
@@ -111,7 +124,8 @@ ExitCode init_method(const std::filesystem::path& file) {
                                "time_limit = 60                 # seconds for an answer\n"
                                "options = {{threshold = 1.5}}     # given to the function\n",
                                name, fmt::join(command, ", ")));
-  write_new(file, fmt::format(fmt::runtime(file.extension() == ".py" ? kPythonMethod : kOctaveMethod), name));
+  write_new(file, fmt::format(fmt::runtime(file.extension() == ".py" ? kPythonMethod : kOctaveMethod), name,
+                              python_folder().string()));
   print_result(
       fmt::format("{0}, {1}: fill in the function `assess`, then:\n"
                   "  mpmbench suite quick --method-file {1} -o {2}-on-the-board\n"

@@ -1,3 +1,4 @@
+#include <fstream>
 #include <memory>
 #include <string>
 
@@ -6,13 +7,21 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
+#include "bench/files/archive_input.hpp"
+#include "results/records/netcdf_columns.hpp"
 #include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {
 
+bool is_archive(const std::string& file) {
+  std::string start(8, '\0');
+  std::ifstream(file, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  return is_hdf5(start);
+}
+
 ExitCode show(const std::string& study) {
-  print_result(find_study(study).source);
+  print_result(is_archive(study) ? stream_input(study).study.source : find_study(study).source);
   return ExitCode::done;
 }
 
@@ -22,7 +31,9 @@ void add_show(CommandSet& commands) {
   const auto study = std::make_shared<std::string>();
   CLI::App& app =
       commands.add("show", "Print the text of a study, to copy and change", [study] { return show(*study); });
-  add_path(app, "STUDY", *study, "Name of a shipped study, study file, or - for stdin")->required();
+  add_path(app, "STUDY", *study,
+           "Name of a shipped study, study file, - for stdin, or an archive: the study that it ran")
+      ->required();
 }
 
 }  // namespace mpm

@@ -43,10 +43,10 @@ void run_series(const std::vector<IntendedStudy>& studies, const RunOptions& opt
                                       progress.note(name + (is_there ? ", done already" : ""));
                                     });
       if (!run.trouble.empty())
-        progress.warn(fmt::format("{}: {}", study.name, run.trouble));
+        progress.warn(fmt::format("{}: {}", name, run.trouble));
       take(place, std::move(run));
     } catch (const Interrupted& error) {
-      throw std::runtime_error(fmt::format("{}, in {}{}", progress.explain(error), study.name,
+      throw std::runtime_error(fmt::format("{}, in {}{}", progress.explain(error), name,
                                            how_to_go_on("in " + output, command_line)));
     }
   }

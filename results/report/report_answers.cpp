@@ -66,7 +66,7 @@ std::string found(const ReportInput& input) {
   if (!text.empty())
     return text + ".";
   return was_judged(input.findings()) ? "no method both answers nearly always and detects most faults."
-                           : "no loop has a verdict that can be judged.";
+                                      : "no loop has a verdict that can be judged.";
 }
 
 /// What a plant would do with what `who` says. The limits are those of a tool that is right nine times in

@@ -13,7 +13,6 @@
 
 namespace mpm {
 
-
 /// The first three sentences of the page: what was asked, what came out, and what to do.
 std::string verdict_html(const ReportInput& input);
 

@@ -118,7 +118,8 @@ std::string leaderboard_latex(const Leaderboard& board) {
   std::string text = fmt::format(
       "% {} {}, seed {}, mpmbench {}: % of loops with {:g} % intervals.\n"
       "% $\\sim$: it gives verdicts on fewer than {:g} % of the loops.\n"
-      "% \\usepackage{{booktabs}}\n\\begingroup\\small\\setlength{{\\tabcolsep}}{{3pt}}% fits the text of article\n"
+      "% \\usepackage{{booktabs}}\n\\begingroup\\small\\setlength{{\\tabcolsep}}{{3pt}}% fits the text of "
+      "article\n"
       "\\begin{{tabular}}{{l{}}}\n\\toprule\nMethod",
       board.suite, board.version, board.seed, board.program, 100 * board.confidence, 100 * kFewestAnswers,
       std::string(columns.size(), 'r'));

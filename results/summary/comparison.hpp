@@ -28,8 +28,8 @@ Section comparison_section(const Campaign& campaign, const StudyFindings& findin
 /// "wood-berry: 12 of 14 experiments compared"
 std::string comparison_heading(const Study& study, const StudyFindings& findings);
 
-/// The overview under this heading, and the whole comparison for those who ask for it. Its data have an array `methods`, one object a method, and an array
-/// `pairs`. `campaign` and `findings` must outlive it.
+/// The overview under this heading, and the whole comparison for those who ask for it. Its data have an array
+/// `methods`, one object a method, and an array `pairs`. `campaign` and `findings` must outlive it.
 Document comparison_document(const Campaign& campaign, const StudyFindings& findings);
 
 /// These data.

@@ -65,6 +65,7 @@ def main(program, chapter6):
         summary = json.loads(run("summary", archive, "--json").stdout)
         assert summary["experiments"] == 6 and summary["basis"]["healthy"], summary
         assert "bit-identical" in run("replay", archive, 3).stdout
+        assert run("show", archive).stdout == pathlib.Path(chapter6).read_text()
         assert "allowed: 0 to 5" in run("replay", archive, 6, code=2).stderr
 
         sweep = folder / "sweep.toml"

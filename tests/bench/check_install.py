@@ -58,7 +58,7 @@ def check_completion(prefix, program):
 
 
 def check_python(prefix, program):
-    """The package finds the program of its prefix, and init-method the +mpmbench of it."""
+    """The package finds the program of its prefix, and init-method both packages of it."""
     packages = prefix / "lib/python3/dist-packages"
     environment = {**os.environ, "PYTHONPATH": str(packages), "PATH": "/usr/bin:/bin", "PYTHONDONTWRITEBYTECODE": "1"}
     environment.pop("MPMBENCH_PROGRAM", None)
@@ -68,6 +68,8 @@ def check_python(prefix, program):
         run(program, "init-method", "mine.m", cwd=empty)
         command = tomllib.loads((pathlib.Path(empty) / "mine.toml").read_text())["method"]["mine"]["command"]
         assert (pathlib.Path(command[command.index("--path") + 1]) / "+mpmbench/serve.m").is_file(), command
+        run(program, "init-method", "other.py", cwd=empty)
+        assert f'sys.path.append("{packages}")' in (pathlib.Path(empty) / "other.py").read_text()
 
 
 def check_embedding(cmake, prefix, sources, folder):

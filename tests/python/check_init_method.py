@@ -75,7 +75,7 @@ def main(program, sources, octave=""):
         # what they call python3 is the one with numpy
         (pathlib.Path(name) / "bin").mkdir()
         (pathlib.Path(name) / "bin/python3").symlink_to(sys.executable)
-        environment = {**os.environ, "PYTHONPATH": f"{sources}/python", "MPMBENCH_PROGRAM": program,
+        environment = {**os.environ, "MPMBENCH_PROGRAM": program,
                        "PATH": f"{name}/bin:{os.environ['PATH']}"}
         path = pathlib.Path(name) / "empty"
         path.mkdir()
