@@ -24,6 +24,7 @@ constexpr double kLargestNoiseShare = 0.05;  // of a range or a step; shipped st
 constexpr double kMostlyNoise = 0.5;         // of the variance of a CV
 constexpr double kOftenAtLimit = 0.1;        // of the samples of the basis case
 constexpr double kEdge = 0.75;               // of the way from 1 to the end of the band
+constexpr double kPoorStepFit = 0.01;        // of the largest coefficient
 constexpr int kFewSamples = 100;
 
 std::string_view name_of(const std::vector<PlantModel::Variable>& variables, Eigen::Index i) {
@@ -110,6 +111,18 @@ void check_times(const Study& study, Warnings& warnings) {
   else if (samples < kFewSamples)
     warnings.push_back({"simulation.samples", fmt::format("{}", samples),
                         "the variance of so few samples is mostly chance"});
+}
+
+void check_step_fits(const Study& study, Warnings& warnings) {
+  for (const PlantModel::StepFit& fit : study.plant.step_fits)
+    if (fit.error > kPoorStepFit)
+      warnings.push_back(
+          {"plant.channel[].step",
+           fmt::format("the transfer function of {}/{} leaves up to {:.2g} % of its coefficients",
+                       name_of(study.plant.cvs, fit.cv),
+                       input_names(study.plant)[static_cast<std::size_t>(fit.input)], 100 * fit.error),
+           "the study goes on with the transfer function: a controller with the coefficients has another "
+           "model"});
 }
 
 // --- Setpoints and limits ---
@@ -305,6 +318,7 @@ std::string to_string(const StudyWarning& warning) {
 std::vector<StudyWarning> study_warnings(const Study& study) {
   Warnings warnings;
   check_times(study, warnings);
+  check_step_fits(study, warnings);
   check_cvs(study, warnings);
   check_noise(study, warnings);
   check_excitation(study, warnings);

@@ -10,14 +10,15 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/identification/step_response_fit.hpp"
 #include "analysis/identification/step_test.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
+#include "bench/files/output_file.hpp"
 #include "plants/error.hpp"
+#include "plants/linear/step_response_fit.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/toml/toml_literal.hpp"
 
@@ -32,6 +33,7 @@ constexpr double kPoorFit = 0.99;         // explained share below which a fit i
 struct IdentifyArguments {
   std::string study;
   std::vector<std::string> steps;  ///< "NAME=SIZE"
+  std::string step_response;       ///< file to write; empty: none
   int samples = 0;                 ///< 0: those of the step responses of T0
   bool noise = false;
   bool json = false;
@@ -260,14 +262,33 @@ std::string model_toml_text(const Study& study, const Eigen::VectorXd& sizes,
   return text;
 }
 
+/// The responses themselves, as `init --step-response` reads them.
+std::string step_response_text(const Study& study, const std::vector<StepResponse>& responses) {
+  const std::vector<PlantModel::Variable> inputs = all_inputs(study);
+  std::string text = "time";
+  for (const PlantModel::Variable& cv : study.plant.cvs)
+    for (const PlantModel::Variable& input : inputs)
+      text += fmt::format(",{}/{}", cv.name, input.name);
+  for (Eigen::Index k = 0; k < responses.front().response.cols(); ++k) {
+    text += fmt::format("\n{}", static_cast<double>(k + 1) * study.controller.sample_time);
+    for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+      for (const StepResponse& of_input : responses)
+        text += fmt::format(",{}", of_input.response(cv, k));
+  }
+  return text + "\n";
+}
+
 ExitCode identify(const IdentifyArguments& arguments) {
   Progress progress(arguments.quiet);
   const Study study = find_study(arguments.study);
   const Eigen::VectorXd sizes = step_sizes(study, arguments.steps);
   const int samples = arguments.samples > 0 ? arguments.samples : study.sensitivity.samples;
-  const std::vector<IdentifiedChannel> channels = identified_channels(
-      study, step_test(study, {.sizes = sizes, .samples = samples, .noise = arguments.noise}), sizes);
+  const std::vector<StepResponse> responses =
+      step_test(study, {.sizes = sizes, .samples = samples, .noise = arguments.noise});
+  const std::vector<IdentifiedChannel> channels = identified_channels(study, responses, sizes);
   require_channels(study, channels, sizes);
+  if (!arguments.step_response.empty())
+    write_text(arguments.step_response, step_response_text(study, responses));
   for (const std::string& text : unconnected(study, channels))
     progress.note("warning: " + text);
   for (const IdentifiedChannel& channel : channels)
@@ -292,6 +313,10 @@ void add_identify(CommandSet& commands) {
   app.add_option("--samples", options->samples,
                  "Samples of a step response (default: sensitivity.samples of the study)")
       ->check(whole_number(8, 1000000));
+  add_path(
+      app, "--step-response", options->step_response,
+      "File to write with the step responses themselves (CSV, a column CV/INPUT for each channel), which "
+      "`init --step-response` reads");
   app.add_flag("--noise", options->noise, "Add the measurement noise of the study");
   add_json(app, options->json);
   add_quiet(app, options->quiet, "No warnings");

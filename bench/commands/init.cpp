@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/commands/sketch_words.hpp"
+#include "bench/commands/step_model.hpp"
 #include "bench/console/output.hpp"
 #include "bench/files/new_file.hpp"
 #include "plants/error.hpp"
@@ -27,7 +29,8 @@ namespace mpm {
 namespace {
 
 struct InitArguments {
-  std::string output, data;
+  std::string output, data, step_response;
+  std::optional<double> step_interval;
   SketchWords words;
 };
 
@@ -80,7 +83,8 @@ void require_model(const SketchWords& words) {
     throw InputError(words.cvs.empty() ? "--cvs" : "--mvs", "nothing",
                      "names separated by commas, or how many; without any option, questions on a terminal");
   if (words.channels.empty() && words.gains.empty())
-    throw InputError("--gains", "no model", "--gains with --time-constants, or --channel for each channel");
+    throw InputError("--gains", "no model",
+                     "--gains with --time-constants, --channel for each channel, or --step-response");
 }
 
 /// Puts what a file of records shows into what the options leave open.
@@ -132,6 +136,9 @@ ExitCode init(InitArguments arguments) {
   const bool to_stdout = arguments.output == "-";
   if (!to_stdout)
     require_new(arguments.output);
+  std::string fits;
+  if (!arguments.step_response.empty())
+    fits = take_step_model(arguments.words, arguments.step_response, arguments.step_interval);
   const bool nothing_said = arguments.words.cvs.empty() && arguments.words.mvs.empty();
   if (nothing_said && ::isatty(STDIN_FILENO) == 1)
     ask(arguments.words);
@@ -152,6 +159,7 @@ ExitCode init(InitArguments arguments) {
     print_result(text);
   else
     write_new(arguments.output, text);
+  print_note(fits);
   if (!basis.healthy)
     print_note(fmt::format(
         "mpmbench: warning: the basis case fails its self-check: {}\nThe first guesses of weights "
@@ -194,6 +202,13 @@ void add_init(CommandSet& commands) {
                  "Transfer function of a channel, CV,INPUT=NUMERATOR/DENOMINATOR[@DEAD_TIME], coefficients "
                  "in descending powers of s: y1,u1='4.05 / 50 1 @ 27'")
       ->allow_extra_args(false);
+  add_path(
+      app, "--step-response", options->step_response,
+      "File of the coefficients of step responses, a column CV/INPUT for each channel, as dynamic matrix "
+      "control has its model; --cvs and --mvs are then those of the file");
+  app.add_option("--step-interval", options->step_interval,
+                 "Time between two coefficients (default: from the column `time` of the file)")
+      ->check(positive_number());
   app.add_option("--sample-time", options->words.sample_time,
                  "Sample time (default: from the time constants)")
       ->check(positive_number());

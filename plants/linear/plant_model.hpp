@@ -30,6 +30,15 @@ struct PlantModel {
   std::vector<Variable> mds;
   TransferMatrix G;
 
+  /// A channel that was fitted to the coefficients of its step response.
+  struct StepFit {
+    Eigen::Index cv, input;
+    double error;  ///< largest one, as a share of the largest coefficient
+
+    bool operator==(const StepFit&) const = default;
+  };
+  std::vector<StepFit> step_fits = {};
+
   /// Errors: InputError if the plant, its time unit or a variable has an empty name, two variables have the
   /// same one, there is no CV or no MV, or G is not cvs x (mvs + mds).
   void validate() const;

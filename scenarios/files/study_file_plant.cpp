@@ -65,11 +65,13 @@ OptionKeys own_plant_keys(PlantModel& model) {
   };
   const auto take = [&model, listed = std::make_shared<std::set<std::pair<Eigen::Index, Eigen::Index>>>()](
                         const TomlTable& table, Channel& at) {
-    const TransferFunction channel = read_transfer_function(table);
+    const auto [channel, step_error] = read_transfer_function(table);
     refuse_unstable(table, channel);
     if (!listed->emplace(at.cv, at.input).second)
       table.refuse("", "a second channel from this input to this CV", "every channel once");
     model.G(at.cv, at.input) = channel;
+    if (table.has("step"))
+      model.step_fits.push_back({at.cv, at.input, step_error});
   };
   return {
       key::name("name", model.name, "short name"),

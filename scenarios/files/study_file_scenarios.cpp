@@ -76,7 +76,7 @@ OptionKeys mismatch_keys(ListedMismatch& listed, const Study& study) {
   const auto read_channel = [&listed](const TomlTable& table) {
     if (has_any(table, other_channel_keys())) {
       listed.mismatches.push_back(listed.at);
-      listed.mismatches.back().channel = read_transfer_function(table);
+      listed.mismatches.back().channel = read_transfer_function(table).function;
     }
   };
   const OptionKeys where{
@@ -201,7 +201,7 @@ OptionKeys disturbance_model_keys() {
 
 /// G_d of a disturbance; a first-order one is kept by its two numbers, as that of a random disturbance.
 void read_model(const TomlTable& table, double sample_time, Disturbance& disturbance) {
-  const TransferFunction Gd = read_transfer_function(table);
+  const TransferFunction Gd = read_transfer_function(table).function;
   refuse_growing(table, Gd);
   refuse_long_dead_time(table, "dead_time", Gd.dead_time(), sample_time);
   if (table.has("gain") && Gd.dead_time() == 0) {

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "plants/linear/step_response_fit.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_values.hpp"
@@ -14,6 +15,7 @@ namespace mpm {
 namespace {
 
 constexpr std::size_t kMaxCoefficients = 20;
+constexpr std::size_t kMaxStepCoefficients = 1000;
 
 /// Largest real part of the roots of p_0 s^n + ... + p_n, n >= 1, p_0 != 0, by the companion matrix. The unit
 /// of s is chosen so that the geometric mean of the roots is 1; without that, slow multiple roots would drown
@@ -35,6 +37,18 @@ double largest_real_part_of_roots(const Eigen::VectorXd& p) {
   return mean_root * companion.eigenvalues().real().maxCoeff();
 }
 
+WrittenTransferFunction read_step_coefficients(const TomlTable& table) {
+  for (const char* other : {"gain", "time_constant", "numerator", "denominator", "dead_time"})
+    if (table.has(other))
+      table.refuse(other, "a second way to write a channel", "step and step_interval alone");
+  const Eigen::VectorXd coefficients =
+      read_numbers(table, "step", NumberRule::finite(), kMaxStepCoefficients);
+  const double interval = read_number(table, "step_interval", NumberRule::positive());
+  const StepResponseFit fit =
+      table.located("step", [&] { return fit_step_coefficients(coefficients, interval); });
+  return {fit.channel, fit.largest_error};
+}
+
 }  // namespace
 
 OptionKeys transfer_function_keys(const std::string& input, const std::string& poles) {
@@ -53,26 +67,38 @@ OptionKeys transfer_function_keys(const std::string& input, const std::string& p
               .otherwise("none; with `numerator`")
               .allow("1 to 20 finite numbers, the first one not 0; " + poles),
           key::option("dead_time", "number", "dead time", "time")
-              .otherwise("0")
-              .allow(">= 0, at most 10000 sample times")};
+              .otherwise("0; not beside `step`")
+              .allow(">= 0, at most 10000 sample times"),
+          key::option("step", "list of numbers",
+                      "coefficients of the step response, as dynamic matrix control has them: values 1, 2, "
+                      "... intervals after a step of 1. The study goes on with the transfer function that "
+                      "is fitted to them",
+                      "CV / " + input)
+              .otherwise("none; with `step_interval`")
+              .allow("8 to 1000 finite numbers, until the response has settled"),
+          key::option("step_interval", "number", "time between two coefficients", "time")
+              .otherwise("none; with `step`")
+              .allow("> 0")};
 }
 
-TransferFunction read_transfer_function(const TomlTable& table) {
+WrittenTransferFunction read_transfer_function(const TomlTable& table) {
+  if (table.has("step") || table.has("step_interval"))
+    return read_step_coefficients(table);
   const double dead_time = read_number_or(table, "dead_time", NumberRule::at_least(0), 0.0);
   const bool first_order = table.has("gain") || table.has("time_constant");
   if (first_order == (table.has("numerator") || table.has("denominator"))) {
     table.refuse("", first_order ? "both ways to write a channel" : "no transfer function",
-                 "either gain and time_constant, or numerator and denominator");
+                 "either gain and time_constant, or numerator and denominator, or step and step_interval");
   }
   if (first_order) {
-    return TransferFunction::first_order(read_number(table, "gain", NumberRule::finite()),
-                                         read_number(table, "time_constant", NumberRule::positive()),
-                                         dead_time);
+    return {TransferFunction::first_order(read_number(table, "gain", NumberRule::finite()),
+                                          read_number(table, "time_constant", NumberRule::positive()),
+                                          dead_time)};
   }
   Eigen::VectorXd numerator = read_numbers(table, "numerator", NumberRule::finite(), kMaxCoefficients);
   Eigen::VectorXd denominator = read_numbers(table, "denominator", NumberRule::finite(), kMaxCoefficients);
-  return table.located(
-      "", [&] { return TransferFunction(std::move(numerator), std::move(denominator), dead_time); });
+  return {table.located(
+      "", [&] { return TransferFunction(std::move(numerator), std::move(denominator), dead_time); })};
 }
 
 void refuse_unstable(const TomlTable& table, const TransferFunction& channel) {

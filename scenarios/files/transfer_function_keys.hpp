@@ -14,8 +14,14 @@ inline constexpr double kMaxDeadTimeSamples = 10000;
 /// where they may lie.
 OptionKeys transfer_function_keys(const std::string& input, const std::string& poles);
 
+/// A transfer function as a table has it.
+struct WrittenTransferFunction {
+  TransferFunction function;
+  double step_error = 0.0;  ///< what it leaves of step coefficients, as a share of the largest of them
+};
+
 /// The transfer function in these keys of a table.
-TransferFunction read_transfer_function(const TomlTable& table);
+WrittenTransferFunction read_transfer_function(const TomlTable& table);
 
 /// Refuses a channel of a plant that is not stable: the targets of (6.19) need static gains, y_sim = G0 u of
 /// (6.4) runs away for an unstable model, and a plant starts in a steady state.

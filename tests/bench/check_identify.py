@@ -43,6 +43,18 @@ def main(program, fmu, base):
         assert abs(channel["gain"] - gain) <= 1e-5 * abs(gain) and channel["warning"] is None, (channel, written)
         assert channel["numerator"] and len(channel["denominator"]) >= 2 and channel["explained"] > 0.999, channel
 
+    # The responses themselves, from which `init` makes the same model.
+    with tempfile.TemporaryDirectory() as name:
+        model, study = pathlib.Path(name) / "model.csv", pathlib.Path(name) / "dmc.toml"
+        run("identify", "chapter6", "--step-response", model)
+        run("init", study, "--step-response", model, "--mds", "d1,d2")
+        from_file = channels(study.read_text())
+        assert set(from_file) == set(found), set(found) ^ set(from_file)
+        for key, (gain, lag, dead_time) in SHELL.items():
+            channel = from_file[key]
+            numbers = channel["gain"], channel["time_constant"], channel.get("dead_time", 0.0)
+            assert all(abs(a - b) <= 1e-6 * max(b, 1) for a, b in zip(numbers, (gain, lag, dead_time))), (key, channel)
+
     # Steps that move nothing give no model; one of them alone is told.
     tiny = [f"{step}=1e-12" for step in ("u1", "u2", "u3", "d1", "d2")]
     result = run("identify", "chapter6", *[word for step in tiny for word in ("--step", step)], code=2)

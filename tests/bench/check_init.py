@@ -3,9 +3,12 @@
 usage: check_init.py MPMBENCH
 """
 
+import json
+import math
 import os
 import pathlib
 import pty
+import re
 import subprocess
 import sys
 import tempfile
@@ -73,6 +76,8 @@ def main(program):
         said = run("run", folder / "ranges.toml", "-o", archive, "--experiments", 2, "--overwrite").stdout
         assert "passed" in said and "no problem fell back to Ipopt" in said, said
 
+        check_step_model(run, folder)
+
         # Nothing is overwritten, and what is wrong is said by option.
         assert "a file that is there" in run("init", study, *TANK, code=2).stderr and study.read_text() == text
         other = folder / "other.toml"
@@ -102,6 +107,44 @@ def main(program):
         assert toml["plant"]["time_unit"] == "h" and toml["controller"]["mv"]["u1"]["hard"] == [-4, 4]
         assert toml["plant"]["channel"] == [{"cv": "y1", "input": "u1", "gain": 2.0, "time_constant": 5.0,
                                              "dead_time": 1.0}]
+
+
+def check_step_model(run, folder):
+    """A model as dynamic matrix control has it: the transfer functions behind rounded coefficients come back."""
+    channels = {"top/reflux": (2.0, 20.0, 3.0), "top/feed": (-0.5, 8.0, 1.0), "bottom/reflux": (1.5, 12.0, 0.0)}
+    rows = [[k] + [round(gain * (1 - math.exp(-max(2 * k - dead, 0) / lag)), 5) for gain, lag, dead in channels.values()]
+            for k in range(1, 81)]
+    model = folder / "model.csv"
+    model.write_text("\n".join(",".join(map(str, row)) for row in [["time", *channels], [0, 0, 0, 0],
+                                                                  *([2 * row[0], *row[1:]] for row in rows)]))
+    study = folder / "dmc.toml"
+    said = run("init", study, "--step-response", model, "--mds", "feed").stderr
+    assert "top/reflux: gain 2, dead time 3, 1 lag; off by at most" in said, said
+    found = {f"{c['cv']}/{c['input']}": c for c in tomllib.loads(study.read_text())["plant"]["channel"]}
+    assert sorted(found) == sorted(channels)
+    for name, numbers in channels.items():
+        channel = found[name]
+        for is_now, was in zip((channel["gain"], channel["time_constant"], channel.get("dead_time", 0)), numbers):
+            assert abs(is_now - was) < 2e-3, (name, channel)
+    # The same coefficients in the study itself give the same plant.
+    steps = {name: f"step = {[row[1 + i] for row in rows]}\nstep_interval = 2\n" for i, name in enumerate(channels)}
+    head, *tables = re.sub(r"(?m)^#.*\n", "", study.read_text()).split("[[plant.channel]]")
+    for place, table in enumerate(tables):
+        cv, source = re.search(r'cv = "(\w+)"\ninput = "(\w+)"\n', table).groups()
+        tables[place] = re.sub(r"gain = .*\ntime_constant = .*\n(dead_time = .*\n)?", steps[f"{cv}/{source}"], table, count=1)
+    by_steps = folder / "by-steps.toml"
+    by_steps.write_text("[[plant.channel]]".join([head, *tables]))
+    impacts = [json.loads(run("validate", path, "--json", "--experiments", 8).stdout)["impact"]
+               for path in (study, by_steps)]
+    assert impacts[0] == impacts[1], impacts
+    for content, message in (("time,y/u\n" + "".join(f"{k},{0.1 * k}\n" for k in range(1, 61)), "a CV that integrates"),
+                             ("time,y/u\n1,1\n2,2\n4,3\n", "model.csv:4: time: found 4"),
+                             ("time,b\n1,2\n", "the column 'b'; allowed: CV/INPUT, or time"),
+                             ("y/u,y/v\n1,2\n", "--step-interval: found nothing; allowed: the time between"),
+                             ("time,y/u\n1,x\n", "model.csv:2: y/u: found 'x'")):
+        model.write_text(content)
+        said = run("init", folder / "other.toml", "--step-response", model, code=2).stderr
+        assert message in said, said
 
 
 def asked(program, study, answers):

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "analysis/identification/step_response_fit.hpp"
+#include "plants/linear/step_response_fit.hpp"
 #include "analysis/identification/step_test.hpp"
 #include "plants/error.hpp"
 #include "plants/linear/linear_plant.hpp"
@@ -71,6 +71,38 @@ TEST_CASE("noise neither makes a channel nor a richer form", "[step-test]") {
   CHECK(fit.channel.residence_time() == Approx(30.0).epsilon(0.2));
   CHECK(fit.rms_error == Approx(0.05).epsilon(0.2));
   CHECK(fit_step_response(Eigen::VectorXd::Zero(20), Ts, 0.0).channel.is_zero());
+}
+
+TEST_CASE("coefficients of a step response give the transfer function back exactly", "[step-test]") {
+  const double interval = 2.0;
+  for (const TransferFunction& channel :
+       {TransferFunction::first_order(-4.05, 50.0, 27.0),
+        TransferFunction(Eigen::VectorXd::Constant(1, 2.0), Eigen::Vector3d(400.0, 12.0, 1.0), 5.0),
+        TransferFunction(Eigen::Vector2d(-30.0, 1.0), Eigen::Vector3d(400.0, 50.0, 1.0), 3.0)}) {
+    const StepResponseFit fit = fit_step_coefficients(response_of(channel, interval, 150), interval);
+    CHECK(fit.channel.numerator().size() == channel.numerator().size());
+    CHECK(fit.largest_error < 1e-9);
+    CHECK(difference(channel, fit.channel, interval, 150) < 1e-9);
+  }
+  Eigen::VectorXd rounded = response_of(TransferFunction::first_order(4.05, 50.0, 27.0), interval, 150);
+  for (double& value : rounded)
+    value = std::round(1e3 * value) / 1e3;
+  CHECK(fit_step_coefficients(rounded, interval).largest_error < 5e-4 / 4.0 * 1.5);
+  // Three equal lags are none of the forms. The fit says what it leaves.
+  const TransferFunction third(Eigen::VectorXd::Ones(1), Eigen::Vector4d(8000.0, 1200.0, 60.0, 1.0), 0.0);
+  const StepResponseFit fit = fit_step_coefficients(response_of(third, interval, 120), interval);
+  CHECK(fit.largest_error == Approx(difference(third, fit.channel, interval, 120)).epsilon(1e-6));
+  CHECK(fit.largest_error > 1e-3);
+  CHECK(fit.largest_error < 0.02);
+}
+
+TEST_CASE("coefficients that have not settled are refused", "[step-test]") {
+  const TransferFunction lag = TransferFunction::first_order(2.0, 50.0, 0.0);
+  CHECK_THROWS_WITH(fit_step_coefficients(response_of(lag, 2.0, 40), 2.0),
+                    Contains("goes to 2; allowed: coefficients until the response has settled"));
+  CHECK_NOTHROW(fit_step_coefficients(response_of(lag, 2.0, 60), 2.0));
+  CHECK_THROWS_WITH(fit_step_coefficients(Eigen::VectorXd::LinSpaced(60, 0.1, 6.0), 1.0),
+                    Contains("a CV that integrates has no such model"));
 }
 
 TEST_CASE("bad step responses are refused", "[step-test]") {

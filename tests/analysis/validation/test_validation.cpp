@@ -36,6 +36,10 @@ TEST_CASE("a study as it should be has no warning, and each slip its own", "[val
     std::string key, words;
   };
   const std::vector<Slip> slips{
+      {[](Study& s) {
+         s.plant.step_fits = {{0, 1, 0.005}, {1, 0, 0.031}};
+       },
+       "plant.channel[].step", "y2/u1 leaves up to 3.1 % of its coefficients"},
       {[](Study& s) { s.controller.sample_time *= 60; }, "controller.sample_time",
        "is above the time constant of"},
       {[](Study& s) { s.controller.sample_time = 30; }, "controller.sample_time",

@@ -1,4 +1,4 @@
-#include "analysis/identification/step_response_fit.hpp"
+#include "plants/linear/step_response_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,9 @@ namespace mpm {
 namespace {
 
 constexpr Eigen::Index kFewestResponseSamples = 8;
-constexpr double kNegligibleResponseShare = 1e-3;  // of the largest value: less than a plant bends
-constexpr double kFastestLag = 0.02;  // time constant, in samples: a jump within the first of them
-constexpr double kSlowestLag = 20.0;  // time constant, in records
+constexpr double kUnsettledShare = 0.1;  // of the largest value
+constexpr double kFastestLag = 0.02;     // time constant, in samples: a jump within the first of them
+constexpr double kSlowestLag = 20.0;     // time constant, in records
 constexpr double kLeastDamping = 0.05, kMostDamping = 20.0;
 constexpr double kShortestDeadTime = 1e-6;  // in samples; less is none
 
@@ -158,7 +158,7 @@ StepCandidate best_of_form(const Eigen::VectorXd& response, StepForm form, doubl
 }  // namespace
 
 StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& response, double sample_time,
-                                  double negligible) {
+                                  double negligible, double share) {
   if (response.size() < kFewestResponseSamples)
     throw InputError("step response", fmt::format("{} samples", response.size()),
                      fmt::format("at least {}", kFewestResponseSamples));
@@ -169,7 +169,7 @@ StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& respo
   const Eigen::VectorXd values = response;
   const auto n = static_cast<double>(values.size());
   const double floor = std::max(negligible, 1e-300) * std::max(negligible, 1e-300) +
-                       std::pow(kNegligibleResponseShare * values.cwiseAbs().maxCoeff(), 2);
+                       std::pow(share * values.cwiseAbs().maxCoeff(), 2);
   const auto score = [&](const StepCandidate& candidate) {
     return n * std::log(candidate.error / n + floor) +
            static_cast<double>(candidate.parameters) * std::log(n);
@@ -180,7 +180,27 @@ StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& respo
       if (StepCandidate candidate = best_of_form(values, form, sample_time); score(candidate) < score(best))
         best = std::move(candidate);
   const double power = values.squaredNorm();
-  return {best.channel, std::sqrt(best.error / n), power > 0.0 ? 1.0 - best.error / power : 1.0};
+  StepResponseFit fit{.channel = best.channel,
+                      .rms_error = std::sqrt(best.error / n),
+                      .explained = power > 0.0 ? 1.0 - best.error / power : 1.0,
+                      .largest_error = 0.0};
+  if (power > 0.0) {
+    const Eigen::VectorXd found =
+        step_response(TransferMatrix{{fit.channel}}, sample_time, values.size()).front().transpose();
+    fit.largest_error = (found - values).cwiseAbs().maxCoeff() / values.cwiseAbs().maxCoeff();
+  }
+  return fit;
+}
+
+StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval) {
+  StepResponseFit fit = fit_step_response(coefficients, interval, 0.0, kNegligibleOfCoefficients);
+  const double last = coefficients(coefficients.size() - 1), gain = fit.channel.static_gain();
+  if (std::abs(last - gain) > kUnsettledShare * coefficients.cwiseAbs().maxCoeff())
+    throw InputError(
+        "step response",
+        fmt::format("{} at its end, where the fitted transfer function goes to {:.4g}", last, gain),
+        "coefficients until the response has settled; a CV that integrates has no such model");
+  return fit;
 }
 
 }  // namespace mpm

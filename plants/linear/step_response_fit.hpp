@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plants/linear/transfer_function.hpp"
+#include "plants/non_finite.hpp"
+
+namespace mpm {
+
+/// A transfer function that was fitted to a step response.
+struct StepResponseFit {
+  TransferFunction channel = TransferFunction::zero();
+  double rms_error = kNaN;      ///< of the response, in its unit
+  double explained = kNaN;      ///< 1 - sum of squared errors over sum of squares; 1 for no response at all
+  double largest_error = kNaN;  ///< of the response, as a share of its largest value; 0 for no response
+};
+
+/// What a fit may leave, as a share of the largest value of the response, without a reason for a richer form:
+/// of a plant, which bends more, and of coefficients, which are rounded.
+inline constexpr double kNegligibleOfPlant = 1e-3, kNegligibleOfCoefficients = 1e-6;
+
+/// The simplest of these forms that describes the unit step response `response` (values 1, 2, ... sample
+/// times after the step), by least squares:
+///
+///   0,   K e^{-theta s}/(tau s + 1),   (b_1 s + b_0) e^{-theta s}/(tau^2 s^2 + 2 tau xi s + 1), b_1 = 0 or
+///   free.
+///
+/// K and b follow linearly from the others (variable projection), which the Levenberg-Marquardt method finds
+/// from several starting points. The simplest is that with the least n log(mean squared error + f^2) +
+/// p log n: p parameters, n samples. f is what an error may be without a reason for a richer form:
+/// `negligible`, in the unit of the response, and `share` of its largest value. Errors: InputError for fewer
+/// than 8 samples, numbers that are not finite, or a sample time that is not > 0.
+StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& response, double sample_time,
+                                  double negligible, double share = kNegligibleOfPlant);
+
+/// A channel by the coefficients of its step response, as dynamic matrix control has them: values 1, 2, ...
+/// intervals after a step of 1. Errors: InputError as fit_step_response(), and for a response that has not
+/// settled, because the CV integrates or the coefficients are too few: its last value is more than a tenth of
+/// the largest one away from the static gain of the fit.
+StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval);
+
+}  // namespace mpm
