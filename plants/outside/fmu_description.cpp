@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstddef>
 #include <limits>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <pugixml.hpp>
 
 #include "plants/error.hpp"
+#include "plants/outside/fmi3.hpp"
 #include "plants/system/foreign_text.hpp"
 
 namespace mpm {
@@ -30,8 +32,14 @@ std::string attribute_of(const pugi::xml_node& node, const char* name, const std
   return attribute.value();
 }
 
-/// The element that says which type a variable has; the standard puts it among the children.
-std::string type_of(const pugi::xml_node& variable) {
+const char* real_of(FmiVersion version) {
+  return version == FmiVersion::two ? "Real" : "Float64";
+}
+
+/// The element that says which type a variable has: by FMI 2.0 among its children, by FMI 3.0 itself.
+std::string type_of(const pugi::xml_node& variable, FmiVersion version) {
+  if (version == FmiVersion::three)
+    return fmt::format("{}{}", variable.name(), variable.child("Dimension") ? " array" : "");
   for (const char* type : {"Real", "Integer", "Boolean", "String", "Enumeration"})
     if (variable.child(type))
       return type;
@@ -66,9 +74,9 @@ std::string identifier_of(const pugi::xml_node& co_simulation, const std::string
   return identifier;
 }
 
-FmuVariable read_variable(const pugi::xml_node& node, const std::string& file) {
+FmuVariable read_variable(const pugi::xml_node& node, FmiVersion version, const std::string& file) {
   return {.reference = reference_of(node, file),
-          .type = type_of(node),
+          .type = type_of(node, version),
           .causality = node.attribute("causality").as_string("local"),
           .variability = node.attribute("variability").as_string("continuous")};
 }
@@ -93,12 +101,13 @@ std::string_view causality_of(FmuRole role) {
 std::string names_of(const FmuDescription& description, FmuRole role) {
   std::vector<std::string> names;
   for (const auto& [name, variable] : description.variables)
-    if (variable.causality == causality_of(role) && variable.type == "Real")
+    if (variable.causality == causality_of(role) && variable.type == real_of(description.version))
       names.push_back(name);
   const bool all = names.size() <= kMostNames;
   if (!all)
     names.resize(kMostNames);
-  return names.empty() ? fmt::format("a Real {}; {} has none", causality_of(role), description.file)
+  return names.empty() ? fmt::format("a {} {}; {} has none", real_of(description.version), causality_of(role),
+                                     description.file)
                        : fmt::format("{}{}", fmt::join(names, ", "), all ? "" : ", ...");
 }
 
@@ -113,7 +122,7 @@ const FmuVariable& FmuDescription::variable(std::string_view name, FmuRole role,
   if (!fits(variable, role))
     throw InputError(place, fmt::format("'{}' of causality {}", name, variable.causality),
                      names_of(*this, role));
-  if (variable.type != "Real")
+  if (variable.type != real_of(version))
     throw InputError(place, fmt::format("'{}' of type {}", name, variable.type), names_of(*this, role));
   return variable;
 }
@@ -128,20 +137,30 @@ FmuDescription parse_fmu_description(const std::string& xml, const std::string& 
   if (!root)
     throw InputError(fmt::format("{}: {}", file, kDescriptionFile), "no element fmiModelDescription",
                      "the description of an FMU");
-  if (const std::string version = attribute_of(root, "fmiVersion", file); version != fmi2::kVersion)
-    throw InputError(fmt::format("{}: fmiVersion", file), fmt::format("'{}'", version),
-                     fmt::format("'{}'", fmi2::kVersion));
+  const std::string written = attribute_of(root, "fmiVersion", file);
+  if (written != fmi2::kVersion && written != fmi3::kVersion)
+    throw InputError(fmt::format("{}: fmiVersion", file), fmt::format("'{}'", written),
+                     fmt::format("'{}' or '{}'", fmi2::kVersion, fmi3::kVersion));
+  const FmiVersion version = written == fmi2::kVersion ? FmiVersion::two : FmiVersion::three;
   const pugi::xml_node co_simulation = root.child("CoSimulation");
   if (!co_simulation)
     throw InputError(fmt::format("{}: kind of the FMU", file),
                      root.child("ModelExchange") ? "model exchange alone" : "neither",
                      "co-simulation, which brings its own solver; export it as such");
-  FmuDescription description{.file = file,
-                             .guid = attribute_of(root, "guid", file),
-                             .identifier = identifier_of(co_simulation, file),
-                             .variables = {}};
-  for (const pugi::xml_node& node : root.child("ModelVariables").children("ScalarVariable"))
-    description.variables.emplace(attribute_of(node, "name", file), read_variable(node, file));
+  FmuDescription description{
+      .file = file,
+      .version = version,
+      .guid = attribute_of(root, version == FmiVersion::two ? "guid" : "instantiationToken", file),
+      .identifier = identifier_of(co_simulation, file),
+      .variables = {}};
+  for (const pugi::xml_node& node : root.child("ModelVariables"))
+    if (node.type() == pugi::node_element &&
+        (version == FmiVersion::three || std::string_view(node.name()) == "ScalarVariable")) {
+      const FmuVariable variable = read_variable(node, version, file);
+      description.variables.emplace(attribute_of(node, "name", file), variable);
+      for (const pugi::xml_node& alias : node.children("Alias"))
+        description.variables.emplace(attribute_of(alias, "name", file), variable);
+    }
   return description;
 }
 

@@ -8,10 +8,13 @@
 
 namespace mpm {
 
+/// Of the interface of an FMU.
+enum class FmiVersion { two, three };
+
 /// A variable as modelDescription.xml declares it.
 struct FmuVariable {
   fmi2::ValueReference reference = 0;
-  std::string type;         ///< "Real", "Integer", ...
+  std::string type;         ///< "Real", "Integer", ...; by FMI 3.0 "Float64", "Int32", ...
   std::string causality;    ///< "input", "output", "parameter", "local", ...
   std::string variability;  ///< "fixed", "tunable", "continuous", ...
 };
@@ -23,15 +26,16 @@ enum class FmuRole {
   parameter,  ///< of causality parameter
 };
 
-/// modelDescription.xml of an FMU for co-simulation (FMI 2.0, 2.2 and 4.3).
+/// modelDescription.xml of an FMU for co-simulation (FMI 2.0, 2.2 and 4.3; FMI 3.0, 2.4 and 4.3).
 struct FmuDescription {
-  std::string file;        ///< of the FMU, for messages
-  std::string guid;        ///< which the library compares with its own
+  std::string file;  ///< of the FMU, for messages
+  FmiVersion version = FmiVersion::two;
+  std::string guid;        ///< which the library compares with its own; by FMI 3.0 the instantiation token
   std::string identifier;  ///< name of the library
   std::map<std::string, FmuVariable, std::less<>> variables;
 
   /// The variable of this name. Errors: InputError at `place`, which lists names of that role, for one that
-  /// is not there, has another causality or is no Real.
+  /// is not there, has another causality or is no real number.
   const FmuVariable& variable(std::string_view name, FmuRole role, const std::string& place) const;
 };
 

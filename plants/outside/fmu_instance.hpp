@@ -1,19 +1,18 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
+#include <memory>
 
 #include <Eigen/Core>
 
-#include "plants/outside/fmi2.hpp"
+#include "plants/outside/fmu_calls.hpp"
 #include "plants/outside/fmu_package.hpp"
 
 namespace mpm {
 
 /// The value references of the variables that a study uses, each list in the order of its numbers.
 struct FmuReferences {
-  std::vector<fmi2::ValueReference> inputs, outputs, parameters;
+  FmuCalls::References inputs, outputs, parameters;
 };
 
 /// The communication steps of a sample, in the time of the FMU.
@@ -35,8 +34,7 @@ class FmuInstance {
  public:
   /// Instantiates the FMU and initialises it with these parameters and inputs, at time 0, for an experiment
   /// that ends after kMostSamples samples: an FMU may end where its own default experiment does if nobody
-  /// tells it. Names that this program has as well, such as those of CVODE and LAPACK, are first looked for
-  /// in its own library.
+  /// tells it.
   FmuInstance(const FmuPackage& package, const FmuReferences& references, const Eigen::VectorXd& parameters,
               const Eigen::VectorXd& input, FmuSteps steps);
   FmuInstance(const FmuInstance&) = delete;
@@ -49,21 +47,10 @@ class FmuInstance {
  private:
   static constexpr double kMostSamples = 1e6;
 
-  static void log(fmi2::ComponentEnvironment environment, fmi2::String instance, fmi2::Status status,
-                  fmi2::String category, fmi2::String message, ...);
-  template <class Function>
-  Function* function(const char* name) const;
-  void require(fmi2::Status status, const char* function) const;
-  static std::string said();
-  void set(const std::vector<fmi2::ValueReference>& references, const Eigen::VectorXd& values) const;
+  void set(const FmuCalls::References& references, const Eigen::VectorXd& values);
 
   const FmuReferences& references_;
-  void* library_ = nullptr;
-  fmi2::Component component_ = nullptr;
-  fmi2::CallbackFunctions callbacks_{};
-  fmi2::SetReal* set_real_ = nullptr;
-  fmi2::GetReal* get_real_ = nullptr;
-  fmi2::DoStep* do_step_ = nullptr;
+  std::unique_ptr<FmuCalls> calls_;
   FmuSteps step_;
   double now_ = 0.0;
   std::int64_t steps_ = 0;

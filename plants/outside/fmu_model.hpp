@@ -24,7 +24,7 @@ struct FmuSettings {
   std::vector<Variable> inputs, outputs, parameters;
 };
 
-/// A plant by FMI 2.0 for co-simulation. A sample is one communication step with held inputs, or as many as
+/// A plant by FMI 2.0 or 3.0 for co-simulation. A sample is one communication step with held inputs, or as many as
 /// FmuSettings::step makes of it.
 ///
 /// Each simulation runs in a process of its own (ForkedService), with one instance in it: many exports allow

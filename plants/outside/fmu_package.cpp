@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kBinaries = "binaries/linux64/";
+constexpr const char *kBinaries2 = "binaries/linux64/", *kBinaries3 = "binaries/x86_64-linux/";
 constexpr const char* kResources = "resources/";
 constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 30U;  // unpacked: a bound on what a file can cost
 constexpr std::uint64_t kMostOfDescription = std::uint64_t{256} << 20U;  // which is read into memory
@@ -66,8 +66,12 @@ void read_entry(zip_t* zip, const zip_stat_t& entry, const fs::path& file,
   }
 }
 
+const char* binaries_of(const FmuDescription& fmu) {
+  return fmu.version == FmiVersion::two ? kBinaries2 : kBinaries3;
+}
+
 bool is_wanted(const std::string& name) {
-  return name.starts_with(kBinaries) || name.starts_with(kResources);
+  return name.starts_with(kBinaries2) || name.starts_with(kBinaries3) || name.starts_with(kResources);
 }
 
 /// Does the path stay in the folder that it is put in?
@@ -141,11 +145,12 @@ FmuPackage::FmuPackage(const fs::path& file) {
   description_ = parse_fmu_description(unpack(file, folder_.path()), file.string());
   if (!fs::is_regular_file(library()))
     throw InputError(fmt::format("{}: library", file.string()), "none for this platform",
-                     fmt::format("{}{}.so; export it for 64-bit Linux", kBinaries, description_.identifier));
+                     fmt::format("{}{}.so; export it for 64-bit Linux", binaries_of(description_),
+                                 description_.identifier));
 }
 
 fs::path FmuPackage::library() const {
-  const fs::path folder = folder_.path() / kBinaries;
+  const fs::path folder = folder_.path() / binaries_of(description_);
   fs::path named = folder / (description_.identifier + ".so");
   std::error_code none;
   if (fs::is_regular_file(named, none))
@@ -158,7 +163,9 @@ fs::path FmuPackage::library() const {
 }
 
 std::string FmuPackage::resources() const {
-  return fmt::format("file://{}", (folder_.path() / "resources").string());
+  return description_.version == FmiVersion::two
+             ? fmt::format("file://{}", (folder_.path() / "resources").string())
+             : (folder_.path() / kResources).string();
 }
 
 }  // namespace mpm

@@ -12,13 +12,14 @@ namespace mpm {
 class FmuPackage {
  public:
   /// Errors: InputError for a file that cannot be read, is no ZIP or holds a path out of it, as
-  /// parse_fmu_description(), and without a library for linux64.
+  /// parse_fmu_description(), and without a library for 64-bit Linux.
   explicit FmuPackage(const std::filesystem::path& file);
 
   const FmuDescription& description() const { return description_; }
-  /// binaries/linux64/IDENTIFIER.so, or the only library there, whatever its name is.
+  /// binaries/linux64/IDENTIFIER.so, by FMI 3.0 binaries/x86_64-linux/IDENTIFIER.so, or the only library
+  /// there, whatever its name is.
   std::filesystem::path library() const;
-  /// The URI of the folder resources, as fmi2Instantiate takes it.
+  /// The URI of the folder resources, by FMI 3.0 its path, as the library takes it.
   std::string resources() const;
 
  private:

@@ -33,13 +33,35 @@ TEST_CASE("the description of an FMU is read", "[fmu]") {
   CHECK(fmu.variable("k", FmuRole::parameter, "p").variability == "tunable");
 }
 
-TEST_CASE("what no FMU for co-simulation by FMI 2.0 is, is refused", "[fmu]") {
+TEST_CASE("the description of an FMU by FMI 3.0 is read", "[fmu]") {
+  const FmuDescription fmu = parse_fmu_description(
+      R"(<fmiModelDescription fmiVersion="3.0" instantiationToken="{2}">
+  <!-- the order is free --><CoSimulation modelIdentifier="m"/><ModelVariables>
+  <Float64 name="u" valueReference="3" causality="input"/>
+  <Float64 name="y" valueReference="4" causality="output"><Alias name="alias"/></Float64>
+  <Float64 name="v" valueReference="5" causality="output"><Dimension start="2"/></Float64>
+  <Int32 name="n" valueReference="6" causality="input"/>
+</ModelVariables></fmiModelDescription>)",
+      "m.fmu");
+  CHECK(fmu.version == FmiVersion::three);
+  CHECK(fmu.guid == "{2}");
+  CHECK(fmu.variable("u", FmuRole::input, "p").reference == 3);
+  CHECK(fmu.variable("alias", FmuRole::output, "p").reference == 4);
+  CHECK_THROWS_WITH(fmu.variable("v", FmuRole::output, "p"),
+                    "p: found 'v' of type Float64 array; allowed: alias, y");
+  CHECK_THROWS_WITH(fmu.variable("n", FmuRole::input, "p"), "p: found 'n' of type Int32; allowed: u");
+  CHECK_THROWS_WITH(fmu.variable("k", FmuRole::parameter, "p"),
+                    "p: found 'k', which m.fmu has not; allowed: a Float64 parameter; m.fmu has none");
+}
+
+TEST_CASE("what no FMU for co-simulation is, is refused", "[fmu]") {
   const auto parse = [](const std::string& xml) { return parse_fmu_description(xml, "m.fmu"); };
   CHECK_THROWS_WITH(parse("<a"), Contains("m.fmu: modelDescription.xml: found") && Contains("allowed: XML"));
   CHECK_THROWS_WITH(parse("<a/>"), Contains("found no element fmiModelDescription"));
   CHECK_THROWS_WITH(parse(description("1.0", kCoSimulation)),
-                    "m.fmu: fmiVersion: found '1.0'; allowed: '2.0'");
-  CHECK_THROWS_WITH(parse(description("3.0", kCoSimulation)), Contains("found '3.0'"));
+                    "m.fmu: fmiVersion: found '1.0'; allowed: '2.0' or '3.0'");
+  CHECK_THROWS_WITH(parse(description("3.0", kCoSimulation)),
+                    Contains("instantiationToken of fmiModelDescription: found nothing"));
   CHECK_THROWS_WITH(parse(description("2.0", "<ModelExchange modelIdentifier='m'/>")),
                     Contains("found model exchange alone; allowed: co-simulation"));
   CHECK_THROWS_WITH(parse(description("2.0", "")), Contains("found neither"));

@@ -152,6 +152,28 @@ TEST_CASE("an FMU that fails fails its loop, and says how", "[fmu]") {
   CHECK_THAT(failure(4), Contains("no answer within 0.5 s"));
 }
 
+TEST_CASE("an FMU by FMI 3.0 is the one by FMI 2.0, to the bit, and fails as it does", "[fmu]") {
+  FmuSettings settings = tank_settings();
+  settings.file = MPMBENCH_TANK3_FMU;
+  const std::vector<ParameterChange> changes{{"cd1", 3.9}, {"A1", 30.0}};
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(12);
+  CHECK(difference(*plant_of(fmu_tank(), changes), *plant_of(fmu_tank(settings), changes), rest) == 0.0);
+  const auto failure = [&](double way) {
+    const auto plant = plant_of(fmu_tank(settings), {{"failure", way}});
+    plant->reset(rest);
+    CHECK(plant->advance(rest) == PlantStatus::failed);
+    return plant->failure();
+  };
+  CHECK(failure(2) ==
+        "the simulation of the plant failed: fmi3DoStep at its time 5000: error (it says: tank 3 is empty)");
+  CHECK_THAT(failure(6), Contains("an output that is not finite at its time 5010"));
+  CHECK_THAT(failure(20), Contains("fmi3DoStep at its time 5000: it asks to end"));
+  CHECK_THAT(failure(21), Contains("it returned early, at 5000, which was not allowed"));
+  settings.outputs[0] = {"profile", "s.toml:7: plant.fmu.output[0].variable"};
+  CHECK_THROWS_WITH(fmu_tank(settings).foreign->load(),
+                    Contains("output[0].variable: found 'profile' of type Float64 array; allowed: level[1]"));
+}
+
 TEST_CASE("an FMU that does not come to rest has no steady state", "[fmu]") {
   const auto short_of = plant_of(fmu_tank(tank_settings(), {.settle = 200.0}));
   CHECK_THROWS_AS(short_of->reset(Eigen::VectorXd::Zero(12)), NoSteadyState);

@@ -1,0 +1,92 @@
+#include <string_view>
+#include <utility>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "plants/outside/fmu_calls.hpp"
+#include "plants/system/forked_service.hpp"
+
+namespace mpm {
+namespace {
+
+std::string_view status_words(int status) {
+  switch (status) {
+    case fmi2::ok:
+      return "ok";
+    case fmi2::warning:
+      return "warning";
+    case fmi2::discard:
+      return "discard: the step cannot be made, or not of this length";
+    case fmi2::error:
+      return "error";
+    case fmi2::fatal:
+      return "fatal error";
+    case fmi2::pending:
+      return "pending, which was not allowed";
+    default:
+      return "a status that there is not";
+  }
+}
+
+/// The last messages of the one FMU of this process. They are no member of an instance, because some FMUs
+/// give their logger no environment.
+struct FmuMessages {
+  std::string any, of_trouble;
+};
+
+FmuMessages& messages() {
+  static FmuMessages kept;
+  return kept;
+}
+
+/// The library with its own symbols first. The sanitizers cannot have that.
+void* load_library(const std::string& path) {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int kOwnFirst = 0;
+#else
+  constexpr int kOwnFirst = RTLD_DEEPBIND;
+#endif
+  return ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | kOwnFirst);
+}
+
+}  // namespace
+
+FmuLibrary::FmuLibrary(const FmuPackage& package, std::string prefix, std::string_view version)
+    : prefix_(std::move(prefix)), library_(load_library(package.library())) {
+  if (library_ == nullptr)
+    throw ForeignFailure(fmt::format("its library cannot be loaded: {}", ::dlerror()));
+  if (const std::string found = function<fmi2::GetVersion>("GetVersion")(); found != version)
+    throw ForeignFailure(fmt::format("its library has FMI version '{}', not '{}'", found, version));
+}
+
+void* FmuLibrary::symbol(const std::string& name) const {
+  void* const found = ::dlsym(library_, (prefix_ + name).c_str());
+  if (found == nullptr)
+    throw ForeignFailure(fmt::format("its library has no function {}{}", prefix_, name));
+  return found;
+}
+
+void FmuLibrary::require(int status, const std::string& function, double now) const {
+  if (status != fmi2::ok && status != fmi2::warning)
+    throw ForeignFailure(
+        fmt::format("{}{} at its time {}: {}{}", prefix_, function, now, status_words(status), said()));
+}
+
+std::string FmuLibrary::said() {
+  const FmuMessages& kept = messages();
+  const std::string& text = kept.of_trouble.empty() ? kept.any : kept.of_trouble;
+  return text.empty() ? "" : fmt::format(" (it says: {})", text);
+}
+
+void FmuLibrary::keep(int status, const char* message) {
+  if (message != nullptr)
+    (status == fmi2::ok ? messages().any : messages().of_trouble) = message;
+}
+
+std::unique_ptr<FmuCalls> instantiate_fmu(const FmuPackage& package, double stop) {
+  return package.description().version == FmiVersion::two ? instantiate_fmi2(package, stop)
+                                                          : instantiate_fmi3(package, stop);
+}
+
+}  // namespace mpm
