@@ -1,74 +1,30 @@
 #include "plants/nonlinear/ode_integrator.hpp"
 
 #include <cmath>
-#include <new>
 #include <utility>
 
 #include <arkode/arkode_erkstep.h>
-#include <cvode/cvode.h>
 #include <fmt/format.h>
-#include <nvector/nvector_serial.h>
-#include <sundials/sundials_context.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 #include "plants/error.hpp"
+#include "plants/nonlinear/sundials_handles.hpp"
 
 namespace mpm {
 namespace {
 
-// The deleter of a handle that SUNDIALS frees by its value, or by its address.
-template <auto Free>
-struct FreeBy {
-  template <class T>
-  void operator()(T* handle) const {
-    if constexpr (requires { Free(handle); })
-      Free(handle);
-    else
-      Free(&handle);
-  }
-};
-
-using Context = std::unique_ptr<std::remove_pointer_t<SUNContext>, FreeBy<SUNContext_Free>>;
-using Vector = std::unique_ptr<std::remove_pointer_t<N_Vector>, FreeBy<N_VDestroy>>;
-using Matrix = std::unique_ptr<std::remove_pointer_t<SUNMatrix>, FreeBy<SUNMatDestroy>>;
-using LinearSolver = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, FreeBy<SUNLinSolFree>>;
-
-using Cvode = std::unique_ptr<void, FreeBy<CVodeFree>>;
-using ErkStep = std::unique_ptr<void, FreeBy<ERKStepFree>>;
+using sundials::checked, sundials::require, sundials::say_nothing;
+using sundials::Context, sundials::Cvode, sundials::LinearSolver, sundials::Matrix, sundials::Vector;
+using ErkStep = std::unique_ptr<void, sundials::FreeBy<ERKStepFree>>;
 
 using ConstMap = Eigen::Map<const Eigen::VectorXd>;
 using Map = Eigen::Map<Eigen::VectorXd>;
 
-// With sizes and pointers that are right, only memory can be missing.
-template <class Handle>
-Handle checked(Handle handle) {
-  if (!handle)
-    throw std::bad_alloc();
-  return handle;
-}
-
 static_assert(CV_SUCCESS == 0 && ARK_SUCCESS == 0 && CV_TOO_MUCH_WORK == ARK_TOO_MUCH_WORK);
-void require(int flag) {
-  if (flag != 0)
-    throw std::bad_alloc();
-}
-
 OdeStatus status_of(int flag) {
   if (flag >= 0)
     return OdeStatus::ok;
   return flag == CV_TOO_MUCH_WORK ? OdeStatus::step_limit : OdeStatus::failed;
 }
-
-Context make_context() {
-  SUNContext context = nullptr;
-  if (SUNContext_Create(nullptr, &context) != 0)
-    throw std::bad_alloc();
-  return Context(context);
-}
-
-// Outcomes are told by the status; nothing is printed.
-void say_nothing(int, const char*, const char*, char*, void*) {}
 
 void require_signal(const char* name, const Eigen::Ref<const Eigen::VectorXd>& signal, Eigen::Index size) {
   if (signal.size() != size)
@@ -96,7 +52,7 @@ class OdeIntegrator::Implementation {
       : system(std::move(ode)),
         x(Eigen::VectorXd::Zero(system->state_count())),
         u(Eigen::VectorXd::Zero(system->input_count())),
-        context(make_context()),
+        context(sundials::make_context()),
         vector(checked(Vector(N_VMake_Serial(x.size(), x.data(), context.get())))) {}
   virtual ~Implementation() = default;
   Implementation(const Implementation&) = delete;

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-/// What mpmbench uses of the C interface of FMI 2.0 for co-simulation: the types and the signatures of the
-/// functions as the standard gives them (FMI for Model Exchange and Co-Simulation, version 2.0, 2.1 and 4.2).
-/// A function of the name NAME is `fmi2NAME` in the library of an FMU.
+/// What mpmbench uses of the C interface of FMI 2.0: the types and the signatures of the
+/// functions as the standard gives them (FMI for Model Exchange and Co-Simulation, version 2.0, 2.1, 3.2
+/// and 4.2). A function of the name NAME is `fmi2NAME` in the library of an FMU.
 namespace mpm::fmi2 {
 
 using Component = void*;             ///< an instance
@@ -41,6 +41,15 @@ using EnterInitializationMode = Status(Component);
 using ExitInitializationMode = Status(Component);
 using SetReal = Status(Component, const ValueReference*, std::size_t count, const Real*);
 using GetReal = Status(Component, const ValueReference*, std::size_t count, Real*);
+/// How the discrete states stand after an iteration of them.
+struct EventInfo {
+  Boolean again, terminate, nominals_changed, states_changed, has_next_event;
+  Real next_event;
+};
+
 using DoStep = Status(Component, Real now, Real step, Boolean no_earlier_state);
+
+// For model exchange; those with the same name in both versions are in fmu_model_exchange.hpp.
+using NewDiscreteStates = Status(Component, EventInfo*);
 
 }  // namespace mpm::fmi2

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-/// What mpmbench uses of the C interface of FMI 3.0 for co-simulation: the types and the signatures of the
-/// functions as the standard gives them (Functional Mock-up Interface Specification, version 3.0, 2.2 and
-/// 4.2). A function of the name NAME is `fmi3NAME` in the library of an FMU.
+/// What mpmbench uses of the C interface of FMI 3.0: the types and the signatures of the
+/// functions as the standard gives them (Functional Mock-up Interface Specification, version 3.0, 2.2,
+/// 3.2 and 4.2). A function of the name NAME is `fmi3NAME` in the library of an FMU.
 namespace mpm::fmi3 {
 
 using Instance = void*;
@@ -37,5 +37,13 @@ using GetFloat64 = Status(Instance, const ValueReference*, std::size_t count, Fl
                           std::size_t value_count);
 using DoStep = Status(Instance, Float64 now, Float64 step, Boolean no_earlier_state, Boolean* events_needed,
                       Boolean* terminate, Boolean* early_return, Float64* reached);
+
+// For model exchange; those with the same name in both versions are in fmu_model_exchange.hpp.
+using InstantiateModelExchange = Instance(String name, String token, String resources, Boolean visible,
+                                          Boolean logging, InstanceEnvironment, LogMessage*);
+using UpdateDiscreteStates = Status(Instance, Boolean* again, Boolean* terminate, Boolean* nominals_changed,
+                                    Boolean* states_changed, Boolean* has_next_event, Float64* next_event);
+/// Of GetNumberOfContinuousStates and GetNumberOfEventIndicators.
+using GetNumber = Status(Instance, std::size_t*);
 
 }  // namespace mpm::fmi3

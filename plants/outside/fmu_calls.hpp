@@ -53,6 +53,8 @@ class FmuLibrary {
   }
   /// Throws ForeignFailure unless the status is `ok` or `warning`; both versions number them alike.
   void require(int status, const std::string& function, double now) const;
+  /// Throws ForeignFailure where the FMU asks to end.
+  void require_no_end(bool asks, const std::string& function, double now) const;
   /// " (it says: ...)", its last message of trouble; empty: none.
   static std::string said();
   static void keep(int status, const char* message);

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <string_view>
 #include <system_error>
@@ -62,9 +63,9 @@ fmi2::ValueReference reference_of(const pugi::xml_node& node, const std::string&
 }
 
 /// The name of the library: a name of C, so that it is no path either.
-std::string identifier_of(const pugi::xml_node& co_simulation, const std::string& file) {
+std::string identifier_of(const pugi::xml_node& kind, const std::string& file) {
   constexpr std::size_t kLongest = 200;
-  std::string identifier = attribute_of(co_simulation, "modelIdentifier", file);
+  std::string identifier = attribute_of(kind, "modelIdentifier", file);
   if (identifier.size() > kLongest || std::isdigit(static_cast<unsigned char>(identifier.front())) != 0 ||
       identifier.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") !=
           std::string::npos)
@@ -79,6 +80,11 @@ FmuVariable read_variable(const pugi::xml_node& node, FmiVersion version, const 
           .type = type_of(node, version),
           .causality = node.attribute("causality").as_string("local"),
           .variability = node.attribute("variability").as_string("continuous")};
+}
+
+std::size_t count_of(const pugi::xml_node& unknowns) {
+  const auto each = unknowns.children("Unknown");
+  return static_cast<std::size_t>(std::distance(each.begin(), each.end()));
 }
 
 bool fits(const FmuVariable& variable, FmuRole role) {
@@ -142,16 +148,21 @@ FmuDescription parse_fmu_description(const std::string& xml, const std::string& 
     throw InputError(fmt::format("{}: fmiVersion", file), fmt::format("'{}'", written),
                      fmt::format("'{}' or '{}'", fmi2::kVersion, fmi3::kVersion));
   const FmiVersion version = written == fmi2::kVersion ? FmiVersion::two : FmiVersion::three;
-  const pugi::xml_node co_simulation = root.child("CoSimulation");
-  if (!co_simulation)
-    throw InputError(fmt::format("{}: kind of the FMU", file),
-                     root.child("ModelExchange") ? "model exchange alone" : "neither",
-                     "co-simulation, which brings its own solver; export it as such");
+  pugi::xml_node kind = root.child("CoSimulation");
+  const bool integrates = kind;
+  if (!integrates)
+    kind = root.child("ModelExchange");
+  if (!kind)
+    throw InputError(fmt::format("{}: kind of the FMU", file), "neither",
+                     "co-simulation or model exchange; export it as such");
   FmuDescription description{
       .file = file,
       .version = version,
+      .kind = integrates ? FmuKind::co_simulation : FmuKind::model_exchange,
       .guid = attribute_of(root, version == FmiVersion::two ? "guid" : "instantiationToken", file),
-      .identifier = identifier_of(co_simulation, file),
+      .identifier = identifier_of(kind, file),
+      .states = count_of(root.child("ModelStructure").child("Derivatives")),
+      .indicators = root.attribute("numberOfEventIndicators").as_uint(),
       .variables = {}};
   for (const pugi::xml_node& node : root.child("ModelVariables"))
     if (node.type() == pugi::node_element &&

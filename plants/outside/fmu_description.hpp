@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <string_view>
@@ -10,6 +11,9 @@ namespace mpm {
 
 /// Of the interface of an FMU.
 enum class FmiVersion { two, three };
+
+/// Who integrates: the FMU, or mpmbench.
+enum class FmuKind { co_simulation, model_exchange };
 
 /// A variable as modelDescription.xml declares it.
 struct FmuVariable {
@@ -26,12 +30,14 @@ enum class FmuRole {
   parameter,  ///< of causality parameter
 };
 
-/// modelDescription.xml of an FMU for co-simulation (FMI 2.0, 2.2 and 4.3; FMI 3.0, 2.4 and 4.3).
+/// modelDescription.xml of an FMU (FMI 2.0, 2.2, 3.3 and 4.3; FMI 3.0, 2.4, 3.3 and 4.3).
 struct FmuDescription {
   std::string file;  ///< of the FMU, for messages
   FmiVersion version = FmiVersion::two;
+  FmuKind kind = FmuKind::co_simulation;  ///< also where it can be both
   std::string guid;        ///< which the library compares with its own; by FMI 3.0 the instantiation token
   std::string identifier;  ///< name of the library
+  std::size_t states = 0, indicators = 0;  ///< of model exchange; by FMI 3.0 the library says how many
   std::map<std::string, FmuVariable, std::less<>> variables;
 
   /// The variable of this name. Errors: InputError at `place`, which lists names of that role, for one that
@@ -40,7 +46,7 @@ struct FmuDescription {
 };
 
 /// Reads the text of modelDescription.xml. Errors: InputError that begins with `file` for what is no XML, has
-/// another FMI version, no co-simulation, or lacks an attribute.
+/// another FMI version, is for neither co-simulation nor model exchange, or lacks an attribute.
 FmuDescription parse_fmu_description(const std::string& xml, const std::string& file);
 
 }  // namespace mpm

@@ -73,6 +73,12 @@ void FmuLibrary::require(int status, const std::string& function, double now) co
         fmt::format("{}{} at its time {}: {}{}", prefix_, function, now, status_words(status), said()));
 }
 
+void FmuLibrary::require_no_end(bool asks, const std::string& function, double now) const {
+  if (asks)
+    throw ForeignFailure(
+        fmt::format("{}{} at its time {}: it asks to end{}", prefix_, function, now, said()));
+}
+
 std::string FmuLibrary::said() {
   const FmuMessages& kept = messages();
   const std::string& text = kept.of_trouble.empty() ? kept.any : kept.of_trouble;

@@ -15,6 +15,7 @@
 #include "plants/error.hpp"
 #include "plants/nonlinear/foreign_plant.hpp"
 #include "plants/nonlinear/quadruple_tank.hpp"
+#include "plants/outside/fmu_instance.hpp"
 #include "plants/outside/fmu_model.hpp"
 
 // The tank of tests/plants/fmu/tank.c against the one that the program has.
@@ -172,6 +173,47 @@ TEST_CASE("an FMU by FMI 3.0 is the one by FMI 2.0, to the bit, and fails as it 
   settings.outputs[0] = {"profile", "s.toml:7: plant.fmu.output[0].variable"};
   CHECK_THROWS_WITH(fmu_tank(settings).foreign->load(),
                     Contains("output[0].variable: found 'profile' of type Float64 array; allowed: level[1]"));
+}
+
+TEST_CASE("an FMU for model exchange is the tank, integrated here", "[fmu]") {
+  FmuSettings settings = tank_settings();
+  settings.file = MPMBENCH_TANK_ME_FMU;
+  const NonlinearModel ours = quadruple_tank_nonlinear("table-2.6", 0);
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(12);
+  constexpr double kOfIntegration = 1e-6;  // cm: local errors of 1e-8 of hundreds of steps
+  CHECK(difference(*plant_of(ours), *plant_of(fmu_tank(settings)), rest) < kOfIntegration);
+  const std::vector<ParameterChange> changes{{"cd1", 3.9}, {"k2", 3.0}};
+  CHECK(difference(*plant_of(ours, changes, 17), *plant_of(fmu_tank(settings), changes, 17), rest) <
+        kOfIntegration);
+  const auto failure = [&](double way) {
+    const auto plant = plant_of(fmu_tank(settings), {{"failure", way}});
+    plant->reset(rest);
+    CHECK(plant->advance(rest) == PlantStatus::failed);
+    return plant->failure();
+  };
+  CHECK_THAT(failure(1), Contains("its process ended by signal 11 (Segmentation fault)"));
+  CHECK_THAT(failure(2),
+             Contains("fmi2GetDerivatives at its time 5") && Contains("it says: tank 3 is empty"));
+  CHECK_THAT(failure(20), Contains("fmi2NewDiscreteStates at its time 5000: it asks to end"));
+}
+
+TEST_CASE("events of an FMU for model exchange: roots, times and requests, against the closed form",
+          "[fmu]") {
+  const FmuPackage package(MPMBENCH_SWITCH3_FMU);
+  CHECK(package.description().kind == FmuKind::model_exchange);
+  const FmuReferences references{.inputs = {1}, .outputs = {2}, .parameters = {}};
+  FmuInstance fmu(package, references, Eigen::VectorXd(), Eigen::VectorXd::Constant(1, 2.0), {1.0, 1});
+  const double passes = 4.0 * std::log(2.0);  // x = 2 (1 - exp(-t/4)) = 1
+  double last = 0.0;
+  for (int k = 1; k <= 12; ++k) {
+    // From the time 10 on the input is 3.
+    last = fmu.step(Eigen::VectorXd::Constant(1, k <= 10 ? 2.0 : 3.0))(0);
+    const double t = k, x10 = 2.0 - std::exp(-(10.0 - passes) / 8.0);
+    const double x = t < passes  ? 2.0 - 2.0 * std::exp(-t / 4.0)
+                     : t <= 10.0 ? 2.0 - std::exp(-(t - passes) / 8.0)
+                                 : 3.0 + (x10 - 3.0) * std::exp(-(t - 10.0) / 8.0);
+    CHECK(last == Approx(x + (t < 5 ? 0.0 : t <= 8 ? 10.0 : 20.0)).margin(1e-7));
+  }
 }
 
 TEST_CASE("an FMU that does not come to rest has no steady state", "[fmu]") {
