@@ -24,8 +24,8 @@ struct FmuSettings {
   std::vector<Variable> inputs, outputs, parameters;
 };
 
-/// A plant by FMI 2.0 or 3.0, for co-simulation or model exchange. A sample is one communication step with held inputs, or as
-/// many as FmuSettings::step makes of it.
+/// A plant by FMI 2.0 or 3.0, for co-simulation or model exchange. A sample is one communication step with
+/// held inputs, or as many as FmuSettings::step makes of it.
 ///
 /// Each simulation runs in a process of its own (ForkedService), with one instance in it: many exports allow
 /// no more, and so neither a crash nor what an FMU keeps in memory reaches another loop. load() unpacks the
