@@ -9,19 +9,21 @@
 #include "analysis/identification/least_squares.hpp"
 #include "analysis/identification/nested_least_squares.hpp"
 #include "analysis/statistics/f_distribution.hpp"
+#include "analysis/statistics/sample_spacing.hpp"
 #include "plants/error.hpp"
 
 namespace mpm {
 namespace {
 
-/// Columns 1, e(k-1), ..., e(k-order) at the rows.
+/// Columns 1, e(k-s), ..., e(k-order s) at the rows.
 Eigen::MatrixXd lagged_columns(const Eigen::Ref<const Eigen::VectorXd>& e,
-                               const std::vector<Eigen::Index>& rows, Eigen::Index order) {
+                               const std::vector<Eigen::Index>& rows, Eigen::Index order,
+                               Eigen::Index spacing) {
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(rows.size()), order + 1);
   columns.col(0).setOnes();
   for (Eigen::Index lag = 1; lag <= order; ++lag)
     for (Eigen::Index row = 0; row < columns.rows(); ++row)
-      columns(row, lag) = e(rows[static_cast<std::size_t>(row)] - lag);
+      columns(row, lag) = e(rows[static_cast<std::size_t>(row)] - lag * spacing);
   return columns;
 }
 
@@ -38,17 +40,20 @@ Eigen::MatrixXd Autoregression::whitened(const Eigen::Ref<const Eigen::MatrixXd>
     const Eigen::Index k = rows[static_cast<std::size_t>(row)];
     white.row(row) = x.row(k);
     for (Eigen::Index lag = 1; lag <= order(); ++lag)
-      white.row(row) -= theta(lag) * x.row(k - lag);
+      white.row(row) -= theta(lag) * x.row(k - lag * spacing);
   }
   return white;
 }
 
 std::vector<Eigen::Index> known_rows(const Eigen::Ref<const Eigen::VectorXd>& e, Eigen::Index order) {
-  std::vector<Eigen::Index> rows;
-  Eigen::Index known = 0;  // samples without a gap up to here
+  const Eigen::Index spacing = sample_spacing(e);
+  std::vector<Eigen::Index> rows, known(static_cast<std::size_t>(e.size()), 0);  // without a gap up to here
   for (Eigen::Index k = 0; k < e.size(); ++k) {
-    known = std::isnan(e(k)) ? 0 : known + 1;
-    if (known > order)
+    if (std::isnan(e(k)))
+      continue;
+    const auto place = static_cast<std::size_t>(k);
+    known[place] = 1 + (k < spacing ? 0 : known[static_cast<std::size_t>(k - spacing)]);
+    if (known[place] > order)
       rows.push_back(k);
   }
   return rows;
@@ -59,7 +64,8 @@ Eigen::Index autoregression_order(const Eigen::Ref<const Eigen::VectorXd>& e, Ei
   const std::vector<Eigen::Index> rows = known_rows(e, largest_order);
   if (static_cast<Eigen::Index>(rows.size()) < 3 * (largest_order + 1))
     return 0;
-  const NestedLeastSquares fit(lagged_columns(e, rows, largest_order), e(rows), kRankTolerance);
+  const NestedLeastSquares fit(lagged_columns(e, rows, largest_order, sample_spacing(e)), e(rows),
+                               kRankTolerance);
   const auto n = static_cast<double>(rows.size());
   Eigen::Index best = 0;
   double least = n * std::log(fit.residual_sum(1, 0));
@@ -78,11 +84,12 @@ Autoregression fit_autoregression(const Eigen::Ref<const Eigen::VectorXd>& e, Ei
   require_autoregression_order(order);
   Autoregression model;
   model.rows = known_rows(e, order);
+  model.spacing = sample_spacing(e);
   const auto n = static_cast<Eigen::Index>(model.rows.size());
   if (n <= order + 1)
     throw InputError("samples of an autoregression", fmt::format("{}", n),
                      fmt::format("more than {}, its coefficients", order + 1));
-  const LeastSquares fit = least_squares(lagged_columns(e, model.rows, order), e(model.rows));
+  const LeastSquares fit = least_squares(lagged_columns(e, model.rows, order, model.spacing), e(model.rows));
   model.theta = fit.x;
   model.covariance = Eigen::MatrixXd::Zero(order + 1, order + 1);
   if (fit.inverse.size() > 0)

@@ -8,7 +8,9 @@ namespace mpm {
 
 /// An autoregression with a constant that is fitted by least squares to a signal,
 ///
-///   e(k) = c + a_1 e(k-1) + ... + a_p e(k-p) + w(k)
+///   e(k) = c + a_1 e(k-s) + ... + a_p e(k-ps) + w(k)
+///
+/// with the spacing s of its samples (sample_spacing()), which is 1 but for a CV of an analyser.
 ///
 /// | symbol | member     | shape            | meaning                                                   |
 /// |--------|------------|------------------|-----------------------------------------------------------|
@@ -19,16 +21,17 @@ struct Autoregression {
   Eigen::VectorXd theta;
   Eigen::MatrixXd covariance;
   std::vector<Eigen::Index> rows;
+  Eigen::Index spacing = 1;
 
   Eigen::Index order() const { return theta.size() - 1; }
   /// n - p - 1
   Eigen::Index freedom() const { return static_cast<Eigen::Index>(rows.size()) - theta.size(); }
-  /// x(k) - a_1 x(k-1) - ... - a_p x(k-p) of each column of x (N x m) at the rows, n x m: a signal as this
+  /// x(k) - a_1 x(k-s) - ... - a_p x(k-ps) of each column of x (N x m) at the rows, n x m: a signal as this
   /// filter leaves it, which makes the fitted one white.
   Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
 };
 
-/// The samples from `order` on that are not NaN, nor is any of the `order` samples before.
+/// The samples that are not NaN, nor is any of the `order` samples before, at the spacing of the signal.
 std::vector<Eigen::Index> known_rows(const Eigen::Ref<const Eigen::VectorXd>& e, Eigen::Index order);
 
 /// The order 0 ... `largest_order` of least BIC, n ln V + p ln n, all fitted to the same samples. 0 for a

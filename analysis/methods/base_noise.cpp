@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "analysis/statistics/sample_spacing.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
@@ -244,21 +245,24 @@ void add_unseen_backgrounds(NoisePosterior& noise, Eigen::Index samples) {
 }
 
 double deviation_of_steps(const Eigen::Ref<const Eigen::RowVectorXd>& e) {
+  const Eigen::Index spacing = sample_spacing(e.transpose());
   std::vector<double> steps;
-  for (Eigen::Index k = 1; k < e.size(); ++k)
-    if (!std::isnan(e(k)) && !std::isnan(e(k - 1)))
-      steps.push_back(std::abs(e(k) - e(k - 1)));
+  for (Eigen::Index k = spacing; k < e.size(); ++k)
+    if (!std::isnan(e(k)) && !std::isnan(e(k - spacing)))
+      steps.push_back(std::abs(e(k) - e(k - spacing)));
   return steps.empty() ? 0.0 : kDeviationOfMedian * median(std::move(steps)) / std::sqrt(2.0);
 }
 
 Eigen::RowVectorXd without_outliers(const Eigen::Ref<const Eigen::RowVectorXd>& e) {
+  const Eigen::Index spacing = sample_spacing(e.transpose());
   Eigen::RowVectorXd off = Eigen::RowVectorXd::Constant(e.size(), kNaN), spread = off;
   std::vector<double> distances;
   for (Eigen::Index k = 0; k < e.size(); ++k) {
     std::vector<double> around;
-    for (const Eigen::Index step : kNeighbours)
-      if (k + step >= 0 && k + step < e.size() && !std::isnan(e(k + step)))
-        around.push_back(e(k + step));
+    for (const Eigen::Index neighbour : kNeighbours)
+      if (const Eigen::Index other = k + neighbour * spacing;
+          other >= 0 && other < e.size() && !std::isnan(e(other)))
+        around.push_back(e(other));
     if (std::isnan(e(k)) || around.size() < 3)
       continue;
     const auto [least, largest] = std::minmax_element(around.begin(), around.end());

@@ -50,7 +50,8 @@ NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
                                const Eigen::Ref<const Eigen::MatrixXd>& directions, double least);
 
 /// The standard deviation of white noise whose differences between neighbours are as those of `e` in the
-/// median: what changes slowly hardly adds to it. 0 without neighbours.
+/// median: what changes slowly hardly adds to it. Neighbours are as far apart as the samples of the signal
+/// (sample_spacing()). 0 without neighbours.
 double deviation_of_steps(const Eigen::Ref<const Eigen::RowVectorXd>& e);
 
 /// The record without outliers: samples that are off the median of two neighbours on each side by more than

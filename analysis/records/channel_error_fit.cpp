@@ -9,6 +9,7 @@
 
 #include "analysis/methods/base_noise.hpp"
 #include "analysis/records/untold_part.hpp"
+#include "analysis/statistics/sample_spacing.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
@@ -16,21 +17,22 @@
 namespace mpm {
 namespace {
 
-/// The samples that are there, and half of the mean squared difference of those that follow each other.
+/// The samples that are there, and half of the mean squared difference of those that follow each other as
+/// closely as any two do: one sample apart, or a period of an analyser.
 std::vector<Eigen::Index> samples_of(const Eigen::RowVectorXd& e, double& noise) {
   std::vector<Eigen::Index> samples;
+  for (Eigen::Index k = 0; k < e.size(); ++k)
+    if (!std::isnan(e(k)))
+      samples.push_back(k);
+  const Eigen::Index closest = sample_spacing(e.transpose());
   double squares = 0.0, pairs = 0.0;
-  for (Eigen::Index k = 0; k < e.size(); ++k) {
-    if (std::isnan(e(k)))
-      continue;
-    if (!samples.empty() && samples.back() == k - 1) {
-      squares += (e(k) - e(k - 1)) * (e(k) - e(k - 1));
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    if (samples[i] - samples[i - 1] == closest) {
+      squares += (e(samples[i]) - e(samples[i - 1])) * (e(samples[i]) - e(samples[i - 1]));
       pairs += 1.0;
     }
-    samples.push_back(k);
-  }
   if (pairs == 0.0)
-    throw InputError("record of a CV", "no two samples in a row", "some");
+    throw InputError("record of a CV", "fewer than two samples", "two or more");
   noise = 0.5 * squares / pairs;
   return samples;
 }

@@ -20,9 +20,10 @@ namespace mpm {
 struct ChannelErrorFit {
   std::vector<ChannelError> errors;  ///< p, of each column
   Eigen::MatrixXd X;
-  double noise = 0.0;  ///< half of the mean squared difference of successive errors
-  Eigen::VectorXd a;   ///< the most likely errors, p
-  double left = 0.0;   ///< mean (e - X a)^2
+  double noise =
+      0.0;  ///< half of the mean squared difference of successive errors, those of a CV of an analyser too
+  Eigen::VectorXd a;  ///< the most likely errors, p
+  double left = 0.0;  ///< mean (e - X a)^2
 };
 
 /// Fits of the CVs of a study whose channels may be off by the relative size `delta`; 0: p = 0.
@@ -30,7 +31,7 @@ class ChannelErrorFits {
  public:
   ChannelErrorFits(const Study& study, double delta);
 
-  /// Of a CV of a loop or a window. Throws InputError if no two samples follow each other.
+  /// Of a CV of a loop or a window. Throws InputError for fewer than two samples.
   ChannelErrorFit of(const AssessedLoop& loop, Eigen::Index cv) const;
 
  private:

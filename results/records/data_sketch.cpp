@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -89,12 +90,43 @@ struct ColumnLook {
     deviation = std::sqrt(deviation);
   }
 
+  /// The rows in which the value is another one than before.
+  std::vector<std::size_t> fresh() const {
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < values.size(); ++row)
+      if (row == 0 || values[row] != values[row - 1])
+        rows.push_back(row);
+    return rows;
+  }
+
+  /// Of a signal that is held for most of the time, such as that of an analyser, of the values that are new.
   double noise() const {
     constexpr double kOfNormal = 1.4826;  // standard deviation over median absolute deviation
-    std::vector<double> bends;
-    for (std::size_t row = 2; row < values.size(); ++row)
-      bends.push_back(std::abs(values[row] - 2.0 * values[row - 1] + values[row - 2]));
+    constexpr double kHeld = 0.7;         // of the rows
+    std::vector<double> seen = values, bends;
+    if (changes < kHeld) {
+      seen.clear();
+      for (const std::size_t row : fresh())
+        seen.push_back(values[row]);
+    }
+    for (std::size_t i = 2; i < seen.size(); ++i)
+      bends.push_back(std::abs(seen[i] - 2.0 * seen[i - 1] + seen[i - 2]));
     return kOfNormal * median_of(std::move(bends)) / std::sqrt(6.0);
+  }
+
+  /// The number of rows from one new value to the next, where it is nearly always the same and more than one.
+  std::optional<std::size_t> period() const {
+    constexpr double kNearlyAlways = 0.9;
+    constexpr std::size_t kFewest = 10;  // new values
+    const std::vector<std::size_t> rows = fresh();
+    std::map<std::size_t, std::size_t> counts;
+    for (std::size_t i = 1; i < rows.size(); ++i)
+      ++counts[rows[i] - rows[i - 1]];
+    for (const auto& [gap, count] : counts)
+      if (gap > 1 && rows.size() > kFewest &&
+          static_cast<double>(count) >= kNearlyAlways * static_cast<double>(rows.size() - 1))
+        return gap;
+    return std::nullopt;
   }
 
   /// The share of the values in the tenth of the range at one end.
@@ -294,8 +326,11 @@ class DataSketcher {
       if (look.values.empty())
         continue;
       sketch_.spread[variable] = look.deviation;
-      if (is(plant_.cvs))
+      if (is(plant_.cvs)) {
         sketch_.noise[variable] = look.noise();
+        if (const std::optional<std::size_t> period = look.period())
+          sketch_.periods[variable] = *period;
+      }
       if (is(plant_.mvs))
         sketch_.rests[variable] = look.rests();
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 
@@ -13,9 +14,10 @@ struct DataSketch {
   std::string file;   ///< its name
   std::string table;  ///< [data] as the text of a study file, each guess with a comment that calls it one
   double step = 0.0;  ///< median time between two rows, time unit of the plant; 0: the file has no stamps
-  std::map<std::string, double> noise;       ///< of each CV that has a column: standard deviation
-  std::map<std::string, double> spread;      ///< of each variable that has a column: standard deviation
-  std::map<std::string, std::string> rests;  ///< where each MV spends its time, in words
+  std::map<std::string, double> noise;         ///< of each CV that has a column: standard deviation
+  std::map<std::string, double> spread;        ///< of each variable that has a column: standard deviation
+  std::map<std::string, std::string> rests;    ///< where each MV spends its time, in words
+  std::map<std::string, std::size_t> periods;  ///< of each CV that is held in between: rows
 };
 
 /// Looks at a file for a plant: the column of each variable (its name, one that has it in its name, or the

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/autoregression.hpp"
+#include "analysis/statistics/sample_spacing.hpp"
 #include "plants/non_finite.hpp"
 #include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/signals.hpp"
@@ -46,6 +47,28 @@ TEST_CASE("autoregression: a recursion without noise is found, with gaps in the 
   const Eigen::MatrixXd white = model.whitened(e);
   CHECK((white.array() - 0.3).abs().maxCoeff() < 1e-9);
   CHECK_THROWS_WITH(fit_autoregression(e.head(5), 3), Catch::Contains("samples of an autoregression"));
+}
+
+TEST_CASE("autoregression: of a signal that an analyser measures, the lags are those of its analyses") {
+  constexpr Eigen::Index kPeriod = 4;
+  const Eigen::VectorXd all = testing::settled_autoregression(4000, 0.9, 3);
+  Eigen::VectorXd seen = Eigen::VectorXd::Constant(all.size(), kNaN);
+  for (Eigen::Index k = 1; k < all.size(); k += kPeriod)
+    seen(k) = all(k);
+  CHECK(sample_spacing(all) == 1);
+  CHECK(sample_spacing(seen) == kPeriod);
+  CHECK(sample_spacing(Eigen::VectorXd::Constant(7, kNaN)) == 7);
+  CHECK(autoregression_order(seen, 12) == 1);
+  const Autoregression model = fit_autoregression(seen, 1);
+  CHECK(model.spacing == kPeriod);
+  CHECK(model.rows.front() == 1 + kPeriod);
+  CHECK(model.theta(1) == Approx(std::pow(0.9, kPeriod)).margin(3.0 * std::sqrt(model.covariance(1, 1))));
+  // The filter makes it white: what is left is as large as the innovations of four samples.
+  const Eigen::VectorXd white = model.whitened(seen).array() - model.theta(0);
+  const double share = 1.0 - std::pow(0.9, 2.0 * kPeriod);
+  const double variance = Eigen::VectorXd(seen(known_rows(seen, 0))).squaredNorm() /
+                          static_cast<double>(known_rows(seen, 0).size());
+  CHECK(white.squaredNorm() / static_cast<double>(white.size()) == Approx(share * variance).epsilon(0.1));
 }
 
 TEST_CASE("autoregression: BIC takes the order of the signal, 0 for white noise and for a constant") {

@@ -1,0 +1,72 @@
+"""An industrial controller from its files alone: step coefficients and records as CSV, limits of the moves, an analyser. The
+study that made the records serves for nothing but its tuning, which an engineer knows.
+
+usage: check_industrial.py MPMBENCH SOURCES
+"""
+
+import csv
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+RECORDS = {"healthy": 2, "mpm": 3, "ud": 4}  # experiments
+
+
+def plant_study(text):
+    """Wood and Berry's column under an industrial controller; xB is measured by an analyser."""
+    for key, more in (("[controller.mv.R]", "move_limit = 0.05"), ("[controller.mv.S]", "move_limit = 0.05"),
+                      ("[controller.cv.xB]", "analyser_period = 4\nanalyser_delay = 3")):
+        text = text.replace(key, f"{key}\n{more}")
+    for old, new in (("samples = 400", "samples = 1000"), ("mpm = 15", "mpm = 8"), ("\nud = 15", "\nud = 6"),
+                     ("mpm_ud = 10", "mpm_ud = 0\nhealthy = 6")):
+        assert old in text, old
+        text = text.replace(old, new)
+    return text
+
+
+def main(program, sources):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+
+        def run(*words):
+            result = subprocess.run([program, *map(str, words)], capture_output=True, text=True, timeout=600, cwd=folder)
+            assert result.returncode == 0, (words, result.returncode, result.stdout, result.stderr)
+            return result.stdout
+
+        plant = plant_study((pathlib.Path(sources) / "scenarios/studies/wood-berry.toml").read_text())
+        (folder / "plant.toml").write_text(plant)
+        run("identify", "plant.toml", "--step-response", "model.csv", "--quiet")
+        for seed in (1, 2, 3):
+            run("run", "plant.toml", "-o", f"{seed}.h5", "--seed", seed, "--store", "all", "--allow-unhealthy-basis",
+                "--quiet")
+            for kind, index in RECORDS.items():
+                run("export", f"{seed}.h5", "--table", "loops", "--index", index, "-o", f"{seed}-{kind}.csv")
+            run("export", f"{seed}.h5", "--table", "experiments", "-o", f"{seed}.csv")
+            with open(folder / f"{seed}.csv") as file:
+                rows = list(csv.DictReader(file))
+            assert all(rows[index]["kind"] == kind for kind, index in RECORDS.items()), rows
+
+        # From here on the files: the model, a record, and what the engineer knows of the controller.
+        run("init", "my.toml", "--step-response", "model.csv", "--mds", "F", "--data", "1-healthy.csv", "--range", "xD=0:1",
+            "--range", "xB=-1:0", "--limits", "R=-0.5:0.5", "--limits", "S=-0.5:0.5")
+        text = (folder / "my.toml").read_text()
+        assert "xB has a new value every 4 rows, as the CV of an analyser" in text and "xD has a new" not in text
+        noise = tomllib.loads(text)["simulation"]["noise_standard_deviation"]  # 0.01 in the plant
+        assert all(0.007 < noise[cv] < 0.02 for cv in ("xD", "xB")), noise
+        text = re.sub(r"(?m)^#.*\n", "", text)
+        tuning = plant[plant.index("[controller]"):plant.index("[simulation]")]
+        (folder / "my.toml").write_text(text[:text.index("[controller]")] + tuning + text[text.index("[simulation]"):])
+        for seed in (1, 2, 3):
+            for kind in RECORDS:
+                answer = json.loads(run("assess", "my.toml", f"{seed}-{kind}.csv", "--trials", 20, "--quiet", "--json"))
+                said = answer["methods"][0]["source"]
+                assert (answer["found"], said) == (("nothing", "none") if kind == "healthy" else ("fault", kind)), (
+                    seed, kind, answer["found"], answer["methods"][0])
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
