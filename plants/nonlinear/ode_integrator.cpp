@@ -13,7 +13,8 @@ namespace mpm {
 namespace {
 
 using sundials::checked, sundials::require, sundials::say_nothing;
-using sundials::Context, sundials::Cvode, sundials::LinearSolver, sundials::Matrix, sundials::Vector;
+using sundials::Cvode, sundials::SunContext, sundials::SunLinearSolver, sundials::SunMatrix,
+    sundials::SunVector;
 using ErkStep = std::unique_ptr<void, sundials::FreeBy<ERKStepFree>>;
 
 using ConstMap = Eigen::Map<const Eigen::VectorXd>;
@@ -53,7 +54,7 @@ class OdeIntegrator::Implementation {
         x(Eigen::VectorXd::Zero(system->state_count())),
         u(Eigen::VectorXd::Zero(system->input_count())),
         context(sundials::make_context()),
-        vector(checked(Vector(N_VMake_Serial(x.size(), x.data(), context.get())))) {}
+        vector(checked(SunVector(N_VMake_Serial(x.size(), x.data(), context.get())))) {}
   virtual ~Implementation() = default;
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
@@ -85,8 +86,8 @@ class OdeIntegrator::Implementation {
   double time = 0.0;  // since the last start
   bool fresh = true;  // x was set since the last start
   // In the order in which they depend on each other; x is the memory of `vector`.
-  Context context;
-  Vector vector;
+  SunContext context;
+  SunVector vector;
 };
 
 class OdeIntegrator::RungeKutta final : public Implementation {
@@ -121,8 +122,8 @@ class OdeIntegrator::BackwardDifferentiation final : public Implementation {
  public:
   BackwardDifferentiation(std::shared_ptr<const OdeSystem> ode, const OdeOptions& options)
       : Implementation(std::move(ode)),
-        matrix_(checked(Matrix(SUNDenseMatrix(x.size(), x.size(), context.get())))),
-        linear_solver_(checked(LinearSolver(SUNLinSol_Dense(vector.get(), matrix_.get(), context.get())))),
+        matrix_(checked(SunMatrix(SUNDenseMatrix(x.size(), x.size(), context.get())))),
+        linear_solver_(checked(SunLinearSolver(SUNLinSol_Dense(vector.get(), matrix_.get(), context.get())))),
         cvode_(checked(Cvode(CVodeCreate(CV_BDF, context.get())))) {
     require(CVodeSetErrHandlerFn(cvode_.get(), say_nothing, nullptr));
     require(CVodeInit(cvode_.get(), derivative, 0.0, vector.get()));
@@ -142,8 +143,8 @@ class OdeIntegrator::BackwardDifferentiation final : public Implementation {
   }
 
  private:
-  Matrix matrix_;
-  LinearSolver linear_solver_;
+  SunMatrix matrix_;
+  SunLinearSolver linear_solver_;
   Cvode cvode_;
 };
 

@@ -25,10 +25,10 @@ struct FreeBy {
   }
 };
 
-using Context = std::unique_ptr<std::remove_pointer_t<SUNContext>, FreeBy<SUNContext_Free>>;
-using Vector = std::unique_ptr<std::remove_pointer_t<N_Vector>, FreeBy<N_VDestroy>>;
-using Matrix = std::unique_ptr<std::remove_pointer_t<SUNMatrix>, FreeBy<SUNMatDestroy>>;
-using LinearSolver = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, FreeBy<SUNLinSolFree>>;
+using SunContext = std::unique_ptr<std::remove_pointer_t<SUNContext>, FreeBy<SUNContext_Free>>;
+using SunVector = std::unique_ptr<std::remove_pointer_t<N_Vector>, FreeBy<N_VDestroy>>;
+using SunMatrix = std::unique_ptr<std::remove_pointer_t<SUNMatrix>, FreeBy<SUNMatDestroy>>;
+using SunLinearSolver = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, FreeBy<SUNLinSolFree>>;
 using Cvode = std::unique_ptr<void, FreeBy<CVodeFree>>;
 
 template <class Handle>
@@ -43,10 +43,10 @@ inline void require(int flag) {
     throw std::bad_alloc();
 }
 
-inline Context make_context() {
+inline SunContext make_context() {
   SUNContext context = nullptr;
   require(SUNContext_Create(nullptr, &context));
-  return Context(context);
+  return SunContext(context);
 }
 
 /// An error handler: outcomes are told by the status, and nothing is printed.

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "plants/nonlinear/event_integrator.hpp"
 #include "plants/outside/fmu_calls.hpp"
-#include "plants/outside/fmu_integrator.hpp"
 
 namespace mpm {
 
@@ -16,14 +16,14 @@ namespace mpm {
 /// library_, the time now_, require(), the types Status and Boolean, and the name kGetDerivatives. Inputs and
 /// parameters are set in the event mode, since they jump.
 template <class Calls>
-class ModelExchange : public Calls, protected FmuEquations {
+class ModelExchange : public Calls, protected EventSystem {
  public:
   using Calls::Calls;
 
   void exit_initialization() override {
     Calls::exit_initialization();
     std::tie(states_, indicators_) = sizes();
-    integrator_.emplace(static_cast<FmuEquations&>(*this), states_, indicators_);
+    integrator_.emplace(static_cast<EventSystem&>(*this), states_, indicators_);
     integrator_->start(this->now_);
     is_continuous_ = true;
   }
@@ -82,7 +82,7 @@ class ModelExchange : public Calls, protected FmuEquations {
   }
 
   std::size_t states_ = 0, indicators_ = 0;
-  std::optional<FmuIntegrator> integrator_;  ///< once it is known how many there are
+  std::optional<EventIntegrator> integrator_;  ///< once it is known how many there are
   bool is_continuous_ = false;
 };
 

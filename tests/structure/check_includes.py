@@ -2,8 +2,8 @@
 
 Rooms are named from left to right; a file includes only its own room and rooms to its left, by the path from
 the root of the repository. The folders of a room are ordered in the same way, where it has any: a file in the
-room itself may include all of them. Files in tests/ may include everything. The headers of Ceres, Ipopt and
-SUNDIALS stand in one .cpp each at most, and never in a header; those of HDF5 in the files of its wrapper only, whose
+room itself may include all of them. Files in tests/ may include everything. The headers of Ceres and Ipopt
+stand in one .cpp each at most, and never in a header; those of HDF5 and SUNDIALS in the files of their wrapper only, whose
 headers that have them belong to the wrapper. A source includes its own header first, so that compiling the source
 shows that the header needs nothing before it.
 """
@@ -22,7 +22,8 @@ CONFINED = {
 }
 
 # Libraries whose wrapper is more than one source, and how the names of its files begin.
-WRAPPERS = {"HDF5": "results/archive/hdf5_"}
+WRAPPERS = {"HDF5": ("results/archive/hdf5_",),
+            "SUNDIALS": ("plants/nonlinear/sundials_", "plants/nonlinear/ode_integrator", "plants/nonlinear/event_integrator")}
 
 
 def includes(path):
@@ -79,7 +80,7 @@ def wrapper_complaint(root, relative, name):
         while waiting:
             header = waiting.pop()
             if CONFINED[library].match(header):
-                return f'"{name}" brings {library} with it and is for {begin}* only'
+                return f'"{name}" brings {library} with it and is for {"*, ".join(begin)}* only'
             if header not in seen and (root / header).is_file():
                 seen.add(header)
                 waiting += [below for _, below, _ in includes(root / header)]

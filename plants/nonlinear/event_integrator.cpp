@@ -1,10 +1,13 @@
-#include "plants/outside/fmu_integrator.hpp"
+#include "plants/nonlinear/event_integrator.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "plants/nonlinear/sundials_handles.hpp"
 #include "plants/system/forked_service.hpp"
 
 namespace mpm {
@@ -15,18 +18,46 @@ constexpr int kTryShorter = 1, kGiveUp = -1;  // what CVODE makes of the answer 
 
 }  // namespace
 
-FmuIntegrator::FmuIntegrator(FmuEquations& equations, std::size_t states, std::size_t indicator_count)
+class EventIntegrator::Implementation {
+ public:
+  Implementation(EventSystem& equations, std::size_t states, std::size_t indicator_count);
+
+  void start(double now);
+  void advance(double now, double step);
+
+ private:
+  static int derivative(realtype time, N_Vector state, N_Vector rate, void* self);
+  static int indicators(realtype time, N_Vector state, realtype* values, void* self);
+  /// Runs `work`; keeps what it throws, which must not pass through CVODE.
+  template <class Work>
+  int guarded(const Work& work);
+
+  EventSystem& equations_;
+  std::size_t states_;
+  std::vector<double> x_;  ///< at least one: without states CVODE gets one that rests
+  double next_event_ = 0.0;
+  std::exception_ptr thrown_;
+  // In the order in which they depend on each other.
+  sundials::SunContext context_;
+  sundials::SunVector vector_, tolerances_;
+  sundials::SunMatrix matrix_;
+  sundials::SunLinearSolver linear_solver_;
+  sundials::Cvode cvode_;
+};
+
+EventIntegrator::Implementation::Implementation(EventSystem& equations, std::size_t states,
+                                                std::size_t indicator_count)
     : equations_(equations),
       states_(states),
       x_(std::max<std::size_t>(states, 1), 0.0),
       context_(sundials::make_context()) {
   const auto n = static_cast<sunindextype>(x_.size());
   using sundials::checked, sundials::require;
-  vector_ = checked(sundials::Vector(N_VMake_Serial(n, x_.data(), context_.get())));
-  tolerances_ = checked(sundials::Vector(N_VNew_Serial(n, context_.get())));
-  matrix_ = checked(sundials::Matrix(SUNDenseMatrix(n, n, context_.get())));
+  vector_ = checked(sundials::SunVector(N_VMake_Serial(n, x_.data(), context_.get())));
+  tolerances_ = checked(sundials::SunVector(N_VNew_Serial(n, context_.get())));
+  matrix_ = checked(sundials::SunMatrix(SUNDenseMatrix(n, n, context_.get())));
   linear_solver_ =
-      checked(sundials::LinearSolver(SUNLinSol_Dense(vector_.get(), matrix_.get(), context_.get())));
+      checked(sundials::SunLinearSolver(SUNLinSol_Dense(vector_.get(), matrix_.get(), context_.get())));
   cvode_ = checked(sundials::Cvode(CVodeCreate(CV_BDF, context_.get())));
   require(CVodeSetErrHandlerFn(cvode_.get(), sundials::say_nothing, nullptr));
   require(CVodeInit(cvode_.get(), derivative, 0.0, vector_.get()));
@@ -38,7 +69,7 @@ FmuIntegrator::FmuIntegrator(FmuEquations& equations, std::size_t states, std::s
     require(CVodeRootInit(cvode_.get(), static_cast<int>(indicator_count), indicators));
 }
 
-void FmuIntegrator::start(double now) {
+void EventIntegrator::Implementation::start(double now) {
   next_event_ = equations_.handle_events();
   if (states_ > 0) {
     equations_.get_states(x_.data());
@@ -50,7 +81,7 @@ void FmuIntegrator::start(double now) {
   sundials::require(CVodeReInit(cvode_.get(), now, vector_.get()));
 }
 
-void FmuIntegrator::advance(double now, double step) {
+void EventIntegrator::Implementation::advance(double now, double step) {
   const double end = now + step;
   double time = now;
   for (long steps = 0; time < end; ++steps) {
@@ -76,7 +107,7 @@ void FmuIntegrator::advance(double now, double step) {
 }
 
 template <class Work>
-int FmuIntegrator::guarded(const Work& work) {
+int EventIntegrator::Implementation::guarded(const Work& work) {
   try {
     return work();
   } catch (...) {
@@ -85,8 +116,8 @@ int FmuIntegrator::guarded(const Work& work) {
   }
 }
 
-int FmuIntegrator::derivative(realtype time, N_Vector state, N_Vector rate, void* self) {
-  FmuIntegrator& my = *static_cast<FmuIntegrator*>(self);
+int EventIntegrator::Implementation::derivative(realtype time, N_Vector state, N_Vector rate, void* self) {
+  Implementation& my = *static_cast<Implementation*>(self);
   return my.guarded([&] {
     double* const dx = N_VGetArrayPointer(rate);
     if (my.states_ == 0)
@@ -99,8 +130,8 @@ int FmuIntegrator::derivative(realtype time, N_Vector state, N_Vector rate, void
   });
 }
 
-int FmuIntegrator::indicators(realtype time, N_Vector state, realtype* values, void* self) {
-  FmuIntegrator& my = *static_cast<FmuIntegrator*>(self);
+int EventIntegrator::Implementation::indicators(realtype time, N_Vector state, realtype* values, void* self) {
+  Implementation& my = *static_cast<Implementation*>(self);
   return my.guarded([&] {
     my.equations_.set_time(time);
     if (my.states_ > 0)
@@ -108,6 +139,19 @@ int FmuIntegrator::indicators(realtype time, N_Vector state, realtype* values, v
     my.equations_.get_indicators(values);
     return 0;
   });
+}
+
+EventIntegrator::EventIntegrator(EventSystem& system, std::size_t states, std::size_t indicators)
+    : implementation_(std::make_unique<Implementation>(system, states, indicators)) {}
+
+EventIntegrator::~EventIntegrator() = default;
+
+void EventIntegrator::start(double now) {
+  implementation_->start(now);
+}
+
+void EventIntegrator::advance(double now, double step) {
+  implementation_->advance(now, step);
 }
 
 }  // namespace mpm
