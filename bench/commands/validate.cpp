@@ -139,10 +139,13 @@ std::string text_of(const Validation& found, int jobs) {
         forecast.loops_without_fault, forecast.false_alarm_width / 2.0);
   if (forecast.worlds > 0)
     text += worlds_text(forecast);
-  text += fmt::format("cost: {:.1f} ms a loop, {} for the study with {} at once; per loop",
-                      found.pilot.milliseconds_of_a_loop, duration_text(found.pilot.seconds), jobs);
-  for (const StudyForecast::MethodCost& method : forecast.methods)
-    text += fmt::format(" {} {:.1f} ms", method.method, method.milliseconds);
+  text += fmt::format("cost: {} for the study with {} at once; {:.1f} ms a loop",
+                      duration_text(found.pilot.seconds), jobs, found.pilot.milliseconds_of_a_loop);
+  const char* before = ", of which ";
+  for (const StudyForecast::MethodCost& method : forecast.methods) {
+    text += fmt::format("{}{} {:.1f}", before, method.method, method.milliseconds);
+    before = ", ";
+  }
   text += fmt::format(
       "\narchive: loop data of {:.1f} MB with --store flagged, {:.1f} MB with --store all, before "
       "compression\n",

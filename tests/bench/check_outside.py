@@ -238,7 +238,7 @@ def check_everything_as_verdicts(outside):
     answer = outside.methods(archive, "--verdicts", plain)["plain"]
     assert sorted(answer["unanswered"]) == ["calibration", "windows"], answer["unanswered"]
     assert answer["rates"]["power_05"]["total"] == 0
-    said = outside.run("compare", archive, "--verdicts", plain, "--quiet")
+    said = outside.run("compare", archive, "--verdicts", plain, "--full", "--quiet")
     assert "plain: no verdict on any calibration loop" in said and "plain: no verdict on any window" in said, said
     assert "sse: no verdict" not in said, said
 

@@ -260,13 +260,25 @@ std::string tuned_study_text() {
                   "slack_weight = 9\nslack_cost = 6\nanalyser_period = 5\nanalyser_delay = 3");
 }
 
+/// The channels as coefficients of step responses.
+std::string stepped_study_text() {
+  const std::string lag =
+      "step = [0.3935, 0.6321, 0.7769, 0.8647, 0.9179, 0.9502, 0.9698, 0.9817, 0.9889, 0.9933]";
+  const std::string text =
+      replaced(scenario_study_text(), "numerator = [-1.5]\ndenominator = [20.0, 12.0, 1.0]\ndead_time = 2",
+               lag + "\nstep_interval = 2");
+  return replaced(replaced(text, "numerator = [-1], denominator = [3, 1], dead_time = 0.1",
+                           lag + ", step_interval = 0.5"),
+                  "numerator = [1]\ndenominator = [2, 0]\ndead_time = 4", lag + "\nstep_interval = 1");
+}
+
 /// Studies of the tests, among them those with the keys that no shipped one has.
 std::vector<Study> of_tests() {
   std::vector<Study> studies;
   for (const std::string& text :
        {small_study(), random_study_text(), scenario_study_text(), nonlinear_study_text(), random_tank_text(),
         fmu_study_text(), program_study_text(), controller_program_text(), unexcited_study_text(),
-        world_study_text(), world_tank_text(), tuned_study_text()})
+        world_study_text(), world_tank_text(), tuned_study_text(), stepped_study_text()})
     studies.push_back(parse_study(text, "s.toml"));
   return studies;
 }

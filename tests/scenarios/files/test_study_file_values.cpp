@@ -51,12 +51,19 @@ TEST_CASE("an unknown plant of the catalogue is refused with the known ones", "[
 }
 
 TEST_CASE("the channels of a plant are checked", "[study_file]") {
-  const std::string two_ways = "either gain and time_constant, or numerator and denominator";
+  const std::string two_ways =
+      "either gain and time_constant, or numerator and denominator, or step and step_interval";
   check_refusals({
       {"cv = \"heat\"", "cv = \"heart\"", "cv = \"heart\"",
        "plant.channel[1].cv: found 'heart' (nearest: 'heat'); allowed: level, heat"},
       {"input = \"cold\"", "input = \"heat\"", "input = \"heat\"",
        "plant.channel[1].input: found 'heat' (nearest: 'hot'); allowed: hot, cold, drain"},
+      {"dead_time = 2", "step_interval = 2", "numerator = [-1.5]",
+       "plant.channel[1].numerator: found a second way to write a channel; allowed: step and step_interval "
+       "alone"},
+      {"numerator = [-1.5]\ndenominator = [20.0, 12.0, 1.0]\ndead_time = 2",
+       "step = [1, 2, 3, 4, 5, 6, 7]\nstep_interval = 2",
+       "step = ", "plant.channel[1].step: step response: found 7 samples; allowed: at least 8"},
       {"input = \"drain\"", "input = \"hot\"",
        "[[plant.channel]]\ncv = \"level\"\ninput = \"hot\"\ngain = -1",
        "plant.channel[2]: found a second channel from this input to this CV; allowed: every channel once"},
