@@ -101,7 +101,7 @@ std::string take_step_model(SketchWords& words, const std::string& file, std::op
     }
     if (fit.channel.is_zero())
       continue;
-    channels.push_back(channel_words(cv + "," + input, fit.channel));
+    channels.push_back(channel_words(fmt::format("{},{}", cv, input), fit.channel));
     report += fmt::format("{}: gain {:.4g}, dead time {:.4g}, {} {}; off by at most {:.2g} %\n", name,
                           fit.channel.static_gain(), fit.channel.dead_time(), fit.channel.order(),
                           fit.channel.order() == 1 ? "lag" : "poles", 100 * fit.largest_error);
