@@ -98,10 +98,11 @@ std::string wrong_usage(const CLI::App& command, const CLI::ParseError& error) {
                        word.starts_with('-') ? "option" : "argument",
                        with_nearest(word, option_names(command)), help);
   std::string text = error.what();
-  if (const std::size_t end = text.find(" is required");
-      dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && end != std::string::npos)
-    if (const CLI::Option* const option = command.get_option_no_throw(text.substr(0, end)))
-      text = fmt::format("{}: found nothing; allowed: {}", text.substr(0, end), option->get_description());
+  for (const char* behind_name :
+       {" is required", ": 1 required"})  // an option, or its value, as CLI11 says it
+    if (const std::size_t end = text.find(behind_name); end != std::string::npos)
+      if (const CLI::Option* const option = command.get_option_no_throw(text.substr(0, end)))
+        text = fmt::format("{}: found nothing; allowed: {}", text.substr(0, end), option->get_description());
   return fmt::format("mpmbench: {}\n{} lists the options\n", text, help);
 }
 

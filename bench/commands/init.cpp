@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "analysis/basis/basis_case.hpp"
@@ -78,6 +79,18 @@ void ask(SketchWords& words) {
       words.limits.push_back(fmt::format("{}={}", mv.name, limits));
 }
 
+/// Names the variables of the words by those of the model, where the words have none.
+StepModel named_by(StepModel model, SketchWords& words) {
+  SketchWords measured;
+  measured.mds = words.mds;
+  const std::vector<std::string> mds = variable_names(sketch_of(measured, "").plant.mds);
+  if (words.cvs.empty())
+    words.cvs = fmt::format("{}", fmt::join(model.cvs(), ","));
+  if (words.mvs.empty())
+    words.mvs = fmt::format("{}", fmt::join(model.inputs_but(mds), ","));
+  return model;
+}
+
 void require_model(const SketchWords& words) {
   if (words.cvs.empty() || words.mvs.empty())
     throw InputError(words.cvs.empty() ? "--cvs" : "--mvs", "nothing",
@@ -143,16 +156,19 @@ ExitCode init(InitArguments arguments) {
   const bool to_stdout = arguments.output == "-";
   if (!to_stdout)
     require_new(arguments.output);
-  std::string fits;
+  std::optional<StepModel> steps;
   if (!arguments.step_response.empty())
-    fits = take_step_model(arguments.words, arguments.step_response, arguments.step_interval);
+    steps = named_by(read_step_model(arguments.step_response, arguments.step_interval), arguments.words);
   const bool nothing_said = arguments.words.cvs.empty() && arguments.words.mvs.empty();
   if (nothing_said && ::isatty(STDIN_FILENO) == 1)
     ask(arguments.words);
   else if (nothing_said && !arguments.data.empty())
     return init_data(arguments);
-  require_model(arguments.words);
+  if (!steps)
+    require_model(arguments.words);
   StudySketch sketch = sketch_of(arguments.words, to_stdout ? "my-plant" : name_of_file(arguments.output));
+  if (steps)
+    steps->put_into(sketch.plant);
   std::string of_data;
   if (!arguments.data.empty()) {
     const DataSketch data = data_sketch(sketch.plant, load_record_columns(arguments.data, DataOptions()));
@@ -166,7 +182,8 @@ ExitCode init(InitArguments arguments) {
     print_result(text);
   else
     write_new(arguments.output, text);
-  print_note(fits);
+  if (steps)
+    print_note(steps->report());
   if (!basis.healthy)
     print_note(fmt::format(
         "mpmbench: warning: the basis case fails its self-check: {}\nThe first guesses of weights "
@@ -215,6 +232,7 @@ void add_init(CommandSet& commands) {
       "control has its model; --cvs and --mvs are then those of the file");
   app.add_option("--step-interval", options->step_interval,
                  "Time between two coefficients (default: from the column `time` of the file)")
+      ->needs("--step-response")
       ->check(positive_number());
   app.add_option("--sample-time", options->words.sample_time,
                  "Sample time (default: from the time constants)")

@@ -92,11 +92,11 @@ std::filesystem::path octave_folder() {
 
 /// The folder of the Python package: that of an installed program, or of its source tree.
 std::filesystem::path python_folder() {
-  const std::filesystem::path data = study_directory().parent_path();
-  const std::filesystem::path installed = data.parent_path().parent_path() / "lib/python3/dist-packages";
+  const std::filesystem::path root = study_directory().parent_path().parent_path(), tree = root / "python";
   std::error_code error;
-  return std::filesystem::is_directory(installed / "mpmbench", error) ? installed
-                                                                      : data.parent_path() / "python";
+  return std::filesystem::is_directory(tree / "mpmbench", error)
+             ? tree
+             : root.parent_path() / "lib/python3/dist-packages";
 }
 
 /// What runs a method in the language of this file; empty: none is known.

@@ -1,6 +1,8 @@
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 
@@ -14,7 +16,11 @@
 namespace mpm {
 namespace {
 
+/// A pipe is not opened: what was read of it would be gone.
 bool is_archive(const std::string& file) {
+  std::error_code no_status;
+  if (!std::filesystem::is_regular_file(file, no_status))
+    return false;
   std::string start(8, '\0');
   std::ifstream(file, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
   return is_hdf5(start);

@@ -26,6 +26,19 @@ std::string trimmed(std::string_view text) {
              : std::string(text.substr(first, text.find_last_not_of(" \t") + 1 - first));
 }
 
+/// The pieces between any of these characters, without the blanks around them; those that are empty are left
+/// out.
+std::vector<std::string> pieces(std::string_view text, std::string_view between) {
+  std::vector<std::string> found;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(between), text.size());
+    if (std::string piece = trimmed(text.substr(0, end)); !piece.empty())
+      found.push_back(std::move(piece));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return found;
+}
+
 double number_of(const std::string& word, const std::string& place) {
   double number = 0.0;
   const char* const end = word.data() + word.size();
@@ -156,17 +169,6 @@ void read_channels(const SketchWords& words, PlantModel& plant) {
 }
 
 }  // namespace
-
-std::vector<std::string> pieces(std::string_view text, std::string_view between) {
-  std::vector<std::string> found;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find_first_of(between), text.size());
-    if (std::string piece = trimmed(text.substr(0, end)); !piece.empty())
-      found.push_back(std::move(piece));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return found;
-}
 
 StudySketch sketch_of(const SketchWords& words, const std::string& name) {
   StudySketch sketch;

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "scenarios/files/study_template.hpp"
@@ -20,10 +19,6 @@ struct SketchWords {
   std::vector<std::string> ranges, limits;  ///< NAME=LOW:HIGH
   std::vector<std::string> setpoints;       ///< NAME=SIZE
 };
-
-/// The pieces between any of these characters, without the blanks around them; those that are empty are left
-/// out.
-std::vector<std::string> pieces(std::string_view text, std::string_view between);
 
 /// Reads them, for a study of this name. Channels win over matrices. Errors: InputError, which names the
 /// option.

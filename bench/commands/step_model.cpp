@@ -9,8 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "plants/error.hpp"
-#include "plants/linear/step_response_fit.hpp"
 #include "results/records/record_file.hpp"
+#include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {
 namespace {
@@ -67,51 +67,73 @@ void add_once(std::vector<std::string>& names, const std::string& name) {
     names.push_back(name);
 }
 
-/// In the way of --channel.
-std::string channel_words(const std::string& name, const TransferFunction& channel) {
-  return fmt::format("{}={} / {} @ {}", name, fmt::join(channel.numerator(), " "),
-                     fmt::join(channel.denominator(), " "), channel.dead_time());
+/// The place of a variable of the plant.
+Eigen::Index place_in(const std::vector<std::string>& names, const std::string& name,
+                      const std::string& column) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    throw InputError(column, with_nearest(name, names), fmt::format("{}", fmt::join(names, ", ")));
+  return found - names.begin();
 }
 
 }  // namespace
 
-std::string take_step_model(SketchWords& words, const std::string& file, std::optional<double> interval) {
+std::vector<std::string> StepModel::cvs() const {
+  std::vector<std::string> names;
+  for (const Channel& channel : channels)
+    add_once(names, channel.cv);
+  return names;
+}
+
+std::vector<std::string> StepModel::inputs_but(const std::vector<std::string>& mds) const {
+  std::vector<std::string> names;
+  for (const Channel& channel : channels)
+    if (std::find(mds.begin(), mds.end(), channel.input) == mds.end())
+      add_once(names, channel.input);
+  return names;
+}
+
+void StepModel::put_into(PlantModel& plant) const {
+  for (const Channel& channel : channels) {
+    const std::string column = fmt::format("{}: {}/{}", file, channel.cv, channel.input);
+    TransferFunction& place = plant.G(place_in(variable_names(plant.cvs), channel.cv, column),
+                                      place_in(input_names(plant), channel.input, column));
+    if (place.is_zero())
+      place = channel.fit.channel;
+  }
+}
+
+std::string StepModel::report() const {
+  std::string text;
+  for (const Channel& channel : channels) {
+    const TransferFunction& G = channel.fit.channel;
+    text += fmt::format("{}/{}: gain {:.4g}, dead time {:.4g}, {} {}; off by at most {:.2g} %\n", channel.cv,
+                        channel.input, G.static_gain(), G.dead_time(), G.order(),
+                        G.order() == 1 ? "lag" : "poles", 100 * channel.fit.largest_error);
+  }
+  return text;
+}
+
+StepModel read_step_model(const std::string& file, std::optional<double> interval) {
   RecordColumns columns = load_record_columns(file, DataOptions());
   const double between = step_interval_of(columns, interval);
-  const std::vector<std::string> mds = pieces(words.mds, " ,");
-  std::vector<std::string> cvs, mvs, channels;
-  std::string report;
+  StepModel model{file, {}};
   for (std::size_t column = 0; column < columns.names.size(); ++column) {
     const std::string& name = columns.names[column];
-    const std::size_t slash = name.find('/');
     if (name == kTimeColumn)
       continue;
+    const std::size_t slash = name.find('/');
     if (slash == std::string::npos)
       throw InputError(file, fmt::format("the column '{}'", name), "CV/INPUT, or time");
-    const std::string cv = name.substr(0, slash), input = name.substr(slash + 1);
-    add_once(cvs, cv);
-    if (std::find(mds.begin(), mds.end(), input) == mds.end())
-      add_once(mvs, input);
     const Eigen::VectorXd coefficients = numbers_in(columns, column);
-    StepResponseFit fit;
     try {
-      fit = fit_step_coefficients(coefficients, between);
+      model.channels.push_back(
+          {name.substr(0, slash), name.substr(slash + 1), fit_step_coefficients(coefficients, between)});
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}: {}", file, name, error.what()));
     }
-    if (fit.channel.is_zero())
-      continue;
-    channels.push_back(channel_words(fmt::format("{},{}", cv, input), fit.channel));
-    report += fmt::format("{}: gain {:.4g}, dead time {:.4g}, {} {}; off by at most {:.2g} %\n", name,
-                          fit.channel.static_gain(), fit.channel.dead_time(), fit.channel.order(),
-                          fit.channel.order() == 1 ? "lag" : "poles", 100 * fit.largest_error);
   }
-  if (words.cvs.empty())
-    words.cvs = fmt::format("{}", fmt::join(cvs, ","));
-  if (words.mvs.empty())
-    words.mvs = fmt::format("{}", fmt::join(mvs, ","));
-  words.channels.insert(words.channels.begin(), channels.begin(), channels.end());  // --channel wins
-  return report;
+  return model;
 }
 
 }  // namespace mpm

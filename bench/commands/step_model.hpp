@@ -2,16 +2,35 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "bench/commands/sketch_words.hpp"
+#include "plants/linear/plant_model.hpp"
+#include "plants/linear/step_response_fit.hpp"
 
 namespace mpm {
 
-/// A model as dynamic matrix control has it: a file of columns CV/INPUT, coefficients of the response to a
-/// step of 1, and the time between two of them: `interval`, or what a column `time` says. A first row at time
-/// 0 is left out. Puts the transfer functions that are fitted to them into the words, and the names of the
-/// variables where the words have none: inputs that are no MDs are MVs. Returns what the fits leave, a line a
-/// channel. Errors: InputError, which names the file and the column.
-std::string take_step_model(SketchWords& words, const std::string& file, std::optional<double> interval);
+/// A model as dynamic matrix control has it, each channel as a fitted transfer function.
+struct StepModel {
+  struct Channel {
+    std::string cv, input;
+    StepResponseFit fit;
+  };
+
+  std::string file;
+  std::vector<Channel> channels;  ///< in the order of the columns
+
+  std::vector<std::string> cvs() const;
+  /// But for these, in the order of the columns.
+  std::vector<std::string> inputs_but(const std::vector<std::string>& mds) const;
+  /// Puts the channels where the plant has none. Errors: InputError for a variable that the plant has not.
+  void put_into(PlantModel& plant) const;
+  /// What each fit is and leaves, a line a channel.
+  std::string report() const;
+};
+
+/// Reads a file of columns CV/INPUT, coefficients of the response to a step of 1, and the time between two of
+/// them: `interval`, or what a column `time` says. A first row at time 0 is left out. Errors: InputError,
+/// which names the file and the column.
+StepModel read_step_model(const std::string& file, std::optional<double> interval);
 
 }  // namespace mpm

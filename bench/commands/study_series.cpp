@@ -29,19 +29,18 @@ void run_series(const std::vector<IntendedStudy>& studies, const RunOptions& opt
   const auto loops = [&options](const IntendedStudy& study) {
     return options.experiments.value_or(study.study.experiment_count()) + calibration_loops(study.study);
   };
-  progress.plan(
+  std::int64_t later =
       std::accumulate(studies.begin(), studies.end(), std::int64_t{0},
-                      [&loops](std::int64_t sum, const IntendedStudy& study) { return sum + loops(study); }));
+                      [&loops](std::int64_t sum, const IntendedStudy& study) { return sum + loops(study); });
   for (std::size_t place = 0; place < studies.size(); ++place) {
     const IntendedStudy& study = studies[place];
     const std::string name = fmt::format("{}: {}", study.place, study.name);
+    later -= loops(study);
+    progress.plan(later);
     try {
-      KeptRun run = run_unless_kept(study.archive, study.study, options, hooks_of(progress), command_line,
-                                    [&](bool is_there) {
-                                      if (is_there)
-                                        progress.skip(loops(study));
-                                      progress.note(name + (is_there ? ", done already" : ""));
-                                    });
+      KeptRun run =
+          run_unless_kept(study.archive, study.study, options, hooks_of(progress), command_line,
+                          [&](bool is_there) { progress.note(name + (is_there ? ", done already" : "")); });
       if (!run.trouble.empty())
         progress.warn(fmt::format("{}: {}", name, run.trouble));
       take(place, std::move(run));

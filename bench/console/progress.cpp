@@ -29,15 +29,15 @@ Progress::~Progress() {
   end_line();
 }
 
-void Progress::plan(std::int64_t total) {
-  planned_ = total;
+void Progress::plan(std::int64_t later) {
+  later_ = later;
   in_pieces_ = true;
 }
 
 void Progress::begin(std::int64_t total, std::int64_t done) {
   end_line();
-  finished_ += done_ - earlier_;
-  planned_ -= total;
+  if (in_pieces_)
+    finished_ += done_ - earlier_;
   total_ = total;
   earlier_ = done_ = done;
   failed_ = 0;
@@ -81,12 +81,11 @@ void Progress::end_when_requested() const {
 void Progress::show() {
   shown_ = Clock::now();
   const double seconds = std::chrono::duration<double>(shown_ - start_).count();
-  const std::int64_t finished = in_pieces_ ? finished_ : 0, planned = in_pieces_ ? planned_ : 0;
-  const double rate = static_cast<double>(finished + done_ - earlier_) / std::max(seconds, 1e-9);
+  const double rate = static_cast<double>(finished_ + done_ - earlier_) / std::max(seconds, 1e-9);
   const std::string text =
       fmt::format("{}/{} {}, {:.3g}/s, {} left{}{}", done_, total_, what_, rate,
-                  duration(static_cast<double>(total_ - done_ + planned) / rate),
-                  planned > 0 ? " in all" : "", failed_ > 0 ? fmt::format(", {} failed", failed_) : "");
+                  duration(static_cast<double>(total_ - done_ + later_) / rate), later_ > 0 ? " in all" : "",
+                  failed_ > 0 ? fmt::format(", {} failed", failed_) : "");
   if (terminal_) {
     constexpr int kWidth = 30;
     const auto filled = static_cast<int>(kWidth * done_ / std::max<std::int64_t>(total_, 1));

@@ -22,10 +22,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Work in several pieces of this many in all is to begin: the time left is that of all of it.
-  void plan(std::int64_t total);
-  /// So many of them need not be done.
-  void skip(std::int64_t count) { planned_ -= count; }
+  /// The work is one piece of several, and so many experiments follow in the pieces after the next one: the
+  /// time left is that of all of them.
+  void plan(std::int64_t later);
   /// Work of `total` experiments begins; `done` of them were done before and do not count in the rate.
   void begin(std::int64_t total, std::int64_t done = 0);
   /// One more is done; `failed` when it is worth mentioning. One call at a time.
@@ -53,7 +52,7 @@ class Progress {
   const bool quiet_, terminal_;
   const std::string_view what_;
   std::int64_t total_ = 0, earlier_ = 0, done_ = 0, failed_ = 0;
-  std::int64_t planned_ = 0;   ///< of pieces that have not begun
+  std::int64_t later_ = 0;     ///< of pieces that follow
   std::int64_t finished_ = 0;  ///< of pieces that have ended
   bool in_pieces_ = false;
   Clock::time_point start_, shown_;

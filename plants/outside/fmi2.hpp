@@ -41,15 +41,14 @@ using EnterInitializationMode = Status(Component);
 using ExitInitializationMode = Status(Component);
 using SetReal = Status(Component, const ValueReference*, std::size_t count, const Real*);
 using GetReal = Status(Component, const ValueReference*, std::size_t count, Real*);
+using DoStep = Status(Component, Real now, Real step, Boolean no_earlier_state);
+
+// For model exchange; those with the same name in both versions are in fmu_model_exchange.hpp.
 /// How the discrete states stand after an iteration of them.
 struct EventInfo {
   Boolean again, terminate, nominals_changed, states_changed, has_next_event;
   Real next_event;
 };
-
-using DoStep = Status(Component, Real now, Real step, Boolean no_earlier_state);
-
-// For model exchange; those with the same name in both versions are in fmu_model_exchange.hpp.
 using NewDiscreteStates = Status(Component, EventInfo*);
 
 }  // namespace mpm::fmi2

@@ -23,7 +23,7 @@ constexpr OverviewColumn kOverviewColumns[] = {
     {"Healthy flagged", &MethodRates::false_alarm_healthy},
     {"Faults found", &MethodRates::detected_impact, &MethodRates::power_05_impact},
     {"Found at 5 %", &MethodRates::power_05_impact},
-    {"CV right", &MethodRates::located},
+    {"CV located", &MethodRates::located},
     {"Source right", &MethodRates::source, &MethodRates::source_05_impact},
     {"Source at 5 %", &MethodRates::source_05_impact},
 };
@@ -88,8 +88,8 @@ Section comparison_overview(const Campaign& campaign, const StudyFindings& findi
     if (is_counted(findings, column.rate) && !is_counted(findings, column.better))
       columns.push_back(column);
   Table table(
-      fmt::format("% of loops with {:g} % intervals. Found: of the faults with an impact. CV and source "
-                  "right: of the flagged loops with a fault.{}",
+      fmt::format("% of loops with {:g} % intervals. Found: of the faults with an impact. CV "
+                  "located and source right: of the flagged loops with a fault.{}",
                   100 * campaign.study.aggregate.confidence,
                   is_counted(findings, &MethodRates::power_05_impact)
                       ? " At 5 %: of the faults with an impact, at the threshold calibrated for 5 % false "

@@ -173,6 +173,7 @@ TEST_CASE("command line: wrong usage names what is wrong") {
       {{"run", "chapter6", "extra", "-o", "x"}, "argument: found 'extra'"},
       {run + Words{"--jobs", "0"}, "--jobs"},
       {run + Words{"--experiments", "-4"}, "--experiments"},
+      {run + Words{"--methods"}, "--methods: found nothing; allowed: Methods"},
       {run + Words{"--solver", "ipop"}, "--solver: found 'ipop' (nearest: 'ipopt'); allowed: auto, "},
       {run + Words{"--audit", "2"}, "--audit"},
       {run + Words{"--parallel", "both"}, "--parallel"},
