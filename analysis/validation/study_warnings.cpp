@@ -24,7 +24,7 @@ constexpr double kLargestNoiseShare = 0.05;  // of a range or a step; shipped st
 constexpr double kMostlyNoise = 0.5;         // of the variance of a CV
 constexpr double kOftenAtLimit = 0.1;        // of the samples of the basis case
 constexpr double kEdge = 0.75;               // of the way from 1 to the end of the band
-constexpr double kPoorStepFit = 0.01;        // of the largest coefficient
+constexpr double kPoorStepFit = 0.01;  // of the largest coefficient: models are a few percent off anyway
 constexpr int kFewSamples = 100;
 
 std::string_view name_of(const std::vector<PlantModel::Variable>& variables, Eigen::Index i) {

@@ -19,7 +19,7 @@ namespace mpm {
 namespace {
 
 constexpr Eigen::Index kFewestResponseSamples = 8;
-constexpr double kUnsettledShare = 0.1;  // of the largest value
+constexpr double kUnsettledShare = 0.1;  // of the largest value: e^(-2.3), two or three time constants
 constexpr double kFastestLag = 0.02;     // time constant, in samples: a jump within the first of them
 constexpr double kSlowestLag = 20.0;     // time constant, in records
 constexpr double kLeastDamping = 0.05, kMostDamping = 20.0;

@@ -141,8 +141,13 @@ int EventIntegrator::Implementation::indicators(realtype time, N_Vector state, r
   });
 }
 
-EventIntegrator::EventIntegrator(EventSystem& system, std::size_t states, std::size_t indicators)
-    : implementation_(std::make_unique<Implementation>(system, states, indicators)) {}
+EventIntegrator::EventIntegrator(EventSystem& system, std::size_t states, std::size_t indicators) {
+  if (states > kMostStates || indicators > kMostIndicators)
+    throw ForeignFailure(
+        fmt::format("{} states and {} event indicators, where at most {} and {} are integrated", states,
+                    indicators, kMostStates, kMostIndicators));
+  implementation_ = std::make_unique<Implementation>(system, states, indicators);
+}
 
 EventIntegrator::~EventIntegrator() = default;
 

@@ -6,8 +6,8 @@
 namespace mpm {
 
 /// Differential equations x' = f(t, x) between events, and what happens at these: those of an FMU for model
-/// exchange (FMI 2.0, 3.2; FMI 3.0, 3.2). The numbers are arrays of the sizes with which the integrator was
-/// made.
+/// exchange (FMI 2.0, 3.2; FMI 3.0, chapter 3). The numbers are arrays of the sizes with which the integrator
+/// was made.
 class EventSystem {
  public:
   EventSystem() = default;
@@ -35,9 +35,12 @@ class EventSystem {
 /// Integrates them by the backward differentiation formulae of CVODE (see OdeMethod::bdf), with a Jacobian of
 /// finite differences: event by event, each found as a root of the indicators, a time or a request.
 ///
-/// Errors of all members: those of the system, and ForeignFailure where CVODE gives up.
+/// Errors of all members: those of the system, and ForeignFailure where CVODE gives up, and for more states
+/// or indicators than kMostStates and kMostIndicators.
 class EventIntegrator {
  public:
+  /// The Jacobian is dense, and twice there: 5000 states are 400 MB. The system says its own numbers.
+  static constexpr std::size_t kMostStates = 5000, kMostIndicators = 100'000;
   /// Of a local error, relative to the state and to its nominal value.
   static constexpr double kTolerance = 1e-9;
 

@@ -9,6 +9,7 @@
 #include "plants/non_finite.hpp"
 #include "plants/outside/fmi2.hpp"
 #include "plants/outside/fmu_calls.hpp"
+#include "plants/outside/fmu_library.hpp"
 #include "plants/outside/fmu_model_exchange.hpp"
 #include "plants/system/forked_service.hpp"
 

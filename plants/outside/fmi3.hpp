@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-/// What mpmbench uses of the C interface of FMI 3.0: the types and the signatures of the
-/// functions as the standard gives them (Functional Mock-up Interface Specification, version 3.0, 2.2,
-/// 3.2 and 4.2). A function of the name NAME is `fmi3NAME` in the library of an FMU.
+/// What mpmbench uses of the C interface of FMI 3.0: the types and the signatures of the functions as the
+/// standard gives them (Functional Mock-up Interface Specification, version 3.0, chapters 2 to 4). A function
+/// of the name NAME is `fmi3NAME` in the library of an FMU.
 namespace mpm::fmi3 {
 
 using Instance = void*;

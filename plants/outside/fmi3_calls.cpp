@@ -8,6 +8,7 @@
 #include "plants/non_finite.hpp"
 #include "plants/outside/fmi3.hpp"
 #include "plants/outside/fmu_calls.hpp"
+#include "plants/outside/fmu_library.hpp"
 #include "plants/outside/fmu_model_exchange.hpp"
 #include "plants/system/forked_service.hpp"
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,36 +33,9 @@ class FmuCalls {
   virtual void advance(double now, double step) = 0;
 };
 
-/// An instance by FMI 2.0 or 3.0, as the description has it, for an experiment from 0 to `stop`.
-std::unique_ptr<FmuCalls> instantiate_fmu(const FmuPackage& package, double stop);
+/// An instance of an FMU by FMI 2.0, and by 3.0, of the kind that its description has, for an experiment from
+/// 0 to `stop`.
 std::unique_ptr<FmuCalls> instantiate_fmi2(const FmuPackage& package, double stop);
 std::unique_ptr<FmuCalls> instantiate_fmi3(const FmuPackage& package, double stop);
-
-/// The library of an FMU, and what its one instance in this process says.
-class FmuLibrary {
- public:
-  /// Names that this program has as well, such as those of CVODE and LAPACK, are first looked for in its own
-  /// library. `prefix` stands before the names of all functions. Errors: ForeignFailure for a library that
-  /// cannot be loaded or has another version of the interface than `version`.
-  FmuLibrary(const FmuPackage& package, std::string prefix, std::string_view version);
-
-  template <class Function>
-  Function* function(const std::string& name) const {
-    return reinterpret_cast<Function*>(symbol(name));
-  }
-  /// Throws ForeignFailure unless the status is `ok` or `warning`; both versions number them alike.
-  void require(int status, const std::string& function, double now) const;
-  /// Throws ForeignFailure where the FMU asks to end.
-  void require_no_end(bool asks, const std::string& function, double now) const;
-  /// " (it says: ...)", its last message of trouble; empty: none.
-  static std::string said();
-  static void keep(int status, const char* message);
-
- private:
-  void* symbol(const std::string& name) const;
-
-  std::string prefix_;
-  void* library_;
-};
 
 }  // namespace mpm

@@ -30,7 +30,7 @@ enum class FmuRole {
   parameter,  ///< of causality parameter
 };
 
-/// modelDescription.xml of an FMU (FMI 2.0, 2.2, 3.3 and 4.3; FMI 3.0, 2.4, 3.3 and 4.3).
+/// modelDescription.xml of an FMU (FMI 2.0, 2.2, 3.3 and 4.3; FMI 3.0, chapters 2 to 4).
 struct FmuDescription {
   std::string file;  ///< of the FMU, for messages
   FmiVersion version = FmiVersion::two;

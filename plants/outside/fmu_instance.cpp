@@ -19,7 +19,8 @@ FmuSteps FmuSteps::of_sample(double sample, double longest) {
 FmuInstance::FmuInstance(const FmuPackage& package, const FmuReferences& references,
                          const Eigen::VectorXd& parameters, const Eigen::VectorXd& input, FmuSteps steps)
     : references_(references),
-      calls_(instantiate_fmu(package, kMostSamples * steps.count * steps.length)),
+      calls_((package.description().version == FmiVersion::two ? instantiate_fmi2 : instantiate_fmi3)(
+          package, kMostSamples * steps.count * steps.length)),
       step_(steps) {
   set_parameters(parameters);
   calls_->enter_initialization();

@@ -1,10 +1,12 @@
+#include "plants/outside/fmu_library.hpp"
+
 #include <string_view>
 #include <utility>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include "plants/outside/fmu_calls.hpp"
+#include "plants/outside/fmi2.hpp"
 #include "plants/system/forked_service.hpp"
 
 namespace mpm {
@@ -88,11 +90,6 @@ std::string FmuLibrary::said() {
 void FmuLibrary::keep(int status, const char* message) {
   if (message != nullptr)
     (status == fmi2::ok ? messages().any : messages().of_trouble) = message;
-}
-
-std::unique_ptr<FmuCalls> instantiate_fmu(const FmuPackage& package, double stop) {
-  return package.description().version == FmiVersion::two ? instantiate_fmi2(package, stop)
-                                                          : instantiate_fmi3(package, stop);
 }
 
 }  // namespace mpm

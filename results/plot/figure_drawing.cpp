@@ -43,7 +43,8 @@ std::string terminal(FigureFormat format, double width, double height) {
     case FigureFormat::svg:
       return fmt::format("set terminal svg size {},{} fixed enhanced font 'Arial,12' background '#FFFFFF'\n",
                          width, height);
-    case FigureFormat::pdf:
+    case FigureFormat::pdf:  // a font of 12 pixels where a panel has kPanelWidth; looked at beside the other
+                             // two
       return fmt::format(
           "set terminal pdfcairo size {}in,{}in enhanced font 'Arial,7.2' fontscale 0.75 linewidth 0.6 "
           "pointscale 0.8\n",

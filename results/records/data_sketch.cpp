@@ -102,7 +102,7 @@ struct ColumnLook {
   /// Of a signal that is held for most of the time, such as that of an analyser, of the values that are new.
   double noise() const {
     constexpr double kOfNormal = 1.4826;  // standard deviation over median absolute deviation
-    constexpr double kHeld = 0.7;         // of the rows
+    constexpr double kHeld = 0.7;         // new values a row: noise that is not held is nearly always new
     std::vector<double> seen = values, bends;
     if (changes < kHeld) {
       seen.clear();
