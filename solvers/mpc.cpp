@@ -56,13 +56,24 @@ Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& o
       setpoint_(Eigen::VectorXd::Zero(model.rows())),
       setpoint_weight_(options.setpoint_weight),
       cv_soft_(options.cv_soft) {
+  Eigen::MatrixXd gain = model.steady_gain();
+  for (Eigen::Index cv = 0; cv < model.rows(); ++cv)
+    if (model.is_integrating(cv)) {
+      integrating_.push_back(cv);
+      gain.row(cv) *= options.prediction_horizon * options.sample_time;
+    }
+  mv_gain_ = gain.leftCols(mv_count);
+  md_gain_ = gain.rightCols(model.cols() - mv_count);
   if (options.has_targets()) {
-    targets_.emplace(model.static_gain().leftCols(mv_count), options, factory);
+    targets_.emplace(mv_gain_, options, factory);
     pass_on_limits();
   }
-  md_gain_ = model.static_gain().rightCols(model.cols() - mv_count);
   input_.setZero(model.cols());
-  bias_.setZero(model.rows());
+  for (Eigen::VectorXd* of_cv : {&bias_, &ramp_, &ramp_share_, &y_model_})
+    of_cv->setZero(model.rows());
+  for (const Eigen::Index cv : integrating_)
+    if (options.has_bias_ramps())
+      ramp_share_(cv) = options.bias_ramp(cv);
   measured_.setZero(model.rows());
   y_at_zero_.setZero(model.rows());
   free_.setZero(model.rows(), options.prediction_horizon);
@@ -77,6 +88,8 @@ void Mpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<con
   model_.reset(input_);
   simulated_analysers_.reset(model_.output());
   is_pending_ = false;
+  has_bias_ = false;
+  ramp_.setZero();
   if (targets_)
     targets_->reset();
   solver_->reset();
@@ -98,7 +111,7 @@ void Mpc::set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) {
   pass_on_limits();
 }
 
-/// The target optimizer sees a setpoint as a range without width.
+/// The target optimizer sees a setpoint as a range without width, and of a CV that integrates its rate.
 void Mpc::pass_on_limits() {
   if (!targets_)
     return;
@@ -106,6 +119,8 @@ void Mpc::pass_on_limits() {
   for (Eigen::Index cv = 0; cv < setpoint_.size(); ++cv)
     if (setpoint_weight_(cv) > 0.0)
       target_range_.lower(cv) = target_range_.upper(cv) = setpoint_(cv);
+  for (const Eigen::Index cv : integrating_)
+    target_range_.lower(cv) = target_range_.upper(cv) = 0.0;
   targets_->set_cv_soft(target_range_);
 }
 
@@ -134,9 +149,7 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   if (is_pending_)
     model_.advance(input_);
   measured_ = y;
-  bias_ = model_.output();
-  simulated_analysers_.pass(bias_);
-  bias_ = y - bias_;
+  feed_back(y);
   input_ << move_.u, d;
   move_.status = ControlStatus::ok;
   move_.kkt_residual = 0.0;
@@ -148,6 +161,16 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   input_.head(nu_) = move_.u;
   is_pending_ = true;
   return move_;
+}
+
+void Mpc::feed_back(const Eigen::Ref<const Eigen::VectorXd>& y) {
+  y_model_ = model_.output();
+  simulated_analysers_.pass(y_model_);
+  for (const Eigen::Index cv : integrating_)
+    if (has_bias_)
+      ramp_(cv) += ramp_share_(cv) * (y(cv) - y_model_(cv) - bias_(cv) - ramp_(cv));
+  bias_ = y - y_model_;
+  has_bias_ = true;
 }
 
 void Mpc::set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) {
@@ -165,6 +188,8 @@ void Mpc::note(const QpResult& answer) {
 bool Mpc::solve_targets() {
   y_at_zero_.noalias() = md_gain_ * input_.tail(md_gain_.cols());
   y_at_zero_ += bias_;
+  for (const Eigen::Index cv : integrating_)
+    y_at_zero_(cv) += static_cast<double>(free_.cols()) * ramp_(cv) - bias_(cv);
   const QpResult& target = targets_->solve(y_at_zero_);
   note(target);
   if (move_.status != ControlStatus::ok)
@@ -177,6 +202,9 @@ bool Mpc::solve_targets() {
 void Mpc::solve_moves() {
   free_response(model_, input_, scratch_, free_);
   free_.colwise() += bias_;
+  for (const Eigen::Index cv : integrating_)
+    for (Eigen::Index l = 0; l < free_.cols(); ++l)
+      free_(cv, l) += static_cast<double>(l + 1) * ramp_(cv);
   const QpResult& plan =
       solver_->solve(qp_.update({free_, input_.head(nu_), move_.u_target, setpoint_, measured_}));
   note(plan);

@@ -20,8 +20,13 @@ namespace mpm {
 ///
 /// At sample k, from the measured CVs y(k) and MDs d(k):
 /// 1. Output-bias feedback: b(k) = y(k) - y_sim(k), y_sim = G0 (u, d), is added to every prediction. Of a CV
-///    of an analyser y_sim is that at the sample at which the analysis was taken.
-/// 2. The targets for the steady state K_d d(k) + b(k) + K u (6.19).
+///    of an analyser y_sim is that at the sample at which the analysis was taken. The bias of a CV that
+///    integrates may have a ramp, r(k) = r(k-1) + alpha (b(k) - b(k-1) - r(k-1)): what is not known flows
+///    into a level all the time. Its prediction l samples ahead has b(k) + l r(k).
+/// 2. The targets for the steady state K_d d(k) + b(k) + K u (6.19). A CV that integrates is at a steady
+/// state
+///    where its rate is 0, K_d and K are those of the rate, and r stands for b; a rate counts by what it
+///    makes of the CV over the prediction horizon.
 /// 3. The moves from the free response with MVs held at u(k-1) and MDs held at d(k) (6.20). Setpoints are
 ///    those of this sample, held over the horizon: the controller does not know their changes beforehand.
 ///
@@ -49,12 +54,15 @@ class Mpc final : public Controller {
 
  private:
   void pass_on_limits();
+  void feed_back(const Eigen::Ref<const Eigen::VectorXd>& y);
   void note(const QpResult& answer);
   bool solve_targets();
   void solve_moves();
 
   Eigen::Index nu_;
-  Eigen::MatrixXd md_gain_;
+  std::vector<Eigen::Index> integrating_;  ///< CVs
+  /// At the steady state, from MVs and MDs, of a CV that integrates over the prediction horizon.
+  Eigen::MatrixXd mv_gain_, md_gain_;
   LinearPlant model_, scratch_;
   MpcQp qp_;
   std::optional<TargetOptimizer> targets_;
@@ -62,7 +70,8 @@ class Mpc final : public Controller {
   Eigen::VectorXd input_;  ///< (u(k-1), d(k)), then what acts, (u(k), d(k))
   AnalyserHold simulated_analysers_;
   bool is_pending_ = false;  ///< input_ acts, and the model has not been advanced with it
-  Eigen::VectorXd bias_, y_at_zero_, setpoint_, measured_;
+  bool has_bias_ = false;    ///< since reset()
+  Eigen::VectorXd bias_, ramp_, ramp_share_, y_at_zero_, setpoint_, measured_, y_model_;
   Eigen::VectorXd setpoint_weight_;
   Limits cv_soft_, target_range_;
   Eigen::MatrixXd free_;  ///< ny x Hp

@@ -55,12 +55,12 @@ auto members(const Limits& limits) {
 
 auto members(const MpcOptions& options) {
   const auto& [sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
-               setpoint_weight, slack_weight, slack_cost, reference_time, analysers, move_blocks,
+               setpoint_weight, slack_weight, slack_cost, reference_time, bias_ramp, analysers, move_blocks,
                weight_convention, slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost, resting_value,
                resting_weight, target_violation_cost] = options;
   return std::tie(sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
-                  setpoint_weight, slack_weight, slack_cost, reference_time, analysers, move_blocks,
-                  weight_convention, slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost,
+                  setpoint_weight, slack_weight, slack_cost, reference_time, bias_ramp, analysers,
+                  move_blocks, weight_convention, slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost,
                   resting_value, resting_weight, target_violation_cost);
 }
 
@@ -95,6 +95,10 @@ bool MpcOptions::has_reference(Eigen::Index cv) const {
 
 bool MpcOptions::has_slack_cost(Eigen::Index cv) const {
   return has(slack_cost, cv);
+}
+
+bool MpcOptions::has_bias_ramps() const {
+  return (bias_ramp.array() > 0.0).any();
 }
 
 bool MpcOptions::has_resting_values() const {
@@ -144,6 +148,9 @@ void MpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) const {
     if (has_soft_limit(i) && slack_weight(i) == 0 && !has_slack_cost(i))
       throw InputError(fmt::format("slack_weight[{}]", i), "0", "a number > 0 for a CV with a soft limit");
   require_optional_weights("reference_time", reference_time, cv_count);
+  require_optional_weights("bias_ramp", bias_ramp, cv_count);
+  if ((bias_ramp.array() > 1.0).any())
+    throw InputError("bias_ramp", fmt::format("{}", bias_ramp.maxCoeff()), "numbers from 0 to 1");
   if (!analysers.empty() && static_cast<Eigen::Index>(analysers.size()) != cv_count)
     throw InputError("analysers", fmt::format("{}", analysers.size()), fmt::format("{}, or none", cv_count));
   for (const AnalyserTiming& timing : analysers)

@@ -63,6 +63,7 @@ struct Limits {
 /// | r_u, w_u | resting_value, resting_weight | nu | MV, 1 / MV^2        |
 /// | du_max   | move_limit         | nu    | MV a sample                 |
 /// | tau_ref  | reference_time     | ny    | time unit of the plant      |
+/// | alpha    | bias_ramp          | ny    | 1                           |
 /// |          | analysers          | ny    | samples                     |
 struct MpcOptions {
   double sample_time = 1.0;
@@ -75,6 +76,9 @@ struct MpcOptions {
   Eigen::VectorXd slack_cost = {};  ///< linear cost of a slack; empty or 0: none
   /// Time constant with which the CV is asked to approach its setpoint from where it is; empty or 0: at once.
   Eigen::VectorXd reference_time = {};
+  /// Of CVs that integrate, 0 to 1: the share of what the output bias moves from one sample to the next that
+  /// counts as its ramp, with which the prediction goes on (Mpc). Empty or 0: the bias is a constant.
+  Eigen::VectorXd bias_ramp = {};
   /// Of CVs that an analyser measures: the output-bias feedback compares an analysis with the model at the
   /// sample at which it was taken. Empty: none.
   std::vector<AnalyserTiming> analysers = {};
@@ -104,6 +108,7 @@ struct MpcOptions {
   bool has_move_limits() const;
   bool has_reference(Eigen::Index cv) const;
   bool has_slack_cost(Eigen::Index cv) const;
+  bool has_bias_ramps() const;
   bool has_resting_values() const;
   /// Sample of the horizon from which planned position i acts, i = 0 ... control_horizon - 1.
   std::vector<int> move_starts() const;

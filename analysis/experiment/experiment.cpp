@@ -167,8 +167,8 @@ ExperimentRunner::FinishedLoop ExperimentRunner::finished(const ExperimentDraw& 
       loop.message = "no S0 of its own: " + loop.own->basis.explanation;
   }
   if (loop.status != ExperimentStatus::ok)
-    loop.assessed.y_sim = simulated_output(study.plant.G, study.controller.sample_time, basis_.point.u,
-                                           loop.trajectory.u, loop.trajectory.d);
+    loop.assessed.y_sim = simulated_output(study.assessed_model(), study.controller.sample_time,
+                                           basis_.point.u, loop.trajectory.u, loop.trajectory.d);
   else if (loop.own)
     loop.assessed =
         assessed_loop(loop.own->study, loop.own->basis.point, recorded(study, draw.index, loop.trajectory));
@@ -284,7 +284,9 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
   if (store == StorePolicy::all || store == StorePolicy::truth ||
       (store == StorePolicy::flagged && !record.assessments.empty() &&
        judge(study_, record, record.assessments.front()).wrong()))
-    record.loop = {std::move(main.trajectory), std::move(main.assessed.y_sim)};
+    record.loop = {std::move(main.trajectory), study_.plant.G.is_integrating()
+                                                   ? from_washout(study_, main.assessed.y_sim)
+                                                   : std::move(main.assessed.y_sim)};
   return record;
 }
 

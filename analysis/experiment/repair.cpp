@@ -19,10 +19,11 @@ Eigen::VectorXd variances_of(const Study& study, const Trajectory& loop) {
 Trajectory promised(const Study& repaired, const OperatingPoint& point, const AssessedLoop& loop,
                     const QpSolverFactory& factory) {
   const Eigen::MatrixXd errors =
-      loop.y - simulated_output(repaired.plant.G, repaired.controller.sample_time, point.u, loop.u, loop.d);
+      loop.y -
+      simulated_output(repaired.assessed_model(), repaired.controller.sample_time, point.u, loop.u, loop.d);
   const LoopSignals signals{.d = loop.d,
                             .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
-                            .y_d = errors.array().isNaN().select(0.0, errors),
+                            .y_d = from_washout(repaired, errors.array().isNaN().select(0.0, errors)),
                             .y_set = setpoints(repaired),
                             .dither = dither(repaired)};
   return run_closed_loop(repaired, repaired.plant.G, signals, factory);
@@ -31,9 +32,11 @@ Trajectory promised(const Study& repaired, const OperatingPoint& point, const As
 ChannelFit fit_of(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
                   const Channel& channel, const std::optional<MismatchParameter>& only = {}) {
   const Eigen::VectorXd e = (loop.y.row(channel.cv) - loop.y_sim.row(channel.cv)).transpose();
-  return fit_channel(study.plant.G(channel.cv, channel.mv), study.controller.sample_time, e,
-                     loop.u.row(channel.mv).transpose(), point.u(channel.mv), study.aggregate.confidence,
-                     only);
+  ChannelFit fit =
+      fit_channel(study.assessed_channel(channel.cv, channel.mv), study.controller.sample_time, e,
+                  loop.u.row(channel.mv).transpose(), point.u(channel.mv), study.aggregate.confidence, only);
+  fit.channel = fit.channel.without_washout();
+  return fit;
 }
 
 }  // namespace

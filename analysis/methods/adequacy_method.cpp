@@ -12,6 +12,7 @@
 #include "analysis/methods/base_noise.hpp"
 #include "analysis/methods/mismatch_responses.hpp"
 #include "analysis/methods/model_errors.hpp"
+#include "analysis/statistics/washout.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
@@ -97,7 +98,7 @@ class Adequacy final : public AssessmentMethod {
     const Eigen::MatrixXd y = gaps_closed(whole.y);
     for (Eigen::Index cv = 0; cv < study_.cv_count(); ++cv)
       for (Eigen::Index mv = 0; mv < study_.mv_count(); ++mv) {
-        const TransferFunction& model = study_.plant.G(cv, mv);
+        const TransferFunction model = study_.assessed_channel(cv, mv);
         const TransferFunction& found = models[static_cast<std::size_t>(cv)].model()(0, mv);
         if (model.is_zero() || model == found)
           continue;
@@ -137,17 +138,17 @@ class Adequacy final : public AssessmentMethod {
           each = random.normal();
         const TransferMatrix drawn = model.drawn(z);
         for (Eigen::Index input = 0; input < plant.cols(); ++input) {
-          plant(cv, input) = drawn(0, input);
+          plant(cv, input) = drawn(0, input).without_washout();
           if (!drawn(0, input).is_zero())
             left.row(cv) -= response(drawn(0, input), input);
         }
       }
-      left = gaps_closed(left);
+      left = from_washout(study_, left);
       const std::optional<double> now = cost(study_.plant.G, plant, whole.d, left);
       for (std::size_t i = 0; i < channels.size() && now; ++i) {
         TransferMatrix repaired = study_.plant.G;
         repaired(channels[i].cv, channels[i].mv) =
-            models[static_cast<std::size_t>(channels[i].cv)].model()(0, channels[i].mv);
+            models[static_cast<std::size_t>(channels[i].cv)].model()(0, channels[i].mv).without_washout();
         if (const std::optional<double> after = cost(repaired, plant, whole.d, left))
           all[i].push_back((*now - *after) / *now);
       }

@@ -84,7 +84,8 @@ class ArxOe final : public AssessmentMethod {
     Eigen::MatrixXd filters(loop.samples(), 0);
     for (Eigen::Index j = 0; j < inputs.rows(); ++j) {
       const Eigen::MatrixXd of_channel =
-          channel_filters(study_.plant.G(cv, j), study_.controller.sample_time, inputs.row(j).transpose())
+          channel_filters(study_.assessed_channel(cv, j), study_.controller.sample_time,
+                          inputs.row(j).transpose())
               .bottomRows(loop.samples());
       filters.conservativeResize(Eigen::NoChange, filters.cols() + of_channel.cols());
       filters.rightCols(of_channel.cols()) = of_channel;

@@ -7,6 +7,7 @@
 #include "analysis/methods/model_errors.hpp"
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "analysis/statistics/washout.hpp"
 #include "plants/linear/settling_time.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/draw.hpp"
@@ -30,6 +31,36 @@ bool begins_at(const Eigen::VectorXd& rest, const Eigen::MatrixXd& signals) {
 /// The rows of `recorded` that were recorded, and `otherwise` in place of the others.
 Eigen::MatrixXd where_recorded(const Eigen::MatrixXd& recorded, const Eigen::MatrixXd& otherwise) {
   return recorded.array().isNaN().select(otherwise, recorded);
+}
+
+/// e^(-Ts / T_w).
+double washout_pole(const Study& study) {
+  return std::exp(-study.controller.sample_time / study.washout());
+}
+
+/// Of the first samples, over a part of the washout: less of their noise is then seen to die away.
+double washout_start(const Eigen::RowVectorXd& e, double washout_samples) {
+  constexpr double kPart = 0.25;
+  const auto count = std::min(e.size(), static_cast<Eigen::Index>(std::ceil(kPart * washout_samples)));
+  return e.head(count).mean();
+}
+
+/// CVs that integrate behind their washout: `y_sim` is G0 (u, d), `seen` the same of assessed_model().
+void wash_out(const Study& study, const Eigen::MatrixXd& y_sim, const Eigen::MatrixXd& seen,
+              AssessedLoop& loop) {
+  const double a = washout_pole(study);
+  for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
+    if (!study.plant.G.is_integrating(cv))
+      continue;
+    const Eigen::RowVectorXd e = loop.y.row(cv) - y_sim.row(cv);
+    const double start = washout_start(gaps_closed(e), study.washout() / study.controller.sample_time);
+    loop.y.row(cv) = seen.row(cv) + washed_out(e, a, start);
+    loop.y_sim.row(cv) = seen.row(cv);
+    if (loop.has_setpoint(cv))
+      loop.y_set.row(cv) = washed_out(loop.y_set.row(cv), a, loop.y_set(cv, 0));
+    else
+      loop.y_set.row(cv).setConstant(kNaN);
+  }
 }
 
 /// The signal after `samples` samples at its first value.
@@ -89,8 +120,25 @@ Eigen::Index slowest_settling(const Study& study) {
   double slowest = 0.0;
   for (Eigen::Index cv = 0; cv < study.plant.G.rows(); ++cv)
     for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input)
-      slowest = std::max(slowest, settling_time(study.plant.G(cv, input)));
+      slowest = std::max(slowest, settling_time(study.assessed_channel(cv, input)));
   return static_cast<Eigen::Index>(std::ceil(slowest / study.controller.sample_time));
+}
+
+Eigen::MatrixXd behind_washout(const Study& study, Eigen::MatrixXd signals) {
+  for (Eigen::Index cv = 0; cv < signals.rows(); ++cv)
+    if (study.plant.G.is_integrating(cv)) {
+      const Eigen::RowVectorXd y = signals.row(cv);
+      signals.row(cv) = washed_out(y, washout_pole(study), gaps_closed(y)(0));
+    }
+  return signals;
+}
+
+Eigen::MatrixXd from_washout(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& signals) {
+  Eigen::MatrixXd closed = gaps_closed(signals);
+  for (Eigen::Index cv = 0; cv < closed.rows(); ++cv)
+    if (study.plant.G.is_integrating(cv))
+      closed.row(cv) = washout_undone(closed.row(cv), washout_pole(study));
+  return closed;
 }
 
 bool AssessedLoop::has_setpoint(Eigen::Index cv) const {
@@ -106,8 +154,10 @@ std::vector<Eigen::Index> AssessedLoop::setpoint_cvs() const {
 }
 
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop) {
-  const Eigen::MatrixXd y_sim =
-      simulated_output(study.plant.G, study.controller.sample_time, point.u, loop.u, loop.d);
+  const auto simulated = [&](const TransferMatrix& model) {
+    return simulated_output(model, study.controller.sample_time, point.u, loop.u, loop.d);
+  };
+  const Eigen::MatrixXd y_sim = simulated(study.plant.G);
   AssessedLoop assessed{
       .y = loop.y, .u = loop.u, .u_target = loop.u_target, .d = loop.d, .y_sim = y_sim, .y_set = {}};
   take_analyses(study, FirstAnalysis::of_study, assessed.y);
@@ -118,6 +168,8 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
   for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
     if (study.controller.has_setpoint(cv))
       assessed.y_set.row(cv) = loop.y_set.row(cv);
+  if (study.plant.G.is_integrating())
+    wash_out(study, y_sim, simulated(study.assessed_model()), assessed);
   return assessed;
 }
 
@@ -132,9 +184,12 @@ Eigen::Index samples_to_settle(const Study& study, const OperatingPoint& point, 
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const PlantRecord& record,
                            Eigen::Index unjudged) {
   const Eigen::Index before = 3 * unjudged;  // a system of higher order needs more than its settling time
-  const Eigen::MatrixXd y_sim = simulated_output(study.plant.G, study.controller.sample_time, point.u,
-                                                 after_rest(record.u, before), after_rest(record.d, before))
-                                    .rightCols(record.samples());
+  const auto simulated = [&](const TransferMatrix& model) -> Eigen::MatrixXd {
+    return simulated_output(model, study.controller.sample_time, point.u, after_rest(record.u, before),
+                            after_rest(record.d, before))
+        .rightCols(record.samples());
+  };
+  const Eigen::MatrixXd y_sim = simulated(study.plant.G);
   AssessedLoop loop{.y = record.y,
                     .u = record.u,
                     .u_target = where_recorded(record.u_target, point.u.replicate(1, record.samples())),
@@ -148,6 +203,8 @@ AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, cons
   for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
     if (study.controller.has_setpoint(cv))
       loop.y_set.row(cv) = of_study.row(cv);
+  if (study.plant.G.is_integrating())
+    wash_out(study, Eigen::MatrixXd(loop.y_sim), simulated(study.assessed_model()), loop);
   return loop;
 }
 
@@ -175,24 +232,6 @@ AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, An
       hold(timings[i], from == AnalysesHeld::from_shown ? timings[i].delay : 0, whole.y.row(cv),
            whole.y_sim.row(cv));
   return loop.whole ? window_of(whole, loop.first, loop.samples()) : whole;
-}
-
-Eigen::MatrixXd gaps_closed(Eigen::MatrixXd signals) {
-  for (auto row : signals.rowwise()) {
-    Eigen::Index last = -1;
-    for (Eigen::Index k = 0; k < row.size(); ++k) {
-      if (std::isnan(row(k)))
-        continue;
-      for (Eigen::Index gap = last + 1; gap < k; ++gap)
-        row(gap) = last < 0 ? row(k)
-                            : row(last) + (row(k) - row(last)) * static_cast<double>(gap - last) /
-                                              static_cast<double>(k - last);
-      last = k;
-    }
-    for (Eigen::Index gap = last + 1; last >= 0 && gap < row.size(); ++gap)
-      row(gap) = row(last);
-  }
-  return signals;
 }
 
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context) {

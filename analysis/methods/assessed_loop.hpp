@@ -30,6 +30,10 @@ class LearntModel;
 /// | y_sim  | y_sim  | ny x N | G0 (u, d)                                              (6.4)  |
 /// | y_set  | y_set  | ny x N | setpoints; NaN for a CV without one, see AssessmentSetpoints  |
 ///
+/// Of a CV that integrates y_sim drifts without end under what is not known of its inputs, and y wanders with
+/// them: y, y_sim and y_set stand here behind the washout of Study::assessed_model(), so that all that y_sim
+/// does not explain stays where it is. from_washout() undoes it.
+///
 /// For a moving window these are the samples of the window, and `whole` is the record. A method that filters
 /// or simulates the loop starts at the beginning of the record (from_start()), where the loop was at its
 /// operating point, and judges the samples of the window only.
@@ -54,6 +58,13 @@ struct AssessedLoop {
 /// `point`. The setpoint of a CV in a range is, where `study.assessment.setpoints` wants that of the
 /// optimizer, optimizer_steady_state(); NaN when it does not, or when the controller has no targets.
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop);
+
+/// `signals` of the CVs (ny x N), those that integrate behind their washout, from their first value on.
+Eigen::MatrixXd behind_washout(const Study& study, Eigen::MatrixXd signals);
+
+/// CVs that integrate as they were before the washout, less their start; the gaps of `signals` (NaN) are
+/// closed.
+Eigen::MatrixXd from_washout(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& signals);
 
 /// Samples until the slowest channel of the model has settled (settling_time()).
 Eigen::Index slowest_settling(const Study& study);
@@ -82,10 +93,6 @@ enum class AnalysesHeld { from_taken, from_shown };
 /// of a window is kept; it must outlive the loop.
 AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, AnalysesHeld from,
                                 AssessedLoop& whole);
-
-/// Each row of `signals` with its gaps (NaN) filled by linear interpolation, and by the nearest value at both
-/// ends; a row without values is unchanged.
-Eigen::MatrixXd gaps_closed(Eigen::MatrixXd signals);
 
 /// What a method may know besides the records of the loop. `study` and `basis` must outlive it.
 struct AssessmentContext {

@@ -55,7 +55,7 @@ class ChannelSearch {
     z_ = e + response({0.0, 0.0});
     whiteness_ = fit_autoregression(z_, 0);
     const double record = sample_time * static_cast<double>(u.size());
-    const double slowest = nominal.is_integrating() ? 0.0 : std::abs(nominal.residence_time());
+    const double slowest = std::abs(nominal.residence_time());
     least_ = {-std::log(kLargestTimeFactor), -nominal.dead_time()};
     largest_ = {std::log(kLargestTimeFactor),
                 std::min(0.25 * record, nominal.dead_time() + slowest + sample_time)};

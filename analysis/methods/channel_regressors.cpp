@@ -17,7 +17,7 @@ constexpr double kTimeDifference = 0.05;  ///< share of the time constants
 double filter_pole(const TransferFunction& channel, double sample_time) {
   if (channel.is_integrating())
     return kIntegratingPole;
-  const double time = channel.residence_time();
+  const double time = channel.washout() > 0.0 ? channel.washout() : channel.residence_time();
   return time > 0.0 ? std::min(kLargestPole, std::exp(-sample_time / time)) : 0.0;
 }
 
@@ -53,7 +53,7 @@ Eigen::MatrixXd channel_gradients(const TransferFunction& channel, double sample
   };
   Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(input.size(), kChannelGradients);
   gradients.col(0) = response(channel);
-  if (!channel.is_integrating() && channel.order() > 0)
+  if (channel.has_time_constant())
     gradients.col(1) = (response(channel.with_time_scaled(1.0 + kTimeDifference)) -
                         response(channel.with_time_scaled(1.0 - kTimeDifference))) /
                        (2.0 * kTimeDifference);

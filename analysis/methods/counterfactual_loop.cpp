@@ -6,6 +6,7 @@
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/model_errors.hpp"
 #include "analysis/statistics/variance.hpp"
+#include "analysis/statistics/washout.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
 
@@ -15,8 +16,8 @@ namespace {
 constexpr double kLeastNominalShare = 0.1;
 
 /// e = y - y_sim of the whole record, its gaps closed.
-Eigen::MatrixXd errors_of(const AssessedLoop& whole) {
-  return gaps_closed(whole.y - whole.y_sim);
+Eigen::MatrixXd errors_of(const Study& study, const AssessedLoop& whole) {
+  return from_washout(study, whole.y - whole.y_sim);
 }
 
 }  // namespace
@@ -65,7 +66,7 @@ Assessment CounterfactualLoop::impact(const AssessedLoop& loop) {
 Eigen::VectorXd CounterfactualLoop::ivar_diag(const AssessedLoop& loop) {
   const AssessedLoop& whole = loop.from_start();
   AssessedLoop corrected;
-  const Eigen::MatrixXd e = errors_of(learnt_ ? learnt_->corrected(whole, corrected) : whole);
+  const Eigen::MatrixXd e = errors_of(study_, learnt_ ? learnt_->corrected(whole, corrected) : whole);
   Eigen::VectorXd found(e.rows());
   for (Eigen::Index cv = 0; cv < e.rows(); ++cv) {
     Eigen::MatrixXd others = e;
@@ -126,7 +127,8 @@ const Trajectory& CounterfactualLoop::simulated(std::size_t place, const Eigen::
 
 /// var y / (var y0 + v) of each CV, ny.
 Eigen::VectorXd CounterfactualLoop::indices(const AssessedLoop& loop, const Trajectory& nominal) const {
-  const Eigen::MatrixXd y = loop.y_sim + loop.in_window(errors_of(loop.from_start()));
+  const AssessedLoop& whole = loop.from_start();
+  const Eigen::MatrixXd y = loop.in_window(from_washout(study_, whole.y_sim) + errors_of(study_, whole));
   const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
   const Eigen::ArrayXd of_nominal = variance_indices(y, loop.in_window(nominal.y), centres);
   // A v below 0 can outweigh a y0 that hardly moves: the nominal variance is not taken for less than a

@@ -110,13 +110,13 @@ std::vector<SizePrior> mismatches_of(const Study& study, FaultPriors priors, Eig
   std::vector<SizePrior> mismatches;
   double total = 0.0;
   for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv) {
-    const TransferFunction& channel = study.plant.G(cv, mv);
+    const TransferFunction channel = study.assessed_channel(cv, mv);
     if (channel.is_zero())
       continue;
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const MismatchParameter parameter = kRandomMismatchParameters[i];
-      // A static channel has no time constant, and the residence time of an integrating one is infinite.
-      if (weights[i] == 0.0 || (parameter == MismatchParameter::time_constant && channel.order() == 0))
+      if (weights[i] == 0.0 ||
+          (parameter == MismatchParameter::time_constant && !channel.has_time_constant()))
         continue;
       total += weights[i];
       mismatches.push_back({{cv, mv},

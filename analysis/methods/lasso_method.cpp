@@ -150,9 +150,9 @@ class Lasso final : public AssessmentMethod {
   Groups filters_of(Eigen::Index cv, const Eigen::MatrixXd& inputs, Eigen::Index samples) const {
     Groups filters;
     for (Eigen::Index j = 0; j < inputs.rows(); ++j)
-      filters.push_back(
-          channel_filters(study_.plant.G(cv, j), study_.controller.sample_time, inputs.row(j).transpose())
-              .bottomRows(samples));
+      filters.push_back(channel_filters(study_.assessed_channel(cv, j), study_.controller.sample_time,
+                                        inputs.row(j).transpose())
+                            .bottomRows(samples));
     return filters;
   }
 
@@ -170,9 +170,9 @@ class Lasso final : public AssessmentMethod {
       first += columns;
       if (input >= study_.mv_count())
         continue;
-      const TransferFunction& channel = study_.plant.G(cv, input);
+      const TransferFunction& channel = study_.assessed_channel(cv, input);
       assessment.flagged_channels.push_back({cv, input});
-      if (!channel.is_integrating())
+      if (channel.static_gain() != 0.0)
         assessment.numbers.push_back(
             {"gain_factor",
              1.0 + difference * channel_filter_gain(channel, study_.controller.sample_time) /
@@ -183,7 +183,7 @@ class Lasso final : public AssessmentMethod {
 
   ProfiledMismatch profiled(Eigen::Index cv, Eigen::Index input, const LassoCv& found,
                             const Eigen::VectorXd& e, const Eigen::MatrixXd& inputs) const {
-    return profiled_mismatches(e, inputs.row(input).transpose(), study_.plant.G(cv, input),
+    return profiled_mismatches(e, inputs.row(input).transpose(), study_.assessed_channel(cv, input),
                                study_.controller.sample_time, found.refined.noise.order(),
                                study_.aggregate.confidence)
         .front();

@@ -79,9 +79,9 @@ class Local final : public AssessmentMethod {
                 Assessment& assessment) const {
     std::vector<Eigen::MatrixXd> gradients;
     for (Eigen::Index j = 0; j < inputs.rows(); ++j)
-      gradients.emplace_back(
-          channel_gradients(study_.plant.G(cv, j), study_.controller.sample_time, inputs.row(j).transpose())
-              .bottomRows(e.size()));
+      gradients.emplace_back(channel_gradients(study_.assessed_channel(cv, j), study_.controller.sample_time,
+                                               inputs.row(j).transpose())
+                                 .bottomRows(e.size()));
     const PrewhitenedGroups groups = prewhitened_groups(e, gradients);
     const double probability = kLocalFalseAlarms / static_cast<double>(study_.cv_count());
     const double score = groups.joint_ratio() / groups.critical_ratio_of(groups.rank, probability);

@@ -21,7 +21,7 @@ std::vector<MismatchFamily> mismatch_families(const TransferFunction& channel, d
                       {-2.0, 4.0, 13},
                       [&channel](double x) { return channel.with_gain_scaled(x); },
                       same});
-  if (!channel.is_integrating() && channel.order() > 0)
+  if (channel.has_time_constant())
     families.push_back({MismatchParameter::time_constant,
                         {-3.0, 3.0, 13},
                         [&channel, power](double x) { return channel.with_time_scaled(power(x)); },

@@ -85,11 +85,11 @@ Coefficients coefficients(const BaseNoise& noise, const Eigen::Ref<const Eigen::
 ModelErrorPrior relative_errors(const Study& study, Eigen::Index cv, double share, double bias) {
   ModelErrorPrior prior{{}, bias};
   for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input) {
-    const TransferFunction& channel = study.plant.G(cv, input);
+    const TransferFunction& channel = study.assessed_channel(cv, input);
     if (channel.is_zero())
       continue;
     add_error(prior.channels, input, MismatchParameter::gain, share);
-    if (channel.order() > 0)
+    if (channel.has_time_constant())
       add_error(prior.channels, input, MismatchParameter::time_constant, share);
     add_error(prior.channels, input, MismatchParameter::dead_time,
               share * std::max(channel.dead_time(), study.controller.sample_time));
@@ -103,11 +103,11 @@ ModelErrorPrior drawn_errors(const Study& study, Eigen::Index cv) {
     return prior;
   const WorldRanges& drawn = *study.world;
   for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input) {
-    const TransferFunction& channel = study.plant.G(cv, input);
+    const TransferFunction& channel = study.assessed_channel(cv, input);
     if (channel.is_zero())
       continue;
     add_error(prior.channels, input, MismatchParameter::gain, std::sqrt(variance_of(drawn.gain_factor)));
-    if (channel.order() > 0)
+    if (channel.has_time_constant())
       add_error(prior.channels, input, MismatchParameter::time_constant,
                 std::sqrt(variance_of(drawn.time_constant_factor)));
     add_error(prior.channels, input, MismatchParameter::dead_time,
@@ -160,7 +160,7 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
 ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const BaseNoise& noise)
     : sample_time_(study.controller.sample_time), nominal_(1, study.plant.G.cols()), noise_{noise, {}} {
   for (Eigen::Index input = 0; input < nominal_.cols(); ++input)
-    nominal_(0, input) = study.plant.G(cv, input);
+    nominal_(0, input) = study.assessed_channel(cv, input);
   model_ = nominal_;
 }
 
@@ -335,7 +335,7 @@ TransferMatrix LearntModel::plant() const {
   TransferMatrix plant(static_cast<Eigen::Index>(cvs_.size()), initial_.size());
   for (Eigen::Index cv = 0; cv < plant.rows(); ++cv)
     for (Eigen::Index input = 0; input < plant.cols(); ++input)
-      plant(cv, input) = of(cv).model()(0, input);
+      plant(cv, input) = of(cv).model()(0, input).without_washout();
   return plant;
 }
 

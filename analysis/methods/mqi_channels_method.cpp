@@ -65,7 +65,7 @@ class MqiChannels final : public AssessmentMethod {
     const Eigen::MatrixXd inputs = inputs_until(loop);
     CvAssessment said;
     for (Eigen::Index mv = 0; mv < study_.mv_count(); ++mv) {
-      const TransferFunction& channel = study_.plant.G(cv, mv);
+      const TransferFunction& channel = study_.assessed_channel(cv, mv);
       if (channel.is_zero() || stands_still(loop.u.row(mv).transpose()))
         continue;
       const Eigen::VectorXd moved =

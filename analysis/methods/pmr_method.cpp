@@ -105,9 +105,9 @@ class PlantModelRatio final : public AssessmentMethod {
     require_signal("simulation error", e, 1);
     std::vector<Eigen::MatrixXd> filters;
     for (Eigen::Index j = 0; j < inputs.rows(); ++j)
-      filters.emplace_back(
-          channel_filters(study_.plant.G(cv, j), study_.controller.sample_time, inputs.row(j).transpose())
-              .bottomRows(e.size()));
+      filters.emplace_back(channel_filters(study_.assessed_channel(cv, j), study_.controller.sample_time,
+                                           inputs.row(j).transpose())
+                               .bottomRows(e.size()));
     const Autoregression whiteness = fit_autoregression(e, autoregression_order(e, kHighestNoiseOrder));
     const FTest test = prewhitened_test(e, filters, whiteness).all;
     const double score = significance_score(test.log_p, static_cast<double>(study_.cv_count()));
@@ -134,7 +134,7 @@ class PlantModelRatio final : public AssessmentMethod {
     std::optional<NamedMismatch> named;
     double least = 0.0;
     for (Eigen::Index mv = 0; mv < study_.mv_count(); ++mv) {
-      const TransferFunction& channel = study_.plant.G(cv, mv);
+      const TransferFunction& channel = study_.assessed_channel(cv, mv);
       if (channel.is_zero() || stands_still(inputs.row(mv).transpose()))
         continue;
       const ProfiledMismatch best =
@@ -153,7 +153,7 @@ class PlantModelRatio final : public AssessmentMethod {
   void add_channel(const NamedMismatch& named, const Eigen::VectorXd& e, const Eigen::MatrixXd& filters,
                    Assessment& assessment) const {
     const auto [cv, mv] = named.channel;
-    const TransferFunction& channel = study_.plant.G(cv, mv);
+    const TransferFunction& channel = study_.assessed_channel(cv, mv);
     assessment.flagged_channels.push_back(named.channel);
     if (channel.is_integrating())
       return;

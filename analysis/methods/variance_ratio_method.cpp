@@ -7,6 +7,7 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "analysis/statistics/variance.hpp"
+#include "analysis/statistics/washout.hpp"
 
 namespace mpm {
 namespace {

@@ -21,10 +21,10 @@ void hold_unknown(const std::vector<bool>& unknown, Eigen::MatrixXd& signals) {
       signals.col(static_cast<Eigen::Index>(k)) = signals.col(static_cast<Eigen::Index>(k) - 1);
 }
 
-/// What moves a CV by one standard deviation of its noise: the least over the CVs of each MV; 0 where an MV
-/// moves none.
+/// What moves a CV by one standard deviation of its noise, one that integrates as methods see it: the least
+/// over the CVs of each MV; 0 where an MV moves none.
 Eigen::VectorXd noise_in_mvs(const Study& study) {
-  const Eigen::MatrixXd gain = study.plant.G.static_gain().leftCols(study.mv_count());
+  const Eigen::MatrixXd gain = study.assessed_model().static_gain().leftCols(study.mv_count());
   Eigen::VectorXd least = Eigen::VectorXd::Constant(study.mv_count(), kInfinity);
   for (Eigen::Index mv = 0; mv < gain.cols(); ++mv)
     for (Eigen::Index cv = 0; cv < gain.rows(); ++cv)

@@ -15,7 +15,7 @@ constexpr double kAlike = 0.02;     // of a time constant: two channels settle a
 std::vector<double> memories_of(const Study& study, Eigen::Index cv) {
   std::vector<double> all;
   for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input)
-    if (const double sum = sum_of_time_constants(study.plant.G(cv, input)); sum > 0.0)
+    if (const double sum = sum_of_time_constants(study.assessed_channel(cv, input)); sum > 0.0)
       all.push_back(sum / study.controller.sample_time);
   std::sort(all.begin(), all.end());
   std::vector<double> distinct;

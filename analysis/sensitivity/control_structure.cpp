@@ -7,9 +7,13 @@ namespace mpm {
 
 Eigen::MatrixXd optimizer_steady_state(const Study& study, const Trajectory& loop,
                                        const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
-  const Eigen::MatrixXd gain = study.plant.G.static_gain();
-  return gain.leftCols(study.mv_count()) * loop.u_target + gain.rightCols(study.md_count()) * loop.d +
-         loop.y - y_sim;
+  const Eigen::MatrixXd gain = study.plant.G.steady_gain();
+  Eigen::MatrixXd y = gain.leftCols(study.mv_count()) * loop.u_target +
+                      gain.rightCols(study.md_count()) * loop.d + loop.y - y_sim;
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv)
+    if (study.plant.G.is_integrating(cv))
+      y.row(cv) = loop.y.row(cv);
+  return y;
 }
 
 std::vector<ControlStructure> control_structures(const Study& study, const Trajectory& loop,

@@ -201,7 +201,8 @@ bool has_linear_law(const Study& study, bool has_active_limits) {
   const bool other_terms = (controller.reference_time.array() > 0.0).any() ||
                            (controller.slack_cost.array() > 0.0).any() || controller.has_resting_values() ||
                            has_analysers(controller.analysers);
-  return !study.nonlinear && !study.controller_program && !one_slack && !other_terms;
+  return !study.nonlinear && !study.plant.G.is_integrating() && !study.controller_program && !one_slack &&
+         !other_terms;
 }
 
 }  // namespace

@@ -51,9 +51,14 @@ std::vector<Eigen::Index> cvs_at_limit(const Study& study, const Eigen::VectorXd
   return cvs;
 }
 
+/// Whether targets draw the CV after a limit that leaves it: of one that integrates they hold the rate only.
+bool is_drawn_to_limit(const Study& study, Eigen::Index cv) {
+  return study.controller.has_targets() && !study.plant.G.is_integrating(cv);
+}
+
 /// Where the reference lies while T0 is determined.
 double reference_value(const Study& study, const OperatingPoint& point, const ActiveConstraint& reference) {
-  if (reference.kind == ConstraintKind::setpoint || !study.controller.has_targets())
+  if (reference.kind == ConstraintKind::setpoint || !is_drawn_to_limit(study, reference.cv))
     return point.y(reference.cv);
   const Limits& soft = study.controller.cv_soft;
   return (reference.kind == ConstraintKind::upper_limit ? soft.upper : soft.lower)(reference.cv);
@@ -106,7 +111,7 @@ Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& poin
   if (reference.kind == ConstraintKind::setpoint)
     return response(size);
   const double into_range = reference.kind == ConstraintKind::upper_limit ? -size : size;
-  if (!study.controller.has_targets())  // nothing draws a CV after a limit that leaves it
+  if (!is_drawn_to_limit(study, reference.cv))
     return response(into_range);
   switch (study.sensitivity.step_direction) {
     case StepDirection::into_range:
@@ -141,7 +146,9 @@ OperatingPoint operating_point(const Study& study, const QpSolverFactory& factor
   point.u = controller.nominal_target(d);
   if (!point.u.allFinite())
     throw InputError("controller", "a target problem without a solution", "MV limits that contain a target");
-  point.y = study.plant.G.static_gain().leftCols(study.mv_count()) * point.u;
+  Eigen::VectorXd input(study.plant.G.cols());
+  input << point.u, d;
+  point.y = study.plant.G.steady_output(input);
   const std::vector<Eigen::Index>& named = study.sensitivity.active_cvs;
   point.active = references(study, named.empty() ? cvs_at_limit(study, point.y) : named, point.y);
   const Limits& hard = study.controller.mv_hard;

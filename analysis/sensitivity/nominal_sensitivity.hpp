@@ -86,8 +86,9 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
 /// the CVs inside their range and of the available MVs relaxed, MVs at a limit held there, no noise and no
 /// disturbance, then for each setpoint and each active soft limit in turn a step of
 /// `study.sensitivity.step_size`: up for a setpoint, `step_direction` for a limit. A controller without
-/// targets has nothing that draws a CV to its limit: its active limits are taken to lie where the CVs are,
-/// and are stepped into the range whatever `step_direction` says. The thesis fits Box-Jenkins models to these
+/// targets has nothing that draws a CV to its limit, nor has any controller for a CV that integrates: these
+/// active limits are taken to lie where the CVs are, and are stepped into the range whatever `step_direction`
+/// says. The thesis fits Box-Jenkins models to these
 /// data; with noise-free data of the controller itself the step response is the model. `observer` sees each
 /// step of the relaxed controller. Throws InputError when that has no solution.
 NominalSensitivity nominal_sensitivity(const Study& study, const OperatingPoint& point,

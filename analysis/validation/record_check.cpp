@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/methods/assessed_loop.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
@@ -211,8 +212,8 @@ void check_setpoints(const Study& study, const PlantRecord& record, std::vector<
 
 Eigen::MatrixXd simulated(const Study& study, const Eigen::MatrixXd& u, const Eigen::MatrixXd& d) {
   const Eigen::MatrixXd moves = u.colwise() - u.col(0), disturbances = d.colwise() - d.col(0);
-  return simulated_output(study.plant.G, study.controller.sample_time, Eigen::VectorXd::Zero(u.rows()), moves,
-                          disturbances);
+  return simulated_output(study.assessed_model(), study.controller.sample_time,
+                          Eigen::VectorXd::Zero(u.rows()), moves, disturbances);
 }
 
 /// What y_sim explains of a CV, -1 to 1; 0 of one that it leaves alone.
@@ -241,29 +242,30 @@ class ExchangeSearch {
   ExchangeSearch(const Study& study, const PlantRecord& record)
       : study_(study),
         record_(record),
+        y_(behind_washout(study, record.y)),
         y_sim_(simulated(study, record.u, record.d)),
-        explained_(explained(record.y, y_sim_)) {}
+        explained_(explained(y_, y_sim_)) {}
 
   std::vector<std::string> findings() {
     pairs(study_.plant.cvs, [&](Eigen::Index a, Eigen::Index b) {
       Eigen::MatrixXd y = record_.y;
       y.row(a).swap(y.row(b));
-      return explained(y, y_sim_);
+      return explained(behind_washout(study_, std::move(y)), y_sim_);
     });
     pairs(study_.plant.mvs, [&](Eigen::Index a, Eigen::Index b) {
       Eigen::MatrixXd u = record_.u;
       u.row(a).swap(u.row(b));
-      return explained(record_.y, simulated(study_, u, record_.d));
+      return explained(y_, simulated(study_, u, record_.d));
     });
     pairs(study_.plant.mds, [&](Eigen::Index a, Eigen::Index b) {
       Eigen::MatrixXd d = record_.d;
       d.row(a).swap(d.row(b));
-      return explained(record_.y, simulated(study_, record_.u, d));
+      return explained(y_, simulated(study_, record_.u, d));
     });
     for (Eigen::Index mv = 0; mv < record_.u.rows(); ++mv) {
       Eigen::MatrixXd u = record_.u;
       u.row(mv) *= -1.0;
-      if (explained(record_.y, simulated(study_, u, record_.d)) > explained_ + kFarMore)
+      if (explained(y_, simulated(study_, u, record_.d)) > explained_ + kFarMore)
         found_.push_back(
             fmt::format("the model explains far more of the CVs with the sign of {} reversed: check its "
                         "data.scale, or whether the valve closes where the model opens it",
@@ -281,7 +283,7 @@ class ExchangeSearch {
   bool explains_nothing() const {
     for (const Eigen::Index samples : {record_.samples(), record_.samples() / 2})
       for (Eigen::Index cv = 0; cv < record_.y.rows(); ++cv)
-        if (explained(Eigen::RowVectorXd(record_.y.row(cv).tail(samples)),
+        if (explained(Eigen::RowVectorXd(y_.row(cv).tail(samples)),
                       Eigen::RowVectorXd(y_sim_.row(cv).tail(samples))) >= kNothing)
           return false;
     return true;
@@ -299,7 +301,7 @@ class ExchangeSearch {
 
   const Study& study_;
   const PlantRecord& record_;
-  Eigen::MatrixXd y_sim_;
+  Eigen::MatrixXd y_, y_sim_;
   double explained_;
   std::vector<std::string> found_;
 };

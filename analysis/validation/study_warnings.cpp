@@ -138,8 +138,10 @@ void check_setpoint(const Study& study, Eigen::Index cv, double setpoint, const 
          "the loop becomes infeasible or never reaches it"});
 }
 
-/// The CV at rest, for all MVs within their hard limits: an interval.
+/// The CV at rest, for all MVs within their hard limits: an interval; anywhere for one that integrates.
 std::pair<double, double> reach(const Study& study, Eigen::Index cv) {
+  if (study.plant.G.is_integrating(cv))
+    return {-kInfinity, kInfinity};
   const Limits& hard = study.controller.mv_hard;
   double low = 0.0, high = 0.0;
   for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv) {

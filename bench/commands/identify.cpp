@@ -109,25 +109,26 @@ std::string coefficients_text(const Eigen::VectorXd& coefficients) {
 }
 
 std::string channel_text(const TransferFunction& channel) {
+  const bool is_simple = channel.order() == 1 && channel.numerator().size() == 1;
   std::string text =
-      channel.order() == 1 && channel.numerator().size() == 1
-          ? fmt::format("gain = {:.6g}\ntime_constant = {:.6g}\n", channel.static_gain(),
-                        channel.residence_time())
-          : fmt::format("numerator = {}\ndenominator = {}\n", coefficients_text(channel.numerator()),
-                        coefficients_text(channel.denominator()));
+      is_simple && channel.is_integrating() ? fmt::format("rate_gain = {:.6g}\n", channel.rate_gain())
+      : is_simple ? fmt::format("gain = {:.6g}\ntime_constant = {:.6g}\n", channel.static_gain(),
+                                channel.residence_time())
+                  : fmt::format("numerator = {}\ndenominator = {}\n", coefficients_text(channel.numerator()),
+                                coefficients_text(channel.denominator()));
   if (channel.dead_time() > 0.0)
     text += fmt::format("dead_time = {:.6g}\n", channel.dead_time());
   return text;
 }
 
-/// What speaks against a model whose response ends at `last`; empty: nothing.
-std::string doubt_of(const StepResponseFit& fit, double last) {
+/// What speaks against a model of this response; empty: nothing.
+std::string doubt_of(const StepResponseFit& fit, const Eigen::VectorXd& response, double sample_time) {
   if (fit.explained < kPoorFit)
     return fmt::format("only {:.1f} % of the step response is explained", 100.0 * fit.explained);
-  const double gain = fit.channel.static_gain();
-  if (std::abs(last - gain) > kUnfinished * std::abs(gain))
-    return fmt::format("the response ends at {:.3g} while the model goes on to {:.3g}: use more --samples",
-                       last, gain);
+  const ResponseEnd end = response_end(fit.channel, response, sample_time);
+  if (std::abs(end.last - end.fitted) > kUnfinished * std::abs(end.fitted))
+    return fmt::format("the response ends at {}{:.3g} while the model goes on to {:.3g}: use more --samples",
+                       fit.channel.is_integrating() ? "a rate of " : "", end.last, end.fitted);
   return "";
 }
 
@@ -172,7 +173,7 @@ std::vector<IdentifiedChannel> identified_channels(const Study& study,
       if (!fit.channel.is_zero())
         channels.push_back({study.plant.cvs[cv].name, inputs[input].name, fit,
                             responses[input].asymmetry(row), fit.rms_error * size, study.plant.cvs[cv].unit,
-                            doubt_of(fit, response(row, response.cols() - 1))});
+                            doubt_of(fit, response.row(row).transpose(), study.controller.sample_time)});
     }
   return channels;
 }
@@ -224,7 +225,7 @@ nlohmann::ordered_json channel_json(const IdentifiedChannel& channel) {
   return {
       {"cv", channel.cv},
       {"input", channel.input},
-      {"gain", G.static_gain()},
+      {G.is_integrating() ? "rate_gain" : "gain", G.is_integrating() ? G.rate_gain() : G.static_gain()},
       {"numerator", list_of_numbers(G.numerator())},
       {"denominator", list_of_numbers(G.denominator())},
       {"dead_time", G.dead_time()},

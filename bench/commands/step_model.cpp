@@ -107,9 +107,12 @@ std::string StepModel::report() const {
   std::string text;
   for (const Channel& channel : channels) {
     const TransferFunction& G = channel.fit.channel;
-    text += fmt::format("{}/{}: gain {:.4g}, dead time {:.4g}, {} {}; off by at most {:.2g} %\n", channel.cv,
-                        channel.input, G.static_gain(), G.dead_time(), G.order(),
-                        G.order() == 1 ? "lag" : "poles", 100 * channel.fit.largest_error);
+    const bool integrates = G.is_integrating();
+    const Eigen::Index lags = G.order() - (integrates ? 1 : 0);
+    text += fmt::format("{}/{}: {} {:.4g}, dead time {:.4g}, {} {}; off by at most {:.2g} %\n", channel.cv,
+                        channel.input, integrates ? "integrates, rate" : "gain",
+                        integrates ? G.rate_gain() : G.static_gain(), G.dead_time(), lags,
+                        lags == 1 ? "lag" : "poles", 100 * channel.fit.largest_error);
   }
   return text;
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <Eigen/LU>
+#include <Eigen/SVD>
 
 namespace mpm {
 namespace {
@@ -18,6 +19,21 @@ struct Entry {
 ChannelWiring make_wiring(Eigen::Index row, Eigen::Index col, Eigen::Index input_count, int delay) {
   const Eigen::Index now = col - input_count * delay;
   return {row, col, now, now - input_count};
+}
+
+/// The x of an integrating channel with x + r v = A x + b_now + b_previous and c x + d = 0, v = A v: its rate
+/// is steady, and its output is 0.
+Eigen::VectorXd ramp_state_per_input(const DiscreteChannel& model) {
+  const Eigen::Index n = model.A.rows();
+  const Eigen::MatrixXd change = model.A - Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  equations.topLeftCorner(n, n) = change;
+  equations.topRightCorner(n, 1) =
+      -Eigen::JacobiSVD<Eigen::MatrixXd>(change, Eigen::ComputeFullV).matrixV().col(n - 1);
+  equations.bottomLeftCorner(1, n) = model.c;
+  Eigen::VectorXd right(n + 1);
+  right << -(model.b_now + model.b_previous), -model.d;
+  return equations.fullPivLu().solve(right).head(n);
 }
 
 /// The fixed point of x = A x + b_now + b_previous.
@@ -41,7 +57,7 @@ std::vector<Entry> discretise_channels(const TransferMatrix& G, double sample_ti
       DiscreteChannel model = discretise(channel, sample_time);
       const ChannelWiring wiring = make_wiring(row, col, G.cols(), model.delay);
       Eigen::VectorXd steady =
-          channel.is_integrating() ? Eigen::VectorXd::Zero(channel.order()) : steady_state_per_input(model);
+          channel.is_integrating() ? ramp_state_per_input(model) : steady_state_per_input(model);
       entries.push_back({std::move(model), wiring, std::move(steady)});
     }
   }
@@ -129,9 +145,6 @@ ChannelTable make_channel_table(const TransferMatrix& G, double sample_time) {
   for (const Entry& entry : entries) {
     max_delay = std::max(max_delay, entry.model.delay);
     table.max_order = std::max(table.max_order, entry.model.A.rows());
-    if (G(entry.wiring.row, entry.wiring.col).is_integrating()) {
-      table.integrating.push_back(entry.wiring);
-    }
   }
   table.history_length = max_delay + 2;
   sort_into(table, entries);

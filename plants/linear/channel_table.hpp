@@ -66,9 +66,10 @@ struct ChannelTable {
   std::vector<SecondOrderChannel> second_order;
   std::vector<GeneralChannel> general;
 
-  Eigen::VectorXd state_per_input;         ///< steady state for a unit input; 0 for integrating channels
-  std::vector<Eigen::Index> state_col;     ///< input that drives each state
-  std::vector<ChannelWiring> integrating;  ///< the channels without steady state
+  /// Steady state for a unit input; of an integrating channel that in which its rate is steady and its output
+  /// 0.
+  Eigen::VectorXd state_per_input;
+  std::vector<Eigen::Index> state_col;  ///< input that drives each state
   Eigen::Index max_order = 0;
 };
 

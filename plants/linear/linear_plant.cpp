@@ -28,13 +28,6 @@ void require_steady_input(const ChannelTable& table, const Eigen::Ref<const Eige
                        "finite numbers");
     }
   }
-  for (const ChannelWiring& channel : table.integrating) {
-    if (input(channel.col) != 0) {
-      throw NoSteadyState(fmt::format("steady value of input {}", channel.col),
-                          fmt::format("{}", input(channel.col)),
-                          fmt::format("0, because channel ({}, {}) integrates", channel.row, channel.col));
-    }
-  }
 }
 
 }  // namespace

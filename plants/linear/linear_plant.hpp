@@ -35,8 +35,8 @@ class LinearPlant final : public Plant {
   double sample_time() const override;
 
   /// Puts every channel at its steady state under the constant `steady_input` (input_count()), as if it had
-  /// acted for ever. Errors: InputError for a wrong size, a number that is not finite, or a non-zero input of
-  /// an integrating channel.
+  /// acted for ever; one that integrates at the output 0 and a steady rate. The plant rests where these rates
+  /// cancel out in each output. Errors: InputError for a wrong size, or a number that is not finite.
   void reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) override;
 
   /// y(k), output_count(): just before the input of sample k is applied.

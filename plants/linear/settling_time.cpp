@@ -3,8 +3,9 @@
 namespace mpm {
 
 double sum_of_time_constants(const TransferFunction& channel) {
-  const Eigen::VectorXd& a = channel.denominator();  // (a_n + a_(n-1) s + ...)/a_n begins 1 + T s
-  return channel.order() == 0 ? 0.0 : a(a.size() - 2) / a(a.size() - 1);
+  // (a_n + a_(n-1) s + ...)/a_n begins 1 + T s
+  const Eigen::VectorXd a = channel.denominator().head(channel.order() + (channel.is_integrating() ? 0 : 1));
+  return a.size() == 1 ? 0.0 : a(a.size() - 2) / a(a.size() - 1);
 }
 
 double settling_time(const TransferFunction& channel) {

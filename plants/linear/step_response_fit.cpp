@@ -25,10 +25,12 @@ constexpr double kSlowestLag = 20.0;     // time constant, in records
 constexpr double kLeastDamping = 0.05, kMostDamping = 20.0;
 constexpr double kShortestDeadTime = 1e-6;  // in samples; less is none
 
-enum class StepForm { first_order, second_order, with_zero };
+constexpr double kStillMoves = 0.3;  // slope at the end over the largest one: e^(-1.2)
+
+enum class StepForm { no_lag, first_order, second_order, with_zero };
 
 Eigen::Index shape_count(StepForm form) {
-  return form == StepForm::first_order ? 2 : 3;
+  return form == StepForm::no_lag ? 1 : form == StepForm::first_order ? 2 : 3;
 }
 
 Eigen::Index gain_count(StepForm form) {
@@ -47,6 +49,7 @@ struct StepMisfit {
 
   const Eigen::VectorXd& response;
   StepForm form;
+  bool integrates;
 
   int inputs() const { return static_cast<int>(shape_count(form)); }
   int values() const { return static_cast<int>(response.size()); }
@@ -62,10 +65,16 @@ struct StepMisfit {
   }
 
   Eigen::VectorXd denominator(const Eigen::VectorXd& x) const {
-    const double tau = time_constant(x);
-    return form == StepForm::first_order
-               ? Eigen::VectorXd(Eigen::Vector2d(tau, 1.0))
-               : Eigen::VectorXd(Eigen::Vector3d(tau * tau, 2.0 * tau * damping(x), 1.0));
+    Eigen::VectorXd lags = Eigen::VectorXd::Ones(1);
+    if (form == StepForm::first_order)
+      lags = Eigen::Vector2d(time_constant(x), 1.0);
+    else if (form != StepForm::no_lag)
+      lags = Eigen::Vector3d(std::pow(time_constant(x), 2), 2.0 * time_constant(x) * damping(x), 1.0);
+    if (integrates) {
+      lags.conservativeResize(lags.size() + 1);
+      lags(lags.size() - 1) = 0.0;
+    }
+    return lags;
   }
   /// Responses of 1 and of s over the denominator, samples x gains.
   Eigen::MatrixXd basis(const Eigen::VectorXd& x) const {
@@ -94,13 +103,34 @@ double rise_time(const Eigen::VectorXd& response, double share) {
   return static_cast<double>(k + 1);
 }
 
+/// From one sample to the next, the first one from 0.
+Eigen::VectorXd increments_of(const Eigen::VectorXd& response) {
+  Eigen::VectorXd increments = response;
+  increments.tail(response.size() - 1) -= response.head(response.size() - 1);
+  return increments;
+}
+
+/// Whether the response moves on at its end as it did before.
+bool still_moves(const Eigen::VectorXd& response) {
+  const Eigen::Index part = std::max<Eigen::Index>(2, response.size() / 8);
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k + part < response.size(); ++k)
+    largest = std::max(largest, std::abs(response(k + part) - response(k)));
+  return std::abs(response(response.size() - 1) - response(response.size() - 1 - part)) >
+         kStillMoves * largest;
+}
+
 /// Where the search begins: dead times from none to that at which the response is seen, dampings from an
-/// oscillation to two lags far apart.
+/// oscillation to two lags far apart. `response` is that of the form without its integrator.
 std::vector<Eigen::VectorXd> step_fit_starts(const Eigen::VectorXd& response, StepForm form) {
   const double seen = rise_time(response, 0.02) - 1.0, risen = rise_time(response, 0.6);
   std::vector<Eigen::VectorXd> points;
   for (const double part : {0.0, 0.7, 1.0}) {
     const double dead_time = part * seen, rest = std::max(risen - dead_time, 0.3);
+    if (form == StepForm::no_lag) {
+      points.emplace_back(Eigen::VectorXd::Constant(1, dead_time));
+      continue;
+    }
     if (form == StepForm::first_order) {
       points.emplace_back(Eigen::Vector2d(dead_time, std::log(rest)));
       continue;
@@ -132,12 +162,13 @@ TransferFunction channel_of(const StepMisfit& misfit, const Eigen::VectorXd& x, 
   return {numerator, denominator, dead_time < kShortestDeadTime ? 0.0 : dead_time * sample_time};
 }
 
-StepCandidate best_of_form(const Eigen::VectorXd& response, StepForm form, double sample_time) {
-  const StepMisfit misfit{response, form};
+StepCandidate best_of_form(const Eigen::VectorXd& response, StepForm form, bool integrates,
+                           double sample_time) {
+  const StepMisfit misfit{response, form, integrates};
   Eigen::NumericalDiff<StepMisfit, Eigen::Central> derivative(misfit);
   std::optional<Eigen::VectorXd> best;
   double least = kInfinity;
-  for (Eigen::VectorXd x : step_fit_starts(response, form)) {
+  for (Eigen::VectorXd x : step_fit_starts(integrates ? increments_of(response) : response, form)) {
     Eigen::LevenbergMarquardt<Eigen::NumericalDiff<StepMisfit, Eigen::Central>> method(derivative);
     method.parameters.xtol = method.parameters.ftol = 1e-12;
     method.parameters.maxfev = 200;
@@ -175,10 +206,19 @@ StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& respo
            static_cast<double>(candidate.parameters) * std::log(n);
   };
   StepCandidate best{.error = values.squaredNorm()};
-  if (values.cwiseAbs().maxCoeff() > negligible)
+  const auto try_form = [&](StepForm form, bool integrates) {
+    if (StepCandidate candidate = best_of_form(values, form, integrates, sample_time);
+        score(candidate) < score(best))
+      best = std::move(candidate);
+  };
+  if (values.cwiseAbs().maxCoeff() > negligible) {
     for (const StepForm form : {StepForm::first_order, StepForm::second_order, StepForm::with_zero})
-      if (StepCandidate candidate = best_of_form(values, form, sample_time); score(candidate) < score(best))
-        best = std::move(candidate);
+      try_form(form, false);
+    if (still_moves(values))
+      for (const StepForm form :
+           {StepForm::no_lag, StepForm::first_order, StepForm::second_order, StepForm::with_zero})
+        try_form(form, true);
+  }
   const double power = values.squaredNorm();
   StepResponseFit fit{.channel = best.channel,
                       .rms_error = std::sqrt(best.error / n),
@@ -194,13 +234,22 @@ StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& respo
 
 StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval) {
   StepResponseFit fit = fit_step_response(coefficients, interval, 0.0, kNegligibleOfCoefficients);
-  const double last = coefficients(coefficients.size() - 1), gain = fit.channel.static_gain();
-  if (std::abs(last - gain) > kUnsettledShare * coefficients.cwiseAbs().maxCoeff())
-    throw InputError(
-        "step response",
-        fmt::format("{} at its end, where the fitted transfer function goes to {:.4g}", last, gain),
-        "coefficients until the response has settled; a CV that integrates has no such model");
+  const ResponseEnd end = response_end(fit.channel, coefficients, interval);
+  if (std::abs(end.last - end.fitted) > kUnsettledShare * end.largest)
+    throw InputError("step response",
+                     fmt::format("{}{:.6g} at its end, where the fitted transfer function goes to {:.4g}",
+                                 fit.channel.is_integrating() ? "a rate of " : "", end.last, end.fitted),
+                     "coefficients until the response has settled; of a CV that integrates, its rate");
   return fit;
+}
+
+ResponseEnd response_end(const TransferFunction& fit, const Eigen::Ref<const Eigen::VectorXd>& response,
+                         double sample_time) {
+  const Eigen::Index last = response.size() - 1;
+  if (!fit.is_integrating())
+    return {response(last), fit.static_gain(), response.cwiseAbs().maxCoeff()};
+  const Eigen::VectorXd rates = increments_of(response) / sample_time;
+  return {rates(last), fit.rate_gain(), rates.cwiseAbs().maxCoeff()};
 }
 
 }  // namespace mpm

@@ -23,7 +23,10 @@ inline constexpr double kNegligibleOfPlant = 1e-3, kNegligibleOfCoefficients = 1
 /// times after the step), by least squares:
 ///
 ///   0,   K e^{-theta s}/(tau s + 1),   (b_1 s + b_0) e^{-theta s}/(tau^2 s^2 + 2 tau xi s + 1), b_1 = 0 or
-///   free.
+///   free,
+///
+/// and where the response still rises or falls at its end as it did before, the CV integrates: K e^{-theta
+/// s}/s and the others over s.
 ///
 /// K and b follow linearly from the others (variable projection), which the Levenberg-Marquardt method finds
 /// from several starting points. The simplest is that with the least n log(mean squared error + f^2) +
@@ -35,8 +38,16 @@ StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& respo
 
 /// A channel by the coefficients of its step response, as dynamic matrix control has them: values 1, 2, ...
 /// intervals after a step of 1. Errors: InputError as fit_step_response(), and for a response that has not
-/// settled, because the CV integrates or the coefficients are too few: its last value is more than a tenth of
-/// the largest one away from the static gain of the fit.
+/// settled, because the coefficients are too few: its end is more than a tenth of the largest one away from
+/// that of the fit.
 StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval);
+
+/// Where a response ends, and where the fit goes: values, or of a channel that integrates rates.
+struct ResponseEnd {
+  double last, fitted;
+  double largest;  ///< of the response
+};
+ResponseEnd response_end(const TransferFunction& fit, const Eigen::Ref<const Eigen::VectorXd>& response,
+                         double sample_time);
 
 }  // namespace mpm

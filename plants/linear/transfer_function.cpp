@@ -59,6 +59,14 @@ Eigen::VectorXd product(const Eigen::VectorXd& p, const Eigen::VectorXd& q) {
   return coefficients;
 }
 
+/// p(s) / s^n, n the number of roots at the origin.
+Eigen::VectorXd without_roots_at_origin(const Eigen::VectorXd& p) {
+  Eigen::Index size = p.size();
+  while (size > 1 && p(size - 1) == 0)
+    --size;
+  return p.head(size);
+}
+
 /// p'(0) / p(0).
 double relative_slope(const Eigen::VectorXd& p) {
   return p.size() > 1 ? p(p.size() - 2) / p(p.size() - 1) : 0.0;
@@ -115,6 +123,12 @@ double TransferFunction::static_gain() const {
   return is_zero() ? 0.0 : numerator_(numerator_.size() - 1) / denominator_(order());
 }
 
+double TransferFunction::rate_gain() const {
+  if (!is_integrating())
+    return 0.0;
+  return numerator_(numerator_.size() - 1) / denominator_(order() - 1);
+}
+
 std::complex<double> TransferFunction::operator()(std::complex<double> s) const {
   return evaluate(numerator_, s) / evaluate(denominator_, s) * std::exp(-s * dead_time_);
 }
@@ -123,14 +137,19 @@ TransferFunction TransferFunction::with_gain_scaled(double factor) const {
   if (!std::isfinite(factor)) {
     throw InputError("gain factor", fmt::format("{}", factor), "a finite number");
   }
-  return {numerator_ * factor, denominator_, dead_time_};
+  const TransferFunction G = without_washout();
+  return with_rational_part(G.numerator_ * factor, G.denominator_, dead_time_);
 }
 
 TransferFunction TransferFunction::with_time_scaled(double factor) const {
   if (!std::isfinite(factor) || factor <= 0) {
     throw InputError("time factor", fmt::format("{}", factor), "a finite number > 0");
   }
-  return {with_argument_scaled(numerator_, factor), with_argument_scaled(denominator_, factor), dead_time_};
+  const TransferFunction G = without_washout();
+  const auto integrators =
+      static_cast<double>(G.denominator_.size() - without_roots_at_origin(G.denominator_).size());
+  return with_rational_part(std::pow(factor, integrators) * with_argument_scaled(G.numerator_, factor),
+                            with_argument_scaled(G.denominator_, factor), dead_time_);
 }
 
 TransferFunction TransferFunction::with_dead_time_shifted(double delta) const {
@@ -139,24 +158,56 @@ TransferFunction TransferFunction::with_dead_time_shifted(double delta) const {
     throw InputError("dead time after a shift", fmt::format("{} + {} = {}", dead_time_, delta, shifted),
                      "a finite number >= 0");
   }
-  return {numerator_, denominator_, shifted};
+  const TransferFunction G = without_washout();
+  return with_rational_part(G.numerator_, G.denominator_, shifted);
 }
 
 double TransferFunction::residence_time() const {
-  if (is_integrating())
-    throw InputError("residence time of a transfer function", "a pole at s = 0 (integrating channel)",
-                     "channels without a pole at s = 0");
-  return is_zero() ? 0.0 : relative_slope(denominator_) - relative_slope(numerator_);
+  if (is_zero())
+    return 0.0;
+  const TransferFunction G = without_washout();
+  return relative_slope(without_roots_at_origin(G.denominator_)) -
+         relative_slope(without_roots_at_origin(G.numerator_));
+}
+
+bool TransferFunction::has_time_constant() const {
+  return !is_zero() && without_roots_at_origin(without_washout().denominator_).size() > 1;
+}
+
+TransferFunction TransferFunction::behind_washout(double time_constant) const {
+  if (!std::isfinite(time_constant) || time_constant <= 0)
+    throw InputError("time constant of a washout", fmt::format("{}", time_constant), "a finite number > 0");
+  const TransferFunction G = without_washout();
+  TransferFunction washed(product(G.numerator_, Eigen::Vector2d(time_constant, 0)),
+                          product(G.denominator_, Eigen::Vector2d(time_constant, 1)), dead_time_);
+  washed.washout_ = time_constant;
+  washed.own_numerator_ = G.numerator_;
+  washed.own_denominator_ = G.denominator_;
+  return washed;
+}
+
+TransferFunction TransferFunction::without_washout() const {
+  return washout_ > 0 ? TransferFunction(own_numerator_, own_denominator_, dead_time_) : *this;
+}
+
+TransferFunction TransferFunction::with_rational_part(Eigen::VectorXd numerator, Eigen::VectorXd denominator,
+                                                      double dead_time) const {
+  const TransferFunction G(std::move(numerator), std::move(denominator), dead_time);
+  return washout_ > 0 ? G.behind_washout(washout_) : G;
 }
 
 TransferFunction in_series(const TransferFunction& first, const TransferFunction& second) {
-  return {product(first.numerator(), second.numerator()), product(first.denominator(), second.denominator()),
-          first.dead_time() + second.dead_time()};
+  const TransferFunction G = first.without_washout(), H = second.without_washout();
+  const TransferFunction both(product(G.numerator(), H.numerator()),
+                              product(G.denominator(), H.denominator()), G.dead_time() + H.dead_time());
+  const double washout = second.washout() > 0 ? second.washout() : first.washout();
+  return washout > 0 ? both.behind_washout(washout) : both;
 }
 
 bool operator==(const TransferFunction& a, const TransferFunction& b) {
   return same(a.numerator_, b.numerator_) && same(a.denominator_, b.denominator_) &&
-         same(a.dead_time_, b.dead_time_);
+         same(a.dead_time_, b.dead_time_) && same(a.washout_, b.washout_) &&
+         same(a.own_numerator_, b.own_numerator_) && same(a.own_denominator_, b.own_denominator_);
 }
 
 }  // namespace mpm

@@ -19,6 +19,10 @@ namespace mpm {
 /// Coefficients stand in descending powers of s. Leading zeros of the numerator are dropped and common
 /// factors s are cancelled, so that a zero at the origin and an integrator are never both present;
 /// otherwise the coefficients stay as given. A value type: the `with_` functions return a changed copy.
+///
+/// An output that integrates drifts, and is looked at through a washout: with behind_washout() the function
+/// is G(s) s / (s + 1 / T_w), which has no pole at the origin any more. Numerator and denominator are then
+/// those of the product; the changes of gain, time constants and dead time are those of G.
 class TransferFunction {
  public:
   /// Errors: InputError if a coefficient or the dead time is not finite, a polynomial is empty, the leading
@@ -47,6 +51,9 @@ class TransferFunction {
   /// G(0). Errors: InputError for an integrating channel.
   double static_gain() const;
 
+  /// lim s G(s), s -> 0: the rate of an integrating channel under a constant input of 1; 0 for any other.
+  double rate_gain() const;
+
   /// G(s), with the dead time as e^{-theta s}. Not finite at a pole.
   std::complex<double> operator()(std::complex<double> s) const;
 
@@ -55,7 +62,9 @@ class TransferFunction {
 
   /// R(factor * s) e^{-theta s} for G(s) = R(s) e^{-theta s}: every time constant of the rational part, zeros
   /// included, is multiplied by `factor`; static gain and dead time stay. The step response of the rational
-  /// part obeys y_scaled(factor * t) = y(t). Errors: InputError unless `factor` is finite and positive.
+  /// part obeys y_scaled(factor * t) = y(t). Of an integrating channel the rate gain stays, so that this is
+  /// factor * R(factor * s): one that only integrates stays as it is. Errors: InputError unless `factor` is
+  /// finite and positive.
   TransferFunction with_time_scaled(double factor) const;
 
   /// G(s) e^{-delta s}: a dead-time mismatch. Errors: InputError if dead_time() + delta is negative or not
@@ -63,19 +72,38 @@ class TransferFunction {
   TransferFunction with_dead_time_shifted(double delta) const;
 
   /// The mean residence time of the rational part, a_{n-1} / a_n - b_{m-1} / b_m: the time constant of a
-  /// first-order function; 0 for a static one. Errors: InputError for an integrating channel.
+  /// first-order function; 0 for a static one. Of an integrating channel that of s G(s), and behind a washout
+  /// that of G.
   double residence_time() const;
+
+  /// Whether with_time_scaled() changes the function: not one that is zero, static or only integrates.
+  bool has_time_constant() const;
+
+  /// G(s) s / (s + 1 / time_constant): the output behind a first-order high-pass filter. The zero-order-hold
+  /// equivalent is exact for the filter of the samples, 1 - (1 - a) z^-1 / (1 - a z^-1) with a = e^(-Ts /
+  /// time_constant). Errors: InputError unless `time_constant` > 0.
+  TransferFunction behind_washout(double time_constant) const;
+  TransferFunction without_washout() const;
+  /// Time constant of the washout; 0 for none.
+  double washout() const { return washout_; }
 
   /// Are all coefficients and the dead time the same? Other coefficients with the same G differ.
   friend bool operator==(const TransferFunction& a, const TransferFunction& b);
 
  private:
+  /// The same washout, if any, of another function.
+  TransferFunction with_rational_part(Eigen::VectorXd numerator, Eigen::VectorXd denominator,
+                                      double dead_time) const;
+
   Eigen::VectorXd numerator_;
   Eigen::VectorXd denominator_;
   double dead_time_;
+  double washout_ = 0;
+  Eigen::VectorXd own_numerator_ = {}, own_denominator_ = {};  ///< of G behind a washout
 };
 
-/// G_1(s) G_2(s): the output of the one is the input of the other.
+/// G_1(s) G_2(s): the output of the one is the input of the other. A washout stays, of the second if both
+/// have one.
 TransferFunction in_series(const TransferFunction& first, const TransferFunction& second);
 
 }  // namespace mpm

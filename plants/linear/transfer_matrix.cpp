@@ -58,6 +58,41 @@ Eigen::MatrixXd TransferMatrix::static_gain() const {
   return gain;
 }
 
+bool TransferMatrix::is_integrating(Eigen::Index row) const {
+  for (Eigen::Index col = 0; col < cols_; ++col)
+    if ((*this)(row, col).is_integrating())
+      return true;
+  return false;
+}
+
+bool TransferMatrix::is_integrating() const {
+  for (Eigen::Index row = 0; row < rows_; ++row)
+    if (is_integrating(row))
+      return true;
+  return false;
+}
+
+Eigen::MatrixXd TransferMatrix::steady_gain() const {
+  Eigen::MatrixXd gain(rows_, cols_);
+  for (Eigen::Index row = 0; row < rows_; ++row) {
+    const bool is_rate = is_integrating(row);
+    for (Eigen::Index col = 0; col < cols_; ++col) {
+      const TransferFunction& channel = (*this)(row, col);
+      gain(row, col) = is_rate ? channel.rate_gain() : channel.static_gain();
+    }
+  }
+  return gain;
+}
+
+Eigen::VectorXd TransferMatrix::steady_output(const Eigen::Ref<const Eigen::VectorXd>& input) const {
+  Eigen::VectorXd output = Eigen::VectorXd::Zero(rows_);
+  for (Eigen::Index row = 0; row < rows_; ++row)
+    for (Eigen::Index col = 0; col < cols_; ++col)
+      if (const TransferFunction& channel = (*this)(row, col); !channel.is_integrating())
+        output(row) += channel.static_gain() * input(col);
+  return output;
+}
+
 Eigen::MatrixXcd TransferMatrix::frequency_response(std::complex<double> s) const {
   Eigen::MatrixXcd response(rows_, cols_);
   for (Eigen::Index row = 0; row < rows_; ++row) {

@@ -34,6 +34,20 @@ class TransferMatrix {
   /// G(0), rows() x cols(). Errors: InputError naming the first integrating channel.
   Eigen::MatrixXd static_gain() const;
 
+  /// Whether a channel of the row has a pole at the origin, so that constant inputs hold the output only if
+  /// its rate is 0.
+  bool is_integrating(Eigen::Index row) const;
+  /// Whether some row is.
+  bool is_integrating() const;
+
+  /// What a constant input of 1 does in the end, rows() x cols(): to the output, G(0), or of a row that
+  /// integrates to its rate, lim s G(s).
+  Eigen::MatrixXd steady_gain() const;
+
+  /// The outputs at which a plant rests under a constant `input` (cols()), rows(): G(0) input; what
+  /// integrates counts from there (LinearPlant::reset()).
+  Eigen::VectorXd steady_output(const Eigen::Ref<const Eigen::VectorXd>& input) const;
+
   /// G(s) at one complex s, rows() x cols().
   Eigen::MatrixXcd frequency_response(std::complex<double> s) const;
 

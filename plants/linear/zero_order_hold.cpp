@@ -92,6 +92,52 @@ Delay split_dead_time(double dead_time, double sample_time) {
 
 }  // namespace
 
+namespace {
+
+/// K / s and what is left of a channel without it; K = 0 for one that does not integrate.
+struct IntegratorApart {
+  double rate_gain;
+  TransferFunction rest;
+};
+
+IntegratorApart integrator_apart(const TransferFunction& channel) {
+  if (!channel.is_integrating())
+    return {0.0, channel};
+  const double K = channel.rate_gain();
+  const Eigen::VectorXd denominator = channel.denominator().head(channel.order());  // over s
+  Eigen::VectorXd difference = Eigen::VectorXd::Zero(channel.order() + 1);          // N(s) - K D(s) / s
+  difference.tail(channel.numerator().size()) = channel.numerator();
+  difference.tail(denominator.size()) -= K * denominator;
+  return {K, {difference.head(channel.order()), denominator, channel.dead_time()}};
+}
+
+/// The filter of the samples y(k) of a channel, f(k) = y(k) - w(k), w(k+1) = a w(k) + (1 - a) y(k). With the
+/// integrator's state I apart, q = I - w takes the place of both:
+///
+///   q(k+1) = a q(k) + K (integral of u over the sample) - (1 - a) y_rest(k),    f(k) = q(k) + y_rest(k).
+DiscreteChannel behind_washout(const TransferFunction& channel, double sample_time) {
+  const auto [K, rest] = integrator_apart(channel.without_washout());
+  const double a = std::exp(-sample_time / channel.washout());
+  const DiscreteChannel inner = discretise(rest, sample_time);
+  const Delay delay = split_dead_time(channel.dead_time(), sample_time);
+  const Eigen::Index n = inner.A.rows();
+  DiscreteChannel result{.A = Eigen::MatrixXd::Zero(n + 1, n + 1),
+                         .b_now = Eigen::VectorXd(n + 1),
+                         .b_previous = Eigen::VectorXd(n + 1),
+                         .c = Eigen::RowVectorXd(n + 1),
+                         .d = inner.d,
+                         .delay = delay.samples};
+  result.A(0, 0) = a;
+  result.A.topRightCorner(1, n) = -(1.0 - a) * inner.c;
+  result.A.bottomRightCorner(n, n) = inner.A;
+  result.b_now << K * (sample_time - delay.remainder), inner.b_now;
+  result.b_previous << K * delay.remainder - (1.0 - a) * inner.d, inner.b_previous;
+  result.c << 1.0, inner.c;
+  return result;
+}
+
+}  // namespace
+
 void require_sample_time(double sample_time) {
   if (!std::isfinite(sample_time) || sample_time <= 0) {
     throw InputError("sample time", fmt::format("{}", sample_time), "a finite number > 0");
@@ -100,6 +146,8 @@ void require_sample_time(double sample_time) {
 
 DiscreteChannel discretise(const TransferFunction& channel, double sample_time) {
   require_sample_time(sample_time);
+  if (channel.washout() > 0)
+    return behind_washout(channel, sample_time);
   const Delay delay = split_dead_time(channel.dead_time(), sample_time);
   const Realisation form = companion_form(channel);
 

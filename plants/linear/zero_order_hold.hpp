@@ -43,7 +43,8 @@ void require_sample_time(double sample_time);
 ///   B.
 ///
 /// The integrals come from the exponential of the augmented matrix [A_c B; 0 0] (Van Loan 1978), so that
-/// integrators and repeated poles need no special case. A dead time within a relative 1e-9 of a whole number
+/// integrators and repeated poles need no special case. Behind a washout it is the equivalent of the channel
+/// and the filter of its samples together. A dead time within a relative 1e-9 of a whole number
 /// of samples counts as whole (27 / 0.1 is not 270 in floating point).
 ///
 /// Errors: InputError unless `sample_time` (same unit as the time constants) is finite and > 0, the dead time

@@ -37,6 +37,8 @@ constexpr std::array kCatalogue{
     CatalogueEntry{"distillation-column", distillation_column},
     CatalogueEntry{"siso", siso_plant},
     CatalogueEntry{"ogunnaike-ray", ogunnaike_ray_column},
+    CatalogueEntry{"evaporator", evaporator},
+    CatalogueEntry{"column-levels", distillation_column_with_levels},
     CatalogueEntry{"banded-20x8", banded_unit_20x8},
     CatalogueEntry{"coker-12x7", coker_12x7},
 };

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -127,6 +128,77 @@ PlantModel ogunnaike_ray_column() {
                  lead(-0.0032, 19.62, 7.29, 8.94, 3.44)},
                 {lag(-34.68, 8.15, 9.2), lag(46.2, 10.9, 9.4), lead(0.87, 11.61, 3.89, 18.8, 1.0),
                  lag(-11.54, 7.01, 0.6), lag(0.32, 7.76, 2.6)}}};
+}
+
+PlantModel evaporator() {
+  // Poles of composition and pressure, and what they and the inputs make of the level.
+  constexpr double kX = 0.1, kP = 0.05579782, kXtoP = -0.02090766, kXtoL = 0.004181532, kPtoL = 0.00751231;
+  struct Input {
+    double x, p, l;  // a column of B
+  };
+  constexpr std::array<Input, 6> kInputs{{{-1.25, 0, -0.05},
+                                          {0, 0.009587532, -0.0019175065},
+                                          {0, -0.001828122, 0},
+                                          {0.25, 0.016437197, 0.046712561},
+                                          {0.5, 0, 0},
+                                          {0, 0.0045454545, -0.0009090909}}};
+  const TransferFunction none = TransferFunction::zero();
+  TransferMatrix G(3, kInputs.size());
+  for (std::size_t i = 0; i < kInputs.size(); ++i) {
+    const auto [x, p, l] = kInputs[i];
+    const auto input = static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d both(1, kX + kP, kX * kP);
+    if (x == 0) {
+      G(1, input) = none;
+      G(2, input) = {Eigen::VectorXd::Constant(1, p), Eigen::Vector2d(1, kP)};
+      G(0, input) = {Eigen::Vector2d(l, l * kP + kPtoL * p), Eigen::Vector3d(1, kP, 0)};
+      continue;
+    }
+    const Eigen::Vector2d pressure(p, p * kX + kXtoP * x);  // over both
+    G(1, input) = {Eigen::VectorXd::Constant(1, x), Eigen::Vector2d(1, kX)};
+    G(2, input) = {pressure, both};
+    G(0, input) = {l * both + kPtoL * Eigen::Vector3d(0, pressure(0), pressure(1)) +
+                       kXtoL * x * Eigen::Vector3d(0, 1, kP),
+                   Eigen::Vector4d(1, kX + kP, kX * kP, 0)};
+  }
+  return {.name = "evaporator",
+          .title = "Newell and Lee's evaporator with its level, 3 CVs, 3 MVs, 3 measured disturbances",
+          .time_unit = "min",
+          .cvs = {{"L2", "m", "Level of the separator, integrates"},
+                  {"X2", "%", "Composition of the product"},
+                  {"P2", "kPa", "Operating pressure"}},
+          .mvs = {{"F2", "kg/min", "Flow of the product"},
+                  {"P100", "kPa", "Pressure of the steam"},
+                  {"F200", "kg/min", "Flow of the cooling water"}},
+          .mds = {{"F1", "kg/min", "Flow of the feed"},
+                  {"X1", "%", "Composition of the feed"},
+                  {"T1", "degC", "Temperature of the feed"}},
+          .G = std::move(G)};
+}
+
+PlantModel distillation_column_with_levels() {
+  constexpr double kLag = 75, kLiquidLag = 2.46;
+  const auto composition = [](double gain) { return TransferFunction::first_order(gain, kLag); };
+  const auto flow = [](double rate, double dead_time = 0) {
+    return TransferFunction(Eigen::VectorXd::Constant(1, rate), Eigen::Vector2d(1, 0), dead_time);
+  };
+  const TransferFunction none = TransferFunction::zero();
+  return {.name = "column-levels",
+          .title = "Skogestad's column with both levels, 4 CVs, 4 MVs, 1 measured disturbance",
+          .time_unit = "min",
+          .cvs = {{"yD", "1", "Light component in the distillate, mole fraction"},
+                  {"xB", "1", "Light component in the bottoms, mole fraction"},
+                  {"MD", "kmol", "Holdup of the condenser, integrates"},
+                  {"MB", "kmol", "Holdup of the reboiler, integrates"}},
+          .mvs = {{"L", "kmol/min", "Reflux"},
+                  {"V", "kmol/min", "Boilup"},
+                  {"D", "kmol/min", "Distillate"},
+                  {"B", "kmol/min", "Bottoms"}},
+          .mds = {{"F", "kmol/min", "Flow of the feed, liquid"}},
+          .G = {{composition(0.878), composition(-0.864), none, none, composition(0.394)},
+                {composition(1.082), composition(-1.096), none, none, composition(0.586)},
+                {flow(-1), flow(1), flow(-1), none, none},
+                {flow(1, kLiquidLag), flow(-1), none, flow(-1), flow(1, kLiquidLag / 2)}}};
 }
 
 PlantModel banded_unit_20x8() {

@@ -149,7 +149,7 @@ class ProgramController final : public Controller {
         refuse_unknown_keys(asked(running_->talk.ask(ProgramJson::parse(context_))), {});
         running_->context = context_;
       }
-      const Eigen::VectorXd y = G_.static_gain() * input;
+      const Eigen::VectorXd y = G_.steady_output(input);
       const ProgramJson start{
           {"call", "reset"}, {"u", vector_json(u)}, {"d", vector_json(d)}, {"y", vector_json(y)}};
       refuse_unknown_keys(asked(running_->talk.ask(start)), {});

@@ -62,6 +62,7 @@ Json controller_json(const MpcOptions& controller) {
           {"slack_weight", vector_json(controller.slack_weight)},
           {"slack_cost", vector_json(controller.slack_cost)},
           {"reference_time", vector_json(controller.reference_time)},
+          {"bias_ramp", vector_json(controller.bias_ramp)},
           {"analyser_period", analyser_json(controller, &AnalyserTiming::period)},
           {"analyser_delay", analyser_json(controller, &AnalyserTiming::delay)},
           {"move_starts", controller.move_starts()},

@@ -35,7 +35,13 @@ OptionKeys assessment_keys(AssessmentOptions& options) {
                   "dead time, as a fraction of the dead time or of a sample"),
       key::number(
           "bias", options.bias, NumberRule::at_least(0),
-          "prior standard deviation of a constant error of each CV, in standard deviations of its noise")};
+          "prior standard deviation of a constant error of each CV, in standard deviations of its noise"),
+      key::number(
+          "washout", options.washout, NumberRule::positive(),
+          "of a CV that integrates: time constant of the high-pass filter through which methods see it and "
+          "its model, since a simulation of a level drifts without end",
+          "time")
+          .otherwise("the prediction horizon")};
   for (const MethodOptionTable& table : method_option_tables())
     keys.push_back(key::table(
         table.name, [&options, of_method = table.keys] { return of_method(options); }, table.meaning));

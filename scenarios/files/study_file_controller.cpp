@@ -1,6 +1,7 @@
 // [controller]
 
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,9 @@ namespace {
 
 // Bounds on the size of the matrices and of the history of inputs that a file can ask for.
 constexpr std::int64_t kMaxHorizon = 2000;
+
+/// A flow into a level that is not known is found within some twenty samples; more makes the moves noisier.
+constexpr double kBiasRamp = 0.05;
 
 void set_limits(Limits& limits, Eigen::Index i, const NumberPair& range) {
   limits.lower(i) = range.first;
@@ -73,6 +77,7 @@ OptionKeys keys(MvOptions& mv) {
 
 struct CvOptions {
   double setpoint_weight = 0.0, setpoint = 0.0, slack_weight = 0.0, slack_cost = 0.0, reference_time = 0.0;
+  std::optional<double> bias_ramp;
   NumberPair soft{-kInfinity, kInfinity}, hard;
   AnalyserTiming analyser;
 };
@@ -104,6 +109,8 @@ void read_setpoint_and_range(const TomlTable& table, CvOptions& cv) {
     table.refuse("reference_time", "a reference trajectory without a setpoint", "setpoint_weight beside it");
   if (table.has("reference_time"))
     cv.reference_time = read_number(table, "reference_time", NumberRule::positive());
+  if (table.has("bias_ramp"))
+    cv.bias_ramp = read_number(table, "bias_ramp", NumberRule::share());
   if (table.has("slack_cost"))
     cv.slack_cost = read_number(table, "slack_cost", NumberRule::positive());
   if (!has_range)
@@ -136,6 +143,13 @@ OptionKeys keys(CvOptions& cv) {
                   "time")
           .otherwise("none: at once")
           .allow("> 0; with `setpoint_weight`"),
+      key::option(
+          "bias_ramp", "number",
+          "of a CV that integrates: the share of what the output bias moves from one sample to the next "
+          "that counts as its ramp. 0: the bias is a constant, and a flow that is not known leaves an "
+          "offset")
+          .otherwise(fmt::format("{} for a CV that integrates", kBiasRamp))
+          .allow("0 to 1; for a CV that integrates"),
       key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
           .otherwise("required without a setpoint")
           .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
@@ -151,15 +165,17 @@ OptionKeys keys(CvOptions& cv) {
 /// One table for each of the variables, none more.
 template <class Variable>
 OptionKey variable_tables(const char* name, const std::vector<PlantModel::Variable>& variables,
-                          std::function<void(Eigen::Index, const Variable&)> take, const char* meaning) {
+                          std::function<void(const TomlTable&, Eigen::Index, const Variable&)> take,
+                          const char* meaning) {
   const auto read = [&variables, take](const TomlTable& controller, const std::string& key) {
     const std::vector<std::string> names = variable_names(variables);
     const TomlTable tables = controller.table(key, names);
     for (std::size_t i = 0; i < names.size(); ++i) {
       Variable variable;
       const OptionKeys of_variable = keys(variable);
-      read_keys(tables.table(names[i], key_names(of_variable)), of_variable);
-      take(static_cast<Eigen::Index>(i), variable);
+      const TomlTable table = tables.table(names[i], key_names(of_variable));
+      read_keys(table, of_variable);
+      take(table, static_cast<Eigen::Index>(i), variable);
     }
   };
   const auto below = [] {
@@ -175,8 +191,9 @@ void resize(Study& study) {
   for (Eigen::VectorXd* of_mv : {&options.move_suppression, &options.target_weight, &options.mv_cost,
                                  &options.resting_value, &options.resting_weight})
     of_mv->setZero(mvs);
-  for (Eigen::VectorXd* of_cv : {&options.setpoint_weight, &options.slack_weight, &options.slack_cost,
-                                 &options.reference_time, &study.simulation.initial_setpoint})
+  for (Eigen::VectorXd* of_cv :
+       {&options.setpoint_weight, &options.slack_weight, &options.slack_cost, &options.reference_time,
+        &options.bias_ramp, &study.simulation.initial_setpoint})
     of_cv->setZero(cvs);
   options.analysers.assign(static_cast<std::size_t>(cvs), {});
   options.move_limit.setConstant(mvs, kInfinity);
@@ -228,7 +245,7 @@ OptionKey program_key(std::optional<ControllerProgram>& program) {
 
 OptionKeys controller_keys(Study& study) {
   MpcOptions& options = study.controller;
-  const auto take_mv = [&options](Eigen::Index i, const MvOptions& mv) {
+  const auto take_mv = [&options](const TomlTable&, Eigen::Index i, const MvOptions& mv) {
     options.mv_cost(i) = mv.cost;
     options.move_suppression(i) = mv.move_suppression;
     options.target_weight(i) = mv.target_weight;
@@ -237,11 +254,16 @@ OptionKeys controller_keys(Study& study) {
     options.resting_weight(i) = mv.resting_weight;
     set_limits(options.mv_hard, i, mv.hard);
   };
-  const auto take_cv = [&study, &options](Eigen::Index i, const CvOptions& cv) {
+  const auto take_cv = [&study, &options](const TomlTable& table, Eigen::Index i, const CvOptions& cv) {
+    const bool integrates = study.plant.G.is_integrating(i);
+    if (cv.bias_ramp && !integrates)
+      table.refuse("bias_ramp", "a ramp of the bias of a CV that does not integrate",
+                   "a CV of which a channel has a pole at 0");
     options.setpoint_weight(i) = cv.setpoint_weight;
     options.slack_weight(i) = cv.slack_weight;
     options.slack_cost(i) = cv.slack_cost;
     options.reference_time(i) = cv.reference_time;
+    options.bias_ramp(i) = cv.bias_ramp.value_or(integrates ? kBiasRamp : 0.0);
     options.analysers[static_cast<std::size_t>(i)] = cv.analyser;
     study.simulation.initial_setpoint(i) = cv.setpoint;
     set_limits(options.cv_soft, i, cv.soft);

@@ -38,7 +38,8 @@ OptionKeys channel_keys(Channel& channel, const PlantModel& model) {
                       "input", channel.input, [&] { return input_names(model); },
                       "its input; a channel can be listed once")
                       .allow("name of an MV or MD")};
-  for (OptionKey& key : transfer_function_keys("input", "poles with negative real parts"))
+  for (OptionKey& key :
+       transfer_function_keys("input", "poles with negative real parts, and at most one at 0"))
     keys.push_back(std::move(key));
   return keys;
 }

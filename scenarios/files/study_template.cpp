@@ -73,7 +73,7 @@ void require(const StudySketch& sketch) {
     throw InputError("channels", "none from an MV", "one or more from an MV to a CV");
 }
 
-Guess::Guess(const StudySketch& sketch) : size(sketch.size), gain(sketch.plant.G.static_gain()) {
+Guess::Guess(const StudySketch& sketch) : size(sketch.size), gain(sketch.plant.G.steady_gain()) {
   const TransferMatrix& G = sketch.plant.G;
   for (Eigen::Index cv = 0; cv < G.rows(); ++cv) {
     if (const auto& range = sketch.ranges[static_cast<std::size_t>(cv)])
@@ -93,6 +93,9 @@ Guess::Guess(const StudySketch& sketch) : size(sketch.size), gain(sketch.plant.G
   }
   if (shortest == kInfinity)  // gains and dead times alone
     shortest = longest = settled = std::max(dead_time, 1.0);
+  for (Eigen::Index cv = 0; cv < G.rows(); ++cv)
+    if (G.is_integrating(cv))  // what it moves until the others have settled
+      gain.row(cv) *= settled;
   sample_time =
       sketch.sample_time.value_or(rounded(std::max(shortest / kStepsOfFastest, settled / kMostSamples)));
   prediction_horizon = static_cast<int>(std::clamp(std::ceil(settled / sample_time), 10.0, 300.0));
@@ -138,7 +141,9 @@ void write_plant(TomlDraft& document, const PlantModel& plant) {
       TomlDraft& channel = entry_of(table, "channel", place++, "plant.channel[]");
       channel.set("cv", plant.cvs[static_cast<std::size_t>(cv)].name);
       channel.set("input", channel_name(plant, input));
-      if (G.order() == 1 && G.numerator().size() == 1 && G.denominator()(0) > 0) {
+      if (G.order() == 1 && G.is_integrating()) {
+        channel.set("rate_gain", G.rate_gain());
+      } else if (G.order() == 1 && G.numerator().size() == 1 && G.denominator()(0) > 0) {
         channel.set("gain", G.static_gain());
         channel.set("time_constant", G.residence_time());
       } else {
@@ -150,8 +155,8 @@ void write_plant(TomlDraft& document, const PlantModel& plant) {
     }
 }
 
-/// Costs drive every CV that has a range to its upper limit: in the row space of the gains, they are bounded
-/// there, whatever the MVs may do.
+/// Costs drive every CV that has a range and does not integrate to its upper limit: in the row space of the
+/// gains, they are bounded there, whatever the MVs may do.
 void write_mvs(TomlDraft& controller, const StudySketch& sketch, const Guess& guess) {
   const bool ranges = std::any_of(sketch.ranges.begin(), sketch.ranges.end(),
                                   [](const auto& range) { return range.has_value(); });
@@ -167,9 +172,14 @@ void write_mvs(TomlDraft& controller, const StudySketch& sketch, const Guess& gu
     if (ranges) {
       double cost = 0.0;
       for (std::size_t cv = 0; cv < sketch.ranges.size(); ++cv)
-        if (sketch.ranges[cv])
+        if (sketch.ranges[cv] && !sketch.plant.G.is_integrating(static_cast<Eigen::Index>(cv)))
           cost -= guess.gain(static_cast<Eigen::Index>(cv), column);
-      mv.set("cost", cost);
+      if (cost == 0.0 && sketch.plant.G.is_integrating()) {  // no range has a limit to drive it to
+        mv.set("resting_value", 0.0);
+        mv.set("resting_weight", weight);
+      } else {
+        mv.set("cost", cost);
+      }
       mv.set("target_weight", rounded(0.1 * weight));
     }
     mv.set("move_suppression", weight);

@@ -38,7 +38,7 @@ double largest_real_part_of_roots(const Eigen::VectorXd& p) {
 }
 
 WrittenTransferFunction read_step_coefficients(const TomlTable& table) {
-  for (const char* other : {"gain", "time_constant", "numerator", "denominator", "dead_time"})
+  for (const char* other : {"gain", "rate_gain", "time_constant", "numerator", "denominator", "dead_time"})
     if (table.has(other))
       table.refuse(other, "a second way to write a channel", "step and step_interval alone");
   const Eigen::VectorXd coefficients =
@@ -55,8 +55,14 @@ OptionKeys transfer_function_keys(const std::string& input, const std::string& p
   return {key::option("gain", "number", "static gain, of `gain / (time_constant s + 1)`", "CV / " + input)
               .otherwise("none; with `time_constant`")
               .allow("finite"),
+          key::option("rate_gain", "number",
+                      "of a channel that integrates, such as a flow to a level: the rate of the CV under a "
+                      "constant input of 1, `rate_gain / (s (time_constant s + 1))`",
+                      "CV / " + input + " / time")
+              .otherwise("none; in place of `gain`")
+              .allow("finite"),
           key::option("time_constant", "number", "time constant, of the same", "time")
-              .otherwise("none; with `gain`")
+              .otherwise("required with `gain`, none with `rate_gain`")
               .allow("> 0"),
           key::option("numerator", "list of numbers",
                       "coefficients in descending powers of s, at most as many as in the denominator",
@@ -85,10 +91,21 @@ WrittenTransferFunction read_transfer_function(const TomlTable& table) {
   if (table.has("step") || table.has("step_interval"))
     return read_step_coefficients(table);
   const double dead_time = read_number_or(table, "dead_time", NumberRule::at_least(0), 0.0);
-  const bool first_order = table.has("gain") || table.has("time_constant");
+  const bool first_order = table.has("gain") || table.has("time_constant") || table.has("rate_gain");
   if (first_order == (table.has("numerator") || table.has("denominator"))) {
     table.refuse("", first_order ? "both ways to write a channel" : "no transfer function",
-                 "either gain and time_constant, or numerator and denominator, or step and step_interval");
+                 "either gain and time_constant, or rate_gain, or numerator and denominator, or step and "
+                 "step_interval");
+  }
+  if (table.has("rate_gain")) {
+    if (table.has("gain"))
+      table.refuse("gain", "a static gain beside rate_gain", "one of them");
+    const double rate = read_number(table, "rate_gain", NumberRule::finite());
+    const TransferFunction integrator(Eigen::VectorXd::Constant(1, rate), Eigen::Vector2d(1, 0), dead_time);
+    if (!table.has("time_constant"))
+      return {integrator};
+    return {in_series(integrator, TransferFunction::first_order(
+                                      1, read_number(table, "time_constant", NumberRule::positive())))};
   }
   if (first_order) {
     return {TransferFunction::first_order(read_number(table, "gain", NumberRule::finite()),
@@ -105,13 +122,20 @@ void refuse_unstable(const TomlTable& table, const TransferFunction& channel) {
   if (channel.is_zero() || channel.order() == 0) {
     return;
   }
-  const double real_part = largest_real_part_of_roots(channel.denominator());
+  const Eigen::VectorXd others =
+      channel.denominator().head(channel.order() + (channel.is_integrating() ? 0 : 1));
+  if (others.size() == 1)
+    return;
+  const double real_part = largest_real_part_of_roots(others);
   if (!std::isfinite(real_part)) {
     table.refuse("denominator", "coefficients whose ratios overflow", "coefficients of similar size");
   }
   if (!(real_part < 0)) {
-    table.refuse("denominator", fmt::format("a pole with real part {:.3g}", real_part),
-                 "poles with negative real parts");
+    table.refuse("denominator",
+                 channel.is_integrating() && real_part == 0
+                     ? "a second pole at 0"
+                     : fmt::format("a pole with real part {:.3g}", real_part),
+                 "poles with negative real parts, and at most one at 0");
   }
 }
 

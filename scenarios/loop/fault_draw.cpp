@@ -227,7 +227,7 @@ void move_to_mv(const Study& study, ExperimentDraw& draw, RandomStream& stream) 
   Disturbance& disturbance = draw.disturbances.front();
   disturbance.cv = -1;
   disturbance.mv = mv;
-  disturbance.gain /= study.plant.G.static_gain().col(mv).cwiseAbs().maxCoeff();
+  disturbance.gain /= study.assessed_model().static_gain().col(mv).cwiseAbs().maxCoeff();
   add_affected(draw, cvs_with_channel(study, mv));
 }
 

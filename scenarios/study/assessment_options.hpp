@@ -79,6 +79,8 @@ struct AssessmentOptions : MethodOptions {
   double model_error =
       0.05;           ///< relative standard deviation of gain, time constant and dead time of a channel
   double bias = 0.5;  ///< standard deviation of a constant error of a CV, in those of its noise
+  double washout =
+      0;  ///< time constant for CVs that integrate, time unit of the plant; 0: the prediction horizon
 
   bool operator==(const AssessmentOptions&) const = default;
 };

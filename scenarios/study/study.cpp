@@ -15,4 +15,21 @@ bool Study::has_plain_faults() const {
          !asks_for_impact() && onset == OnsetRanges{};
 }
 
+TransferFunction Study::assessed_channel(Eigen::Index cv, Eigen::Index input) const {
+  const TransferFunction& channel = plant.G(cv, input);
+  return plant.G.is_integrating(cv) && !channel.is_zero() ? channel.behind_washout(washout()) : channel;
+}
+
+TransferMatrix Study::assessed_model() const {
+  TransferMatrix model = plant.G;
+  for (Eigen::Index cv = 0; cv < model.rows(); ++cv)
+    for (Eigen::Index input = 0; input < model.cols(); ++input)
+      model(cv, input) = assessed_channel(cv, input);
+  return model;
+}
+
+double Study::washout() const {
+  return assessment.washout > 0 ? assessment.washout : controller.prediction_horizon * controller.sample_time;
+}
+
 }  // namespace mpm

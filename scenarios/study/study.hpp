@@ -240,6 +240,14 @@ struct Study {
   int experiment_count() const {
     return names_scenarios() ? static_cast<int>(scenarios.size()) : experiments.total();
   }
+  /// The model as methods of assessment see it: CVs that integrate behind a washout (assessed_model()).
+  TransferFunction assessed_channel(Eigen::Index cv, Eigen::Index input) const;
+  /// G0, and of each CV that integrates every channel behind a washout, so that what drifts without end in an
+  /// open-loop simulation, y_sim and y - y_sim, stays in place.
+  TransferMatrix assessed_model() const;
+  /// Time constant of that washout.
+  double washout() const;
+
   Eigen::Index cv_count() const { return static_cast<Eigen::Index>(plant.cvs.size()); }
   Eigen::Index mv_count() const { return static_cast<Eigen::Index>(plant.mvs.size()); }
   Eigen::Index md_count() const { return static_cast<Eigen::Index>(plant.mds.size()); }
