@@ -7,6 +7,7 @@
 
 #include "analysis/methods/base_noise.hpp"
 #include "analysis/methods/input_disturbance.hpp"
+#include "analysis/methods/sticky_valve_likelihood.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
@@ -139,9 +140,11 @@ Eigen::VectorXd deviations(const std::vector<ModelErrors>& models, bool whole) {
 }
 
 FaultSource most_probable_source(const FaultProbabilities::OfCv& cv, double least) {
-  const double largest = std::max({cv.mpm, cv.ud, cv.both});
+  const double largest = std::max({cv.mpm, cv.ud, cv.both, cv.other});
   if (!(largest > 0.0) || largest < least * cv.fault())
     return FaultSource::none;
+  if (largest == cv.other)
+    return FaultSource::other;
   return largest == cv.mpm ? FaultSource::mpm : largest == cv.ud ? FaultSource::ud : FaultSource::mpm_ud;
 }
 
@@ -228,12 +231,17 @@ class FaultPosterior final : public AssessmentMethod {
       return answer(probabilities, fault_probabilities(for_scores_, evidence), evidence);
     const std::vector<Eigen::MatrixXd> series = healthy_series(errors, inputs);
     const double of_input = input_weight(evidence, series);
+    const StuckMv valve = stuck_mv(evidence, series, inputs);
     for (std::size_t i = 0; i < likelihoods_.size(); ++i)
       if (is_suspect(probabilities.cvs[i]))
         likelihoods_[i]->add_growing(series[i], inputs.leftCols(series[i].cols()), initial_, kGrowingShare,
                                      evidence[i]);
-    probabilities = with_input_disturbance(fault_probabilities(priors_, evidence), of_input);
-    return answer(probabilities, probabilities, evidence);
+    probabilities = with_sticky_valve(
+        with_input_disturbance(fault_probabilities(priors_, evidence), of_input), valve.log_weight);
+    Assessment assessment = answer(probabilities, probabilities, evidence);
+    if (probabilities.other > 0.0)
+      assessment.numbers.push_back({"valve_mv", static_cast<double>(valve.mv)});
+    return assessment;
   }
 
  private:
@@ -267,6 +275,30 @@ class FaultPosterior final : public AssessmentMethod {
     for (const InputEvidence& of_mv : likelihood.of_mvs(study_.mv_count()))
       sum = log_sum(sum, log_weight(priors_.input, of_mv.log_evidence, healthy));
     return sum;
+  }
+
+  /// The MV whose valve most likely sticks, and log of the weight of a valve of some MV against nothing.
+  struct StuckMv {
+    double log_weight = -kInfinity;
+    std::size_t mv = 0;
+  };
+
+  StuckMv stuck_mv(const std::vector<CvEvidence>& evidence, const std::vector<Eigen::MatrixXd>& series,
+                   const Eigen::MatrixXd& inputs) const {
+    double healthy = 0.0;
+    for (const CvEvidence& of_cv : evidence)
+      healthy += of_cv.healthy;
+    const std::vector<ValveEvidence> valves =
+        valve_evidence(models_, series, inputs, initial_, study_.mv_count(), study_.controller.sample_time,
+                       priors_.noise_freedom);
+    StuckMv found;
+    for (std::size_t mv = 0; mv < valves.size(); ++mv) {
+      found.log_weight =
+          log_sum(found.log_weight, log_weight(priors_.input, valves[mv].log_evidence, healthy));
+      if (valves[mv].log_evidence > valves[found.mv].log_evidence)
+        found.mv = mv;
+    }
+    return found;
   }
 
   /// A fault must be more probable than the false ones that one half of the benchmark shows under what the
@@ -367,13 +399,15 @@ class FaultPosterior final : public AssessmentMethod {
     assessment.numbers = {{"p_healthy", probabilities.healthy},
                           {"p_mpm", probabilities.mpm},
                           {"p_ud", probabilities.ud},
-                          {"p_both", probabilities.both}};
+                          {"p_both", probabilities.both},
+                          {"p_other", probabilities.other}};
     for (std::size_t i = 0; i < probabilities.cvs.size(); ++i) {
       const auto cv = static_cast<Eigen::Index>(i);
       const FaultProbabilities::OfCv& of_cv = probabilities.cvs[i];
       assessment.numbers.push_back({"cv_p_mpm", of_cv.mpm, cv});
       assessment.numbers.push_back({"cv_p_ud", of_cv.ud, cv});
       assessment.numbers.push_back({"cv_p_both", of_cv.both, cv});
+      assessment.numbers.push_back({"cv_p_other", of_cv.other, cv});
     }
     if (!worst)
       return;
@@ -399,20 +433,40 @@ FaultProbabilities fault_probabilities(const FaultPriorSet& priors, const std::v
   return priors.one_fault ? of_one_fault(weights) : of_several_faults(weights);
 }
 
-FaultProbabilities with_input_disturbance(FaultProbabilities probabilities, double log_weight) {
+namespace {
+
+/// The weight of a further fault of the loop, of the source `of_loop` and `of_cv`.
+FaultProbabilities with_fault_of_mv(FaultProbabilities probabilities, double log_weight,
+                                    double FaultProbabilities::*of_loop,
+                                    double FaultProbabilities::OfCv::*of_cv) {
   const double share = std::exp(log_weight - log_sum(log_sum(0.0, probabilities.log_odds), log_weight));
-  probabilities.healthy *= 1.0 - share;
-  probabilities.mpm *= 1.0 - share;
-  probabilities.ud += share * (1.0 - probabilities.ud);
-  probabilities.both *= 1.0 - share;
+  for (double FaultProbabilities::*each :
+       {&FaultProbabilities::healthy, &FaultProbabilities::mpm, &FaultProbabilities::ud,
+        &FaultProbabilities::both, &FaultProbabilities::other})
+    probabilities.*each *= 1.0 - share;
+  probabilities.*of_loop += share;
   probabilities.log_odds = log_sum(probabilities.log_odds, log_weight);
   for (FaultProbabilities::OfCv& cv : probabilities.cvs) {
     const double fault = cv.fault();
-    cv.mpm *= 1.0 - share;
-    cv.both *= 1.0 - share;
-    cv.ud = fault - cv.mpm - cv.both;
+    for (double FaultProbabilities::OfCv::*each :
+         {&FaultProbabilities::OfCv::mpm, &FaultProbabilities::OfCv::ud, &FaultProbabilities::OfCv::both,
+          &FaultProbabilities::OfCv::other})
+      cv.*each *= 1.0 - share;
+    cv.*of_cv += share * fault;
   }
   return probabilities;
+}
+
+}  // namespace
+
+FaultProbabilities with_input_disturbance(FaultProbabilities probabilities, double log_weight) {
+  return with_fault_of_mv(std::move(probabilities), log_weight, &FaultProbabilities::ud,
+                          &FaultProbabilities::OfCv::ud);
+}
+
+FaultProbabilities with_sticky_valve(FaultProbabilities probabilities, double log_weight) {
+  return with_fault_of_mv(std::move(probabilities), log_weight, &FaultProbabilities::other,
+                          &FaultProbabilities::OfCv::other);
 }
 
 std::unique_ptr<AssessmentMethod> make_fault_posterior(const AssessmentContext& context, FaultPriors priors) {
@@ -424,12 +478,15 @@ std::vector<AssessmentNumberInfo> fault_posterior_numbers() {
           {"p_mpm", NumberScope::loop, "probability of mismatches alone"},
           {"p_ud", NumberScope::loop, "probability of disturbances alone"},
           {"p_both", NumberScope::loop, "probability of mismatches and disturbances"},
+          {"p_other", NumberScope::loop, "probability that a valve sticks"},
+          {"valve_mv", NumberScope::loop, "place of the MV whose valve that most likely is, from 0"},
           {"ud_gain", NumberScope::loop, "gain of G_d of the likeliest disturbance alone on the worst CV",
            "CV unit"},
           {"ud_time_constant", NumberScope::loop, "its time constant", "time unit of the plant"},
           {"cv_p_mpm", NumberScope::cv, "probability that the CV has a mismatch alone"},
           {"cv_p_ud", NumberScope::cv, "probability that it has a disturbance alone"},
-          {"cv_p_both", NumberScope::cv, "probability that it has both"}};
+          {"cv_p_both", NumberScope::cv, "probability that it has both"},
+          {"cv_p_other", NumberScope::cv, "probability that a valve that sticks shows in it"}};
 }
 
 }  // namespace mpm

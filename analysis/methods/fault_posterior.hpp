@@ -15,7 +15,8 @@ namespace mpm {
 enum class FaultHypotheses : std::int8_t {
   learnt = 0,  ///< all where errors of the model are learnt, otherwise the basic ones
   basic = 1,   ///< none beside them
-  all = 2,     ///< a mismatch that begins within the record and grows; a disturbance on an MV
+  all =
+      2,  ///< a mismatch that begins within the record and grows; a disturbance on an MV; a valve that sticks
 };
 
 /// Of the method `likelihood`, analysis/methods/likelihood_method.
@@ -35,12 +36,14 @@ struct FaultProbabilities {
   struct OfCv {
     double mpm, ud, both;  ///< P(this CV has it)
     double log_odds;       ///< log(P(some fault of this CV) / P(none))
+    double other = 0.0;    ///< as `mpm`, of neither
 
-    double fault() const { return mpm + ud + both; }
+    double fault() const { return mpm + ud + both + other; }
   };
-  double healthy, mpm, ud, both;  ///< of the loop; they sum to 1
+  double healthy, mpm, ud, both;  ///< of the loop; with `other` they sum to 1
   double log_odds;                ///< log((1 - healthy) / healthy)
   std::vector<OfCv> cvs;
+  double other = 0.0;
 };
 
 /// Priors and evidence of all CVs together. Of one fault: the weight of each is prior times evidence. Of
@@ -49,10 +52,11 @@ struct FaultProbabilities {
 /// prod (h_i + m_i) - prod h_i.
 FaultProbabilities fault_probabilities(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence);
 
-/// The same when a disturbance on an MV, which moves several CVs at once, may be the only fault instead; its
-/// weight against nothing is e^`log_weight`. The CVs in which it shows are those that show a fault by
-/// themselves.
+/// The same when a fault of an MV, which moves several CVs at once, may be the only one instead; its weight
+/// against nothing is e^`log_weight`. The CVs in which it shows are those that show a fault by themselves. A
+/// disturbance on the MV is a disturbance, a valve that sticks neither that nor a mismatch.
 FaultProbabilities with_input_disturbance(FaultProbabilities probabilities, double log_weight);
+FaultProbabilities with_sticky_valve(FaultProbabilities probabilities, double log_weight);
 
 /// The method `likelihood` and, with the priors of the study, the ceiling of what any method can do on it.
 std::unique_ptr<AssessmentMethod> make_fault_posterior(const AssessmentContext& context, FaultPriors priors);

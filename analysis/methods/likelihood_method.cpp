@@ -15,7 +15,7 @@ OptionKeys keys(LikelihoodOptions& options) {
           "hypotheses", options.hypotheses, {"learnt", "basic", "all"},
           "what may be wrong beside one parameter of a channel, a disturbance on a CV, and both: `\"all\"` "
           "asks of a flagged loop whether a mismatch that begins within the record and grows explains a CV, "
-          "and a disturbance on an MV all CVs at once. `\"learnt\"`: "
+          "and a disturbance on an MV or a valve that sticks all CVs at once. `\"learnt\"`: "
           "all where errors of the model are learnt, else the basic ones. With `priors = \"study\"` "
           "always the basic ones"),
       key::number(

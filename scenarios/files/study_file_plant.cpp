@@ -67,7 +67,7 @@ OptionKeys own_plant_keys(PlantModel& model) {
   const auto take = [&model, listed = std::make_shared<std::set<std::pair<Eigen::Index, Eigen::Index>>>()](
                         const TomlTable& table, Channel& at) {
     const auto [channel, step_error] = read_transfer_function(table);
-    refuse_unstable(table, channel);
+    refuse_unstable(table, channel, PolesAtOrigin::one);
     if (!listed->emplace(at.cv, at.input).second)
       table.refuse("", "a second channel from this input to this CV", "every channel once");
     model.G(at.cv, at.input) = channel;

@@ -30,7 +30,8 @@ OptionKeys joined(OptionKeys keys, const OptionKeys& others) {
 
 /// Another transfer function in the place of a channel.
 OptionKeys other_channel_keys() {
-  return transfer_function_keys("input", "poles with negative real parts");
+  return transfer_function_keys(
+      "input", "poles with negative real parts, and at most one at 0 where the model of the CV has one");
 }
 
 /// A changed parameter of a channel.
@@ -98,7 +99,8 @@ void take_mismatches(const TomlTable& table, const std::vector<Mismatch>& of_cha
   const Mismatch& first = of_channel.front();
   const TransferMatrix plant = table.located("", [&] { return with_mismatches(study.plant.G, of_channel); });
   const TransferFunction& channel = plant(first.cv, first.input);
-  refuse_unstable(table, channel);
+  refuse_unstable(table, channel,
+                  study.plant.G.is_integrating(first.cv) ? PolesAtOrigin::one : PolesAtOrigin::none);
   refuse_long_dead_time(table, "", channel.dead_time(), study.controller.sample_time);
   for (const Mismatch& other : mismatches)
     if (other.cv == first.cv && other.input == first.input)

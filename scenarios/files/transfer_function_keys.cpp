@@ -118,12 +118,12 @@ WrittenTransferFunction read_transfer_function(const TomlTable& table) {
       "", [&] { return TransferFunction(std::move(numerator), std::move(denominator), dead_time); })};
 }
 
-void refuse_unstable(const TomlTable& table, const TransferFunction& channel) {
+void refuse_unstable(const TomlTable& table, const TransferFunction& channel, PolesAtOrigin allowed) {
   if (channel.is_zero() || channel.order() == 0) {
     return;
   }
-  const Eigen::VectorXd others =
-      channel.denominator().head(channel.order() + (channel.is_integrating() ? 0 : 1));
+  const bool integrates = channel.is_integrating() && allowed == PolesAtOrigin::one;
+  const Eigen::VectorXd others = channel.denominator().head(channel.order() + (integrates ? 0 : 1));
   if (others.size() == 1)
     return;
   const double real_part = largest_real_part_of_roots(others);
@@ -132,10 +132,11 @@ void refuse_unstable(const TomlTable& table, const TransferFunction& channel) {
   }
   if (!(real_part < 0)) {
     table.refuse("denominator",
-                 channel.is_integrating() && real_part == 0
-                     ? "a second pole at 0"
-                     : fmt::format("a pole with real part {:.3g}", real_part),
-                 "poles with negative real parts, and at most one at 0");
+                 integrates && real_part == 0 ? "a second pole at 0"
+                                              : fmt::format("a pole with real part {:.3g}", real_part),
+                 allowed == PolesAtOrigin::one
+                     ? "poles with negative real parts, and at most one at 0"
+                     : "poles with negative real parts, since the model of this CV has no pole at 0");
   }
 }
 

@@ -23,9 +23,12 @@ struct WrittenTransferFunction {
 /// The transfer function in these keys of a table.
 WrittenTransferFunction read_transfer_function(const TomlTable& table);
 
-/// Refuses a channel of a plant that is not stable: the targets of (6.19) need static gains, y_sim = G0 u of
-/// (6.4) runs away for an unstable model, and a plant starts in a steady state.
-void refuse_unstable(const TomlTable& table, const TransferFunction& channel);
+/// Which poles a channel may have beside those with negative real parts.
+enum class PolesAtOrigin { none, one };
+
+/// Refuses a channel of a plant that is not stable: y_sim = G0 u of (6.4) runs away for an unstable model,
+/// and a plant starts in a steady state. One pole at 0 makes a CV that integrates.
+void refuse_unstable(const TomlTable& table, const TransferFunction& channel, PolesAtOrigin allowed);
 
 /// Refuses a model of a disturbance that grows by itself: poles may lie at 0, but not to the right of it.
 void refuse_growing(const TomlTable& table, const TransferFunction& Gd);

@@ -56,10 +56,13 @@ double residence_time(const Study& study, const TransferFunction& channel) {
   return std::max(std::abs(channel.residence_time()), study.controller.sample_time);
 }
 
+/// Of a channel without time constants it is the gain in their place.
 Mismatch mismatch_of(const Study& study, ChannelPlace place, MismatchParameter parameter,
                      RandomStream& stream) {
   const MismatchRanges& ranges = study.mismatch;
   const TransferFunction& channel = study.plant.G(place.first, place.second);
+  if (parameter == MismatchParameter::time_constant && !channel.has_time_constant())
+    parameter = MismatchParameter::gain;
   double value = -1.0;  // of a sign
   switch (parameter) {
     case MismatchParameter::gain:
@@ -97,7 +100,9 @@ std::vector<Mismatch> reaching(const Study& study, MismatchExtent extent, const 
     case MismatchExtent::channel:
       for (const MismatchParameter parameter :
            {MismatchParameter::gain, MismatchParameter::time_constant, MismatchParameter::dead_time})
-        mismatches.push_back(mismatch_of(study, {first.cv, first.input}, parameter, stream));
+        if (parameter != MismatchParameter::time_constant ||
+            study.plant.G(first.cv, first.input).has_time_constant())
+          mismatches.push_back(mismatch_of(study, {first.cv, first.input}, parameter, stream));
       return mismatches;
     case MismatchExtent::cv:
       for (const ChannelPlace& place : mv_channels(study))

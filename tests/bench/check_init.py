@@ -77,6 +77,7 @@ def main(program):
         assert "passed" in said and "no problem fell back to Ipopt" in said, said
 
         check_step_model(run, folder)
+        check_levels(run, folder)
 
         # Nothing is overwritten, and what is wrong is said by option.
         assert "a file that is there" in run("init", study, *TANK, code=2).stderr and study.read_text() == text
@@ -91,7 +92,7 @@ def main(program):
                 (["--cvs", 1, "--mvs", 1, "--gains", "one", "--time-constants", "1"], "--gains: found 'one'"),
                 (["--cvs", 1, "--mvs", 1, "--channel", "y1,u2=1/2 1"], "--channel: found 'u2'; allowed: u1"),
                 (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1"], "NUMERATOR / DENOMINATOR"),
-                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/1 0"], "integrat"),
+                (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/1 0 0"], "a second pole at 0"),
                 (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--range", "y1=1:0"], "low < high"),
                 (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--setpoint", "y1=0"], "a size > 0"),
                 (["--cvs", 1, "--mvs", 1, "--channel", "y1,u1=1/2 1", "--limits", "u1=3"], "LOW:HIGH"),
@@ -137,7 +138,7 @@ def check_step_model(run, folder):
     impacts = [json.loads(run("validate", path, "--json", "--experiments", 8).stdout)["impact"]
                for path in (study, by_steps)]
     assert impacts[0] == impacts[1], impacts
-    for content, message in (("time,y/u\n" + "".join(f"{k},{0.1 * k}\n" for k in range(1, 61)), "a CV that integrates"),
+    for content, message in (("time,y/u\n" + "".join(f"{k},{1 - math.exp(-k / 60)}\n" for k in range(1, 61)), "of a CV that integrates, its rate"),
                              ("time,y/u\n1,1\n2,2\n4,3\n", "model.csv:4: time: found 4"),
                              ("time,b\n1,2\n", "the column 'b'; allowed: CV/INPUT, or time"),
                              ("y/u,y/v\n1,2\n", "--step-interval: found nothing; allowed: the time between"),
@@ -145,6 +146,27 @@ def check_step_model(run, folder):
         model.write_text(content)
         said = run("init", folder / "other.toml", "--step-response", model, code=2).stderr
         assert message in said, said
+
+
+def check_levels(run, folder):
+    """Levels: a ramp of coefficients is a channel that integrates, the study runs, and identify finds it again."""
+    model = folder / "levels.csv"
+    model.write_text("time,level/inflow,level/outflow,pressure/inflow\n" + "".join(
+        f"{k},{max(0, 0.05 * (k - 2)):.4f},{-0.04 * k:.4f},{2 * (1 - math.exp(-k / 8)):.5f}\n" for k in range(1, 81)))
+    study = folder / "levels.toml"
+    said = run("init", study, "--step-response", model, "--range", "level=-1:1", "--limits", "inflow=-3:3",
+               "--limits", "outflow=-3:3").stderr
+    assert "level/inflow: integrates, rate 0.05, dead time 2, 0 poles; off by at most" in said, said
+    channels = {f"{c['cv']}/{c['input']}": c for c in tomllib.loads(study.read_text())["plant"]["channel"]}
+    assert abs(channels["level/outflow"]["rate_gain"] + 0.04) < 1e-4, channels
+    assert "impact" in run("validate", study, "--experiments", 8).stdout
+    found = json.loads(run("identify", study, "--json", "--samples", 80).stdout)["channels"]
+    rates = {c["cv"] + "/" + c["input"]: c.get("rate_gain") for c in found}
+    assert abs(rates["level/inflow"] - 0.05) < 1e-3 and rates["pressure/inflow"] is None, rates
+    out = folder / "levels.h5"
+    run("run", study, "-o", out, "--set", "experiments.mpm=2", "--set", "experiments.ud=2", "--set",
+        "experiments.mpm_ud=0", "--set", "experiments.healthy=2")
+    assert out.exists()
 
 
 def asked(program, study, answers):

@@ -101,8 +101,32 @@ TEST_CASE("coefficients that have not settled are refused", "[step-test]") {
   CHECK_THROWS_WITH(fit_step_coefficients(response_of(lag, 2.0, 40), 2.0),
                     Contains("goes to 2; allowed: coefficients until the response has settled"));
   CHECK_NOTHROW(fit_step_coefficients(response_of(lag, 2.0, 60), 2.0));
-  CHECK_THROWS_WITH(fit_step_coefficients(Eigen::VectorXd::LinSpaced(60, 0.1, 6.0), 1.0),
-                    Contains("a CV that integrates has no such model"));
+  const TransferFunction slow_flow(Eigen::VectorXd::Constant(1, 0.5), Eigen::Vector3d(40.0, 1.0, 0.0));
+  CHECK_THROWS_WITH(fit_step_coefficients(response_of(slow_flow, 2.0, 40), 2.0),
+                    Contains("at its end, where the fitted transfer function goes to 0.5"));
+}
+
+TEST_CASE("a ramp is a channel that integrates", "[step-test]") {
+  const StepResponseFit pure = fit_step_coefficients(Eigen::VectorXd::LinSpaced(60, 0.1, 6.0), 2.0);
+  REQUIRE(pure.channel.is_integrating());
+  CHECK(pure.channel.order() == 1);
+  CHECK(pure.channel.rate_gain() == Approx(0.05).epsilon(1e-6));
+  CHECK(pure.largest_error < 1e-6);
+  for (const double dead_time : {0.0, 3.0, 7.3}) {
+    const TransferFunction flow(Eigen::VectorXd::Constant(1, -0.3), Eigen::Vector3d(6.0, 1.0, 0.0),
+                                dead_time);
+    const StepResponseFit fit = fit_step_coefficients(response_of(flow, 2.0, 60), 2.0);
+    REQUIRE(fit.channel.is_integrating());
+    CHECK(fit.channel.rate_gain() == Approx(-0.3).epsilon(1e-5));
+    CHECK(fit.channel.residence_time() == Approx(6.0).epsilon(1e-4));
+    CHECK(fit.channel.dead_time() == Approx(dead_time).margin(1e-3));
+    CHECK(difference(flow, fit.channel, 2.0, 60) < 1e-6);
+  }
+  // A slow lag is none, however little of it the response shows.
+  const StepResponseFit slow =
+      fit_step_response(response_of(TransferFunction::first_order(2.0, 100.0), 2.0, 60), 2.0, 0.0);
+  CHECK_FALSE(slow.channel.is_integrating());
+  CHECK(slow.channel.residence_time() == Approx(100.0).epsilon(1e-5));
 }
 
 TEST_CASE("bad step responses are refused", "[step-test]") {

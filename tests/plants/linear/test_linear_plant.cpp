@@ -129,17 +129,52 @@ TEST_CASE("from a steady state the plant moves by its response from rest", "[lin
   }
 }
 
-TEST_CASE("an integrating plant can be reset at zero input only", "[linear_plant]") {
+TEST_CASE("an integrating output begins at its steady rate, and rests where the rates cancel out",
+          "[linear_plant]") {
   LinearPlant plant(integrating_matrix(), 2);
   for (int k = 0; k < 10; ++k) {
     plant.advance(Eigen::Vector3d(1, 1, 1));
   }
-  CHECK_THROWS_AS(plant.reset(Eigen::Vector3d(1, 0.1, 1)), NoSteadyState);
-  CHECK_THROWS_WITH(plant.reset(Eigen::Vector3d(1, 0.1, 1)), Catch::Contains("(1, 1)"));
-  plant.reset(Eigen::Vector3d(3, 0, 5));
-  for (int k = 0; k < 10; ++k) {
-    CHECK((plant.output() - Eigen::Vector2d(6, -5)).norm() < kRounding);
-    plant.advance(Eigen::Vector3d(3, 0, 5));
+  const Eigen::Vector3d u(3, 0.1, 5);
+  plant.reset(u);
+  for (int k = 0; k < 10; ++k) {  // 0.1/s: 0.1 a time unit, 0.2 a sample
+    CHECK((plant.output() - Eigen::Vector2d(6, -5 + 0.2 * k)).norm() < kRounding);
+    plant.advance(u);
+  }
+  // Through a fractional dead time, a zero and a direct effect.
+  TransferMatrix G(1, 2);
+  G(0, 0) = TransferFunction(polynomial({-2, 1, 0.3}), polynomial({4, 1, 0}), 3.7);
+  G(0, 1) = TransferFunction(polynomial({-0.6}), polynomial({7, 8, 1, 0}), 0.4);
+  LinearPlant balanced(G, 2);
+  balanced.reset(Eigen::Vector2d(4, 2));  // rates 0.3 * 4 and -0.6 * 2
+  for (int k = 0; k < 50; ++k) {
+    CHECK(std::abs(balanced.output()(0)) < kRounding);
+    balanced.advance(Eigen::Vector2d(4, 2));
+  }
+}
+
+TEST_CASE("behind a washout an output is the filter of its samples, whatever its channels",
+          "[linear_plant]") {
+  TransferMatrix G(1, 4);
+  G(0, 0) = TransferFunction(polynomial({0.5}), polynomial({1, 0}), 3.7);          // a flow, late
+  G(0, 1) = TransferFunction(polynomial({-2, 1, 0.3}), polynomial({4, 1, 0}), 2);  // with a direct effect
+  G(0, 2) = TransferFunction::first_order(2, 5, 1.3);                              // no integrator
+  G(0, 3) = TransferFunction(polynomial({1}), polynomial({6, 5, 1, 0}));
+  constexpr double kWashout = 30, kSample = 2;
+  TransferMatrix washed(1, 4);
+  for (Eigen::Index input = 0; input < 4; ++input) {
+    washed(0, input) = G(0, input).behind_washout(kWashout);
+    CHECK_FALSE(washed(0, input).is_integrating());
+    CHECK(washed(0, input).without_washout() == G(0, input));
+  }
+  const Eigen::MatrixXd inputs = rough_input(4, 300);
+  const Eigen::RowVectorXd y = simulate(G, kSample, inputs);
+  const Eigen::RowVectorXd seen = simulate(washed, kSample, inputs);
+  const double a = std::exp(-kSample / kWashout);
+  double low_pass = 0;
+  for (Eigen::Index k = 0; k < y.size(); ++k) {
+    CHECK(std::abs(seen(k) - (y(k) - low_pass)) < 1e-10);
+    low_pass = a * low_pass + (1 - a) * y(k);
   }
 }
 

@@ -68,6 +68,40 @@ TEST_CASE("an integrating channel has no static gain", "[transfer_function]") {
   const TransferFunction G(polynomial({2}), polynomial({3, 1, 0}));
   CHECK(G.is_integrating());
   CHECK_THROWS_AS(G.static_gain(), InputError);
+  CHECK(G.rate_gain() == 2);
+  CHECK(TransferFunction::first_order(2, 5).rate_gain() == 0);
+}
+
+TEST_CASE("the lag of an integrating channel changes without its rate", "[transfer_function]") {
+  const TransferFunction G(polynomial({2}), polynomial({3, 1, 0}), 4);
+  CHECK(G.residence_time() == 3);
+  CHECK(G.has_time_constant());
+  const TransferFunction slow = G.with_time_scaled(2.5);
+  CHECK(slow.rate_gain() == 2);
+  CHECK(slow.residence_time() == 7.5);
+  CHECK(slow.dead_time() == 4);
+  const TransferFunction pure(polynomial({2}), polynomial({1, 0}));
+  CHECK_FALSE(pure.has_time_constant());
+  for (const Complex s : kPoints)
+    CHECK(std::abs(pure.with_time_scaled(2.5)(s) - pure(s)) < 1e-14);
+}
+
+TEST_CASE("a washout takes the pole at the origin, and changes of the channel pass through it",
+          "[transfer_function]") {
+  const TransferFunction G(polynomial({2}), polynomial({3, 1, 0}), 4);
+  const TransferFunction washed = G.behind_washout(20);
+  CHECK(washed.washout() == 20);
+  CHECK(washed.static_gain() == Approx(2 * 20));
+  CHECK(washed.residence_time() == 3);
+  for (const Complex s : kPoints)
+    CHECK(std::abs(washed(s) - G(s) * 20.0 * s / (20.0 * s + 1.0)) < 1e-13);
+  CHECK(washed.with_gain_scaled(1.3) == G.with_gain_scaled(1.3).behind_washout(20));
+  CHECK(washed.with_time_scaled(0.7) == G.with_time_scaled(0.7).behind_washout(20));
+  CHECK(washed.with_dead_time_shifted(-1) == G.with_dead_time_shifted(-1).behind_washout(20));
+  const TransferFunction lag = TransferFunction::first_order(1, 2);
+  CHECK(in_series(washed, lag) == in_series(G, lag).behind_washout(20));
+  CHECK_FALSE(washed == G);
+  CHECK_THROWS_AS(G.behind_washout(0), InputError);
 }
 
 TEST_CASE("mismatch functions change one property and nothing else", "[transfer_function]") {
@@ -75,12 +109,13 @@ TEST_CASE("mismatch functions change one property and nothing else", "[transfer_
     const double theta = G.dead_time();
     const TransferFunction gain = G.with_gain_scaled(-1.7);
     const TransferFunction slow = G.with_time_scaled(2.5);
+    const double rate = G.is_integrating() ? 2.5 : 1.0;  // whose gain stays
     const TransferFunction late = G.with_dead_time_shifted(0.75);
     for (const Complex s : kPoints) {
       const Complex rational_at_scaled = G(2.5 * s) * std::exp(2.5 * s * theta);
       // Relative to |e^{...}|, up to e^{4} here: a few roundings.
       CHECK(std::abs(gain(s) - -1.7 * G(s)) < 1e-12);
-      CHECK(std::abs(slow(s) - rational_at_scaled * std::exp(-s * theta)) < 1e-12);
+      CHECK(std::abs(slow(s) - rate * rational_at_scaled * std::exp(-s * theta)) < 1e-12);
       CHECK(std::abs(late(s) - G(s) * std::exp(-0.75 * s)) < 1e-12);
     }
     CHECK(slow.dead_time() == theta);

@@ -169,6 +169,56 @@ TEST_CASE("Ogunnaike and Ray's column has the printed gains, and its second-orde
   CHECK(G(2, 1).dead_time() == 9.4);
 }
 
+TEST_CASE("the evaporator is the linearisation of the book's equations", "[catalogue]") {
+  // Newell and Lee's equations at their operating point, differentiated numerically.
+  using State = Eigen::Vector3d;  // X2, P2, L2
+  const auto rates = [](const State& x, const Eigen::VectorXd& in) -> State {
+    const double X2 = x(0), P2 = x(1), F2 = in(0), P100 = in(1), F200 = in(2), F1 = in(3), X1 = in(4),
+                 T1 = in(5);
+    const double T2 = 0.5616 * P2 + 0.3126 * X2 + 48.43, T3 = 0.507 * P2 + 55.0, T100 = 0.1538 * P100 + 90.0;
+    const double Q100 = 0.16 * (F1 + 50.0) * (T100 - T2);
+    const double F4 = (Q100 - F1 * 0.07 * (T2 - T1)) / 38.5;
+    const double F5 = 6.84 * (T3 - 25.0) / (1.0 + 6.84 / (2.0 * 0.07 * F200)) / 38.5;
+    return {(F1 * X1 - F2 * X2) / 20.0, (F4 - F5) / 4.0, (F1 - F4 - F2) / 20.0};
+  };
+  const State x0(25.0, 50.5, 1.0);
+  const Eigen::VectorXd in0 = (Eigen::VectorXd(6) << 2.0, 194.67906, 208.05238, 10.0, 5.0, 40.0).finished();
+  CHECK(rates(x0, in0).norm() < 1e-6);
+  constexpr double h = 1e-4;
+  Eigen::Matrix3d A;
+  Eigen::MatrixXd B(3, 6);
+  for (Eigen::Index i = 0; i < 3; ++i)
+    A.col(i) = (rates(x0 + h * State::Unit(i), in0) - rates(x0 - h * State::Unit(i), in0)) / (2.0 * h);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(6, i);
+    B.col(i) = (rates(x0, in0 + step) - rates(x0, in0 - step)) / (2.0 * h);
+  }
+  const PlantModel plant = benchmark_plant("evaporator");
+  const std::complex<double> s(0.02, 0.15);
+  const Eigen::MatrixXcd states =
+      (s * Eigen::Matrix3cd::Identity() - A.cast<std::complex<double>>()).inverse() *
+      B.cast<std::complex<double>>();
+  const Eigen::MatrixXcd G = plant.G.frequency_response(s);
+  // The printed numbers have seven digits.
+  CHECK((G.row(0) - states.row(2)).norm() < 1e-6 * states.row(2).norm());
+  CHECK((G.row(1) - states.row(0)).norm() < 1e-6 * states.row(0).norm());
+  CHECK((G.row(2) - states.row(1)).norm() < 1e-6 * states.row(1).norm());
+  CHECK(plant.G.is_integrating(0));
+  CHECK_FALSE(plant.G.is_integrating(1));
+}
+
+TEST_CASE("the levels of the column balance its flows", "[catalogue]") {
+  const PlantModel plant = benchmark_plant("column-levels");
+  const Eigen::MatrixXd gain = plant.G.steady_gain();
+  // Whatever is fed leaves as distillate or bottoms: the sum of both levels knows no reflux and no boilup.
+  CHECK((gain.row(2) + gain.row(3))
+            .isApprox(Eigen::RowVectorXd((Eigen::RowVectorXd(5) << 0, 0, -1, -1, 1).finished())));
+  CHECK(gain(2, 0) == -1);
+  CHECK(gain(2, 1) == 1);
+  // By distillation_column(), in hundredths.
+  CHECK((100.0 * gain.topLeftCorner(2, 2)).isApprox(benchmark_plant("distillation-column").G.static_gain()));
+}
+
 TEST_CASE("the made-up unit has channels along its diagonal only, each by its formula", "[catalogue]") {
   const PlantModel plant = benchmark_plant("banded-20x8");
   REQUIRE(plant.cvs.size() == 20);

@@ -272,13 +272,25 @@ std::string stepped_study_text() {
                   "numerator = [1]\ndenominator = [2, 0]\ndead_time = 4", lag + "\nstep_interval = 1");
 }
 
+/// The level integrates, in the model, a scenario and a disturbance.
+std::string level_study_text() {
+  std::string text = replaced(scenario_study_text(), "gain = 2\ntime_constant = 10\ndead_time = 3",
+                              "rate_gain = 2\ntime_constant = 10\ndead_time = 3");
+  text =
+      replaced(text, "slack_weight = 8\nsoft = [0, 1]", "slack_weight = 8\nsoft = [0, 1]\nbias_ramp = 0.2");
+  text = replaced(text, "numerator = [-1], denominator = [3, 1], dead_time = 0.1",
+                  "rate_gain = -1, dead_time = 0.1");
+  return replaced(text, "numerator = [1]\ndenominator = [2, 0]\ndead_time = 4",
+                  "rate_gain = 0.5\ndead_time = 4");
+}
+
 /// Studies of the tests, among them those with the keys that no shipped one has.
 std::vector<Study> of_tests() {
   std::vector<Study> studies;
   for (const std::string& text :
        {small_study(), random_study_text(), scenario_study_text(), nonlinear_study_text(), random_tank_text(),
         fmu_study_text(), program_study_text(), controller_program_text(), unexcited_study_text(),
-        world_study_text(), world_tank_text(), tuned_study_text(), stepped_study_text()})
+        world_study_text(), world_tank_text(), tuned_study_text(), stepped_study_text(), level_study_text()})
     studies.push_back(parse_study(text, "s.toml"));
   return studies;
 }

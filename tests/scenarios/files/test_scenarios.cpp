@@ -167,7 +167,7 @@ TEST_CASE("mismatches that are none are refused", "[scenario]") {
   CHECK(
       refused("mismatch = [{cv = 'level', input = 'hot', numerator = [1], denominator = [1, 0]}]\n") ==
       "scenario[0].mismatch[0].denominator: found a pole with real part 0; allowed: poles with negative real "
-      "parts");
+      "parts, since the model of this CV has no pole at 0");
   CHECK(refused("mismatch = [{cv = 'level', input = 'hot', gain_factor = 2}, {cv = 'level', input = 'hot', "
                 "dead_time_shift = 1}]\n") ==
         "scenario[0].mismatch[1]: found a second mismatch of this channel; allowed: every channel once");

@@ -46,13 +46,14 @@ TEST_CASE("an unknown plant of the catalogue is refused with the known ones", "[
   CHECK(refusal("[study]\nname = 's'\ntitle = 's'\nseed = 1\n[plant]\ncatalogue = 'shell-7x4'\n") ==
         "s.toml:6: plant.catalogue: found 'shell-7x4' (nearest: 'shell-7x3'); allowed: shell-7x3, shell-3x3, "
         "quadruple-tank, quadruple-tank-table-3.1, quadruple-tank-flows, "
-        "quadruple-tank-flows-table-3.1, distillation-column, siso, ogunnaike-ray, banded-20x8, "
+        "quadruple-tank-flows-table-3.1, distillation-column, siso, ogunnaike-ray, evaporator, "
+        "column-levels, banded-20x8, "
         "coker-12x7");
 }
 
 TEST_CASE("the channels of a plant are checked", "[study_file]") {
   const std::string two_ways =
-      "either gain and time_constant, or numerator and denominator, or step and step_interval";
+      "either gain and time_constant, or rate_gain, or numerator and denominator, or step and step_interval";
   check_refusals({
       {"cv = \"heat\"", "cv = \"heart\"", "cv = \"heart\"",
        "plant.channel[1].cv: found 'heart' (nearest: 'heat'); allowed: level, heat"},
@@ -87,12 +88,14 @@ TEST_CASE("the channels of a plant are checked", "[study_file]") {
       {"[-1.5]", "[1, 0, 0, 0]", "[[plant.channel]]\ncv = \"heat\"",
        "plant.channel[1]: numerator degree of a transfer function: found 3; allowed: at most the denominator "
        "degree 2"},
-      {"[20.0, 12.0, 1.0]", "[20, 12, 0]", "denominator",
-       "plant.channel[1].denominator: found a pole with real part 0; allowed: poles with negative real "
-       "parts"},
+      {"[20.0, 12.0, 1.0]", "[20, 0, 0]", "denominator",
+       "plant.channel[1].denominator: found a second pole at 0; allowed: poles with negative real parts, and "
+       "at most one at 0"},
+      {"numerator = [-1.5]\ndenominator = [20.0, 12.0, 1.0]", "gain = 1\nrate_gain = 1", "gain = 1",
+       "plant.channel[1].gain: found a static gain beside rate_gain; allowed: one of them"},
       {"[20.0, 12.0, 1.0]", "[2, 1, -1]", "denominator",
        "plant.channel[1].denominator: found a pole with real part 0.5; allowed: poles with negative real "
-       "parts"},
+       "parts, and at most one at 0"},
       {"[20.0, 12.0, 1.0]", "[1e-300, 1e300, 1]", "denominator",
        "plant.channel[1].denominator: found coefficients whose ratios overflow; allowed: coefficients of "
        "similar size"},
