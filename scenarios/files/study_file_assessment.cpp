@@ -36,11 +36,16 @@ OptionKeys assessment_keys(AssessmentOptions& options) {
       key::number(
           "bias", options.bias, NumberRule::at_least(0),
           "prior standard deviation of a constant error of each CV, in standard deviations of its noise"),
-      key::number(
-          "washout", options.washout, NumberRule::at_least(0),
-          "of a CV that integrates: time constant of the high-pass filter through which methods see it and "
-          "its model, since a simulation of a level drifts without end. 0: the prediction horizon",
-          "time")};
+      key::option(
+          "washout", "number",
+          "of a CV that integrates: time constant of the high-pass filter through which methods see it "
+          "and its model, since a simulation of a level drifts without end",
+          "time")
+          .otherwise("the prediction horizon")
+          .allow("> 0")
+          .read([&options](const TomlTable& table, const std::string& key) {
+            options.washout = read_number(table, key, NumberRule::positive());
+          })};
   for (const MethodOptionTable& table : method_option_tables())
     keys.push_back(key::table(
         table.name, [&options, of_method = table.keys] { return of_method(options); }, table.meaning));

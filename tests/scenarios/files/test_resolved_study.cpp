@@ -278,6 +278,7 @@ std::string level_study_text() {
                               "rate_gain = 2\ntime_constant = 10\ndead_time = 3");
   text =
       replaced(text, "slack_weight = 8\nsoft = [0, 1]", "slack_weight = 8\nsoft = [0, 1]\nbias_ramp = 0.2");
+  text += "\n[assessment]\nwashout = 30\n";
   text = replaced(text, "numerator = [-1], denominator = [3, 1], dead_time = 0.1",
                   "rate_gain = -1, dead_time = 0.1");
   return replaced(text, "numerator = [1]\ndenominator = [2, 0]\ndead_time = 4",
@@ -364,7 +365,8 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
   const Keys written = keys_of(parse_study(small_study(), "small.toml"));
   const Keys without_value{{"sensitivity", "active_cvs"}, {"sensitivity", "fixed_mvs"},
                            {"mismatch", "impact"},        {"mismatch", "plant_parameter"},
-                           {"disturbance", "impact"},     {"other", "impact"}};
+                           {"disturbance", "impact"},     {"other", "impact"},
+                           {"assessment", "washout"}};
   for (const char* name : {"experiments",
                            "mismatch",
                            "mismatch.parameter_weights",

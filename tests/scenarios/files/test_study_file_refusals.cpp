@@ -71,7 +71,7 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
        "simulation.step[0]: found unknown key 'mv' (nearest: 'md'); allowed: md, cv, sample, level"},
       {"dead_time = 2", "dead_tim = 2", "dead_tim = 2",
        "plant.channel[1]: found unknown key 'dead_tim' (nearest: 'dead_time'); allowed: cv, input, gain, "
-       "time_constant, numerator, denominator, dead_time, step, step_interval"},
+       "rate_gain, time_constant, numerator, denominator, dead_time, step, step_interval"},
       {"[controller.mv.cold]", "[controller.mv.warm]", "[controller.mv.warm]",
        "controller.mv: found unknown key 'warm'; allowed: hot, cold"},
   });
