@@ -41,6 +41,10 @@ struct AssessedLoop {
   Eigen::MatrixXd y, u, u_target, d, y_sim, y_set;
   /// Further signals of the historian that are not in the model, one row each; 0 x 0 without any.
   Eigen::MatrixXd candidates = {};
+  /// Of each CV what the record of a plant cannot tell of y - y_sim, c x N: a constant, and what its model
+  /// had in memory where it begins; at right angles, with a mean square of 1. y_sim has it by least squares.
+  /// Empty: nothing.
+  std::vector<Eigen::MatrixXd> untold = {};
   const AssessedLoop* whole = nullptr;  ///< the record that this is a window of; null: it is whole
   Eigen::Index first = 0;               ///< sample of it at which the window begins
 

@@ -94,7 +94,7 @@ class RecordLikelihood {
   RecordLikelihood(const ModelErrors& model, const CvPrior& prior, const ScaleLikelihood& likelihood,
                    bool rest, const std::vector<MismatchResponses>& responses, const Eigen::RowVectorXd& e,
                    const Eigen::Ref<const Eigen::MatrixXd>& u,
-                   const Eigen::Ref<const Eigen::VectorXd>& initial_u)
+                   const Eigen::Ref<const Eigen::VectorXd>& initial_u, Eigen::MatrixXd slopes)
       : model_(model),
         prior_(prior),
         base_(model.noise()),
@@ -104,7 +104,7 @@ class RecordLikelihood {
         e_(e),
         u_(u),
         initial_u_(initial_u),
-        slopes_(model.slopes(u, initial_u)),
+        slopes_(std::move(slopes)),
         directions_(model.directions(slopes_)) {
     simulate();
   }
@@ -406,19 +406,30 @@ CvLikelihood::CvLikelihood(ModelErrors model, double sample_time, const CvPrior&
 
 CvEvidence CvLikelihood::of(const Eigen::Ref<const Eigen::RowVectorXd>& e,
                             const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                            const Eigen::Ref<const Eigen::VectorXd>& initial) const {
+                            const Eigen::Ref<const Eigen::VectorXd>& initial,
+                            const Eigen::Ref<const Eigen::MatrixXd>& untold) const {
   const BaseNoise& base = model_.noise();
   const Eigen::RowVectorXd scaled = (e - model_.correction(inputs, initial)) / base.deviation;
   const auto samples = static_cast<double>((!scaled.array().isNaN()).count());
   return RecordLikelihood(model_, prior_, {freedom_, samples}, starts_from_rest_, responses_, scaled, inputs,
-                          initial)
+                          initial, slopes(inputs, initial, untold))
       .evidence();
+}
+
+Eigen::MatrixXd CvLikelihood::slopes(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                     const Eigen::Ref<const Eigen::VectorXd>& initial,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& untold) const {
+  const Eigen::MatrixXd of_errors = model_.slopes(inputs, initial);
+  Eigen::MatrixXd all(of_errors.rows() + untold.rows(), inputs.cols());
+  all << of_errors, kUntold * model_.noise().deviation * untold;
+  return all;
 }
 
 Eigen::MatrixXd CvLikelihood::healthy_series(const Eigen::Ref<const Eigen::RowVectorXd>& e,
                                              const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                             const Eigen::Ref<const Eigen::VectorXd>& initial) const {
-  const Eigen::MatrixXd directions = model_.directions(model_.slopes(inputs, initial));
+                                             const Eigen::Ref<const Eigen::VectorXd>& initial,
+                                             const Eigen::Ref<const Eigen::MatrixXd>& untold) const {
+  const Eigen::MatrixXd directions = model_.directions(slopes(inputs, initial, untold));
   Eigen::MatrixXd series(1 + directions.rows(), e.size());
   series << (e - model_.correction(inputs, initial)) / model_.noise().deviation, directions;
   return series;

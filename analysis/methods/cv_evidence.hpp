@@ -48,16 +48,19 @@ class CvLikelihood {
                bool starts_from_rest);
 
   /// `e` (N, CV unit) = y - y_sim of the nominal model: NaN where there is no sample; `inputs` (nu + nd x N)
-  /// with `initial` (nu + nd) before it.
+  /// with `initial` (nu + nd) before it. The rows of `untold` (c x N), AssessedLoop::untold, are in e with
+  /// coefficients of any size, kUntold standard deviations of the noise.
   CvEvidence of(const Eigen::Ref<const Eigen::RowVectorXd>& e,
                 const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                const Eigen::Ref<const Eigen::VectorXd>& initial) const;
+                const Eigen::Ref<const Eigen::VectorXd>& initial,
+                const Eigen::Ref<const Eigen::MatrixXd>& untold) const;
 
   /// What a healthy loop has beside noise, in its standard deviations: e less the correction of the model,
   /// and below it ModelErrors::directions(), (1 + q) x N.
   Eigen::MatrixXd healthy_series(const Eigen::Ref<const Eigen::RowVectorXd>& e,
                                  const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                 const Eigen::Ref<const Eigen::VectorXd>& initial) const;
+                                 const Eigen::Ref<const Eigen::VectorXd>& initial,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& untold) const;
 
   /// Adds to the evidence of mismatches that of growing_mismatches(), which are so probable among them as
   /// `share` against those of the whole record. `series` is healthy_series().
@@ -67,6 +70,13 @@ class CvLikelihood {
                    CvEvidence& evidence) const;
 
  private:
+  static constexpr double kUntold = 30.0;  ///< y_sim has them already: what is left of them is small
+
+  /// ModelErrors::slopes(), and below them what is untold.
+  Eigen::MatrixXd slopes(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                         const Eigen::Ref<const Eigen::VectorXd>& initial,
+                         const Eigen::Ref<const Eigen::MatrixXd>& untold) const;
+
   ModelErrors model_;
   const CvPrior& prior_;
   double freedom_;

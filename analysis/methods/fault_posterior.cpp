@@ -223,13 +223,14 @@ class FaultPosterior final : public AssessmentMethod {
       e.tail(loop.samples()) = without_outliers(loop.y.row(cv) - loop.y_sim.row(cv));
       if (e.array().isNaN().all())
         return Assessment::failed("a CV has no sample");
-      evidence.push_back(likelihoods_[i]->of(e, inputs.leftCols(e.size()), initial_));
+      evidence.push_back(
+          likelihoods_[i]->of(e, inputs.leftCols(e.size()), initial_, untold_of(loop, cv, e.size())));
       errors.push_back(std::move(e));
     }
     FaultProbabilities probabilities = fault_probabilities(priors_, evidence);
     if (!asks_more_ || !is_flagged(probabilities))
       return answer(probabilities, fault_probabilities(for_scores_, evidence), evidence);
-    const std::vector<Eigen::MatrixXd> series = healthy_series(errors, inputs);
+    const std::vector<Eigen::MatrixXd> series = healthy_series(loop, errors, inputs);
     const double of_input = input_weight(evidence, series);
     const StuckMv valve = stuck_mv(evidence, series, inputs);
     for (std::size_t i = 0; i < likelihoods_.size(); ++i)
@@ -254,13 +255,22 @@ class FaultPosterior final : public AssessmentMethod {
     return cv.fault() > kSuspect && cv.ud < 1.0 - kSuspect;
   }
 
+  /// Up to the end of the window; 0 x N of a record of the bench.
+  static Eigen::MatrixXd untold_of(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index samples) {
+    const std::vector<Eigen::MatrixXd>& untold = loop.from_start().untold;
+    return untold.empty() ? Eigen::MatrixXd(0, samples)
+                          : Eigen::MatrixXd(untold[static_cast<std::size_t>(cv)].leftCols(samples));
+  }
+
   /// CvLikelihood::healthy_series() of each CV.
-  std::vector<Eigen::MatrixXd> healthy_series(const std::vector<Eigen::RowVectorXd>& errors,
+  std::vector<Eigen::MatrixXd> healthy_series(const AssessedLoop& loop,
+                                              const std::vector<Eigen::RowVectorXd>& errors,
                                               const Eigen::MatrixXd& inputs) const {
     std::vector<Eigen::MatrixXd> series;
     for (std::size_t i = 0; i < errors.size(); ++i)
       series.push_back(
-          likelihoods_[i]->healthy_series(errors[i], inputs.leftCols(errors[i].size()), initial_));
+          likelihoods_[i]->healthy_series(errors[i], inputs.leftCols(errors[i].size()), initial_,
+                                          untold_of(loop, static_cast<Eigen::Index>(i), errors[i].size())));
     return series;
   }
 
@@ -325,7 +335,10 @@ class FaultPosterior final : public AssessmentMethod {
           continue;
         const CvLikelihood likelihood(*half, study_.controller.sample_time, prior, priors_.noise_freedom,
                                       priors_.starts_from_rest);
-        false_odds = std::max(false_odds, weights_of_cv(prior, likelihood.of(other, inputs, initial_)).all());
+        false_odds = std::max(
+            false_odds,
+            weights_of_cv(prior, likelihood.of(other, inputs, initial_, Eigen::MatrixXd(0, other.size())))
+                .all());
       }
       const double left = std::exp(-kHalves * false_odds);
       prior.mpm *= left;

@@ -250,9 +250,10 @@ Eigen::MatrixXd ModelErrors::slopes(Eigen::MatrixXd without, const Mismatch& mis
   for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(errors_.size()); ++i)
     if (const ChannelError& error = errors_[static_cast<std::size_t>(i)]; error.input == mismatch.input)
       without.row(i) = slope_of(changed, error).response(inputs, initial);
-  if (wander_ > 0.0)
-    without.bottomRows(without.rows() - static_cast<Eigen::Index>(errors_.size())) =
-        wandering(changed, inputs, initial);
+  if (wander_ > 0.0) {
+    const Eigen::MatrixXd wanders = wandering(changed, inputs, initial);
+    without.middleRows(static_cast<Eigen::Index>(errors_.size()), wanders.rows()) = wanders;
+  }
   return without;
 }
 

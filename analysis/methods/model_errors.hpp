@@ -82,12 +82,14 @@ class ModelErrors {
   /// D S of a record and below it wander W, in CV units.
   Eigen::MatrixXd slopes(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                          const Eigen::Ref<const Eigen::VectorXd>& initial) const;
-  /// The same where a channel has this mismatch, from the slopes without it.
+  /// The same where a channel has this mismatch, from the slopes without it. Further rows below stay as they
+  /// are.
   Eigen::MatrixXd slopes(Eigen::MatrixXd without, const Mismatch& mismatch,
                          const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                          const Eigen::Ref<const Eigen::VectorXd>& initial) const;
   /// What is still unknown, q x N in standard deviations of the noise: the error of the corrected model is
-  /// Z' z + n, z ~ N(0, I). Directions that no record can tell from none are left out.
+  /// Z' z + n, z ~ N(0, I). Further rows of `slopes`, in CV units, are unknown as well. Directions that no
+  /// record can tell from none are left out.
   Eigen::MatrixXd directions(const Eigen::Ref<const Eigen::MatrixXd>& slopes) const;
 
  private:

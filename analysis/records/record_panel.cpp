@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <Eigen/QR>
+#include <Eigen/SVD>
 
 #include "analysis/methods/method_table.hpp"
 #include "analysis/records/untold_part.hpp"
@@ -39,6 +40,27 @@ Eigen::VectorXd untold(const Eigen::VectorXd& e, const Eigen::MatrixXd& columns)
   const Eigen::VectorXd right = is_there.select(e.array(), 0.0);
   const Eigen::MatrixXd left = columns.array().colwise() * is_there.cast<double>();
   return columns * left.completeOrthogonalDecomposition().solve(right);
+}
+
+/// Columns that span what these do, over the samples that are there at right angles and with a mean square of
+/// 1: two memories that are nearly alike differ in what is faint in each.
+Eigen::MatrixXd alike(const Eigen::VectorXd& e, const Eigen::MatrixXd& columns) {
+  constexpr double kSame = 1e-8;  // singular values, over the largest
+  const auto is_there = !e.array().isNaN();
+  const Eigen::MatrixXd there = columns.array().colwise() * is_there.cast<double>();
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(there, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::Index rank = (svd.singularValues().array() > kSame * svd.singularValues()(0)).count();
+  const double size = std::sqrt(static_cast<double>(is_there.count()));
+  return columns * svd.matrixV().leftCols(rank) *
+         (size * svd.singularValues().head(rank).cwiseInverse()).asDiagonal();
+}
+
+/// The number of samples before the first one that is there.
+Eigen::Index samples_before(const Eigen::VectorXd& e) {
+  Eigen::Index k = 0;
+  while (k < e.size() && std::isnan(e(k)))
+    ++k;
+  return k;
 }
 
 /// The loop with the gaps of its CVs closed, from the first sample that is judged on.
@@ -99,7 +121,13 @@ AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record) {
   const std::vector<Eigen::Index> starts = starts_after_unknown(loop.y, frame.settling);
   for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
     const Eigen::VectorXd e = (loop.y.row(cv) - loop.y_sim.row(cv)).transpose();
-    loop.y_sim.row(cv) += untold(e, untold_columns(study, cv, starts, e.size())).transpose();
+    const Eigen::MatrixXd columns = untold_columns(study, cv, starts, e.size());
+    Eigen::VectorXd explained = untold(e, columns);
+    if (study.plant.G.is_integrating(
+            cv))  // before the washout a constant is a ramp, and nothing before a record
+      explained.head(samples_before(e)).setZero();
+    loop.y_sim.row(cv) += explained.transpose();
+    loop.untold.push_back(alike(e, columns).transpose());
   }
   return loop;
 }

@@ -61,8 +61,12 @@ double deviation_of(const Eigen::ArrayXd& values) {
   return std::sqrt((values - values.mean()).square().mean());
 }
 
-bool is_constant(const Eigen::ArrayXd& values) {
-  return values.size() > 0 && (values == values(0)).all();
+/// Does it never move, but for rounding of what it may move?
+bool is_constant(const RecordedVariable& variable) {
+  const Eigen::ArrayXd values = variable.present();
+  const double width = variable.is_limited() ? variable.upper - variable.lower : 0.0;
+  return values.size() > 0 &&
+         ((values - values(0)).abs() <= kRoundingShare * std::max(width, std::abs(values(0)))).all();
 }
 
 /// Does it look like an absolute value?
@@ -70,7 +74,7 @@ bool is_far_off(const RecordedVariable& variable) {
   const Eigen::ArrayXd values = variable.present();
   const double mean = values.mean();
   if (!variable.is_limited())
-    return !is_constant(values) && std::abs(mean) > kFarFromZero * deviation_of(values);
+    return !is_constant(variable) && std::abs(mean) > kFarFromZero * deviation_of(values);
   const double width = variable.upper - variable.lower;
   return mean < variable.lower - width || mean > variable.upper + width;
 }
@@ -122,7 +126,7 @@ void check_absolute(const Study& study, const std::vector<RecordedVariable>& var
 void check_movement(const std::vector<RecordedVariable>& variables, std::vector<std::string>& warnings) {
   for (const RecordedVariable& variable : variables) {
     const Eigen::ArrayXd values = variable.present();
-    if (!is_constant(values))
+    if (!is_constant(variable))
       continue;
     if (variable.is_cv)
       throw InputError(variable.name, fmt::format("{:g} in every sample", values(0)),
@@ -139,7 +143,7 @@ void refuse_twins(const std::vector<RecordedVariable>& variables) {
     for (std::size_t b = a + 1; b < variables.size(); ++b) {
       const Eigen::RowVectorXd &x = variables[a].values, &z = variables[b].values;
       const bool same = ((x.array() == z.array()) || (x.array().isNaN() && z.array().isNaN())).all();
-      if (same && !is_constant(variables[a].present()))
+      if (same && !is_constant(variables[a]))
         throw InputError(fmt::format("{} and {}", variables[a].name, variables[b].name),
                          "the same values in both", "a column for each; one of the tags is wrong");
     }

@@ -138,7 +138,8 @@ TEST_CASE("evidence of a CV: that of fine sums over the dense covariance, whatev
         if (fault < 3)
           e += explained(study, prior.mismatches[fault], size, u);
         INFO(ud << " " << fault << " " << size);
-        const CvEvidence found = likelihood.of(e, u, Eigen::VectorXd::Zero(u.rows()));
+        const CvEvidence found =
+            likelihood.of(e, u, Eigen::VectorXd::Zero(u.rows()), Eigen::MatrixXd(0, e.size()));
         const DenseEvidence dense = dense_evidence(study, prior, base.deviation, e, u);
         CHECK(found.healthy == Approx(dense.healthy).margin(1e-6));
         // Cells in which m is straight, and the fine sums themselves: 3 % of a probability.
@@ -278,7 +279,8 @@ TEST_CASE("likelihood: with wide priors it flags few of the records without a fa
                                   priors.cvs.front(), priors.noise_freedom, priors.starts_from_rest);
     std::int64_t alarms = 0;
     for (std::uint64_t i = 0; i < kRecords; ++i) {
-      const CvEvidence evidence = likelihood.of(noise(i, N), moves(3, N, 1.0, i), Eigen::Vector3d::Zero());
+      const CvEvidence evidence =
+          likelihood.of(noise(i, N), moves(3, N, 1.0, i), Eigen::Vector3d::Zero(), Eigen::MatrixXd(0, N));
       alarms += fault_probabilities(priors, {evidence}).healthy < 0.5 ? 1 : 0;
     }
     INFO(phi << ": " << alarms << " of " << kRecords);

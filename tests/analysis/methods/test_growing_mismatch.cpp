@@ -58,10 +58,11 @@ TEST_CASE("a mismatch that grows: parameter, size and time are found, and it is 
     e += kNoiseDeviation * testing::white_noise(kRecordLength, 50 + truth).transpose();
     e.segment(250, 5).setConstant(kNaN);
 
-    CvEvidence evidence = likelihood.of(e, u, rest);
+    CvEvidence evidence = likelihood.of(e, u, rest, Eigen::MatrixXd(0, e.size()));
     CHECK(evidence.mpm < evidence.both);
     const double without = evidence.mpm;
-    likelihood.add_growing(likelihood.healthy_series(e, u, rest), u, rest, 0.5, evidence);
+    likelihood.add_growing(likelihood.healthy_series(e, u, rest, Eigen::MatrixXd(0, e.size())), u, rest, 0.5,
+                           evidence);
     CHECK(evidence.mpm > evidence.both + 3.0);
     CHECK(evidence.mpm > without);
     const MismatchEvidence& named = evidence.mismatch_alone[truth];
@@ -89,8 +90,9 @@ TEST_CASE("a mismatch that grows: its evidence for noise is that of nothing or l
   const CvLikelihood likelihood(ModelErrors(study, 0, {kNoiseDeviation}), study.controller.sample_time, prior,
                                 4.0, false);
   const Eigen::RowVectorXd e = kNoiseDeviation * testing::white_noise(kRecordLength, 60).transpose();
-  CvEvidence evidence = likelihood.of(e, u, rest);
-  likelihood.add_growing(likelihood.healthy_series(e, u, rest), u, rest, 0.5, evidence);
+  CvEvidence evidence = likelihood.of(e, u, rest, Eigen::MatrixXd(0, e.size()));
+  likelihood.add_growing(likelihood.healthy_series(e, u, rest, Eigen::MatrixXd(0, e.size())), u, rest, 0.5,
+                         evidence);
   CHECK(evidence.mpm < evidence.healthy + 1.0);
 }
 
