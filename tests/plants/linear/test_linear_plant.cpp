@@ -1,4 +1,6 @@
 
+#include <cmath>
+
 #include <catch2/catch.hpp>
 
 #include "plants/error.hpp"
