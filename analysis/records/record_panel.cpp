@@ -127,7 +127,7 @@ AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record) {
             cv))  // before the washout a constant is a ramp, and nothing before a record
       explained.head(samples_before(e)).setZero();
     loop.y_sim.row(cv) += explained.transpose();
-    loop.untold.push_back(alike(e, columns).transpose());
+    loop.untold.emplace_back(alike(e, columns).transpose());
   }
   return loop;
 }
