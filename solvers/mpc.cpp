@@ -62,10 +62,9 @@ Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& o
       integrating_.push_back(cv);
       gain.row(cv) *= options.prediction_horizon * options.sample_time;
     }
-  mv_gain_ = gain.leftCols(mv_count);
   md_gain_ = gain.rightCols(model.cols() - mv_count);
   if (options.has_targets()) {
-    targets_.emplace(mv_gain_, options, factory);
+    targets_.emplace(gain.leftCols(mv_count), options, factory);
     pass_on_limits();
   }
   input_.setZero(model.cols());

@@ -61,8 +61,7 @@ class Mpc final : public Controller {
 
   Eigen::Index nu_;
   std::vector<Eigen::Index> integrating_;  ///< CVs
-  /// At the steady state, from MVs and MDs, of a CV that integrates over the prediction horizon.
-  Eigen::MatrixXd mv_gain_, md_gain_;
+  Eigen::MatrixXd md_gain_;  ///< at the steady state; of a CV that integrates over the prediction horizon
   LinearPlant model_, scratch_;
   MpcQp qp_;
   std::optional<TargetOptimizer> targets_;

@@ -19,6 +19,14 @@ double log_weight(double prior, double evidence, double healthy) {
   return prior > 0.0 ? std::log(prior) + evidence - healthy : -kInfinity;
 }
 
+/// The logarithm of the probability of a record without a fault.
+double healthy_evidence(const std::vector<CvEvidence>& evidence) {
+  double sum = 0.0;
+  for (const CvEvidence& of_cv : evidence)
+    sum += of_cv.healthy;
+  return sum;
+}
+
 /// Logarithms of the weights of the faults of a CV against none.
 struct CvWeights {
   double mpm, ud, both;
@@ -277,9 +285,7 @@ class FaultPosterior final : public AssessmentMethod {
   /// log of the weight of a disturbance on some MV against nothing.
   double input_weight(const std::vector<CvEvidence>& evidence,
                       const std::vector<Eigen::MatrixXd>& series) const {
-    double healthy = 0.0;
-    for (const CvEvidence& of_cv : evidence)
-      healthy += of_cv.healthy;
+    const double healthy = healthy_evidence(evidence);
     const InputLikelihood likelihood(models_, series, study_.controller.sample_time, priors_.noise_freedom);
     double sum = -kInfinity;
     for (const InputEvidence& of_mv : likelihood.of_mvs(study_.mv_count()))
@@ -295,17 +301,14 @@ class FaultPosterior final : public AssessmentMethod {
 
   StuckMv stuck_mv(const std::vector<CvEvidence>& evidence, const std::vector<Eigen::MatrixXd>& series,
                    const Eigen::MatrixXd& inputs) const {
-    double healthy = 0.0;
-    for (const CvEvidence& of_cv : evidence)
-      healthy += of_cv.healthy;
-    const std::vector<ValveEvidence> valves =
-        valve_evidence(models_, series, inputs, initial_, study_.mv_count(), study_.controller.sample_time,
-                       priors_.noise_freedom);
+    const double healthy = healthy_evidence(evidence);
+    const std::vector<double> valves =
+        valve_log_evidence(models_, series, inputs, initial_, study_.mv_count(),
+                           study_.controller.sample_time, priors_.noise_freedom);
     StuckMv found;
     for (std::size_t mv = 0; mv < valves.size(); ++mv) {
-      found.log_weight =
-          log_sum(found.log_weight, log_weight(priors_.input, valves[mv].log_evidence, healthy));
-      if (valves[mv].log_evidence > valves[found.mv].log_evidence)
+      found.log_weight = log_sum(found.log_weight, log_weight(priors_.input, valves[mv], healthy));
+      if (valves[mv] > valves[found.mv])
         found.mv = mv;
     }
     return found;

@@ -78,12 +78,14 @@ class ValveSearch {
       deviations_.push_back(models[i].noise().deviation);
       if (channels_.back())
         samples_ += errors[i].samples();
+      else
+        unmoved_ += errors[i].log_likelihood(Eigen::RowVectorXd::Zero(u_.size()));
     }
   }
 
-  ValveEvidence evidence() const {
+  double log_evidence() const {
     if (samples_ == 0.0 || !(range_ > 0.0))
-      return {-kInfinity, kNaN, kNaN};
+      return -kInfinity;
     Valve best = Valve::Zero();
     double most = -kInfinity;
     const auto take = [&](const Valve& valve) {
@@ -112,8 +114,7 @@ class ValveSearch {
       if (!better)
         share *= 0.5;
     }
-    const double stickband = range_ * std::exp(best(0));
-    return {most - 0.5 * kParameters * std::log(samples_), stickband, best(1) * stickband};
+    return most - 0.5 * kParameters * std::log(samples_);
   }
 
  private:
@@ -126,36 +127,36 @@ class ValveSearch {
     StickyValve stem(stickband, valve(1) * stickband, onset > 0 ? u_(onset - 1) : initial_);
     for (Eigen::Index k = onset; k < u_.size(); ++k)
       x(k) = stem.follow(u_(k)) - u_(k);
-    double sum = 0.0;
+    double sum = unmoved_;
     for (std::size_t i = 0; i < errors_.size(); ++i)
-      sum += errors_[i].log_likelihood(
-          channels_[i] ? Eigen::RowVectorXd(channel_response(*channels_[i], x, 0.0) / deviations_[i])
-                       : Eigen::RowVectorXd::Zero(u_.size()));
+      if (channels_[i])
+        sum += errors_[i].log_likelihood(channel_response(*channels_[i], x, 0.0) / deviations_[i]);
     return sum;
   }
 
   const std::vector<WhitenedErrors>& errors_;
   Eigen::RowVectorXd u_;
   double initial_, range_, samples_ = 0.0;
+  double unmoved_ = 0.0;  ///< log-likelihood of the CVs that the MV does not move
   std::vector<std::optional<DiscreteChannel>> channels_;
   std::vector<double> deviations_;
 };
 
 }  // namespace
 
-std::vector<ValveEvidence> valve_evidence(const std::vector<ModelErrors>& models,
-                                          const std::vector<Eigen::MatrixXd>& series,
-                                          const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                          const Eigen::Ref<const Eigen::VectorXd>& initial, Eigen::Index mvs,
-                                          double sample_time, double noise_freedom) {
+std::vector<double> valve_log_evidence(const std::vector<ModelErrors>& models,
+                                       const std::vector<Eigen::MatrixXd>& series,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                       const Eigen::Ref<const Eigen::VectorXd>& initial, Eigen::Index mvs,
+                                       double sample_time, double noise_freedom) {
   std::vector<WhitenedErrors> errors;
   for (std::size_t i = 0; i < models.size(); ++i)
     errors.emplace_back(models[i], series[i], noise_freedom);
-  std::vector<ValveEvidence> found;
+  std::vector<double> found;
   for (Eigen::Index mv = 0; mv < mvs; ++mv)
     found.push_back(
         ValveSearch(models, errors, inputs.row(mv).head(series.front().cols()), initial(mv), mv, sample_time)
-            .evidence());
+            .log_evidence());
   return found;
 }
 

@@ -8,13 +8,9 @@
 
 namespace mpm {
 
-/// The evidence that the valve of one MV sticks.
-struct ValveEvidence {
-  double log_evidence;     ///< in the measure of CvEvidence::healthy, summed over the CVs
-  double stickband, jump;  ///< S and J of the likeliest valve, MV unit
-};
-
-/// A valve that sticks from some sample on moves all CVs by what it does not do of what is asked for,
+/// The logarithm of the evidence that the valve of an MV sticks, in the measure of CvEvidence::healthy,
+/// summed over the CVs. A valve that sticks from some sample on moves all CVs by what it does not do of what
+/// is asked for,
 ///
 ///   e_i = G0_ij x + Z_i' z_i + n_i,   x(k) = valve(u_j(0 ... k); S, J) - u_j(k),   z_i ~ N(0, I),
 ///
@@ -29,10 +25,10 @@ struct ValveEvidence {
 ///
 /// NaN in the first row of a series where there is no sample. One answer for each of the first `mvs` inputs;
 /// -infinity for one that moves no CV or does not move.
-std::vector<ValveEvidence> valve_evidence(const std::vector<ModelErrors>& models,
-                                          const std::vector<Eigen::MatrixXd>& series,
-                                          const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                          const Eigen::Ref<const Eigen::VectorXd>& initial, Eigen::Index mvs,
-                                          double sample_time, double noise_freedom);
+std::vector<double> valve_log_evidence(const std::vector<ModelErrors>& models,
+                                       const std::vector<Eigen::MatrixXd>& series,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                       const Eigen::Ref<const Eigen::VectorXd>& initial, Eigen::Index mvs,
+                                       double sample_time, double noise_freedom);
 
 }  // namespace mpm

@@ -48,17 +48,17 @@ PlantModel ogunnaike_ray_column();
 /// The forced-circulation evaporator of R. B. Newell and P. L. Lee, "Applied process control: a case study"
 /// (1989), 3 CVs x 3 MVs x 3 MDs ("evaporator"); times in minutes. Its level integrates.
 ///
-/// The nonlinear equations of the book, linearised where F2 = 2 kg/min, X2 = 25 % and P2 = 50.5 kPa. With the
-/// states X2, P2 and L2,
+/// The nonlinear equations of the book, linearised where F2 = 2 kg/min, X2 = 25 % and P2 = 50.5 kPa. Slopes
+/// of the rates by states and inputs:
 ///
-///        [-0.1         0           0]       [-1.25   0             0             0.25          0.5   0 ]
-///   A =  [-0.02090766  -0.05579782 0],  B = [ 0      0.009587532  -0.001828122   0.016437197   0
-///   0.0045454545],
-///        [ 0.004181532  0.007512310 0]      [-0.05  -0.0019175065  0             0.046712561   0
-///        -0.0009090909]
+/// | rate of | X2           | P2          | F2    | P100          | F200         | F1          | X1  | T1 |
+/// |---------|--------------|-------------|-------|---------------|--------------|-------------|-----|----|
+/// | X2      | -0.1         | 0           | -1.25 | 0             | 0            | 0.25        | 0.5 | 0  |
+/// | P2      | -0.02090766  | -0.05579782 | 0     | 0.009587532   | -0.001828122 | 0.016437197 | 0   | a  |
+/// | L2      | 0.004181532  | 0.007512310 | -0.05 | -0.0019175065 | 0            | 0.046712561 | 0   | b  |
 ///
-/// and the inputs F2, P100, F200, F1, X1, T1. What enters P2 comes out of the liquid, so that the level
-/// answers almost every input.
+/// with a = 0.0045454545 and b = -0.0009090909. What enters P2 comes out of the liquid, so that the level
+/// answers every input.
 PlantModel evaporator();
 
 /// A binary column with the levels of its condenser and reboiler, 4 CVs x 4 MVs x 1 MD ("column-levels"): the
@@ -66,10 +66,11 @@ PlantModel evaporator();
 /// J. C. Doyle, IEEE Trans. Automatic Control 33 (1988), 1092-1105), and two holdups that integrate, with
 /// constant molar flows and a liquid lag of theta = 2.46 min from top to bottom; times in minutes:
 ///
-///   M_D = (V - L - D)/s,    M_B = (e^{-theta s} (L + F) - V - B)/s.
+///   M_D = (V - L - D)/s,    M_B = (e^{-theta s} L + e^{-theta s/2} F - V - B)/s.
 ///
-/// The products D and B change the compositions through the levels only; the feed F is liquid, enters
-/// halfway, and counts with half the liquid lag.
+/// The products D and B change the compositions through the levels only. The feed F is liquid and enters
+/// halfway; its gains of yD and xB, 0.394 and 0.586 per kmol/min, are those of S. Skogestad and I.
+/// Postlethwaite, "Multivariable feedback control" (1996), for the same column.
 PlantModel distillation_column_with_levels();
 
 /// A made-up unit as large as industrial ones, 20 CVs x 8 MVs x 2 MDs ("banded-20x8"); times in minutes. CV i
