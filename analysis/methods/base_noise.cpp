@@ -226,6 +226,18 @@ NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
   return noise;
 }
 
+Eigen::RowVectorXd drawn_noise(const BaseNoise& noise, Eigen::Index samples, RandomStream& random) {
+  Eigen::RowVectorXd drawn(samples);
+  double state = noise.b / std::sqrt(1.0 - noise.a * noise.a) * random.normal();
+  double fast = random.normal();
+  for (double& each : drawn) {
+    each = state + fast;
+    state = noise.a * state + noise.b * random.normal();
+    fast = noise.phi * fast + std::sqrt(1.0 - noise.phi * noise.phi) * random.normal();
+  }
+  return noise.deviation * drawn;
+}
+
 double slow_part(const BaseNoise& noise) {
   const double state = noise.b / std::sqrt(1.0 - noise.a * noise.a);
   return std::max(state, noise.phi / std::sqrt(1.0 - noise.phi * noise.phi));

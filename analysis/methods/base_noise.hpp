@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/disturbance_scan.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 
@@ -36,6 +37,9 @@ struct NoisePosterior {
 /// A slow disturbance of up to this part of the standard deviation of the measurement noise is background,
 /// which healthy loops have too: it adds a quarter to the variance of the noise.
 inline constexpr double kLargestBackground = 0.5;
+
+/// N samples of this noise, CV unit, from its stationary state on.
+Eigen::RowVectorXd drawn_noise(const BaseNoise& noise, Eigen::Index samples, RandomStream& random);
 
 /// Standard deviation of the slow part of a noise over that of its white part.
 double slow_part(const BaseNoise& noise);

@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include "analysis/indicators/diagnosis.hpp"
+#include "analysis/methods/base_noise.hpp"
 #include "analysis/methods/model_errors.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "analysis/statistics/washout.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr double kLeastNominalShare = 0.1;
+constexpr std::uint64_t kNoiseSeed = 47;
 
 /// e = y - y_sim of the whole record, its gaps closed.
 Eigen::MatrixXd errors_of(const Study& study, const AssessedLoop& whole) {
@@ -52,12 +57,16 @@ Assessment CounterfactualLoop::impact(const AssessedLoop& loop) {
   const Trajectory& nominal = simulated(0, whole.d, Eigen::MatrixXd::Zero(whole.y.rows(), whole.y.cols()));
   if (nominal.status != ControlStatus::ok)
     return Assessment::failed("the controller does not run on its own model under these disturbances");
-  const Eigen::VectorXd ivar = indices(loop, nominal);
+  Eigen::VectorXd ivar = indices(loop, nominal, noise_);
+  chance_.setZero(ivar.size());
+  if (learnt_ && outside(ivar))
+    if (const std::optional<Eigen::VectorXd> under_noise = indices_under_noise(loop))
+      ivar = *under_noise;
   Assessment assessment;
   assessment.score = 0.0;
   for (Eigen::Index cv = 0; cv < ivar.size(); ++cv) {
-    assessment.score = std::max(assessment.score, distance(ivar(cv)));
-    assessment.flagged = assessment.flagged || study_.diagnosis.has_impact(ivar(cv));
+    assessment.score = std::max(assessment.score, distance(ivar(cv), cv));
+    assessment.flagged = assessment.flagged || has_impact(ivar(cv), cv);
     assessment.numbers.push_back({"ivar", ivar(cv), cv});
   }
   return assessment;
@@ -67,12 +76,18 @@ Eigen::VectorXd CounterfactualLoop::ivar_diag(const AssessedLoop& loop) {
   const AssessedLoop& whole = loop.from_start();
   AssessedLoop corrected;
   const Eigen::MatrixXd e = errors_of(study_, learnt_ ? learnt_->corrected(whole, corrected) : whole);
+  const bool is_drawn = chance_.size() > 0 && chance_.maxCoeff() > 0.0;
+  const Eigen::MatrixXd noise = is_drawn ? drawn_noise_of(e.cols(), 0) : Eigen::MatrixXd();
+  const Eigen::VectorXd added = is_drawn ? Eigen::VectorXd::Zero(e.rows()) : noise_;
   Eigen::VectorXd found(e.rows());
   for (Eigen::Index cv = 0; cv < e.rows(); ++cv) {
     Eigen::MatrixXd others = e;
-    others.row(cv).setZero();
+    if (is_drawn)
+      others.row(cv) = noise.row(cv);
+    else
+      others.row(cv).setZero();
     const Trajectory& nominal = simulated(static_cast<std::size_t>(cv) + 1, whole.d, others);
-    found(cv) = nominal.status == ControlStatus::ok ? indices(loop, nominal)(cv) : kNaN;
+    found(cv) = nominal.status == ControlStatus::ok ? indices(loop, nominal, added)(cv) : kNaN;
   }
   return found;
 }
@@ -84,14 +99,67 @@ std::vector<CvAssessment> CounterfactualLoop::located(const Eigen::VectorXd& iva
   for (Eigen::Index cv = 0; cv < ivar_diag.size(); ++cv) {
     const double ivar = has_none ? impact.number("ivar", cv) : ivar_diag(cv);
     if (!std::isnan(ivar))
-      cvs[static_cast<std::size_t>(cv)] = {study_.diagnosis.has_impact(ivar), distance(ivar)};
+      cvs[static_cast<std::size_t>(cv)] = {has_impact(ivar, cv), distance(ivar, cv)};
   }
   return cvs;
 }
 
-/// Of a variance index from 1, as the study measures it to locate a CV.
-double CounterfactualLoop::distance(double ivar) const {
-  return distance_from_one(ivar, study_.diagnosis.location_distance);
+bool CounterfactualLoop::outside(const Eigen::VectorXd& ivar) const {
+  return std::any_of(ivar.begin(), ivar.end(),
+                     [&](double each) { return study_.diagnosis.has_impact(each); });
+}
+
+bool CounterfactualLoop::has_impact(double ivar, Eigen::Index cv) const {
+  return study_.diagnosis.has_impact(ivar) && std::abs(std::log(ivar)) > chance_(cv);
+}
+
+/// Of a variance index from 1, as the study measures it to locate a CV, as far as chance does not make it.
+double CounterfactualLoop::distance(double ivar, Eigen::Index cv) const {
+  const DiagnosisOptions& options = study_.diagnosis;
+  const double from_one = distance_from_one(ivar, options.location_distance);
+  if (chance_(cv) == 0.0)
+    return from_one;
+  const double edge =
+      distance_from_one(ivar > 1.0 ? options.impact_upper : options.impact_lower, options.location_distance);
+  return std::min(from_one, edge * std::abs(std::log(ivar)) / chance_(cv));
+}
+
+/// ny x N of the noise that the benchmark has shown, added to the outputs.
+Eigen::MatrixXd CounterfactualLoop::drawn_noise_of(Eigen::Index samples, int draw) const {
+  RandomStream random(kNoiseSeed, draw, StreamId::background);
+  Eigen::MatrixXd noise(study_.cv_count(), samples);
+  for (Eigen::Index cv = 0; cv < noise.rows(); ++cv)
+    noise.row(cv) = drawn_noise(learnt_->of(cv).noise(), samples, random);
+  return from_washout(study_, noise);
+}
+
+/// Ivar with the mean of the nominal variance over draws of the noise, ny, and what chance makes of it; none
+/// if a loop does not run to its end.
+std::optional<Eigen::VectorXd> CounterfactualLoop::indices_under_noise(const AssessedLoop& loop) {
+  const AssessedLoop& whole = loop.from_start();
+  const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
+  Eigen::ArrayXXd drawn(whole.y.rows(), kNoiseDraws);
+  for (int draw = 0; draw < kNoiseDraws; ++draw) {
+    const Trajectory nominal =
+        run_closed_loop(study_, plant_,
+                        {.d = whole.d,
+                         .noise = Eigen::MatrixXd::Zero(whole.y.rows(), whole.y.cols()),
+                         .y_d = drawn_noise_of(whole.y.cols(), draw),
+                         .y_set = y_set_,
+                         .dither = dither_},
+                        factory_);
+    if (nominal.status != ControlStatus::ok)
+      return std::nullopt;
+    drawn.col(draw) = variances(loop.in_window(nominal.y), centres);
+  }
+  constexpr double n = kNoiseDraws;
+  const double tails = kChance / static_cast<double>(drawn.rows());
+  const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 1.0 - 0.5 * tails);
+  const Eigen::ArrayXXd logs = drawn.log();
+  const Eigen::ArrayXd squares = (logs.colwise() - logs.rowwise().mean()).square().rowwise().sum();
+  chance_ = t * (squares * (1.0 + 1.0 / n) / (n - 1.0)).sqrt();
+  const Eigen::MatrixXd y = loop.in_window(from_washout(study_, whole.y_sim) + errors_of(study_, whole));
+  return variances(y, centres).cwiseQuotient(drawn.rowwise().mean().matrix());
 }
 
 /// v of each CV from the variances of the benchmark and of the same loop without noise.
@@ -126,14 +194,15 @@ const Trajectory& CounterfactualLoop::simulated(std::size_t place, const Eigen::
 }
 
 /// var y / (var y0 + v) of each CV, ny.
-Eigen::VectorXd CounterfactualLoop::indices(const AssessedLoop& loop, const Trajectory& nominal) const {
+Eigen::VectorXd CounterfactualLoop::indices(const AssessedLoop& loop, const Trajectory& nominal,
+                                            const Eigen::Ref<const Eigen::VectorXd>& added) const {
   const AssessedLoop& whole = loop.from_start();
   const Eigen::MatrixXd y = loop.in_window(from_washout(study_, whole.y_sim) + errors_of(study_, whole));
   const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
   const Eigen::ArrayXd of_nominal = variance_indices(y, loop.in_window(nominal.y), centres);
   // A v below 0 can outweigh a y0 that hardly moves: the nominal variance is not taken for less than a
   // tenth of its own.
-  const Eigen::ArrayXd inverse = of_nominal.inverse() + noise_.array() / variances(y, centres).array();
+  const Eigen::ArrayXd inverse = of_nominal.inverse() + added.array() / variances(y, centres).array();
   return inverse.max(kLeastNominalShare * of_nominal.inverse()).inverse();
 }
 

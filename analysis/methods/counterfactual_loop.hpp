@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -35,12 +37,23 @@ struct CounterfactualOptions {
 ///   Ivar = var y / (var y0 + v),   Ivar_diag = var y_i / (var y0_diag,i + v_i),   v = var y_b - var y0_b
 ///
 /// and G0 in the place of the plant corrected by what the benchmark shows of its errors
-/// (AssessmentContext::learnt),
-/// as in (3.24) and (4.14), but exact also where the loop leaves limits and reaches them again, for which no
-/// linear S0 exists: with the errors of all CVs added, the loop returns y. y contains noise and y0 does not;
-/// v is what noise adds to the variance, taken from the basis case y_b of the same controller (NoiseVariance
-/// has other choices). Gaps of e are filled by linear interpolation. For windows, the record is simulated
-/// once from its start.
+/// (AssessmentContext::learnt), as in (3.24) and (4.14), but exact also where the loop leaves limits and
+/// reaches them again, for which no linear S0 exists: with the errors of all CVs added, the loop returns y. y
+/// contains noise and y0 does not; v is what noise adds to the variance, taken from the basis case y_b of the
+/// same controller (NoiseVariance has other choices). Gaps of e are filled by linear interpolation. For
+/// windows, the record is simulated once from its start.
+///
+/// v is of one realisation of the noise and of the excitation of the benchmark. A level that is free in its
+/// range has another variance in each record, and noise makes it smaller as often as larger. So, where errors
+/// of the model and its noise are learnt, an Ivar outside of the band is looked at again: the nominal loop is
+/// simulated under kNoiseDraws draws of that noise, with m the mean of var y0 over them and s the standard
+/// deviation of log var y0,
+///
+///   Ivar = var y / m,   c = s sqrt(1 + 1 / kNoiseDraws) t,   Ivar_diag = var y_i / var y0_diag,i
+///
+/// y0_diag with the first draw in CV i; t is the quantile of Student's distribution beyond which chance alone
+/// takes some CV with the probability kChance. An impact needs |log Ivar| > c, and the distance of Ivar from
+/// 1 counts as min(distance, a |log Ivar| / c) with a that of the edge of the band.
 class CounterfactualLoop {
  public:
   /// `context` must outlive it.
@@ -48,7 +61,7 @@ class CounterfactualLoop {
 
   /// Flagged if some Ivar lies outside the band of impact, with the number `ivar` of each CV and no verdict
   /// on single CVs; failed if the controller does not run on its own model. Simulates one closed loop, or
-  /// none if the disturbances are those of the previous record.
+  /// none if the disturbances are those of the previous record; and kNoiseDraws more if an Ivar is outside.
   Assessment impact(const AssessedLoop& loop);
 
   /// Ivar_diag of each CV, ny; NaN if its loop does not run to its end. Simulates one closed loop for each
@@ -60,6 +73,9 @@ class CounterfactualLoop {
   std::vector<CvAssessment> located(const Eigen::VectorXd& ivar_diag, const Assessment& impact) const;
 
  private:
+  static constexpr int kNoiseDraws = 16;
+  static constexpr double kChance = 0.01;
+
   /// A loop that was simulated, with what it was simulated under.
   struct Simulated {
     Eigen::MatrixXd d, errors;
@@ -68,8 +84,13 @@ class CounterfactualLoop {
 
   const Trajectory& simulated(std::size_t place, const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors);
   Eigen::VectorXd noise_variance(const Eigen::VectorXd& noisy, const Eigen::VectorXd& quiet) const;
-  Eigen::VectorXd indices(const AssessedLoop& loop, const Trajectory& nominal) const;
-  double distance(double ivar) const;
+  Eigen::VectorXd indices(const AssessedLoop& loop, const Trajectory& nominal,
+                          const Eigen::Ref<const Eigen::VectorXd>& added) const;
+  std::optional<Eigen::VectorXd> indices_under_noise(const AssessedLoop& loop);
+  Eigen::MatrixXd drawn_noise_of(Eigen::Index samples, int draw) const;
+  bool outside(const Eigen::VectorXd& ivar) const;
+  bool has_impact(double ivar, Eigen::Index cv) const;
+  double distance(double ivar, Eigen::Index cv) const;
 
   const Study& study_;
   std::shared_ptr<const LearntModel> learnt_;
@@ -78,6 +99,7 @@ class CounterfactualLoop {
   Eigen::MatrixXd y_set_, dither_;
   std::vector<Simulated> loops_;  ///< y0, then y0_diag of each CV
   Eigen::VectorXd noise_;         ///< v of each CV; empty when the basis case cannot be simulated
+  Eigen::VectorXd chance_;        ///< c of each CV of the last record; 0: no draws
 };
 
 }  // namespace mpm

@@ -24,6 +24,8 @@ constexpr int kGaussNewtonSteps = 3;
 constexpr std::array kWanders{0.05, 0.1, 0.2, 0.02};
 constexpr double kSpeaksForWander = 3.0;
 constexpr Eigen::Index kCorners = 8;
+/// Of a standardised error that is held at its bound.
+constexpr double kRoundingOfBound = 1e-6;
 /// Smallest noise against the size of the outputs: that of their rounding in a record without noise.
 constexpr double kLeastNoise = 1e-6;
 
@@ -78,6 +80,21 @@ Coefficients coefficients(const BaseNoise& noise, const Eigen::Ref<const Eigen::
   const auto Z = white.bottomRows(white.rows() - 1);
   Eigen::MatrixXd covariance = (Z * Z.transpose() + Eigen::MatrixXd::Identity(Z.rows(), Z.rows())).inverse();
   return {covariance * (Z * white.row(0).transpose()), std::move(covariance)};
+}
+
+/// The mean of a normal vector that is nowhere below `least`: what lies lowest below it is held there, one
+/// after the other.
+Eigen::VectorXd bounded_mean(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
+                             const Eigen::VectorXd& least) {
+  std::vector<Eigen::Index> held;
+  Eigen::VectorXd bounded = mean;
+  Eigen::Index lowest = 0;
+  while (bounded.size() > 0 && (bounded - least).minCoeff(&lowest) < -kRoundingOfBound) {
+    held.push_back(lowest);
+    bounded =
+        mean + covariance(Eigen::all, held) * covariance(held, held).llt().solve(least(held) - mean(held));
+  }
+  return bounded;
 }
 
 }  // namespace
@@ -136,13 +153,18 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
   unknown.bottomRows(unknown.rows() - p).setConstant(bias_ * std::max(deviation_of_steps(e), least));
   Eigen::MatrixXd series;
   corner_ = std::max<Eigen::Index>(2, e.size() / kCorners);
-  Coefficients known_errors{Eigen::VectorXd::Zero(unknown.rows()), {}};
+  mean_ = Eigen::VectorXd::Zero(p);
   take(nominal_);
+  Eigen::VectorXd least_errors = Eigen::VectorXd::Constant(p, -kInfinity);  // no dead time is negative
+  for (Eigen::Index i = 0; i < p; ++i)
+    if (const ChannelError& error = errors_[static_cast<std::size_t>(i)];
+        error.parameter == MismatchParameter::dead_time)
+      least_errors(i) = -nominal_(0, error.input).dead_time() / error.deviation;
+  Eigen::MatrixXd covariance;
   // Gauss and Newton: where outputs move by a hundred times the noise, a slope is not enough.
   for (int step = 0; step < kGaussNewtonSteps; ++step) {
     unknown.topRows(p) = slopes(inputs, initial);
-    const Eigen::RowVectorXd left =
-        e - correction(inputs, initial) + known_errors.mean.head(p).transpose() * unknown.topRows(p);
+    const Eigen::RowVectorXd left = e - correction(inputs, initial) + mean_.transpose() * unknown.topRows(p);
     if (!known && step + 1 < kGaussNewtonSteps)
       noise_.best = {std::max(deviation_of_steps(left), least)};
     else if (!known)
@@ -150,11 +172,12 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
     const Eigen::MatrixXd wanders = wandering(model_, inputs, initial);
     series.resize(1 + unknown.rows() + wanders.rows(), e.size());
     series << left, unknown, wanders;
-    known_errors = coefficients(noise_.best, series);
-    mean_ = known_errors.mean.head(p);
+    const Coefficients known_errors = coefficients(noise_.best, series);
+    covariance = known_errors.covariance.topLeftCorner(p, p);
+    mean_ = bounded_mean(known_errors.mean.head(p), covariance, least_errors);
     take(with_errors(mean_));
   }
-  factor_ = known_errors.covariance.topLeftCorner(p, p).llt().matrixL();
+  factor_ = covariance.llt().matrixL();
 }
 
 ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const BaseNoise& noise)

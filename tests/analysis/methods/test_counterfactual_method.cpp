@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/experiment/experiment.hpp"
 #include "analysis/methods/counterfactual_loop.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
@@ -82,6 +83,31 @@ TEST_CASE("counterfactual: where no loop runs under the errors of the others, Iv
   CHECK(impact.worst_cv() == 1);
   CHECK(impact.cvs[1].flagged == false);
   CHECK_FALSE(impact.cvs[0].flagged.has_value());
+}
+
+// A level in its range has another variance in each record, whatever the model is: here the model is exact.
+TEST_CASE("counterfactual: a variance that noise alone can make is no impact") {
+  Study study = find_study("suite-column-levels");
+  study.experiments = {.healthy = 12};
+  study.simulation.excitation = SignalSequence::each;
+  study.world = WorldRanges{.count = 1};
+  study.world->background.cv_size = Distribution::constant(0.4);
+  study.world->background.time_constant = Distribution::constant(10.0);
+  const auto flagged_with = [&](AssessmentModel model) {
+    study.assessment.model = model;
+    const BasisCase basis = run_basis_case(study, testing::kFactory);
+    ExperimentRunner runner(study, basis, {"counterfactual"}, testing::kFactory);
+    int flagged = 0;
+    for (std::int64_t index = 0; index < study.experiments.healthy; ++index) {
+      const ExperimentRecord record = runner.run(index, StorePolicy::none);
+      REQUIRE(record.assessments.size() == 1);
+      REQUIRE(record.assessments.front().answered());
+      flagged += record.assessments.front().flagged ? 1 : 0;
+    }
+    return flagged;
+  };
+  CHECK(flagged_with(AssessmentModel::nominal) > 6);
+  CHECK(flagged_with(AssessmentModel::benchmark) <= 1);  // of a probability of 1 %: two have one of 0.6 %
 }
 
 TEST_CASE("counterfactual: with the simulation errors of all CVs added, the loop of the model gives y back") {
