@@ -1,17 +1,39 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
+#include <optional>
 
 #include <Eigen/Core>
 
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/methods/channel_fit.hpp"
+#include "analysis/methods/repair_prospects.hpp"
 
-// What an engineer does with a named channel: identify it again, and put it into the controller.
+// What an engineer does with a named channel: correct it, and put it into the controller.
 
 namespace mpm {
+
+/// How a channel of the model is corrected. Where a method names the size of a mismatch with its interval,
+/// this size goes into the model: verdict and repair have one estimate. Otherwise the channel is identified
+/// again (fit_channel()), the one parameter that the method names or all of them.
+struct ChannelRepair {
+  Channel channel;
+  std::optional<NamedMismatch> named;          ///< by its size; none: identified again
+  std::optional<MismatchParameter> parameter;  ///< all else is as in the model; none: the whole channel
+  FittedNumber gain_factor, time_factor, dead_time_shift;  ///< against the model
+  double explained = kNaN;  ///< ChannelFit::explained; NaN of a size that a method names
+  TransferFunction model;   ///< of the channel, corrected
+
+  RepairedChannel repaired() const { return {channel, model}; }
+};
+
+/// Identifies a channel again from the record. Throws InputError as fit_channel().
+ChannelRepair identified_channel(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
+                                 const Channel& channel, const std::optional<MismatchParameter>& only = {});
+
+/// The repair that the answer of a method asks for; none where it names no channel, or does not flag the
+/// loop. Throws InputError as fit_channel().
+std::optional<ChannelRepair> channel_repair(const Study& study, const OperatingPoint& point,
+                                            const AssessedLoop& loop, const AssessmentRecord& said);
 
 /// The variances of the CVs of a loop whose controller has a model that was repaired in one channel, ny each:
 /// about the setpoint of a CV that has one, about the mean otherwise. All loops have the noise, the
@@ -28,8 +50,7 @@ namespace mpm {
 /// Of a nonlinear plant `perfect` is the controller of the study on the plant without its mismatches.
 /// A vector is empty when its loop did not run to its end.
 struct RepairedLoop {
-  Channel channel;
-  ChannelFit fit;
+  ChannelRepair repair;
   Eigen::VectorXd now, predicted, repaired, perfect;
 
   /// All loops of the comparison ran to their end.
@@ -39,26 +60,21 @@ struct RepairedLoop {
   double loss_repaired() const { return (repaired.array() / perfect.array()).mean(); }
 };
 
-/// Repairs the channel of the model of `study` by the record `loop` of the experiment `draw`
-/// (assessed_loop()), and runs the loops. Throws InputError as fit_channel().
+/// Runs the loops of the experiment `draw`, whose record is `loop` (assessed_loop()).
 RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, const ExperimentDraw& draw,
-                           const AssessedLoop& loop, const Channel& channel, const QpSolverFactory& factory);
+                           const AssessedLoop& loop, const ChannelRepair& repair,
+                           const QpSolverFactory& factory);
 
 /// What a repaired channel promises from a record alone, all that is known in a plant: variances of the CVs
 /// as RepairedLoop has them, with the errors of the record under the model of the study (`now`) and under the
 /// repaired one (`predicted`).
 struct PromisedRepair {
-  Channel channel;
-  std::optional<MismatchParameter> only;  ///< that was identified again; none: the whole channel
-  ChannelFit fit;
+  ChannelRepair repair;
   Eigen::VectorXd now, predicted;
 };
 
-/// The repair that the method's answer asks for: of the parameter that it names, or of the whole channel
-/// where it names none. None where it names no channel. Throws InputError as fit_channel().
-std::optional<PromisedRepair> promised_repair(const Study& study, const OperatingPoint& point,
-                                              const AssessedLoop& loop, const AssessmentRecord& said,
-                                              const QpSolverFactory& factory);
+PromisedRepair promised_repair(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
+                               const ChannelRepair& repair, const QpSolverFactory& factory);
 
 /// The channel that the method would have repaired: that of the mismatch it names, or of a method that names
 /// none the first channel that it flags. None of a loop that it does not flag.

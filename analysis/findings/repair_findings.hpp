@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/experiment/repair.hpp"
+#include "analysis/methods/repair_prospects.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
 
@@ -29,10 +30,8 @@ struct RepairOutcome {
 
 RepairTarget target_of(const ExperimentDraw& draw, const Channel& channel);
 
-/// A loop is better or worse where its loss changes by more than this factor.
-inline constexpr double kNoticeableChange = 1.05;
-
-/// The outcomes of one sort together.
+/// The outcomes of one sort together; a loop is better or worse where its loss changes by more than
+/// kNoticeableChange.
 struct RepairFindings {
   RepairTarget target;
   Rate better, worse;

@@ -36,7 +36,8 @@ constexpr double kMuchMore = 0.5;
 /// errors has another fault than model and disturbances: an operator, a limit, a controller that is not the
 /// one of the study. Asked only where errors of the model are learnt.
 ///
-/// Which channel, which parameter, how large? `likelihood`, where the source is a mismatch.
+/// Which channel, which parameter, how large, or which valve? `likelihood`, where the source is a mismatch,
+/// or a valve that sticks.
 ///
 /// docs/methods.md has the figures from which the choice was made.
 class Mpmbench final : public AssessmentMethod {
@@ -97,6 +98,8 @@ class Mpmbench final : public AssessmentMethod {
       return;
     const FaultSource source = agreed_source(posterior, order, *worst);
     assessment.cvs[static_cast<std::size_t>(*worst)].source = source;
+    if (const double valve = posterior.number("valve_mv"); source == FaultSource::other && !std::isnan(valve))
+      assessment.numbers.push_back({"valve_mv", valve});
     if (posterior.status != AssessmentStatus::ok ||
         (source != FaultSource::mpm && source != FaultSource::mpm_ud))
       return;
@@ -160,7 +163,9 @@ AssessmentMethodInfo mpmbench_method() {
        .names_mismatches = true,
        .numbers = {{.name = "ivar",
                     .meaning = "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise",
-                    .estimates_ivar_basis = true}}},
+                    .estimates_ivar_basis = true},
+                   {"valve_mv", NumberScope::loop,
+                    "place of the MV whose valve sticks, from 0; none: the source is not a valve"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<Mpmbench>(context); }};
 }

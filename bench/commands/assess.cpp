@@ -13,8 +13,11 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/experiment/judgement.hpp"
+#include "analysis/experiment/repair.hpp"
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/repair_prospects.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/controller_check.hpp"
@@ -110,17 +113,31 @@ BasisCase basis_of(const Study& study, const QpSolverFactory& factory) {
   return basis;
 }
 
-/// Puts what the identified channel promises into the assessment, when the verdict names one.
+/// Whether the fault may be one of the model.
+bool may_be_mismatch(const RecordAssessment& assessment) {
+  const FaultSource source = named_source(assessment.verdict());
+  return assessment.found() == RecordVerdict::fault && source != FaultSource::ud &&
+         source != FaultSource::other;
+}
+
+/// Puts what the corrected channel promises into the assessment, when the verdict names one, and what the
+/// repair of each channel would bring.
 void add_repair(RecordAssessment& assessment, const RecordFrame& frame) {
-  if (assessment.found() != RecordVerdict::fault)
+  if (!may_be_mismatch(assessment))
     return;
+  const Study& study = assessment.study;
+  const OperatingPoint& point = frame.basis.point;
   try {
-    assessment.repair = promised_repair(assessment.study, frame.basis.point, assessment.loop,
-                                        assessment.verdict(), frame.factory);
-    if (assessment.repair)
-      assessment.information = channel_information(
-          assessment.study, assessment.loop, assessment.repair->channel,
-          frame.model_error > 0.0 ? frame.model_error : assessment.study.assessment.model_error);
+    std::optional<RepairedChannel> named;
+    if (const auto repair = channel_repair(study, point, assessment.loop, assessment.verdict())) {
+      assessment.repair = promised_repair(study, point, assessment.loop, *repair, frame.factory);
+      assessment.information =
+          channel_information(study, assessment.loop, repair->channel,
+                              frame.model_error > 0.0 ? frame.model_error : study.assessment.model_error);
+      named = repair->repaired();
+    }
+    if (auto prospects = RepairProspects(study, point, frame.factory).of(assessment.loop, named))
+      assessment.prospects = ranked(std::move(*prospects));
   } catch (const InputError& error) {
     assessment.no_repair = error.what();
   }

@@ -1,3 +1,5 @@
+#include "analysis/experiment/repair.hpp"
+
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -10,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/findings/repair_findings.hpp"
+#include "analysis/methods/repair_prospects.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
@@ -19,7 +22,7 @@
 #include "bench/files/archive_input.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
-#include "results/assess/record_assessment.hpp"
+#include "results/assess/repair_form.hpp"
 #include "results/document/document_text.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/text/experiment_text.hpp"
@@ -40,14 +43,15 @@ struct RepairArguments {
 
 /// The repair of one experiment.
 struct Repair {
-  const ExperimentRecord* record;
+  ExperimentDraw draw;
   RepairedLoop loop;
   ChannelInformation told;
+  std::vector<RepairProspect> prospects = {};  ///< ranked(); of one experiment in full
 };
 
-std::string channel_name(const Study& study, const Channel& channel) {
-  return fmt::format("{}/{}", study.plant.cvs[static_cast<std::size_t>(channel.cv)].name,
-                     study.plant.mvs[static_cast<std::size_t>(channel.mv)].name);
+std::vector<std::string> worsened(const Study& study, const Repair& repair) {
+  return worsened_cvs(study, repair.loop.now, repair.loop.predicted,
+                      prospect_of(repair.prospects, repair.loop.repair.channel));
 }
 
 /// "y2/u1"
@@ -88,62 +92,70 @@ std::size_t method_of(const Campaign& campaign, const std::string& name) {
                      : fmt::format("{}", fmt::join(naming, ", ")));
 }
 
-Repair repaired(const Campaign& campaign, const ExperimentRecord& record, const Channel& channel,
-                const QpSolverFactory& factory) {
+/// What is repaired in an experiment, by the channel that the user asks for or the answer of a method.
+struct ChannelChoice {
+  std::optional<Channel> asked;
+  std::size_t method = 0;  ///< place in the assessments of a record; when no channel is asked for
+
+  bool names(const ExperimentRecord& record) const {
+    return asked || channel_to_repair(record.assessments[method]).has_value();
+  }
+  std::optional<ChannelRepair> of(const Campaign& campaign, const ExperimentRecord& record,
+                                  const AssessedLoop& loop) const {
+    const OperatingPoint& point = campaign.basis.point;
+    if (asked)
+      return identified_channel(campaign.study, point, loop, *asked);
+    return channel_repair(campaign.study, point, loop, record.assessments[method]);
+  }
+};
+
+AssessedLoop loop_of(const Campaign& campaign, const ExperimentRecord& record,
+                     const QpSolverFactory& factory) {
   const Study& study = campaign.study;
   const Trajectory trajectory =
       record.loop ? record.loop->trajectory : simulate_experiment(study, record.draw, factory);
-  const AssessedLoop loop =
-      assessed_loop(study, campaign.basis.point, recorded(study, record.draw.index, trajectory));
-  return {&record, repaired_loop(study, campaign.basis.point, record.draw, loop, channel, factory),
-          channel_information(study, loop, channel, study.assessment.model_error)};
+  return assessed_loop(study, campaign.basis.point, recorded(study, record.draw.index, trajectory));
 }
 
-Json json_of(const FittedNumber& number) {
-  return {{"value", number.value},
-          {"lower", number.lower},
-          {"upper", number.upper},
-          {"bound", to_string(number.bound)}};
+Repair repaired(const Campaign& campaign, const ExperimentRecord& record, const AssessedLoop& loop,
+                const ChannelRepair& repair, const QpSolverFactory& factory) {
+  const Study& study = campaign.study;
+  return {record.draw, repaired_loop(study, campaign.basis.point, record.draw, loop, repair, factory),
+          channel_information(study, loop, repair.channel, study.assessment.model_error)};
 }
 
 Json json_of(const Eigen::VectorXd& variances) {
   return std::vector<double>(variances.begin(), variances.end());
 }
 
-Json json_of(const Study& study, const Repair& repair) {
-  const ChannelFit& fit = repair.loop.fit;
-  return {{"index", repair.record->draw.index},
-          {"kind", to_string(repair.record->draw.kind)},
-          {"channel", channel_name(study, repair.loop.channel)},
-          {"gain_factor", json_of(fit.gain_factor)},
-          {"time_factor", json_of(fit.time_factor)},
-          {"dead_time_shift", json_of(fit.dead_time_shift)},
-          {"explained", fit.explained},
-          {"rank", repair.told.rank},
-          {"condition", std::isfinite(repair.told.condition) ? Json(repair.told.condition) : Json()},
-          {"worsens", worsened_cvs(study, repair.loop.now, repair.loop.predicted)},
-          {"variance",
-           {{"now", json_of(repair.loop.now)},
-            {"predicted", json_of(repair.loop.predicted)},
-            {"repaired", json_of(repair.loop.repaired)},
-            {"perfect", json_of(repair.loop.perfect)}}}};
+Json heading_json(const ExperimentDraw& draw) {
+  return {{"index", draw.index}, {"kind", to_string(draw.kind)}};
 }
 
-std::string text_of(const FittedNumber& number) {
-  return estimate_text(number.value, number.lower, number.upper, number.bound);
+Json json_of(const Study& study, const Repair& repair) {
+  Json json = heading_json(repair.draw);
+  json["channel"] = channel_name(study, repair.loop.repair.channel);
+  json.update(repair_json(repair.loop.repair));
+  json["information"] = information_json(repair.told);
+  json["worsens"] = worsened(study, repair);
+  json["variance"] = {{"now", json_of(repair.loop.now)},
+                      {"predicted", json_of(repair.loop.predicted)},
+                      {"repaired", json_of(repair.loop.repaired)},
+                      {"perfect", json_of(repair.loop.perfect)}};
+  return json;
 }
 
 /// One repair in full.
 std::string text_of(const Study& study, const Repair& repair) {
   const RepairedLoop& loop = repair.loop;
-  const FittedNumber& shift = loop.fit.dead_time_shift;
-  std::string text = fmt::format(
-      "{}\nchannel {}, identified again: gain x {}, time constants x {}, dead time {}\n"
-      "{:.0f} % of the error of its CV is explained by it\n{}\n\n",
-      experiment_title(study, repair.record->draw), channel_name(study, loop.channel),
-      text_of(loop.fit.gain_factor), text_of(loop.fit.time_factor),
-      dead_time_text(shift.value, shift.lower, shift.upper, shift.bound, study.plant.time_unit),
-      100.0 * loop.fit.explained, information_sentence(study, loop.channel, repair.told));
+  std::string text =
+      fmt::format("channel {}, {}: {}\n", channel_name(study, loop.repair.channel),
+                  loop.repair.named ? "corrected by the size that the method names" : "identified again",
+                  correction_text(study, loop.repair));
+  if (!std::isnan(loop.repair.explained))
+    text +=
+        fmt::format("{:.0f} % of the error of its CV is explained by it\n", 100.0 * loop.repair.explained);
+  text += information_sentence(study, loop.repair.channel, repair.told) + "\n\n";
   Table table("", {{"variance", Table::Align::left}, {"now"}, {"predicted"}, {"repaired"}, {"perfect"}});
   const auto cell = [](const Eigen::VectorXd& variances, Eigen::Index cv) {
     return Number{variances.size() == 0 ? kNaN : variances(cv)};
@@ -151,7 +163,7 @@ std::string text_of(const Study& study, const Repair& repair) {
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
     table.row({as_label(cv_name(study, cv)), cell(loop.now, cv), cell(loop.predicted, cv),
                cell(loop.repaired, cv), cell(loop.perfect, cv)});
-  const std::vector<std::string> worse = worsened_cvs(study, loop.now, loop.predicted);
+  const std::vector<std::string> worse = worsened(study, repair);
   const std::string advice =
       worse.empty()
           ? ""
@@ -160,7 +172,7 @@ std::string text_of(const Study& study, const Repair& repair) {
   return fmt::format(
       "{}{}\n{}now: the controller as it is; predicted: what the repaired model promises, from the record "
       "alone;\n"
-      "repaired: with the repaired model on the plant; perfect: with the plant itself as its model\n",
+      "repaired: with the repaired model on the plant; perfect: with the plant itself as its model\n\n",
       text, table_text(table), advice);
 }
 
@@ -169,7 +181,7 @@ std::vector<RepairOutcome> outcomes_of(const std::vector<Repair>& repairs) {
   std::vector<RepairOutcome> outcomes;
   for (const Repair& repair : repairs)
     if (repair.loop.compares())
-      outcomes.push_back({repair.record->draw.index, target_of(repair.record->draw, repair.loop.channel),
+      outcomes.push_back({repair.draw.index, target_of(repair.draw, repair.loop.repair.channel),
                           repair.loop.loss_now(), repair.loop.loss_repaired()});
   return outcomes;
 }
@@ -207,17 +219,6 @@ std::string text_of(const std::vector<RepairFindings>& findings) {
   return table_text(table);
 }
 
-/// The channel of an experiment that is to be repaired: the one that the user asks for, or that the method
-/// names.
-struct ChannelChoice {
-  std::optional<Channel> asked;
-  std::size_t method = 0;  ///< place in the assessments of a record; when no channel is asked for
-
-  std::optional<Channel> in(const ExperimentRecord& record) const {
-    return asked ? asked : channel_to_repair(record.assessments[method]);
-  }
-};
-
 ChannelChoice chosen(const Campaign& campaign, const RepairArguments& options) {
   if (options.channel.empty())
     return {.asked = {}, .method = method_of(campaign, options.method)};
@@ -231,21 +232,37 @@ void repair_one(const Campaign& campaign, std::int64_t index, const ChannelChoic
   if (record.status != ExperimentStatus::ok)
     throw InputError("--index", fmt::format("{}, which did not run to its end", index),
                      "an experiment that did");
-  const std::optional<Channel> channel = choice.in(record);
-  if (!channel)
-    throw InputError("--index",
-                     fmt::format("{}, in which {} names no channel", index,
-                                 campaign.methods[choice.method].form->method().name),
-                     "another experiment, or --channel");
-  const Repair done = repaired(campaign, record, *channel, qp_solver_factory(campaign.info.solver));
-  print_result(json ? json_of(campaign.study, done).dump(2) + "\n" : text_of(campaign.study, done));
+  const Study& study = campaign.study;
+  const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
+  const AssessedLoop loop = loop_of(campaign, record, factory);
+  const std::optional<ChannelRepair> repair = choice.of(campaign, record, loop);
+  const auto prospects = ranked(RepairProspects(study, campaign.basis.point, factory)
+                                    .of(loop, repair ? std::optional(repair->repaired()) : std::nullopt)
+                                    .value_or(std::vector<RepairProspect>{}));
+  std::optional<Repair> done;
+  if (repair) {
+    done = repaired(campaign, record, loop, *repair, factory);
+    done->prospects = prospects;
+  }
+  if (json) {
+    Json all = done ? json_of(study, *done) : heading_json(record.draw);
+    all["candidates"] = prospects_json(study, prospects);
+    print_result(all.dump(2) + "\n");
+    return;
+  }
+  print_result(fmt::format(
+      "{}\n{}{}", experiment_title(study, record.draw),
+      done ? text_of(study, *done)
+           : fmt::format("{} names no channel\n\n", campaign.methods[choice.method].form->method().name),
+      prospects.empty() ? "No channel has an error that shows in the record.\n"
+                        : table_text(prospects_table(study, prospects))));
 }
 
 /// The repairs of all experiments in which a channel is named; of a changed tuning the model is not to be.
 std::vector<Repair> all_repaired(const Campaign& campaign, const ChannelChoice& choice, bool quiet) {
   const auto is_named = [&choice](const ExperimentRecord& record) {
     return record.status == ExperimentStatus::ok && record.draw.kind != ExperimentKind::tuning &&
-           choice.in(record);
+           choice.names(record);
   };
   std::int64_t named = 0;
   records_of(campaign).each([&](const ExperimentRecord& record) { named += is_named(record) ? 1 : 0; });
@@ -258,7 +275,8 @@ std::vector<Repair> all_repaired(const Campaign& campaign, const ChannelChoice& 
       return;
     progress.end_when_requested();
     try {
-      repairs.push_back(repaired(campaign, record, *choice.in(record), factory));
+      const AssessedLoop loop = loop_of(campaign, record, factory);
+      repairs.push_back(repaired(campaign, record, loop, *choice.of(campaign, record, loop), factory));
       progress.advance();
     } catch (const InputError& error) {  // one channel that cannot be identified does not cost the others
       progress.warn(fmt::format("experiment {}: {}", record.draw.index, error.what()));
@@ -307,12 +325,14 @@ void add_repair(CommandSet& commands) {
   const auto options = std::make_shared<RepairArguments>();
   CLI::App& app = commands.add(
       "repair",
-      "Identify the channel that a method names again, and predict what the repaired controller brings",
+      "Correct the channel that a method names, predict what the repaired controller brings, and rank the "
+      "channels by it",
       [options] { return repair(*options); });
   add_archive(app, options->archive);
   add_trust(app);
-  app.add_option("--index", options->index,
-                 "Show one experiment in full (default: all in which a channel is named)")
+  app.add_option(
+         "--index", options->index,
+         "Show one experiment in full, with its channels ranked (default: all in which a channel is named)")
       ->check(whole_number(0, 1000000000));
   app.add_option("--method", options->method,
                  "Method that names the channel (default: the first of the archive that names mismatches, or "

@@ -139,7 +139,7 @@ class Archive:
             return Comparison(said, Archive(output), [each.name for each in functions], broker.seconds)
 
     def repair(self, index, **options):
-        """The channel that a method names in an experiment, identified again, and what the repaired controller brings."""
+        """The channel that a method names in an experiment, corrected, and what the repaired controller brings."""
         return Repair(run_program(["repair", self.path, "--index", index, "--json", *words.options(options)], quiet=True),
                       self.context)
 

@@ -98,30 +98,23 @@ def roc(comparison, truth="impact", highlight=()):
 
 
 def steps(repair):
-    """Step responses of a channel: the model of the controller, and the one identified again."""
+    """Step responses of a channel: the model of the controller, and the corrected one."""
     channel = next(each for each in repair.context["model"]["transfer_functions"]
                    if (each["cv"], each["input"]) == (repair.cv, repair.mv))
-    gain, factor, shift = (repair.json[key]["value"] for key in ("gain_factor", "time_factor", "dead_time_shift"))
-    old = channel["numerator"], channel["denominator"], channel["dead_time"]
-    new_one = scaled(channel["numerator"], factor, gain), scaled(channel["denominator"], factor), channel["dead_time"] + shift
+    old, new_one = ((of["numerator"], of["denominator"], of["dead_time"])
+                    for of in (channel, repair.json["transfer_function"]))
     slowest = max(settling_time(each) for each in (old, new_one))
     time = numpy.linspace(0, slowest, 400)
     figure, axes = new(1, 1, size=(6, 3))
     axis = axes[0, 0]
     axis.plot(time, step_response(*old, time), "--", color=MEASURED, linewidth=1.4, label="model of the controller")
-    axis.plot(time, step_response(*new_one, time), color=OWN, linewidth=1.4, label="identified again")
+    axis.plot(time, step_response(*new_one, time), color=OWN, linewidth=1.4, label="corrected")
     units = {each["name"]: each["unit"] for kind in ("cvs", "mvs") for each in repair.context[kind]}
     axis.set_xlabel(f"time [{repair.context['time_unit']}]", fontsize=9)
     axis.set_ylabel(f"{repair.cv} [{units[repair.cv]}]", fontsize=9)
     axis.set_title(f"Unit step of {repair.mv}", fontsize=10)
     axis.legend(frameon=False, fontsize=8)
     return figure
-
-
-def scaled(coefficients, time_factor, gain=1.0):
-    """A polynomial in s, highest power first, with every time constant times a factor."""
-    powers = numpy.arange(len(coefficients))[::-1]
-    return gain * numpy.asarray(coefficients, float) * time_factor ** powers
 
 
 def settling_time(channel):

@@ -173,7 +173,7 @@ class Assessment:
 
     @functools.cached_property
     def repair(self):
-        """The channel that the verdict names, identified again; None where it names none."""
+        """The channel that the verdict names, corrected; None where it names none."""
         if self.json.get("repair") is None:
             return None
         from .commands import context
@@ -188,15 +188,16 @@ class Assessment:
 
 
 class Repair:
-    """A channel of the model that was identified again. `cv`, `mv` name it; `gain_factor`, `time_factor` and
-    `dead_time_shift` have `value`, `lower`, `upper`; `variance` has those of the CVs `now`, `predicted` and so on."""
+    """A channel of the model that was corrected. `cv`, `mv` name it; `gain_factor`, `time_factor` and `dead_time_shift`
+    have `value`, `lower`, `upper`; `variance` has those of the CVs `now`, `predicted` and so on. All are None of an
+    experiment in which no channel is named. `json["candidates"]` ranks the channels by what their repair brings."""
 
     def __init__(self, text, context):
         self.json, self.context = json.loads(text), context
         channel = self.json.get("channel")
-        self.cv, self.mv = channel.split("/") if channel else (self.json["cv"], self.json["mv"])
+        self.cv, self.mv = channel.split("/") if channel else (self.json.get("cv"), self.json.get("mv"))
         self.gain_factor, self.time_factor, self.dead_time_shift, self.variance = (
-            self.json[key] for key in ("gain_factor", "time_factor", "dead_time_shift", "variance"))
+            self.json.get(key) for key in ("gain_factor", "time_factor", "dead_time_shift", "variance"))
 
     def plot(self):
         """Step responses of the channel, old and new, as a figure of matplotlib."""
@@ -204,6 +205,8 @@ class Repair:
         return figures.steps(self)
 
     def __repr__(self):
+        if self.cv is None:
+            return "<mpmbench.Repair: no channel is named>"
         factors = (f"gain x {self.gain_factor['value']:.3g}", f"time constants x {self.time_factor['value']:.3g}",
                    f"dead time {self.dead_time_shift['value']:+.3g}")
         return f"<mpmbench.Repair of {self.cv}/{self.mv}: {', '.join(factors)}>"

@@ -11,6 +11,7 @@
 #include "plants/linear/settling_time.hpp"
 #include "plants/non_finite.hpp"
 #include "results/assess/record_assessment.hpp"
+#include "results/assess/repair_form.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/trajectory_figure.hpp"
@@ -21,10 +22,6 @@ namespace {
 
 Cell word(double flag) {
   return std::isnan(flag) ? Cell("-") : flag == 1.0 ? Cell("yes").toned(Cell::Tone::strong) : Cell("no");
-}
-
-std::string source_words(FaultSource source) {
-  return source == FaultSource::none ? "-" : source_name(source);
 }
 
 std::string paragraph_of(const std::vector<std::string>& sentences) {
@@ -138,29 +135,29 @@ Section cvs_section(const RecordAssessment& of) {
     std::vector<Cell> cells = {as_label(cv_name(of.study, cv)),
                                Number{number_of_cv(of.verdict(), "ivar", cv), NumberForm::fixed}};
     if (has_fault)
-      cells.insert(cells.end(), {word(number_of_cv(of.verdict(), "cv_flagged", cv)),
-                                 source_words(source_of_cv(of.verdict(), cv)),
-                                 Number{number_of_cv(of.verdict(), "cv_score", cv), NumberForm::fixed}});
+      cells.insert(cells.end(),
+                   {word(number_of_cv(of.verdict(), "cv_flagged", cv)),
+                    as_label(source_words(of.study, of.verdict(), source_of_cv(of.verdict(), cv))),
+                    Number{number_of_cv(of.verdict(), "cv_score", cv), NumberForm::fixed}});
     table.row(std::move(cells));
   }
   section.add(std::move(table));
   return section;
 }
 
-/// The CV's answer to a step of the MV by the model, and by the channel identified again.
+/// The CV's answer to a step of the MV by the model, and by the corrected channel.
 Figure step_figure(const RecordAssessment& of) {
   constexpr double kHeight = 220;
   constexpr double kSettled = 1.5;  // times the settling time of the slower one
   const Pen old{colour::kVermillion, Dash::dashed, Mark::none, 1.5};
-  const Pen identified{colour::kBlack, Dash::solid, Mark::none, 2.0};
-  const PromisedRepair& repair = *of.repair;
+  const Pen corrected{colour::kBlack, Dash::solid, Mark::none, 2.0};
+  const ChannelRepair& repair = of.repair->repair;
   const TransferFunction& model = of.study.plant.G(repair.channel.cv, repair.channel.mv);
   const double Ts = of.study.controller.sample_time;
-  const double settled = std::max(settling_time(model), settling_time(repair.fit.channel));
+  const double settled = std::max(settling_time(model), settling_time(repair.model));
   const auto samples =
       static_cast<Eigen::Index>(std::clamp(std::ceil(kSettled * settled / Ts), 10.0, 2000.0));
-  const std::string channel =
-      fmt::format("{}/{}", cv_name(of.study, repair.channel.cv), mv_name(of.study, repair.channel.mv));
+  const std::string channel = channel_name(of.study, repair.channel);
   PanelScript panel("step", as_label(channel), {.label = as_label(of.study.plant.time_unit)}, {.label = ""});
   const auto draw = [&](const TransferFunction& of_channel, const Pen& pen) {
     const Eigen::RowVectorXd y = step_response(TransferMatrix{{of_channel}}, Ts, samples).front().row(0);
@@ -170,13 +167,13 @@ Figure step_figure(const RecordAssessment& of) {
     panel.line(time, {y.begin(), y.end()}, pen);
   };
   draw(model, old);
-  draw(repair.fit.channel, identified);
+  draw(repair.model, corrected);
   Figure figure;
   figure.name = "step-response";
-  figure.caption = fmt::format("Step response of {}: in the model, and identified again", as_label(channel));
-  figure.legend = {{"model", old}, {"identified again", identified}};
-  figure.panels.push_back(panel.finish(
-      fmt::format("Step response of {} in the model and as identified again.", channel), kHeight));
+  figure.caption = fmt::format("Step response of {}: in the model, and corrected", as_label(channel));
+  figure.legend = {{"model", old}, {"corrected", corrected}};
+  figure.panels.push_back(
+      panel.finish(fmt::format("Step response of {} in the model and corrected.", channel), kHeight));
   figure.columns = 1;
   return figure;
 }
@@ -211,17 +208,20 @@ Figure trend_figure(const RecordAssessment& of, const Eigen::RowVectorXd& scores
 
 Section repair_section(const RecordAssessment& of) {
   Section section{"repair", "What a repair would bring"};
-  if (!of.repair || of.repair->now.size() == 0 || of.repair->predicted.size() == 0)
-    return section;
-  Table table("Variances of the CVs: with the model as it is, and with the channel identified again",
-              {{"CV", Table::Align::left}, {"now"}, {"after the repair"}, {"change, %"}});
-  for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv) {
-    const double now = of.repair->now(cv), then = of.repair->predicted(cv);
-    table.row({as_label(cv_name(of.study, cv)), Number{now}, Number{then},
-               fmt::format("{:+.0f}", 100.0 * (then / now - 1.0))});
+  if (!of.prospects.empty())
+    section.add(prospects_table(of.study, of.prospects));
+  if (of.repair && of.repair->now.size() > 0 && of.repair->predicted.size() > 0) {
+    Table table(fmt::format("Variances of the CVs: with the model as it is, and with {} corrected",
+                            as_label(channel_name(of.study, of.repair->repair.channel))),
+                {{"CV", Table::Align::left}, {"now"}, {"after the repair"}, {"change, %"}});
+    for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv) {
+      const double now = of.repair->now(cv), then = of.repair->predicted(cv);
+      table.row({as_label(cv_name(of.study, cv)), Number{now}, Number{then},
+                 fmt::format("{:+.0f}", 100.0 * (then / now - 1.0))});
+    }
+    section.add(std::move(table));
+    section.add(step_figure(of));
   }
-  section.add(std::move(table));
-  section.add(step_figure(of));
   return section;
 }
 
@@ -261,7 +261,7 @@ Section trust_section(const RecordAssessment& of) {
     std::vector<Cell> cells{
         name, said.answered() ? word(flagged ? 1.0 : 0.0) : Cell(std::string(to_string(said.status))),
         Number{said.score}, flagged ? as_label(cv_name(of.study, said.predicted_cv)) : "-",
-        flagged ? source_words(named_source(said)) : "-"};
+        flagged ? as_label(source_words(of.study, said, named_source(said))) : "-"};
     if (of.trial)
       cells.emplace_back(Number{of.trial->methods[m].threshold});
     if (of.trial)

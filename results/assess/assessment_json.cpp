@@ -5,6 +5,7 @@
 
 #include "analysis/experiment/judgement.hpp"
 #include "results/assess/record_assessment.hpp"
+#include "results/assess/repair_form.hpp"
 #include "results/text/experiment_text.hpp"
 #include "results/text/number_json.hpp"
 
@@ -74,6 +75,8 @@ Json method_json(const RecordAssessment& of, std::size_t m) {
                    ? Json(cv_name(of.study, said.predicted_cv))
                    : Json();
   json["source"] = to_string(named_source(said));
+  const std::string valve = named_source(said) == FaultSource::other ? stuck_mv(of.study, said) : "";
+  json["valve"] = valve.empty() ? Json() : Json(valve);
   const auto named = said.named_mismatch();
   json["mismatch"] = named ? named_json(of.study, *named) : Json();
   json["cvs"] = cvs_json(of, said);
@@ -82,50 +85,25 @@ Json method_json(const RecordAssessment& of, std::size_t m) {
   return json;
 }
 
-Json fitted_json(const FittedNumber& number) {
-  return {{"value", number.value},
-          {"lower", number.lower},
-          {"upper", number.upper},
-          {"bound", to_string(number.bound)}};
-}
-
-Json information_json(const std::optional<ChannelInformation>& told) {
-  if (!told)
-    return {};
-  Json alike = Json::array();
-  for (const MismatchParameter parameter : told->alike)
-    alike.push_back(to_string(parameter));
-  return {{"parameters", told->parameters},
-          {"rank", told->rank},
-          {"condition", std::isfinite(told->condition) ? Json(told->condition) : Json()},
-          {"alike", alike}};
-}
-
 /// Probabilities of the kinds of fault, given one; null without an answer.
-Json odds_json(const AssessmentRecord& odds) {
-  if (!odds.answered())
+Json odds_json(const std::optional<FaultOdds>& odds) {
+  if (!odds)
     return {};
-  const double fault = 1.0 - odds.number("p_healthy");
-  return {{"mpm", odds.number("p_mpm") / fault},
-          {"ud", odds.number("p_ud") / fault},
-          {"mpm_ud", odds.number("p_both") / fault}};
+  return {{"mpm", odds->mpm}, {"ud", odds->ud}, {"mpm_ud", odds->mpm_ud}, {"other", odds->other}};
 }
 
-Json repair_json(const RecordAssessment& of) {
-  const Study& study = of.study;
-  const PromisedRepair& repair = *of.repair;
+Json promise_json(const RecordAssessment& of) {
+  const PromisedRepair& promised = *of.repair;
   const auto variances = [](const Eigen::VectorXd& all) {
     return std::vector<double>(all.begin(), all.end());
   };
-  return {{"cv", cv_name(study, repair.channel.cv)},
-          {"mv", mv_name(study, repair.channel.mv)},
-          {"parameter", repair.only ? Json(to_string(*repair.only)) : Json()},
-          {"gain_factor", fitted_json(repair.fit.gain_factor)},
-          {"time_factor", fitted_json(repair.fit.time_factor)},
-          {"dead_time_shift", fitted_json(repair.fit.dead_time_shift)},
-          {"variance", {{"now", variances(repair.now)}, {"predicted", variances(repair.predicted)}}},
-          {"worsens", worsened_cvs(study, repair.now, repair.predicted)},
-          {"information", information_json(of.information)}};
+  Json json{{"cv", cv_name(of.study, promised.repair.channel.cv)},
+            {"mv", mv_name(of.study, promised.repair.channel.mv)}};
+  json.update(repair_json(promised.repair));
+  json["variance"] = {{"now", variances(promised.now)}, {"predicted", variances(promised.predicted)}};
+  json["worsens"] = worsened_by_repair(of);
+  json["information"] = of.information ? information_json(*of.information) : Json();
+  return json;
 }
 
 /// Numbers of the MVs; null where there is none.
@@ -165,10 +143,11 @@ std::string assessment_json(const RecordAssessment& assessment) {
             {"methods", Json::array()}};
   for (std::size_t m = 0; m < assessment.said.size(); ++m)
     json["methods"].push_back(method_json(assessment, m));
-  json["probabilities"] = odds_json(assessment.odds);
+  json["probabilities"] = odds_json(assessment.fault_odds());
   json["model"] = model_json(assessment);
   json["controller"] = controller_json(assessment);
-  json["repair"] = assessment.repair ? repair_json(assessment) : Json();
+  json["repair"] = assessment.repair ? promise_json(assessment) : Json();
+  json["candidates"] = prospects_json(assessment.study, assessment.prospects);
   json["trial"] = assessment.trial
                       ? Json{{"loops", assessment.trial->loops}, {"archive", assessment.trial->archive}}
                       : Json{{"loops", 0}, {"why", assessment.no_trial}};

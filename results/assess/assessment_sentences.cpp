@@ -6,8 +6,8 @@
 #include <fmt/ranges.h>
 
 #include "analysis/experiment/judgement.hpp"
-#include "analysis/findings/repair_findings.hpp"
 #include "results/assess/record_assessment.hpp"
+#include "results/assess/repair_form.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {
@@ -52,26 +52,26 @@ std::string flag_sentence(const RecordAssessment& of) {
   return fmt::format("Something is wrong with this loop, says {}{}.", name, costs_text(of));
 }
 
-/// The mismatch without its size where the repair beside it says that: the same record gives one number.
+/// The mismatch without its size where the repair beside it identifies that again: one record, one number.
 NamedMismatch told_once(const RecordAssessment& of, NamedMismatch named) {
-  if (of.repair && of.repair->only && *of.repair->only == named.parameter &&
-      of.repair->channel == named.channel)
+  if (of.repair && !of.repair->repair.named)
     named.size = named.lower = named.upper = kNaN;
   return named;
 }
 
-/// How probable mismatch and disturbance are, given a fault.
+/// How probable mismatch, disturbance and valve are, given a fault.
 void add_odds(const RecordAssessment& of, Texts& sentences) {
-  const double fault = 1.0 - of.odds.number("p_healthy");
-  if (!of.odds.answered() || fault <= 0.0)
+  const std::optional<FaultOdds> odds = of.fault_odds();
+  if (!odds)
     return;
-  const auto percent = [&](const char* name) {
-    return 100.0 * (of.odds.number(name) + of.odds.number("p_both")) / fault;
-  };
+  const std::string valve = odds->other < 0.005
+                                ? ""
+                                : fmt::format(", a valve that sticks ({}) with {:.0f} %",
+                                              stuck_mv(of.study, of.odds), 100.0 * odds->other);
   sentences.push_back(fmt::format(
       "Given a fault, the likelihood sees a mismatch with a probability of {:.0f} %, a disturbance with "
-      "{:.0f} %{}.",
-      percent("p_mpm"), percent("p_ud"),
+      "{:.0f} %{}{}.",
+      100.0 * (odds->mpm + odds->mpm_ud), 100.0 * (odds->ud + odds->mpm_ud), valve,
       of.model_error > 0.0
           ? fmt::format(" (errors of the model of {:.3g} % are integrated out)", 100.0 * of.model_error)
           : std::string()));
@@ -97,6 +97,12 @@ void add_source(const RecordAssessment& of, Texts& sentences) {
           fmt::format("It is at {}: most likely a model-plant mismatch and an unmeasured disturbance.", cv));
       break;
     case FaultSource::other:
+      if (const std::string mv = stuck_mv(of.study, said); !mv.empty()) {
+        sentences.push_back(fmt::format(
+            "It is at {}, and most likely neither the model nor a disturbance: the valve of {} sticks.", cv,
+            mv));
+        break;
+      }
       sentences.push_back(fmt::format(
           "It is at {}, and it is neither the model nor a disturbance: a sensor, a valve, a limit or an "
           "operator.",
@@ -116,10 +122,11 @@ void add_other_cvs(const RecordAssessment& of, Texts& sentences) {
   Texts others;
   for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
     if (cv != of.verdict().predicted_cv && number_of_cv(of.verdict(), "cv_flagged", cv) == 1.0)
-      others.push_back(fmt::format("{} ({})", cv_name(of.study, cv),
-                                   source_of_cv(of.verdict(), cv) == FaultSource::none
-                                       ? "source not told"
-                                       : source_name(source_of_cv(of.verdict(), cv))));
+      others.push_back(
+          fmt::format("{} ({})", cv_name(of.study, cv),
+                      source_of_cv(of.verdict(), cv) == FaultSource::none
+                          ? "source not told"
+                          : source_words(of.study, of.verdict(), source_of_cv(of.verdict(), cv))));
   if (!others.empty())
     sentences.push_back(fmt::format("Flagged as well: {}.", fmt::join(others, ", ")));
 }
@@ -137,30 +144,12 @@ void add_candidates(const RecordAssessment& of, Texts& sentences) {
                                     fmt::join(named, ", ")));
 }
 
-std::string number_text(const FittedNumber& number) {
-  return estimate_text(number.value, number.lower, number.upper, number.bound);
-}
-
-/// What was fitted: the parameter that the verdict names, or all of the channel.
-std::string fitted_text(const Study& study, const PromisedRepair& repair) {
-  const ChannelFit& fit = repair.fit;
-  const FittedNumber& shift = fit.dead_time_shift;
-  const std::string gain = fmt::format("{} times the gain", number_text(fit.gain_factor));
-  const std::string time = fmt::format("{} times the time constants", number_text(fit.time_factor));
-  const std::string dead_time = "a dead time " + dead_time_text(shift.value, shift.lower, shift.upper,
-                                                                shift.bound, study.plant.time_unit);
-  if (!repair.only)
-    return fmt::format("{}, {} and {}", gain, time, dead_time);
-  const std::string& named = *repair.only == MismatchParameter::gain            ? gain
-                             : *repair.only == MismatchParameter::time_constant ? time
-                                                                                : dead_time;
-  return named + ", all else as in the model";
-}
-
-std::string parameter_words(MismatchParameter parameter) {
-  return parameter == MismatchParameter::gain            ? "gain"
-         : parameter == MismatchParameter::time_constant ? "time constants"
-                                                         : "dead time";
+/// "take away 23 % of what the loop costs, more than 10 % with a probability of 88 %"
+std::string gain_text(const RecordAssessment& of, const RepairProspect& prospect) {
+  const double worth = of.study.assessment.of<AdequacyOptions>().worth;
+  return fmt::format(
+      "take away {:.0f} % of what the loop costs, more than {:g} % with a probability of {:.0f} %",
+      100.0 * prospect.gain(), 100.0 * worth, 100.0 * prospect.probability_above(worth));
 }
 
 void add_repair(const RecordAssessment& of, Texts& sentences) {
@@ -168,19 +157,47 @@ void add_repair(const RecordAssessment& of, Texts& sentences) {
     sentences.push_back(fmt::format("What a repair would bring is not known: {}.", of.no_repair));
   if (!of.repair)
     return;
-  const PromisedRepair& repair = *of.repair;
-  std::string text =
-      fmt::format("Identified again from this record, {}/{} has {}", cv_name(of.study, repair.channel.cv),
-                  mv_name(of.study, repair.channel.mv), fitted_text(of.study, repair));
+  const ChannelRepair& repair = of.repair->repair;
+  const std::string name = channel_name(of.study, repair.channel);
+  if (!repair.named)
+    sentences.push_back(fmt::format("Identified again from this record, {} has {}.", name,
+                                    correction_text(of.study, repair)));
   Texts changes;
-  if (repair.now.size() > 0 && repair.predicted.size() > 0)
+  if (of.repair->now.size() > 0 && of.repair->predicted.size() > 0)
     for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv)
       changes.push_back(fmt::format("{} {:+.0f} %", cv_name(of.study, cv),
-                                    100.0 * (repair.predicted(cv) / repair.now(cv) - 1.0)));
-  sentences.push_back(changes.empty()
-                          ? text + "; the loop with it does not run to its end."
-                          : fmt::format("{}. With it in the controller the variances would change: {}.", text,
-                                        fmt::join(changes, ", ")));
+                                    100.0 * (of.repair->predicted(cv) / of.repair->now(cv) - 1.0)));
+  sentences.push_back(
+      changes.empty()
+          ? fmt::format("With {} corrected in the controller the loop does not run to its end.", name)
+          : fmt::format("With {} corrected in the controller the variances would change: {}.", name,
+                        fmt::join(changes, ", ")));
+  if (const RepairProspect* const prospect = of.named_prospect(); prospect && prospect->gain() > 0.0)
+    sentences.push_back(fmt::format("This is expected to {}.", gain_text(of, *prospect)));
+}
+
+/// What to do about the channel that the verdict names.
+void add_advice(const RecordAssessment& of, Texts& sentences) {
+  const RepairProspect* const prospect = of.named_prospect();
+  if (const Texts worse = worsened_by_repair(of); !worse.empty())
+    sentences.push_back(fmt::format(
+        "Do not put this channel into the controller: {} would vary more with it.", fmt::join(worse, ", ")));
+  else if (prospect && !prospect->is_proposed())
+    sentences.emplace_back("Leave this channel as it is: its repair is expected to take away no cost.");
+  else
+    sentences.emplace_back("Test this channel on the plant, and put it into the model if the test agrees.");
+}
+
+/// The channel whose repair brings most, where that is not the one that the verdict names and is worth it.
+void add_best_prospect(const RecordAssessment& of, Texts& sentences) {
+  const auto& options = of.study.assessment.of<AdequacyOptions>();
+  const auto best = std::find_if(of.prospects.begin(), of.prospects.end(),
+                                 [](const RepairProspect& prospect) { return prospect.is_proposed(); });
+  if (best != of.prospects.end() && &*best != of.named_prospect() &&
+      best->probability_above(options.worth) > options.probability)
+    sentences.push_back(
+        fmt::format("Of all repairs that worsen no CV, that of {} would bring most: it is expected to {}.",
+                    channel_name(of.study, best->repair.channel), gain_text(of, *best)));
 }
 
 /// "2.31, and the threshold 0.85: 3 of 100 simulated records without a fault score as high".
@@ -251,16 +268,24 @@ void add_to_do(const RecordAssessment& of, Texts& sentences) {
   }
   add_repair(of, sentences);
   if (of.repair && of.information)
-    sentences.push_back(information_sentence(of.study, of.repair->channel, *of.information));
-  if (const Texts worse = of.repair ? worsened_cvs(of.study, of.repair->now, of.repair->predicted) : Texts{};
-      !worse.empty())
-    sentences.push_back(fmt::format(
-        "Do not put this channel into the controller: {} would vary more with it.", fmt::join(worse, ", ")));
-  else if (of.repair)
-    sentences.emplace_back("Test this channel on the plant, and put it into the model if the test agrees.");
-  else if (named_source(of.verdict()) == FaultSource::ud && of.verdict().predicted_cv >= 0)
+    sentences.push_back(information_sentence(of.study, of.repair->repair.channel, *of.information));
+  if (of.repair)
+    add_advice(of, sentences);
+  add_best_prospect(of, sentences);
+  if (of.repair)
+    return;
+  const FaultSource source = named_source(of.verdict());
+  const std::string mv = stuck_mv(of.study, of.verdict());
+  if (source == FaultSource::ud)
     sentences.push_back(fmt::format("Look for what disturbs {} from outside of the loop.",
                                     cv_name(of.study, of.verdict().predicted_cv)));
+  else if (source == FaultSource::other)
+    sentences.push_back(
+        mv.empty()
+            ? "Look at sensors, valves, limits and operators of that time before the model."
+            : fmt::format("Check the valve of {} and its positioner before the model: move it in small "
+                          "steps, and see from which size on the plant answers.",
+                          mv));
 }
 
 /// By what the controller that ran may differ.
@@ -335,9 +360,11 @@ std::string mismatch_sentence(const Study& study, const NamedMismatch& named) {
                          has_size ? dead_time_text(named.size, named.lower, named.upper, named.bound, unit)
                                   : "not that of the model");
     case MismatchParameter::second_order:
-      return fmt::format("{} has a further lag of {} {}", channel, size, unit);
+      return fmt::format("{} has a further lag{}", channel,
+                         has_size ? fmt::format(" of {} {}", size, unit) : "");
     case MismatchParameter::inverse_response:
-      return fmt::format("{} has an inverse response of {} {}", channel, size, unit);
+      return fmt::format("{} has an inverse response{}", channel,
+                         has_size ? fmt::format(" of {} {}", size, unit) : "");
     case MismatchParameter::sign:
       return fmt::format("the gain of {} has the other sign in the plant", channel);
     case MismatchParameter::channel:
@@ -380,27 +407,35 @@ std::vector<std::string> controller_sentences(const RecordAssessment& of) {
       difference_sentence(of)};
 }
 
-std::vector<std::string> worsened_cvs(const Study& study, const Eigen::VectorXd& now,
-                                      const Eigen::VectorXd& then) {
-  std::vector<std::string> worse;
-  for (Eigen::Index cv = 0; cv < std::min(now.size(), then.size()); ++cv)
-    if (then(cv) > kNoticeableChange * now(cv))
-      worse.push_back(cv_name(study, cv));
-  return worse;
+std::string stuck_mv(const Study& study, const AssessmentRecord& said) {
+  const double mv = said.number("valve_mv");
+  return std::isnan(mv) ? "" : mv_name(study, static_cast<Eigen::Index>(mv));
 }
 
-std::string information_sentence(const Study& study, const Channel& channel, const ChannelInformation& told) {
-  constexpr double kActAlike = 1000.0;  // condition: a column is known from the others to 3 %
-  const std::string name = fmt::format("{}/{}", cv_name(study, channel.cv), mv_name(study, channel.mv));
-  const std::string measured =
-      fmt::format("rank {} of {}, condition {:.2g}", told.rank, told.parameters, told.condition);
-  if (told.rank == told.parameters && told.condition < kActAlike)
-    return fmt::format("The record tells the parameters of {} apart ({}).", name, measured);
-  Texts alike;
-  for (const MismatchParameter parameter : told.alike)
-    alike.push_back(parameter_words(parameter));
-  return fmt::format("The record does not tell {} of {} apart ({}): a test of the channel with steps would.",
-                     fmt::join(alike, " and "), name, measured);
+std::string source_words(const Study& study, const AssessmentRecord& said, FaultSource source) {
+  if (source == FaultSource::none)
+    return "-";
+  const std::string mv = source == FaultSource::other ? stuck_mv(study, said) : "";
+  return mv.empty() ? source_name(source) : fmt::format("valve of {}", mv);
+}
+
+std::vector<std::string> worsened_by_repair(const RecordAssessment& of) {
+  return worsened_cvs(of.study, of.repair->now, of.repair->predicted, of.named_prospect());
+}
+
+const RepairProspect* RecordAssessment::named_prospect() const {
+  return repair ? prospect_of(prospects, repair->repair.channel) : nullptr;
+}
+
+std::optional<FaultOdds> RecordAssessment::fault_odds() const {
+  if (!odds.answered())
+    return std::nullopt;
+  const FaultOdds of{odds.number("p_mpm"), odds.number("p_ud"), odds.number("p_both"),
+                     odds.number("p_other")};
+  const double fault = of.mpm + of.ud + of.mpm_ud + of.other;
+  if (!(fault > 0.0))
+    return std::nullopt;
+  return FaultOdds{of.mpm / fault, of.ud / fault, of.mpm_ud / fault, of.other / fault};
 }
 
 AssessmentText verdict_text(const RecordAssessment& of) {

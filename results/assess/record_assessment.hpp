@@ -10,6 +10,7 @@
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_record.hpp"
+#include "analysis/methods/repair_prospects.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/controller_check.hpp"
 #include "analysis/records/record_verdict.hpp"
@@ -25,6 +26,12 @@ struct RecordTrial {
   std::int64_t loops = 0;
   std::vector<TrialFindings> methods;  ///< in the order of the answers
   TrialFindings model;                 ///< of RecordAssessment::model
+};
+
+/// How probable each kind of fault is, given that there is one; they sum to 1.
+struct FaultOdds {
+  double mpm, ud, mpm_ud;
+  double other;  ///< a valve that sticks
 };
 
 /// What the methods say of a record of a plant, and what a person needs to judge it.
@@ -44,6 +51,7 @@ struct RecordAssessment {
   DataOptions data;          ///< of the study, by which the record was read
   std::optional<PromisedRepair> repair;
   std::optional<ChannelInformation> information = {};  ///< of the channel of the repair
+  std::vector<RepairProspect> prospects = {};          ///< ranked(), of a fault that may be the model's
   std::string no_repair;  ///< why there is none, of a verdict that names a channel; otherwise empty
   std::optional<RecordTrial> trial;
   std::string no_trial;  ///< why there is none
@@ -56,6 +64,10 @@ struct RecordAssessment {
   }
   RecordAnswers answers_of(std::size_t method) const;
   RecordVerdict found() const { return record_verdict(answers_of(0), controller); }
+  /// None of a record without a fault, or without an answer.
+  std::optional<FaultOdds> fault_odds() const;
+  /// Of the channel that the verdict names; null where it was not run.
+  const RepairProspect* named_prospect() const;
 };
 
 /// The verdict in sentences.
@@ -74,11 +86,12 @@ std::vector<std::string> controller_sentences(const RecordAssessment& assessment
 /// The CV that a person looks at first: that of the verdict, or the one that the model explains least.
 Eigen::Index worst_cv(const RecordAssessment& assessment);
 
-/// The CVs whose variance (ny; empty: not known) rises by more than kNoticeableChange.
-std::vector<std::string> worsened_cvs(const Study& study, const Eigen::VectorXd& now,
-                                      const Eigen::VectorXd& then);
-/// What the excitation tells of a channel, and what it does not.
-std::string information_sentence(const Study& study, const Channel& channel, const ChannelInformation& told);
+/// The MV whose valve sticks, if one does, by an answer that was asked for it; otherwise empty.
+std::string stuck_mv(const Study& study, const AssessmentRecord& said);
+/// "MPM", "valve of u2", "-" for none: a source that the answer names.
+std::string source_words(const Study& study, const AssessmentRecord& said, FaultSource source);
+/// The CVs that the repair of the verdict worsens by one of its predictions; there must be a repair.
+std::vector<std::string> worsened_by_repair(const RecordAssessment& assessment);
 
 /// The verdict, what it costs, what each method says and how far to trust it.
 Document assessment_document(const RecordAssessment& assessment);

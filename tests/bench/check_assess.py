@@ -273,6 +273,7 @@ def check_trust(bench, study):
     assert trust["rates"]["detected"]["total"] == 30 and trust["as_high"]["total"] == 30, trust
     assert trust["rates"]["detected"]["value"] > 0.4 > trust["rates"]["false_alarm_healthy"]["value"], trust
     assert first["repair"]["cv"] == "xB" and first["repair"]["mv"] == "S", first["repair"]
+    check_one_estimate(first)
     assert first["repair"]["variance"]["predicted"][1] < 0.9 * first["repair"]["variance"]["now"][1], first["repair"]
     page = (bench.folder / "page.html").read_text()
     for part in ("The verdict", "<dt>How sure</dt>", "What it costs", "How far to trust it", "<svg",
@@ -294,6 +295,40 @@ def check_trust(bench, study):
     assert "--stride: found 5 and no window" in bench.run(*words[:3], "--stride", 5, "--quiet", code=2).stderr
     text = " ".join(bench.run("assess", study, "plant.csv", "--trials", 0, "--model-error", 1, "--quiet").stdout.split())
     assert "It is at xB, and most likely the model" in text and "dead time of xB/S" in text, text
+
+
+def check_one_estimate(answer):
+    """Verdict and repair have one number, which is printed once."""
+    mismatch, repair = answer["methods"][0]["mismatch"], answer["repair"]
+    assert repair["estimated_by"] == "verdict" and repair["parameter"] == mismatch["parameter"], repair
+    assert repair["size"] == {"value": mismatch["size"], **{key: mismatch[key] for key in ("lower", "upper", "bound")}}
+    assert repair["dead_time_shift"] == repair["size"], repair  # of experiment 0
+    printed = " ".join(answer["verdict"])
+    assert printed.count(f"{mismatch['size']:.3g} (") == 1 and "Identified again" not in printed, printed
+    first = answer["candidates"][0]
+    assert (first["cv"], first["mv"], first["proposed"]) == ("xB", "S", True), answer["candidates"]
+    assert f"take away {100 * first['gain']:.0f} % of what the loop costs" in printed, printed
+
+
+def check_valve(bench, study):
+    """A valve that sticks is named by its MV, with its probability beside the others, and no channel is repaired."""
+    text = re.sub(r"(?ms)^\[experiments\].*?(?=^\[)", "", pathlib.Path(study).read_text())
+    (bench.folder / "valve.toml").write_text(
+        f"{text}\n[experiments]\nmpm = 0\nud = 0\nmpm_ud = 0\nother = 2\n[other]\nweights = {{stiction = 1}}\n"
+        "valve = {constant = 0.1}\njump = {constant = 0.7}\n")
+    bench.run("run", "valve.toml", "--methods", "order", "--store", "all", "-o", "valve.h5", "--quiet")
+    told = list(csv.DictReader(bench.run("export", "valve.h5", "--table", "experiments").stdout.splitlines()))
+    for index in range(2):
+        bench.run("export", "valve.h5", "--table", "loops", "--index", index, "-o", "valve.csv")
+        answer = json.loads(bench.run("assess", study, "valve.csv", "--trials", 0, "--json", "--quiet").stdout)
+        said, odds = answer["methods"][0], answer["probabilities"]
+        assert said["source"] == "other" and said["valve"] in ("R", "S"), (told[index], said)
+        printed = " ".join(answer["verdict"])
+        assert f"the valve of {said['valve']} sticks" in printed and "(other)" not in printed, printed
+        assert f"Check the valve of {said['valve']}" in " ".join(answer["verdict"]), answer["verdict"]
+        assert set(odds) == {"mpm", "ud", "mpm_ud", "other"} and abs(sum(odds.values()) - 1) < 1e-12, odds
+        assert odds["other"] > 0.9 and answer["repair"] is None and answer["candidates"] == [], answer
+        assert ("R", "S")[int(told[index]["other_variable"])] == said["valve"], (told[index], said)
 
 
 def check_healthy(bench, study):
@@ -332,6 +367,7 @@ def main(program, study):
         check_garbage(mistakes)
         check_limits(mistakes)
         check_trust(bench, study)
+        check_valve(bench, study)
         check_healthy(bench, study)
 
 

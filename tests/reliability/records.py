@@ -128,8 +128,10 @@ def assessed(bench, plant, kind, seed, trials):
                                   "--quiet", "--jobs", 1))
     said, trust = answer["methods"][0], answer["methods"][0].get("trust")
     alarms = trust and trust["rates"]["false_alarm_healthy"]
+    sizes = trust and trust["rates"]["size_covered"]  # of the simulated records: is the true size in the interval?
     return {"plant": plant, "kind": kind, "seed": seed, "found": answer["found"], "impact": told.get("impact"),
             "said": said["source"], "score": said.get("score"), "printed": alarms and [alarms["hits"], alarms["total"]],
+            "sizes": sizes and [sizes["hits"], sizes["total"]],
             "model": answer["model"]["score"], "model_flagged": answer["model"]["flagged"],
             "alike": answer["controller"]["alike"], "agreement": answer["controller"]["agreement"],
             "closed_loop": answer["controller"]["closed_loop"],
@@ -168,9 +170,11 @@ def main():
     faulty = [o for o in outcomes if o["kind"] != "healthy" and "found" in o and o["impact"] == "yes"]
     wrong = [o for o in healthy if o["found"] == "fault"]
     printed = [o["printed"] for o in healthy if o["printed"]]
+    sizes = [o["sizes"] for o in outcomes if o.get("sizes")]
     print(json.dumps({
         "healthy": len(healthy), "called_wrong": len(wrong), "which": [(o["plant"], o["seed"]) for o in wrong],
         "printed_rate": sum(p[0] for p in printed) / max(1, sum(p[1] for p in printed)),
+        "size_in_interval": [sum(s[0] for s in sizes), sum(s[1] for s in sizes)],
         "faulty_with_impact": len(faulty), "found": sum(o["found"] == "fault" for o in faulty),
         "source_right": sum(o["said"] == o["kind"] for o in faulty if o["found"] == "fault"),
         "failed": sum("failed" in o for o in outcomes)}))

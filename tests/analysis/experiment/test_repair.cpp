@@ -1,3 +1,6 @@
+#include <memory>
+#include <vector>
+
 #include <catch2/catch.hpp>
 
 #include "analysis/experiment/repair.hpp"
@@ -16,9 +19,9 @@ struct RepairCase {
   RepairedLoop repaired(const ExperimentDraw& draw, const Channel& channel) const {
     const Trajectory loop = simulate_experiment(study, draw, testing::kFactory);
     REQUIRE(loop.status == ControlStatus::ok);
-    return repaired_loop(study, basis.point, draw,
-                         assessed_loop(study, basis.point, recorded(study, draw.index, loop)), channel,
-                         testing::kFactory);
+    const AssessedLoop assessed = assessed_loop(study, basis.point, recorded(study, draw.index, loop));
+    return repaired_loop(study, basis.point, draw, assessed,
+                         identified_channel(study, basis.point, assessed, channel), testing::kFactory);
   }
 };
 
@@ -36,7 +39,7 @@ TEST_CASE("repair: the right channel gives the variances of the controller that 
   const RepairCase chapter6;
   const RepairedLoop loop = chapter6.repaired(mismatch_of(0.5), {4, 0});
   REQUIRE(loop.compares());
-  CHECK(loop.fit.gain_factor.value == Approx(0.5).epsilon(0.02));
+  CHECK(loop.repair.gain_factor.value == Approx(0.5).epsilon(0.02));
   CHECK(loop.loss_now() > 1.1);
   CHECK(loop.loss_repaired() == Approx(1.0).epsilon(0.01));
   // The record alone promises what comes.
@@ -51,8 +54,45 @@ TEST_CASE(
   healthy.index = 3;
   const RepairedLoop loop = chapter6.repaired(healthy, {4, 0});
   CHECK(loop.now == loop.perfect);
-  CHECK(loop.fit.gain_factor.lower < 1.0);
-  CHECK(loop.fit.gain_factor.upper > 1.0);
+  CHECK(loop.repair.gain_factor.lower < 1.0);
+  CHECK(loop.repair.gain_factor.upper > 1.0);
+}
+
+TEST_CASE("repair: the size that a method names goes into the model, and what has none is identified again") {
+  const RepairCase chapter6;
+  MethodDescription method;
+  method.name = "namer";
+  method.names_channels = method.names_mismatches = true;
+  const auto form = std::make_shared<const AssessmentForm>(method, chapter6.study);
+  const Trajectory loop = simulate_experiment(chapter6.study, mismatch_of(0.5), testing::kFactory);
+  const AssessedLoop assessed =
+      assessed_loop(chapter6.study, chapter6.basis.point, recorded(chapter6.study, 3, loop));
+  const TransferFunction& model = chapter6.study.plant.G(4, 0);
+  const auto repair_by = [&](const NamedMismatch& named) {
+    Assessment said;
+    said.flagged = true;
+    said.flagged_channels = {named.channel};
+    said.named_mismatch = named;
+    return *channel_repair(chapter6.study, chapter6.basis.point, assessed, kept(form, said));
+  };
+  const ChannelRepair gain =
+      repair_by({{4, 0}, MismatchParameter::gain, 0.7, 0.6, 0.8});  // not what a fit finds
+  CHECK(gain.model == model.with_gain_scaled(0.7));
+  CHECK((gain.gain_factor.value == 0.7 && gain.gain_factor.lower == 0.6 && gain.gain_factor.upper == 0.8));
+  CHECK(
+      (gain.time_factor.lower == 1.0 && gain.time_factor.upper == 1.0 && gain.dead_time_shift.value == 0.0));
+  CHECK(repair_by({{4, 0}, MismatchParameter::time_constant, 1.5, 1.2, 1.7}).model ==
+        model.with_time_scaled(1.5));
+  // A size that is rounded to a dead time below 0 takes away all of it.
+  CHECK(repair_by({{4, 0}, MismatchParameter::dead_time, -1.001 * model.dead_time(), -1.0, 0.0})
+            .model.dead_time() == 0.0);
+  CHECK(repair_by({{4, 0}, MismatchParameter::second_order, 3.0, 2.0, 4.0}).model.order() ==
+        model.order() + 1);
+
+  const ChannelRepair fitted = repair_by({{4, 0}, MismatchParameter::gain});
+  CHECK_FALSE(fitted.named);
+  CHECK(fitted.gain_factor.value == Approx(0.5).epsilon(0.02));
+  CHECK((fitted.parameter == MismatchParameter::gain && fitted.time_factor.value == 1.0));
 }
 
 TEST_CASE("repair findings: by what was repaired, with what changes noticeably") {
