@@ -32,3 +32,9 @@ endif()
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 add_library(random123 INTERFACE IMPORTED)
 target_include_directories(random123 SYSTEM INTERFACE "${RANDOM123_INCLUDE_DIR}")
+
+find_path(LIBSVM_INCLUDE_DIR libsvm/svm.h REQUIRED) # analysis/statistics/one_class_svm.cpp
+find_library(LIBSVM_LIBRARY svm REQUIRED)
+add_library(libsvm INTERFACE IMPORTED)
+target_include_directories(libsvm SYSTEM INTERFACE "${LIBSVM_INCLUDE_DIR}")
+target_link_libraries(libsvm INTERFACE "${LIBSVM_LIBRARY}")

@@ -13,18 +13,9 @@
 namespace mpm {
 namespace {
 
-/// Of the largest information of a coefficient: what is known along a direction that a period leaves open.
-constexpr double kLeastInformation = 1e-9;
-/// Share of the variance of what the plant explains below which the rest is not judged as noise.
-constexpr double kLeastNoiseShare = 0.01;
-
 double critical_quantile(double freedom_1, double freedom_2, double probability) {
   return boost::math::quantile(
       boost::math::complement(boost::math::fisher_f_distribution<>(freedom_1, freedom_2), probability));
-}
-
-double sample_variance(const Eigen::VectorXd& x) {
-  return (x.array() - x.mean()).matrix().squaredNorm() / static_cast<double>(x.size());
 }
 
 double plant_distance(const PrewhitenedGroups& groups, const HealthyModel& before, double probability) {
@@ -39,28 +30,6 @@ double plant_distance(const PrewhitenedGroups& groups, const HealthyModel& befor
   return distance / groups.critical_ratio_of(groups.rank, probability);
 }
 
-/// An autoregression of given order with its information, the inverse of its covariance.
-struct NoiseEstimate {
-  Eigen::VectorXd a;
-  Eigen::MatrixXd information;
-  double freedom = 0.0;
-};
-
-NoiseEstimate noise_estimate(const Eigen::VectorXd& v, Eigen::Index p) {
-  const Eigen::Index n = v.size() - p;
-  Eigen::MatrixXd past(n, p);
-  for (Eigen::Index lag = 1; lag <= p; ++lag)
-    past.col(lag - 1) = v.segment(p - lag, n);
-  const Eigen::MatrixXd centred = past.rowwise() - past.colwise().mean();
-  const Eigen::VectorXd now = v.tail(n).array() - v.tail(n).mean();
-  NoiseEstimate found;
-  found.a = centred.colPivHouseholderQr().solve(now);
-  found.freedom = static_cast<double>(n - p - 1);
-  const double variance = (now - centred * found.a).squaredNorm() / found.freedom;
-  found.information = centred.transpose() * centred / variance;
-  return found;
-}
-
 /// With P = C^-1, (C + C_0)^-1 = P (P + P_0)^-1 P_0.
 double noise_distance(const Eigen::VectorXd& v, const Eigen::VectorXd& v_before, double probability) {
   constexpr auto p = kHighestNoiseOrder;
@@ -73,6 +42,25 @@ double noise_distance(const Eigen::VectorXd& v, const Eigen::VectorXd& v_before,
 }
 
 }  // namespace
+
+double sample_variance(const Eigen::VectorXd& x) {
+  return (x.array() - x.mean()).matrix().squaredNorm() / static_cast<double>(x.size());
+}
+
+NoiseEstimate noise_estimate(const Eigen::VectorXd& v, Eigen::Index p) {
+  const Eigen::Index n = v.size() - p;
+  Eigen::MatrixXd past(n, p);
+  for (Eigen::Index lag = 1; lag <= p; ++lag)
+    past.col(lag - 1) = v.segment(p - lag, n);
+  const Eigen::MatrixXd centred = past.rowwise() - past.colwise().mean();
+  const Eigen::VectorXd now = v.tail(n).array() - v.tail(n).mean();
+  NoiseEstimate found;
+  found.a = centred.colPivHouseholderQr().solve(now);
+  found.freedom = static_cast<double>(n - p - 1);
+  found.variance = (now - centred * found.a).squaredNorm() / found.freedom;
+  found.information = centred.transpose() * centred / found.variance;
+  return found;
+}
 
 HealthyModel healthy_model(const PlantAndNoise& period) {
   const PrewhitenedGroups groups = refined_groups(period.e, {period.X});

@@ -29,6 +29,25 @@ struct HealthyModel {
   Eigen::Index freedom = 0;
 };
 
+/// An autoregression with a constant, by least squares: its coefficients a (p), their information, which is
+/// the inverse of their covariance (p x p), and the variance of its innovations with its degrees of freedom.
+struct NoiseEstimate {
+  Eigen::VectorXd a;
+  Eigen::MatrixXd information;
+  double variance = 0.0, freedom = 0.0;
+};
+
+/// The autoregression of order p of v (N), which does not stand still.
+NoiseEstimate noise_estimate(const Eigen::VectorXd& v, Eigen::Index p);
+
+/// Of x about its mean, over all its samples.
+double sample_variance(const Eigen::VectorXd& x);
+
+/// Of the largest information of a coefficient: what is known along a direction that a period leaves open.
+inline constexpr double kLeastInformation = 1e-9;
+/// Share of the variance of what the plant explains below which the rest is not judged as noise.
+inline constexpr double kLeastNoiseShare = 0.01;
+
 /// The model of a period. @throws InputError as `refined_groups`
 HealthyModel healthy_model(const PlantAndNoise& period);
 

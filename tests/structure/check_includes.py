@@ -2,8 +2,8 @@
 
 Rooms are named from left to right; a file includes only its own room and rooms to its left, by the path from
 the root of the repository. The folders of a room are ordered in the same way, where it has any: a file in the
-room itself may include all of them. Files in tests/ may include everything. The headers of Ceres and Ipopt
-stand in one .cpp each at most, and never in a header; those of HDF5 and SUNDIALS in the files of their wrapper only, whose
+room itself may include all of them. Files in tests/ may include everything. The headers of Ceres, Ipopt
+and libsvm stand in one .cpp each at most, and never in a header; those of HDF5 and SUNDIALS in the files of their wrapper only, whose
 headers that have them belong to the wrapper. A source includes its own header first, so that compiling the source
 shows that the header needs nothing before it.
 """
@@ -17,6 +17,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
 CONFINED = {
     "Ceres": re.compile(r"^ceres/"),
     "Ipopt": re.compile(r"^(coin/|Ip[A-Z]\w*\.h)"),
+    "libsvm": re.compile(r"^libsvm/"),
     "HDF5": re.compile(r"^(hdf5(_hl)?\.h$|H5\w*\.h)"),
     "SUNDIALS": re.compile(r"^(sundials|cvodes?|arkode|idas?|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol)/"),
 }
