@@ -127,7 +127,8 @@ class InputLikelihood::OfMv {
     std::vector<SharedOutput> outputs;
     for (std::size_t i = 0; i < all.models_.size(); ++i) {
       const BaseNoise& noise = all.models_[i].noise();
-      DiscreteChannel channel = discretise(all.models_[i].model()(0, mv), all.sample_time_);
+      DiscreteChannel channel =
+          discretise(all.models_[i].model()(0, mv).without_step_coefficients(), all.sample_time_);
       channel.c /= noise.deviation;
       channel.d /= noise.deviation;
       const bool coloured = noise.phi != 0.0;

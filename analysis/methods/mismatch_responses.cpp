@@ -47,6 +47,22 @@ std::vector<double> grid_of(const SizePrior& prior, double sample_time) {
   return low > 0.0 ? factor_grid(low, high) : std::vector<double>{low, 0.5 * (low + high), high};
 }
 
+/// What the channel has beside its states: the sum of its pulse responses, and before the record its last
+/// coefficient.
+void add_coefficients(const Eigen::VectorXd& step, const Eigen::Ref<const Eigen::RowVectorXd>& u,
+                      double initial_u, Eigen::RowVectorXd& y) {
+  if (step.size() == 0)
+    return;
+  Eigen::RowVectorXd pulses = step.transpose();
+  pulses.tail(step.size() - 1) -= step.head(step.size() - 1).transpose();
+  const double last = step(step.size() - 1);
+  for (Eigen::Index k = 0; k < y.size(); ++k) {
+    const Eigen::Index count = std::min(k, step.size());
+    y(k) += pulses.head(count).dot(u.segment(k - count, count).reverse()) +
+            (last - (count > 0 ? step(count - 1) : 0.0)) * initial_u;
+  }
+}
+
 }  // namespace
 
 Eigen::RowVectorXd channel_response(const DiscreteChannel& channel,
@@ -67,6 +83,7 @@ Eigen::RowVectorXd channel_response(const DiscreteChannel& channel,
       y(k) = c * state + channel.d * older;
       state = a * state + b * input(k - channel.delay) + before * older;
     }
+    add_coefficients(channel.step, u, initial_u, y);
     return y;
   }
   Eigen::VectorXd next(n);
@@ -77,6 +94,7 @@ Eigen::RowVectorXd channel_response(const DiscreteChannel& channel,
     next += channel.b_now * input(k - channel.delay) + channel.b_previous * older;
     x.swap(next);
   }
+  add_coefficients(channel.step, u, initial_u, y);
   return y;
 }
 

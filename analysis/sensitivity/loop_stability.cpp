@@ -132,9 +132,9 @@ struct FirstMoves {
 };
 
 /// The problem of the controller with these options; none where they do not determine its moves.
-std::optional<MpcQp> linear_problem(const Study& study, const MpcOptions& options) {
+std::optional<MpcQp> linear_problem(const TransferMatrix& model, const MpcOptions& options) {
   try {
-    return MpcQp(study.plant.G, study.mv_count(), options);
+    return MpcQp(model, options.mv_cost.size(), options);
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -173,10 +173,11 @@ FirstMoves first_moves(const Study& study, MpcQp& qp, const Indices& cvs, const 
 
 /// What the targets answer to the bias, -K_active^-1; 0 without targets. None where the active CVs do not
 /// determine them.
-std::optional<Eigen::MatrixXd> target_of_bias(const Study& study, const Indices& cvs, const Indices& mvs) {
-  if (!study.controller.has_targets())
+std::optional<Eigen::MatrixXd> target_of_bias(const TransferMatrix& model, const MpcOptions& options,
+                                              const Indices& cvs, const Indices& mvs) {
+  if (!options.has_targets())
     return Eigen::MatrixXd::Zero(count_of(mvs), count_of(cvs));
-  const Eigen::MatrixXd K = study.plant.G.static_gain()(cvs, mvs);
+  const Eigen::MatrixXd K = model.static_gain()(cvs, mvs);
   if (K.rows() != K.cols() || K.rows() == 0 || !K.allFinite())
     return std::nullopt;
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(K);
@@ -208,7 +209,9 @@ bool has_linear_law(const Study& study, bool has_active_limits) {
 }  // namespace
 
 LoopStability::LoopStability(const Study& study, const OperatingPoint& point)
-    : study_(study), model_(study.plant.G), sample_time_(study.controller.sample_time) {
+    : study_(study),
+      model_(study.plant.G.without_step_coefficients()),
+      sample_time_(study.controller.sample_time) {
   bool has_limits = false;
   for (const ActiveConstraint& reference : point.active) {
     cvs_.push_back(reference.cv);
@@ -219,7 +222,7 @@ LoopStability::LoopStability(const Study& study, const OperatingPoint& point)
       mvs_.push_back(mv);
   if (mvs_.empty() || !has_linear_law(study, has_limits))
     return;
-  const std::optional<Eigen::MatrixXd> target = target_of_bias(study, cvs_, mvs_);
+  const std::optional<Eigen::MatrixXd> target = target_of_bias(model_, study.controller, cvs_, mvs_);
   if (!target)
     return;
 
@@ -232,7 +235,7 @@ LoopStability::LoopStability(const Study& study, const OperatingPoint& point)
   for (const bool over_limits : {true, false}) {
     if (!over_limits && !(has_limits && study.controller.has_targets()))
       continue;
-    std::optional<MpcQp> qp = linear_problem(study, linear_options(study, point, over_limits));
+    std::optional<MpcQp> qp = linear_problem(model_, linear_options(study, point, over_limits));
     if (!qp) {
       laws_.clear();
       return;
@@ -251,7 +254,7 @@ double LoopStability::spectral_radius(const TransferMatrix& plant) const {
     return kNaN;
   double radius = 0.0;
   for (const Law& law : laws_)
-    radius = std::max(radius, radius_with(law, plant));
+    radius = std::max(radius, radius_with(law, plant.without_step_coefficients()));
   return radius;
 }
 

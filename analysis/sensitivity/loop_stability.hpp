@@ -35,6 +35,9 @@ namespace mpm {
 /// | L      | samples of which inputs are still on their way                            |              |
 /// | b      | y - y_sim of the active CVs; 0 but for the channels that differ           | m            |
 ///
+/// Channels with step coefficients are taken as the transfer functions that were fitted to these, in model
+/// and plant: their own states would be as many as there are coefficients.
+///
 /// CVs inside their range act on nothing, so that their channels are not part of the loop.
 class LoopStability {
  public:

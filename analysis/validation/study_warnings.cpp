@@ -121,8 +121,9 @@ void check_step_fits(const Study& study, Warnings& warnings) {
            fmt::format("the transfer function of {}/{} leaves up to {:.2g} % of its coefficients",
                        name_of(study.plant.cvs, fit.cv),
                        input_names(study.plant)[static_cast<std::size_t>(fit.input)], 100 * fit.error),
-           "the study goes on with the transfer function: a controller with the coefficients has another "
-           "model"});
+           "plant and controller have the coefficients; methods that need parameters (directions of a "
+           "mismatch, "
+           "starts of a search, spectral_radius) have those of the transfer function"});
 }
 
 // --- Setpoints and limits ---

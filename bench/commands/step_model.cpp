@@ -99,7 +99,7 @@ void StepModel::put_into(PlantModel& plant) const {
     TransferFunction& place = plant.G(place_in(variable_names(plant.cvs), channel.cv, column),
                                       place_in(input_names(plant), channel.input, column));
     if (place.is_zero())
-      place = channel.fit.channel;
+      place = channel.function;
   }
 }
 
@@ -109,10 +109,11 @@ std::string StepModel::report() const {
     const TransferFunction& G = channel.fit.channel;
     const bool integrates = G.is_integrating();
     const Eigen::Index lags = G.order() - (integrates ? 1 : 0);
-    text += fmt::format("{}/{}: {} {:.4g}, dead time {:.4g}, {} {}; off by at most {:.2g} %\n", channel.cv,
-                        channel.input, integrates ? "integrates, rate" : "gain",
-                        integrates ? G.rate_gain() : G.static_gain(), G.dead_time(), lags,
-                        lags == 1 ? "lag" : "poles", 100 * channel.fit.largest_error);
+    text += fmt::format(
+        "{}/{}: {} {:.4g}, dead time {:.4g}, {} {}; off by at most {:.2g} %{}\n", channel.cv, channel.input,
+        integrates ? "integrates, rate" : "gain", integrates ? G.rate_gain() : G.static_gain(), G.dead_time(),
+        lags, lags == 1 ? "lag" : "poles", 100 * channel.fit.largest_error,
+        channel.function.step_coefficients() ? ", so that the study has the coefficients" : "");
   }
   return text;
 }
@@ -130,8 +131,11 @@ StepModel read_step_model(const std::string& file, std::optional<double> interva
       throw InputError(file, fmt::format("the column '{}'", name), "CV/INPUT, or time");
     const Eigen::VectorXd coefficients = numbers_in(columns, column);
     try {
-      model.channels.push_back(
-          {name.substr(0, slash), name.substr(slash + 1), fit_step_coefficients(coefficients, between)});
+      const StepResponseFit fit = fit_step_coefficients(coefficients, between);
+      model.channels.push_back({name.substr(0, slash), name.substr(slash + 1), fit,
+                                fit.largest_error > kNegligibleOfPlant
+                                    ? by_coefficients(fit, coefficients, between)
+                                    : fit.channel});
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}: {}", file, name, error.what()));
     }

@@ -9,11 +9,12 @@
 
 namespace mpm {
 
-/// A model as dynamic matrix control has it, each channel as a fitted transfer function.
+/// A model as dynamic matrix control has it.
 struct StepModel {
   struct Channel {
     std::string cv, input;
     StepResponseFit fit;
+    TransferFunction function;  ///< the fit, or the coefficients where it leaves more than is negligible
   };
 
   std::string file;

@@ -32,7 +32,8 @@ Eigen::VectorXd ramp_state_per_input(const DiscreteChannel& model) {
       -Eigen::JacobiSVD<Eigen::MatrixXd>(change, Eigen::ComputeFullV).matrixV().col(n - 1);
   equations.bottomLeftCorner(1, n) = model.c;
   Eigen::VectorXd right(n + 1);
-  right << -(model.b_now + model.b_previous), -model.d;
+  const double beside = model.step.size() > 0 ? model.step(model.step.size() - 1) : 0.0;
+  right << -(model.b_now + model.b_previous), -model.d - beside;
   return equations.fullPivLu().solve(right).head(n);
 }
 
@@ -114,6 +115,17 @@ void append_states(ChannelTable& table, const Eigen::VectorXd& state_per_input, 
   table.state_col.insert(table.state_col.end(), static_cast<std::size_t>(state_per_input.size()), col);
 }
 
+void place_coefficients(ChannelTable& table, const std::vector<Entry>& entries) {
+  for (const Entry& entry : entries)
+    table.coefficient_count = std::max(table.coefficient_count, entry.model.step.size());
+  for (const Entry& entry : entries)
+    if (const Eigen::VectorXd& step = entry.model.step; step.size() > 0) {
+      Eigen::VectorXd values = Eigen::VectorXd::Constant(table.coefficient_count, step(step.size() - 1));
+      values.head(step.size()) = step;
+      table.coefficients.push_back({entry.wiring.row, entry.wiring.col, std::move(values)});
+    }
+}
+
 /// Three passes, because the states stand in the order of the lists.
 void sort_into(ChannelTable& table, const std::vector<Entry>& entries) {
   place_first_order(table, entries);
@@ -147,6 +159,7 @@ ChannelTable make_channel_table(const TransferMatrix& G, double sample_time) {
     table.max_order = std::max(table.max_order, entry.model.A.rows());
   }
   table.history_length = max_delay + 2;
+  place_coefficients(table, entries);
   sort_into(table, entries);
   return table;
 }

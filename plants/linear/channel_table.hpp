@@ -51,6 +51,12 @@ struct GeneralChannel {
   ChannelWiring wiring;
 };
 
+/// What a channel of step coefficients has beside its state.
+struct CoefficientChannel {
+  Eigen::Index row, col;
+  Eigen::VectorXd step;  ///< that of DiscreteChannel, with its last value up to the length of the longest
+};
+
 /// The discretised non-zero channels of a transfer matrix, sorted by number of poles. Immutable once built,
 /// so that all copies of a plant share one.
 ///
@@ -65,6 +71,8 @@ struct ChannelTable {
   FirstOrderChannels first_order;
   std::vector<SecondOrderChannel> second_order;
   std::vector<GeneralChannel> general;
+  std::vector<CoefficientChannel> coefficients;
+  Eigen::Index coefficient_count = 0;  ///< of the longest
 
   /// Steady state for a unit input; of an integrating channel that in which its rate is steady and its output
   /// 0.

@@ -44,7 +44,8 @@ LinearPlant::LinearPlant(const TransferMatrix& G, double sample_time)
       now_(Eigen::ArrayXd::Zero(table_->first_order.size())),
       forced_now_(now_),
       forced_previous_(now_),
-      direct_(now_) {}
+      direct_(now_),
+      ahead_(Eigen::MatrixXd::Zero(2 * table_->coefficient_count, G.rows())) {}
 
 double LinearPlant::sample_time() const {
   return table_->sample_time;
@@ -59,12 +60,16 @@ void LinearPlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) {
   repeats_ = table_->history_length;
   read_inputs();
   forced_previous_ = table_->first_order.b_previous * now_;  // the input before is the same
+  for (Eigen::Index row = 0; row < ahead_.rows(); ++row)
+    hold_last_coefficients(steady_input, row);
   add_up_first_order([](const auto&, Eigen::Index) {});
   add_up_others();
 }
 
 PlantStatus LinearPlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
   require_input_size(input.size(), input_count_);
+  if (table_->coefficient_count > 0)
+    advance_coefficients(input);
   if (push_input(input))
     read_inputs();
   const double* newest = history_.data() + newest_ * input_count_;
@@ -153,6 +158,30 @@ void LinearPlant::advance_general(const double* newest) {
   }
 }
 
+/// Adds what the change from the newest input, which is still u(k-1), brings from sample k + 1 on.
+void LinearPlant::advance_coefficients(const Eigen::Ref<const Eigen::VectorXd>& input) {
+  const Eigen::Index count = table_->coefficient_count;
+  if (coming_ == count) {
+    ahead_.topRows(count) = ahead_.bottomRows(count);
+    coming_ = 0;
+  }
+  ++coming_;
+  const Eigen::Index last = coming_ + count - 1;
+  ahead_.row(last) = ahead_.row(last - 1);
+  if (input == history_.col(newest_))
+    return;
+  for (const CoefficientChannel& channel : table_->coefficients)
+    if (const double change = input(channel.col) - history_(channel.col, newest_); change != 0.0)
+      ahead_.col(channel.row).segment(coming_, count - 1) += change * channel.step.head(count - 1);
+  hold_last_coefficients(input, last);
+}
+
+void LinearPlant::hold_last_coefficients(const Eigen::Ref<const Eigen::VectorXd>& input, Eigen::Index at) {
+  ahead_.row(at).setZero();
+  for (const CoefficientChannel& channel : table_->coefficients)
+    ahead_(at, channel.row) += channel.step(channel.step.size() - 1) * input(channel.col);
+}
+
 /// After an advance to sample k the newest input is u(k-1), so that input_now is the place of u(k - delay -
 /// 1).
 void LinearPlant::add_up_others() {
@@ -169,6 +198,8 @@ void LinearPlant::add_up_others() {
         channel.model.c.dot(state) + channel.model.d * newest[channel.wiring.input_now];
     x += state.size();
   }
+  if (table_->coefficient_count > 0)
+    output_ += ahead_.row(coming_).transpose();
 }
 
 Eigen::MatrixXd simulate(const TransferMatrix& G, double sample_time,

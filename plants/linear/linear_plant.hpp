@@ -57,6 +57,8 @@ class LinearPlant final : public Plant {
   void advance_second_order(const double* newest);
   void advance_general(const double* newest);
   void add_up_others();
+  void advance_coefficients(const Eigen::Ref<const Eigen::VectorXd>& input);
+  void hold_last_coefficients(const Eigen::Ref<const Eigen::VectorXd>& input, Eigen::Index at);
 
   std::shared_ptr<const ChannelTable> table_;
   Eigen::Index input_count_;
@@ -71,6 +73,11 @@ class LinearPlant final : public Plant {
   // Of the first-order channels: the input that acts at this sample, and what it and the one before add to
   // the state and to the output.
   Eigen::ArrayXd now_, forced_now_, forced_previous_, direct_;
+  // What the channels of step coefficients add to y(k), y(k+1), ... if the inputs stay as they are, in rows
+  // from coming_ on, a column an output. Dynamic matrix control predicts in the same way. Twice as many rows
+  // as there are coefficients, so that they are moved once in as many samples.
+  Eigen::MatrixXd ahead_;
+  Eigen::Index coming_ = 0;
 };
 
 /// The response of G from rest to `inputs` (n_in x N): outputs (ny x N), of which column k is sampled just

@@ -30,10 +30,10 @@ struct PlantModel {
   std::vector<Variable> mds;
   TransferMatrix G;
 
-  /// A channel that was fitted to the coefficients of its step response.
+  /// A channel with the coefficients of its step response, to which its parameters were fitted.
   struct StepFit {
     Eigen::Index cv, input;
-    double error;  ///< largest one, as a share of the largest coefficient
+    double error;  ///< of the fit, largest one, as a share of the largest coefficient
 
     bool operator==(const StepFit&) const = default;
   };

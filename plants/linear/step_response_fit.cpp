@@ -20,6 +20,8 @@ namespace {
 
 constexpr Eigen::Index kFewestResponseSamples = 8;
 constexpr double kUnsettledShare = 0.1;  // of the largest value: e^(-2.3), two or three time constants
+constexpr double kSettled = 0.01;        // of the largest value: what the last eighth may move
+constexpr double kSameResponse = 1e-9;   // of the largest value
 constexpr double kFastestLag = 0.02;     // time constant, in samples: a jump within the first of them
 constexpr double kSlowestLag = 20.0;     // time constant, in records
 constexpr double kLeastDamping = 0.05, kMostDamping = 20.0;
@@ -235,12 +237,23 @@ StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& respo
 StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval) {
   StepResponseFit fit = fit_step_response(coefficients, interval, 0.0, kNegligibleOfCoefficients);
   const ResponseEnd end = response_end(fit.channel, coefficients, interval);
-  if (std::abs(end.last - end.fitted) > kUnsettledShare * end.largest)
+  const Eigen::Index before = coefficients.size() - 1 - coefficients.size() / 8;
+  const bool moves =
+      fit.channel.is_integrating() || std::abs(end.last - coefficients(before)) > kSettled * end.largest;
+  if (moves && std::abs(end.last - end.fitted) > kUnsettledShare * end.largest)
     throw InputError("step response",
                      fmt::format("{}{:.6g} at its end, where the fitted transfer function goes to {:.4g}",
                                  fit.channel.is_integrating() ? "a rate of " : "", end.last, end.fitted),
                      "coefficients until the response has settled; of a CV that integrates, its rate");
   return fit;
+}
+
+TransferFunction by_coefficients(const StepResponseFit& fit, const Eigen::VectorXd& coefficients,
+                                 double interval) {
+  const ResponseEnd end = response_end(fit.channel, coefficients, interval);
+  if (fit.largest_error <= kSameResponse && std::abs(end.last - end.fitted) <= kSameResponse * end.largest)
+    return fit.channel;
+  return fit.channel.with_step_coefficients(coefficients, interval);
 }
 
 ResponseEnd response_end(const TransferFunction& fit, const Eigen::Ref<const Eigen::VectorXd>& response,

@@ -36,11 +36,17 @@ inline constexpr double kNegligibleOfPlant = 1e-3, kNegligibleOfCoefficients = 1
 StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& response, double sample_time,
                                   double negligible, double share = kNegligibleOfPlant);
 
-/// A channel by the coefficients of its step response, as dynamic matrix control has them: values 1, 2, ...
-/// intervals after a step of 1. Errors: InputError as fit_step_response(), and for a response that has not
-/// settled, because the coefficients are too few: its end is more than a tenth of the largest one away from
-/// that of the fit.
+/// The transfer function that fits the coefficients of a step response, as dynamic matrix control has them:
+/// values 1, 2, ... intervals after a step of 1. Errors: InputError as fit_step_response(), and for a
+/// response that has not settled, because the coefficients are too few: it still moves at its end, more than
+/// a tenth of the largest one away from where the fit goes.
 StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval);
+
+/// The channel that has these coefficients (StepCoefficients), with the parameters of a fit to them: the
+/// transfer function alone where it gives every coefficient, and what follows the last one, to 1e-9 of the
+/// largest.
+TransferFunction by_coefficients(const StepResponseFit& fit, const Eigen::VectorXd& coefficients,
+                                 double interval);
 
 /// Where a response ends, and where the fit goes: values, or of a channel that integrates rates.
 struct ResponseEnd {

@@ -82,6 +82,11 @@ Eigen::VectorXd with_argument_scaled(Eigen::VectorXd coefficients, double factor
   return coefficients;
 }
 
+template <class Change>
+std::optional<StepCoefficients> changed(const std::optional<StepCoefficients>& step, const Change& change) {
+  return step ? std::optional(change(*step)) : std::nullopt;
+}
+
 }  // namespace
 
 TransferFunction::TransferFunction(Eigen::VectorXd numerator, Eigen::VectorXd denominator, double dead_time)
@@ -120,13 +125,15 @@ double TransferFunction::static_gain() const {
     throw InputError("static gain of a transfer function", "a pole at s = 0 (integrating channel)",
                      "channels without a pole at s = 0");
   }
+  if (step_)
+    return washout_ > 0 ? washout_ * step_->rate() : step_->last();
   return is_zero() ? 0.0 : numerator_(numerator_.size() - 1) / denominator_(order());
 }
 
 double TransferFunction::rate_gain() const {
   if (!is_integrating())
     return 0.0;
-  return numerator_(numerator_.size() - 1) / denominator_(order() - 1);
+  return step_ ? step_->rate() : numerator_(numerator_.size() - 1) / denominator_(order() - 1);
 }
 
 std::complex<double> TransferFunction::operator()(std::complex<double> s) const {
@@ -138,7 +145,8 @@ TransferFunction TransferFunction::with_gain_scaled(double factor) const {
     throw InputError("gain factor", fmt::format("{}", factor), "a finite number");
   }
   const TransferFunction G = without_washout();
-  return with_rational_part(G.numerator_ * factor, G.denominator_, dead_time_);
+  return with_rational_part(G.numerator_ * factor, G.denominator_, dead_time_,
+                            changed(step_, [&](const auto& S) { return S.with_gain_scaled(factor); }));
 }
 
 TransferFunction TransferFunction::with_time_scaled(double factor) const {
@@ -148,8 +156,10 @@ TransferFunction TransferFunction::with_time_scaled(double factor) const {
   const TransferFunction G = without_washout();
   const auto integrators =
       static_cast<double>(G.denominator_.size() - without_roots_at_origin(G.denominator_).size());
-  return with_rational_part(std::pow(factor, integrators) * with_argument_scaled(G.numerator_, factor),
-                            with_argument_scaled(G.denominator_, factor), dead_time_);
+  return with_rational_part(
+      std::pow(factor, integrators) * with_argument_scaled(G.numerator_, factor),
+      with_argument_scaled(G.denominator_, factor), dead_time_,
+      changed(step_, [&](const auto& S) { return S.with_time_scaled(factor, dead_time_); }));
 }
 
 TransferFunction TransferFunction::with_dead_time_shifted(double delta) const {
@@ -159,7 +169,8 @@ TransferFunction TransferFunction::with_dead_time_shifted(double delta) const {
                      "a finite number >= 0");
   }
   const TransferFunction G = without_washout();
-  return with_rational_part(G.numerator_, G.denominator_, shifted);
+  return with_rational_part(G.numerator_, G.denominator_, shifted,
+                            changed(step_, [&](const auto& S) { return S.with_dead_time_shifted(delta); }));
 }
 
 double TransferFunction::residence_time() const {
@@ -171,7 +182,7 @@ double TransferFunction::residence_time() const {
 }
 
 bool TransferFunction::has_time_constant() const {
-  return !is_zero() && without_roots_at_origin(without_washout().denominator_).size() > 1;
+  return step_ || (!is_zero() && without_roots_at_origin(without_washout().denominator_).size() > 1);
 }
 
 TransferFunction TransferFunction::behind_washout(double time_constant) const {
@@ -183,23 +194,47 @@ TransferFunction TransferFunction::behind_washout(double time_constant) const {
   washed.washout_ = time_constant;
   washed.own_numerator_ = G.numerator_;
   washed.own_denominator_ = G.denominator_;
+  washed.step_ = step_;
   return washed;
 }
 
 TransferFunction TransferFunction::without_washout() const {
-  return washout_ > 0 ? TransferFunction(own_numerator_, own_denominator_, dead_time_) : *this;
+  if (washout_ == 0)
+    return *this;
+  TransferFunction G(own_numerator_, own_denominator_, dead_time_);
+  G.step_ = step_;
+  return G;
+}
+
+TransferFunction TransferFunction::with_step_coefficients(const Eigen::VectorXd& values,
+                                                          double interval) const {
+  TransferFunction G = *this;
+  G.step_ = StepCoefficients(values, interval, without_washout().is_integrating());
+  return G;
+}
+
+TransferFunction TransferFunction::without_step_coefficients() const {
+  TransferFunction G = *this;
+  G.step_.reset();
+  return G;
 }
 
 TransferFunction TransferFunction::with_rational_part(Eigen::VectorXd numerator, Eigen::VectorXd denominator,
-                                                      double dead_time) const {
-  const TransferFunction G(std::move(numerator), std::move(denominator), dead_time);
+                                                      double dead_time,
+                                                      std::optional<StepCoefficients> step) const {
+  TransferFunction G(std::move(numerator), std::move(denominator), dead_time);
+  G.step_ = std::move(step);
   return washout_ > 0 ? G.behind_washout(washout_) : G;
 }
 
 TransferFunction in_series(const TransferFunction& first, const TransferFunction& second) {
   const TransferFunction G = first.without_washout(), H = second.without_washout();
-  const TransferFunction both(product(G.numerator(), H.numerator()),
-                              product(G.denominator(), H.denominator()), G.dead_time() + H.dead_time());
+  TransferFunction both(product(G.numerator(), H.numerator()), product(G.denominator(), H.denominator()),
+                        G.dead_time() + H.dead_time());
+  if (H.step_)
+    both.step_ = H.step_->followed_by(G.without_step_coefficients());
+  else if (G.step_)
+    both.step_ = G.step_->followed_by(H);
   const double washout = second.washout() > 0 ? second.washout() : first.washout();
   return washout > 0 ? both.behind_washout(washout) : both;
 }
@@ -207,7 +242,8 @@ TransferFunction in_series(const TransferFunction& first, const TransferFunction
 bool operator==(const TransferFunction& a, const TransferFunction& b) {
   return same(a.numerator_, b.numerator_) && same(a.denominator_, b.denominator_) &&
          same(a.dead_time_, b.dead_time_) && same(a.washout_, b.washout_) &&
-         same(a.own_numerator_, b.own_numerator_) && same(a.own_denominator_, b.own_denominator_);
+         same(a.own_numerator_, b.own_numerator_) && same(a.own_denominator_, b.own_denominator_) &&
+         same(a.step_, b.step_);
 }
 
 }  // namespace mpm

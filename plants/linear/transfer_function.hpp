@@ -1,8 +1,11 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 
 #include <Eigen/Core>
+
+#include "plants/linear/step_coefficients.hpp"
 
 namespace mpm {
 
@@ -23,6 +26,10 @@ namespace mpm {
 /// An output that integrates drifts, and is looked at through a washout: with behind_washout() the function
 /// is G(s) s / (s + 1 / T_w), which has no pole at the origin any more. Numerator and denominator are then
 /// those of the product; the changes of gain, time constants and dead time are those of G.
+///
+/// A function may have the coefficients of its step response, from which its gains and whatever is simulated
+/// are then taken. The rational form is one fitted to them: it has the parameters (poles, residence time,
+/// dead time, G(s)), and its changes are changes of both.
 class TransferFunction {
  public:
   /// Errors: InputError if a coefficient or the dead time is not finite, a polynomial is empty, the leading
@@ -43,18 +50,18 @@ class TransferFunction {
   Eigen::Index order() const { return denominator_.size() - 1; }
 
   /// G = 0 for every s.
-  bool is_zero() const { return numerator_.isZero(0); }
+  bool is_zero() const { return numerator_.isZero(0) && !step_; }
 
   /// Has a pole at the origin, hence no static gain.
   bool is_integrating() const { return !is_zero() && denominator_(order()) == 0; }
 
-  /// G(0). Errors: InputError for an integrating channel.
+  /// G(0), the last coefficient if there are some. Errors: InputError for an integrating channel.
   double static_gain() const;
 
   /// lim s G(s), s -> 0: the rate of an integrating channel under a constant input of 1; 0 for any other.
   double rate_gain() const;
 
-  /// G(s), with the dead time as e^{-theta s}. Not finite at a pole.
+  /// G(s) of the rational form, with the dead time as e^{-theta s}. Not finite at a pole.
   std::complex<double> operator()(std::complex<double> s) const;
 
   /// factor * G(s): a gain mismatch. Errors: InputError unless `factor` is finite.
@@ -87,23 +94,37 @@ class TransferFunction {
   /// Time constant of the washout; 0 for none.
   double washout() const { return washout_; }
 
+  /// The same parameters, but simulated by the coefficients of a step response, which ramps where this
+  /// integrates. Errors: InputError as StepCoefficients.
+  TransferFunction with_step_coefficients(const Eigen::VectorXd& values, double interval) const;
+  /// The rational form alone.
+  TransferFunction without_step_coefficients() const;
+  const std::optional<StepCoefficients>& step_coefficients() const { return step_; }
+
+  /// How far back the function looks at each single input: dead time, or last coefficient if that is later.
+  double memory() const { return step_ && step_->end() > dead_time_ ? step_->end() : dead_time_; }
+
   /// Are all coefficients and the dead time the same? Other coefficients with the same G differ.
   friend bool operator==(const TransferFunction& a, const TransferFunction& b);
 
  private:
+  friend TransferFunction in_series(const TransferFunction& first, const TransferFunction& second);
+
   /// The same washout, if any, of another function.
   TransferFunction with_rational_part(Eigen::VectorXd numerator, Eigen::VectorXd denominator,
-                                      double dead_time) const;
+                                      double dead_time, std::optional<StepCoefficients> step) const;
 
   Eigen::VectorXd numerator_;
   Eigen::VectorXd denominator_;
   double dead_time_;
   double washout_ = 0;
   Eigen::VectorXd own_numerator_ = {}, own_denominator_ = {};  ///< of G behind a washout
+  std::optional<StepCoefficients> step_ = {};                  ///< of G
 };
 
 /// G_1(s) G_2(s): the output of the one is the input of the other. A washout stays, of the second if both
-/// have one.
+/// have one. So do the coefficients of a step response; of two that have them the first is taken as its
+/// rational form.
 TransferFunction in_series(const TransferFunction& first, const TransferFunction& second);
 
 }  // namespace mpm

@@ -93,6 +93,13 @@ Eigen::VectorXd TransferMatrix::steady_output(const Eigen::Ref<const Eigen::Vect
   return output;
 }
 
+TransferMatrix TransferMatrix::without_step_coefficients() const {
+  TransferMatrix rational = *this;
+  for (TransferFunction& channel : rational.channels_)
+    channel = channel.without_step_coefficients();
+  return rational;
+}
+
 Eigen::MatrixXcd TransferMatrix::frequency_response(std::complex<double> s) const {
   Eigen::MatrixXcd response(rows_, cols_);
   for (Eigen::Index row = 0; row < rows_; ++row) {

@@ -48,6 +48,9 @@ class TransferMatrix {
   /// integrates counts from there (LinearPlant::reset()).
   Eigen::VectorXd steady_output(const Eigen::Ref<const Eigen::VectorXd>& input) const;
 
+  /// The rational forms alone of channels that have step coefficients.
+  TransferMatrix without_step_coefficients() const;
+
   /// G(s) at one complex s, rows() x cols().
   Eigen::MatrixXcd frequency_response(std::complex<double> s) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -136,6 +137,34 @@ DiscreteChannel behind_washout(const TransferFunction& channel, double sample_ti
   return result;
 }
 
+/// With F the response behind the washout, F_i = a F_(i-1) + S_i - S_(i-1), which after the last coefficient
+/// m is F_(i+1) = a F_i + Ts rate: what it then adds to F_m is the step response of a first-order channel
+/// with m samples of dead time. Without a washout a = 1.
+DiscreteChannel of_coefficients(const StepCoefficients& S, double sample_time, double washout) {
+  if (!(S.end() / sample_time <= kMaxDelay))
+    throw InputError("coefficients of a step response in samples", fmt::format("{}", S.end() / sample_time),
+                     fmt::format("at most {}", kMaxDelay));
+  DiscreteChannel result;
+  result.step = S.sampled(sample_time);
+  const double rise = sample_time * S.rate();
+  const double a = washout > 0 ? std::exp(-sample_time / washout) : 1.0;
+  if (washout > 0) {
+    double F = 0.0, before = 0.0;
+    for (double& value : result.step) {
+      F = a * F + value - before;
+      before = std::exchange(value, F);
+    }
+  }
+  const double added = washout > 0 ? rise - (1.0 - a) * result.step(result.step.size() - 1) : rise;
+  const Eigen::Index n = washout > 0 || S.ramps() ? 1 : 0;
+  result.A.setConstant(n, n, a);
+  result.b_now.setConstant(n, added);
+  result.b_previous.setZero(n);
+  result.c.setOnes(n);
+  result.delay = n > 0 ? static_cast<int>(result.step.size()) : 0;
+  return result;
+}
+
 }  // namespace
 
 void require_sample_time(double sample_time) {
@@ -146,6 +175,8 @@ void require_sample_time(double sample_time) {
 
 DiscreteChannel discretise(const TransferFunction& channel, double sample_time) {
   require_sample_time(sample_time);
+  if (const auto& S = channel.step_coefficients())
+    return of_coefficients(*S, sample_time, channel.washout());
   if (channel.washout() > 0)
     return behind_washout(channel, sample_time);
   const Delay delay = split_dead_time(channel.dead_time(), sample_time);

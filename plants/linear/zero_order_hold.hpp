@@ -12,7 +12,7 @@ inline constexpr int kMaxDelay = 1'000'000;
 /// One channel between samples at which the input is held constant.
 ///
 ///   x(k+1) = A x(k) + b_now u(k - delay) + b_previous u(k - delay - 1)
-///   y(k)   = c x(k) + d u(k - delay - 1)
+///   y(k)   = c x(k) + d u(k - delay - 1) + sum_i step_i (u(k - i) - u(k - i - 1)),   i = 1, ..., m
 ///
 /// u(k) acts on [k Ts, (k+1) Ts), and y(k) is sampled just before the input changes to u(k). Hence y(k)
 /// depends on inputs before sample k only, also for d != 0 and no dead time.
@@ -24,6 +24,8 @@ inline constexpr int kMaxDelay = 1'000'000;
 /// | b_previous | effect of the older one; 0 for whole delays  | n     | 1 / unit of u     |
 /// | c, d       | output row, direct effect                    | n, 1  | unit of y         |
 /// | delay      | whole samples of dead time                   | 1     | samples           |
+/// | step       | step response beside the states, which stays | m     | unit of y         |
+/// |            | at its last value; of coefficients only      |       |                   |
 struct DiscreteChannel {
   Eigen::MatrixXd A;
   Eigen::VectorXd b_now;
@@ -31,6 +33,7 @@ struct DiscreteChannel {
   Eigen::RowVectorXd c;
   double d = 0;
   int delay = 0;
+  Eigen::VectorXd step = {};
 };
 
 /// Errors: InputError unless `sample_time` is finite and > 0.
@@ -47,8 +50,14 @@ void require_sample_time(double sample_time);
 /// and the filter of its samples together. A dead time within a relative 1e-9 of a whole number
 /// of samples counts as whole (27 / 0.1 is not 270 in floating point).
 ///
-/// Errors: InputError unless `sample_time` (same unit as the time constants) is finite and > 0, the dead time
-/// is at most kMaxDelay samples, and the result is finite (a fast unstable pole overflows).
+/// A channel that has the coefficients of its step response S(t) has no other model than these: step_i =
+/// S(i Ts), exact for straight lines between coefficients, and for the coefficients themselves where Ts is
+/// their interval. The only state is that of the ramp which goes on after them, x(k+1) = x(k) + Ts rate
+/// u(k - m), or of the washout.
+///
+/// Errors: InputError unless `sample_time` (same unit as the time constants) is finite and > 0, what dead
+/// time and coefficients reach back is at most kMaxDelay samples, and the result is finite (a fast unstable
+/// pole overflows).
 DiscreteChannel discretise(const TransferFunction& channel, double sample_time);
 
 }  // namespace mpm

@@ -34,6 +34,9 @@ std::string polynomial_text(const Eigen::VectorXd& coefficients) {
 }
 
 std::string transfer_function_text(const TransferFunction& channel) {
+  if (channel.step_coefficients())
+    return fmt::format("coefficients of a step response, about {}",
+                       transfer_function_text(channel.without_step_coefficients()));
   return fmt::format("({}) / ({}){}", polynomial_text(channel.numerator()),
                      polynomial_text(channel.denominator()),
                      channel.dead_time() > 0 ? fmt::format(" e^(-{:g} s)", channel.dead_time()) : "");

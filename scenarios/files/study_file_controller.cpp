@@ -202,16 +202,21 @@ void resize(Study& study) {
   options.cv_soft = Limits::none(cvs);
 }
 
-/// A controller keeps as many past inputs as the longest dead time has samples.
+/// A controller keeps as many past inputs as the longest dead time has samples, or the longest coefficients.
 void refuse_long_dead_times(const TomlTable& controller, const Study& study) {
   const double sample_time = study.controller.sample_time;
   for (Eigen::Index row = 0; row < study.plant.G.rows(); ++row)
     for (Eigen::Index col = 0; col < study.plant.G.cols(); ++col)
-      if (const double samples = study.plant.G(row, col).dead_time() / sample_time;
-          !(samples <= kMaxDeadTimeSamples))
+      if (const TransferFunction& channel = study.plant.G(row, col);
+          !(channel.memory() / sample_time <= kMaxDeadTimeSamples)) {
+        const bool dead = channel.memory() == channel.dead_time();
         controller.refuse("sample_time",
-                          fmt::format("{} (a dead time has {:.3g} samples)", sample_time, samples),
-                          fmt::format("dead times of at most {} samples", kMaxDeadTimeSamples));
+                          fmt::format("{} ({} {:.3g} samples)", sample_time,
+                                      dead ? "a dead time has" : "coefficients of a step response reach over",
+                                      channel.memory() / sample_time),
+                          fmt::format("{} of at most {} samples", dead ? "dead times" : "coefficients",
+                                      kMaxDeadTimeSamples));
+      }
 }
 
 OptionKeys controller_program_keys(std::vector<std::string>& command, double& time_limit) {

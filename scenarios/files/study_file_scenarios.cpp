@@ -101,7 +101,7 @@ void take_mismatches(const TomlTable& table, const std::vector<Mismatch>& of_cha
   const TransferFunction& channel = plant(first.cv, first.input);
   refuse_unstable(table, channel,
                   study.plant.G.is_integrating(first.cv) ? PolesAtOrigin::one : PolesAtOrigin::none);
-  refuse_long_dead_time(table, "", channel.dead_time(), study.controller.sample_time);
+  refuse_long_memory(table, "", channel, study.controller.sample_time);
   for (const Mismatch& other : mismatches)
     if (other.cv == first.cv && other.input == first.input)
       table.refuse("", "a second mismatch of this channel", "every channel once");
@@ -205,7 +205,7 @@ OptionKeys disturbance_model_keys() {
 void read_model(const TomlTable& table, double sample_time, Disturbance& disturbance) {
   const TransferFunction Gd = read_transfer_function(table).function;
   refuse_growing(table, Gd);
-  refuse_long_dead_time(table, "dead_time", Gd.dead_time(), sample_time);
+  refuse_long_memory(table, "dead_time", Gd, sample_time);
   if (table.has("gain") && Gd.dead_time() == 0) {
     disturbance.model = DisturbanceModel::first_order;
     disturbance.gain = read_number(table, "gain", NumberRule::finite());

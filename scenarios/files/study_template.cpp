@@ -141,6 +141,11 @@ void write_plant(TomlDraft& document, const PlantModel& plant) {
       TomlDraft& channel = entry_of(table, "channel", place++, "plant.channel[]");
       channel.set("cv", plant.cvs[static_cast<std::size_t>(cv)].name);
       channel.set("input", channel_name(plant, input));
+      if (const auto& S = G.step_coefficients()) {
+        channel.set("step", S->sampled(S->interval()));
+        channel.set("step_interval", S->interval());
+        continue;
+      }
       if (G.order() == 1 && G.is_integrating()) {
         channel.set("rate_gain", G.rate_gain());
       } else if (G.order() == 1 && G.numerator().size() == 1 && G.denominator()(0) > 0) {

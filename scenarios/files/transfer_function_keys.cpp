@@ -46,7 +46,7 @@ WrittenTransferFunction read_step_coefficients(const TomlTable& table) {
   const double interval = read_number(table, "step_interval", NumberRule::positive());
   const StepResponseFit fit =
       table.located("step", [&] { return fit_step_coefficients(coefficients, interval); });
-  return {fit.channel, fit.largest_error};
+  return {by_coefficients(fit, coefficients, interval), fit.largest_error};
 }
 
 }  // namespace
@@ -77,8 +77,9 @@ OptionKeys transfer_function_keys(const std::string& input, const std::string& p
               .allow(">= 0, at most 10000 sample times"),
           key::option("step", "list of numbers",
                       "coefficients of the step response, as dynamic matrix control has them: values 1, 2, "
-                      "... intervals after a step of 1. The study goes on with the transfer function that "
-                      "is fitted to them",
+                      "... intervals after a step of 1. What is simulated and predicted has these "
+                      "coefficients; the last value goes on, of a channel that integrates the last slope. "
+                      "Parameters are those of a transfer function that is fitted to them",
                       "CV / " + input)
               .otherwise("none; with `step_interval`")
               .allow("8 to 1000 finite numbers, until the response has settled"),
@@ -159,12 +160,16 @@ void refuse_growing(const TomlTable& table, const TransferFunction& Gd) {
   }
 }
 
-void refuse_long_dead_time(const TomlTable& table, const std::string& key, double dead_time,
-                           double sample_time) {
-  if (!(dead_time / sample_time <= kMaxDeadTimeSamples))
-    table.refuse(key,
-                 key.empty() ? fmt::format("a dead time of {}", dead_time) : fmt::format("{}", dead_time),
-                 fmt::format("at most {} samples", kMaxDeadTimeSamples));
+void refuse_long_memory(const TomlTable& table, const std::string& key, const TransferFunction& channel,
+                        double sample_time) {
+  const double memory = channel.memory(), dead_time = channel.dead_time();
+  if (memory / sample_time <= kMaxDeadTimeSamples)
+    return;
+  const std::string allowed = fmt::format("at most {} samples", kMaxDeadTimeSamples);
+  if (memory > dead_time)
+    table.refuse(table.has("step") ? "step" : "", fmt::format("coefficients over {}", memory), allowed);
+  table.refuse(key, key.empty() ? fmt::format("a dead time of {}", dead_time) : fmt::format("{}", dead_time),
+               allowed);
 }
 
 }  // namespace mpm

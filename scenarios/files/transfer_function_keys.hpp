@@ -7,7 +7,8 @@
 
 namespace mpm {
 
-/// Longest dead time that a study may have, in samples: a bound on the memory that a mistake can cost.
+/// Longest dead time and longest coefficients that a study may have, in samples: a bound on the memory that a
+/// mistake can cost.
 inline constexpr double kMaxDeadTimeSamples = 10000;
 
 /// The keys of a transfer function from `input` to a CV, which read_transfer_function() reads; `poles` says
@@ -17,7 +18,7 @@ OptionKeys transfer_function_keys(const std::string& input, const std::string& p
 /// A transfer function as a table has it.
 struct WrittenTransferFunction {
   TransferFunction function;
-  double step_error = 0.0;  ///< what it leaves of step coefficients, as a share of the largest of them
+  double step_error = 0.0;  ///< what its parameters leave of step coefficients, as a share of the largest
 };
 
 /// The transfer function in these keys of a table.
@@ -33,8 +34,8 @@ void refuse_unstable(const TomlTable& table, const TransferFunction& channel, Po
 /// Refuses a model of a disturbance that grows by itself: poles may lie at 0, but not to the right of it.
 void refuse_growing(const TomlTable& table, const TransferFunction& Gd);
 
-/// Refuses a dead time of more than kMaxDeadTimeSamples.
-void refuse_long_dead_time(const TomlTable& table, const std::string& key, double dead_time,
-                           double sample_time);
+/// Refuses a dead time, which is that of `key`, and coefficients of more than kMaxDeadTimeSamples.
+void refuse_long_memory(const TomlTable& table, const std::string& key, const TransferFunction& channel,
+                        double sample_time);
 
 }  // namespace mpm

@@ -127,7 +127,7 @@ def check_step_model(run, folder):
         channel = found[name]
         for is_now, was in zip((channel["gain"], channel["time_constant"], channel.get("dead_time", 0)), numbers):
             assert abs(is_now - was) < 2e-3, (name, channel)
-    # The same coefficients in the study itself give the same plant.
+    # The same coefficients in the study itself, which rounding leaves 1e-5 of, give the same plant but for that.
     steps = {name: f"step = {[row[1 + i] for row in rows]}\nstep_interval = 2\n" for i, name in enumerate(channels)}
     head, *tables = re.sub(r"(?m)^#.*\n", "", study.read_text()).split("[[plant.channel]]")
     for place, table in enumerate(tables):

@@ -54,6 +54,9 @@ TEST_CASE("the allocation counter sees Eigen and the standard library", "[alloca
 TEST_CASE("assignment, reset and advance of a plant allocate nothing", "[allocation]") {
   CHECK(allocations_of_prediction(samples::mixed_matrix()) == 0);
   CHECK(allocations_of_prediction(benchmark_plant("shell-7x3").G) == 0);
+  TransferMatrix coefficients = samples::mixed_matrix();
+  coefficients(0, 0) = coefficients(0, 0).with_step_coefficients(samples::rough_input(1, 25).transpose(), 2);
+  CHECK(allocations_of_prediction(coefficients) == 0);
 }
 
 }  // namespace mpm

@@ -66,7 +66,45 @@ void check_prediction(const TransferMatrix& model, Eigen::Index mv_count, double
               .lpNorm<Eigen::Infinity>() < kPredictionRounding);
 }
 
+/// The second row by 30 coefficients each that are no transfer function's.
+TransferMatrix with_coefficients(TransferMatrix model) {
+  const Eigen::MatrixXd rough = samples::rough_input(model.cols(), 30);
+  for (Eigen::Index input = 0; input < model.cols(); ++input)
+    model(1, input) = model(1, input).with_step_coefficients(rough.row(input).transpose(), 2);
+  return model;
+}
+
 }  // namespace
+
+TEST_CASE("with coefficients the prediction is that of dynamic matrix control", "[prediction]") {
+  const TransferMatrix model{{TransferFunction::first_order(1, 5).with_step_coefficients(
+                                  samples::rough_input(1, 30).row(0).transpose(), 2),
+                              TransferFunction::first_order(1, 5).with_step_coefficients(
+                                  samples::rough_input(2, 12).row(1).transpose(), 2)}};
+  const Eigen::VectorXd a = samples::rough_input(1, 30).row(0), b = samples::rough_input(2, 12).row(1);
+  LinearPlant plant(model, 2);
+  const Eigen::MatrixXd u = samples::rough_input(2, 70);
+  const auto move = [&](Eigen::Index j, Eigen::Index k) {
+    return k < 0 ? 0.0 : u(j, k) - (k > 0 ? u(j, k - 1) : 0.0);
+  };
+  const auto coefficient = [](const Eigen::VectorXd& all, Eigen::Index i) {
+    return all(std::min(i, all.size()) - 1);
+  };
+  for (Eigen::Index k = 0; k < u.cols(); ++k) {
+    const Eigen::MatrixXd free = free_of(plant, u.col(k), 40);  // y(k+1), ... with u(k) held
+    for (Eigen::Index l = 1; l <= 40; ++l) {
+      double expected = 0;
+      for (Eigen::Index past = 0; past <= k; ++past)
+        expected +=
+            coefficient(a, k + l - past) * move(0, past) + coefficient(b, k + l - past) * move(1, past);
+      REQUIRE(free(0, l - 1) == Approx(expected).margin(kPredictionRounding));
+    }
+    plant.advance(u.col(k));
+  }
+  const RowMajorMatrix dynamic_matrix = forced_response(model, 1, 2, 40, {0, 1, 2, 3});
+  for (Eigen::Index l = 1; l <= 40; ++l)  // the last position is held: a step of it
+    CHECK(dynamic_matrix(l - 1, 3) == (l > 3 ? coefficient(a, l - 3) : 0.0));
+}
 
 TEST_CASE("free and forced response together are the simulated one", "[prediction]") {
   const TransferMatrix p1 = benchmark_plant("shell-7x3").G;
@@ -75,6 +113,9 @@ TEST_CASE("free and forced response together are the simulated one", "[predictio
   const TransferMatrix mixed = samples::mixed_matrix();
   for (const int hc : {1, 2, 9, 20})
     check_prediction(mixed, 3, 2, 20, hc);
+  const TransferMatrix coefficients = with_coefficients(mixed);
+  for (const int hc : {1, 9, 20})
+    check_prediction(coefficients, 3, 2, 60, hc);
   check_prediction(mixed, 4, 2, 1, 1);  // all inputs are MVs
 }
 

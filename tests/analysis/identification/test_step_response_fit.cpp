@@ -106,6 +106,33 @@ TEST_CASE("coefficients that have not settled are refused", "[step-test]") {
                     Contains("at its end, where the fitted transfer function goes to 0.5"));
 }
 
+TEST_CASE("a settled response is none that is too short, wherever its fit goes", "[step-test]") {
+  // Ten samples of an inverse response, a peak, and a tail: no form of two lags has it.
+  Eigen::VectorXd odd(120);
+  for (Eigen::Index k = 0; k < odd.size(); ++k) {
+    const auto t = static_cast<double>(k + 1);
+    odd(k) = 1 - std::exp(-t / 15) - 2 * std::exp(-std::pow((t - 5) / 3, 2)) +
+             3 * std::exp(-std::pow((t - 30) / 4, 2));
+  }
+  CHECK_NOTHROW(fit_step_coefficients(odd, 2.0));
+}
+
+TEST_CASE("a channel keeps the coefficients that its fit does not give", "[step-test]") {
+  const auto kept = [](const TransferFunction& channel, Eigen::Index count) {
+    const Eigen::VectorXd values = response_of(channel, 2.0, count);
+    const TransferFunction found = by_coefficients(fit_step_coefficients(values, 2.0), values, 2.0);
+    CHECK((response_of(found, 2.0, count) - values).cwiseAbs().maxCoeff() <
+          2e-9 * values.cwiseAbs().maxCoeff());
+    return found.step_coefficients().has_value();
+  };
+  const TransferFunction lag = TransferFunction::first_order(-4.05, 20.0, 27.0);
+  CHECK_FALSE(kept(lag, 300));
+  CHECK(kept(lag, 60));  // after the last coefficient the transfer function rises on
+  CHECK(kept({Eigen::VectorXd::Ones(1), Eigen::Vector4d(8000.0, 1200.0, 60.0, 1.0)}, 300));
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(20);
+  CHECK(by_coefficients(fit_step_coefficients(none, 2.0), none, 2.0) == TransferFunction::zero());
+}
+
 TEST_CASE("a ramp is a channel that integrates", "[step-test]") {
   const StepResponseFit pure = fit_step_coefficients(Eigen::VectorXd::LinSpaced(60, 0.1, 6.0), 2.0);
   REQUIRE(pure.channel.is_integrating());

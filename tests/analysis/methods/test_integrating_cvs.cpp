@@ -6,7 +6,10 @@
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_panel.hpp"
+#include "analysis/methods/mismatch_responses.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/linear/zero_order_hold.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
@@ -136,6 +139,39 @@ TEST_CASE("an exact model leaves the noise of a level, with and without gaps", "
   seen = assessed_loop(study, point, loop);
   CHECK(seen.y.row(0).segment(50, 20).array().isNaN().all());
   CHECK((seen.y - seen.y_sim).array().isNaN().select(0.0, seen.y - seen.y_sim).cwiseAbs().maxCoeff() < 1e-10);
+}
+
+TEST_CASE("an exact model of coefficients leaves nothing either, and its error what it does",
+          "[integrating]") {
+  Study study = find_study("suite-evaporator");
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input)
+      if (TransferFunction& channel = study.plant.G(cv, input); !channel.is_zero())
+        channel = channel.with_step_coefficients(
+            step_response(TransferMatrix{{channel}}, study.controller.sample_time, 40)
+                .front()
+                .row(0)
+                .transpose(),
+            study.controller.sample_time);
+  study.simulation.noise_standard_deviation.setZero();
+  study.simulation.samples = 200;
+  const OperatingPoint point = operating_point(study, testing::kFactory);
+  const Trajectory loop = simulate_experiment(study, {}, testing::kFactory);
+  REQUIRE(loop.status == ControlStatus::ok);
+  const AssessedLoop seen = assessed_loop(study, point, loop);
+  CHECK((seen.y - seen.y_sim).cwiseAbs().maxCoeff() < 1e-10);  // as above
+  // A channel's response by its discrete equivalent is that of the plant, from a steady input on as well.
+  const double Ts = study.controller.sample_time;
+  for (const TransferFunction& channel : {study.plant.G(1, 0), study.assessed_channel(0, 0)}) {
+    const Eigen::RowVectorXd u = loop.u.row(0);
+    LinearPlant plant(TransferMatrix{{channel}}, Ts);
+    plant.reset(u.head(1));
+    const Eigen::RowVectorXd found = channel_response(discretise(channel, Ts), u, u(0));
+    for (Eigen::Index k = 0; k < u.size(); ++k) {
+      REQUIRE(found(k) == Approx(plant.output()(0)).margin(1e-10));  // roundings of 40 coefficients
+      plant.advance(u.col(k));
+    }
+  }
 }
 
 TEST_CASE("methods tell a healthy level from a wrong one", "[integrating]") {

@@ -102,6 +102,15 @@ TEST_CASE("stability: of the plant alone, whatever disturbs it; not of another l
   CHECK(std::isnan(stability.spectral_radius(held)));
 }
 
+TEST_CASE("stability: of step coefficients it is that of their transfer function", "[loop_stability]") {
+  const Study study = stable_study();
+  Study stepped = study;
+  stepped.plant.G(0, 0) =
+      study.plant.G(0, 0).with_step_coefficients(Eigen::VectorXd::LinSpaced(30, 0.1, 9.0), 4.0);
+  const ExperimentDraw draw = with_mismatch({0, 0, MismatchParameter::gain, -1.0});
+  CHECK(radius_of(stepped, draw) == radius_of(study, draw));
+}
+
 TEST_CASE("stability: not known of a program, and of one slack for all samples", "[loop_stability]") {
   Study study = find_study("chapter6");
   const OperatingPoint point = operating_point(study, kFactory);

@@ -1,6 +1,8 @@
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
+#include "plants/linear/linear_plant.hpp"
 #include "plants/models/catalogue.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/files/study_file.hpp"
@@ -241,6 +243,25 @@ std::string spelled_out(const PlantModel& plant) {
     }
   }
   return text;
+}
+
+TEST_CASE("step coefficients are the model as they are", "[study_file]") {
+  // An inverse response and five lags.
+  const TransferFunction slow(Eigen::Vector2d(-40, 2),
+                              (Eigen::VectorXd(6) << 3125, 3125, 1250, 250, 25, 1).finished());
+  const Eigen::VectorXd values = step_response(TransferMatrix{{slow}}, 1, 120).front().row(0);
+  std::string list;
+  for (const double value : values)
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", value);
+  const Study study = parse_study(
+      replaced(small_study(), "numerator = [-1.5]\ndenominator = [20.0, 12.0, 1.0]\ndead_time = 2",
+               "step = [" + list + "]\nstep_interval = 1"),
+      "s.toml");
+  const auto [cv, input, error] = study.plant.step_fits.at(0);
+  CHECK(error > 0.01);
+  const TransferMatrix channel{{study.plant.G(cv, input)}};
+  CHECK(step_response(channel, study.controller.sample_time, 120).front().row(0).transpose() == values);
+  CHECK(channel.static_gain()(0, 0) == values(119));
 }
 
 TEST_CASE("a plant of the catalogue spelled out in the file is the same plant", "[study_file]") {

@@ -65,6 +65,10 @@ TEST_CASE("the channels of a plant are checked", "[study_file]") {
       {"numerator = [-1.5]\ndenominator = [20.0, 12.0, 1.0]\ndead_time = 2",
        "step = [1, 2, 3, 4, 5, 6, 7]\nstep_interval = 2",
        "step = ", "plant.channel[1].step: step response: found 7 samples; allowed: at least 8"},
+      {"numerator = [-1.5]\ndenominator = [20.0, 12.0, 1.0]\ndead_time = 2",
+       "step = [1, 2, 3, 4, 4, 4, 4, 4]\nstep_interval = 2000", "sample_time",
+       "controller.sample_time: found 1 (coefficients of a step response reach over 1.6e+04 "
+       "samples); allowed: coefficients of at most 10000 samples"},
       {"input = \"drain\"", "input = \"hot\"",
        "[[plant.channel]]\ncv = \"level\"\ninput = \"hot\"\ngain = -1",
        "plant.channel[2]: found a second channel from this input to this CV; allowed: every channel once"},

@@ -1,0 +1,110 @@
+#include "plants/linear/step_coefficients.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "plants/error.hpp"
+#include "plants/linear/linear_plant.hpp"
+#include "plants/linear/settling_time.hpp"
+#include "plants/linear/transfer_function.hpp"
+#include "plants/linear/transfer_matrix.hpp"
+#include "plants/same_members.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kRounding = 1e-9;       // of an interval
+constexpr double kTimesToSettle = 21.0;  // sums of time constants: e^-21 = 1e-9
+
+/// x, or the whole number that it is but for rounding.
+double snapped(double x) {
+  const double nearest = std::round(x);
+  return std::abs(x - nearest) <= kRounding * std::max(1.0, std::abs(x)) ? nearest : x;
+}
+
+}  // namespace
+
+StepCoefficients::StepCoefficients(Eigen::VectorXd values, double interval, bool ramps)
+    : values_(std::make_shared<const Eigen::VectorXd>(std::move(values))),
+      interval_(interval),
+      ramps_(ramps) {
+  if (values_->size() < 2 || !values_->allFinite())
+    throw InputError("coefficients of a step response",
+                     values_->size() < 2 ? fmt::format("{}", values_->size()) : "one that is not finite",
+                     "two or more finite numbers");
+  if (!(std::isfinite(interval_) && interval_ > 0))
+    throw InputError("time between two coefficients", fmt::format("{}", interval_), "a finite number > 0");
+}
+
+double StepCoefficients::operator()(double t) const {
+  const double place = snapped((t - start_) / interval_);
+  if (t <= 0.0 || place <= 0.0)
+    return 0.0;
+  const Eigen::Index n = values_->size();
+  if (place >= static_cast<double>(n))
+    return last() + rate() * interval_ * (place - static_cast<double>(n));
+  const auto before = static_cast<Eigen::Index>(place);
+  const double from = before > 0 ? (*values_)(before - 1) : 0.0;
+  const double share = place - static_cast<double>(before);
+  return gain_ * (from + share * ((*values_)(before)-from));
+}
+
+double StepCoefficients::rate() const {
+  const Eigen::Index n = values_->size();
+  return ramps_ ? gain_ * ((*values_)(n - 1) - (*values_)(n - 2)) / interval_ : 0.0;
+}
+
+Eigen::VectorXd StepCoefficients::sampled(double sample_time) const {
+  const auto count = static_cast<Eigen::Index>(std::max(2.0, std::ceil(snapped(end() / sample_time))));
+  Eigen::VectorXd values(count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    values(k) = (*this)(sample_time * static_cast<double>(k + 1));
+  return values;
+}
+
+StepCoefficients StepCoefficients::with_gain_scaled(double factor) const {
+  StepCoefficients changed = *this;
+  changed.gain_ *= factor;
+  return changed;
+}
+
+StepCoefficients StepCoefficients::with_time_scaled(double factor, double about) const {
+  StepCoefficients changed = *this;
+  changed.interval_ *= factor;
+  changed.start_ = about + (start_ - about) * factor;
+  if (ramps_)
+    changed.gain_ *= factor;
+  return changed;
+}
+
+StepCoefficients StepCoefficients::with_dead_time_shifted(double delta) const {
+  StepCoefficients changed = *this;
+  changed.start_ += delta;
+  return changed;
+}
+
+/// S' is constant between coefficients: H S' / s is that of a held input.
+StepCoefficients StepCoefficients::followed_by(const TransferFunction& H) const {
+  const Eigen::VectorXd values = sampled(interval_);
+  const Eigen::Index n = values.size();
+  const double settled = H.dead_time() + kTimesToSettle * sum_of_time_constants(H);
+  const Eigen::Index count = n + static_cast<Eigen::Index>(std::ceil(settled / interval_));
+  Eigen::RowVectorXd slopes = Eigen::RowVectorXd::Constant(count + 1, rate());
+  slopes.head(n) = values.transpose() / interval_;
+  slopes.segment(1, n - 1) -= values.head(n - 1).transpose() / interval_;
+  Eigen::VectorXd over_s = Eigen::VectorXd::Zero(H.denominator().size() + 1);
+  over_s.head(H.denominator().size()) = H.denominator();
+  const TransferMatrix integrated{{TransferFunction(H.numerator(), over_s, H.dead_time())}};
+  return {simulate(integrated, interval_, slopes).row(0).tail(count).transpose(), interval_,
+          ramps_ || H.is_integrating()};
+}
+
+bool operator==(const StepCoefficients& a, const StepCoefficients& b) {
+  return same(*a.values_, *b.values_) && a.interval_ == b.interval_ && a.ramps_ == b.ramps_ &&
+         a.start_ == b.start_ && a.gain_ == b.gain_;
+}
+
+}  // namespace mpm

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+class TransferFunction;
+
+/// A step response S(t) by its coefficients, as dynamic matrix control has it: S(0) = 0, S(T) = s_1, ...,
+/// S(n T) = s_n, straight lines in between. After the last coefficient it stays there, or, of a channel that
+/// integrates, goes on with the last slope, (s_n - s_(n-1)) / T.
+///
+/// Between coefficients S is off by at most T^2 / 8 times the largest curvature of the response that they
+/// were taken from. A value type: copies and changes of it share the coefficients. Changes move S along the
+/// time axis; what then lies at t <= 0 is cut off.
+class StepCoefficients {
+ public:
+  /// `interval` is T. Errors: InputError for fewer than two values, one that is not finite, or an interval
+  /// that is not finite and > 0.
+  StepCoefficients(Eigen::VectorXd values, double interval, bool ramps);
+
+  /// S(t). Between two coefficients within a relative 1e-9 of an interval t is that of the nearer one.
+  double operator()(double t) const;
+  double interval() const { return interval_; }
+  /// When the last coefficient is reached.
+  double end() const { return start_ + interval_ * static_cast<double>(values_->size()); }
+  /// The last coefficient.
+  double last() const { return gain_ * (*values_)(values_->size() - 1); }
+  bool ramps() const { return ramps_; }
+  /// The last slope of one that ramps, 0 for any other.
+  double rate() const;
+
+  /// S(Ts), S(2 Ts), ..., until the last coefficient is reached; at least two values.
+  Eigen::VectorXd sampled(double sample_time) const;
+
+  /// factor * S(t).
+  StepCoefficients with_gain_scaled(double factor) const;
+  /// S(about + (t - about) / factor), and of one that ramps `factor` times that: its rate stays.
+  StepCoefficients with_time_scaled(double factor, double about) const;
+  /// S(t - delta).
+  StepCoefficients with_dead_time_shifted(double delta) const;
+  /// The response of H(s), which has no coefficients, to S(t): exact at multiples of T, and long enough for H
+  /// to settle.
+  StepCoefficients followed_by(const TransferFunction& H) const;
+
+  friend bool operator==(const StepCoefficients& a, const StepCoefficients& b);
+
+ private:
+  std::shared_ptr<const Eigen::VectorXd> values_;
+  double interval_;
+  bool ramps_;
+  double start_ = 0.0, gain_ = 1.0;
+};
+
+}  // namespace mpm
