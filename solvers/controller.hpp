@@ -8,6 +8,7 @@
 
 #include "solvers/mpc_options.hpp"
 #include "solvers/qp_solver.hpp"
+#include "solvers/switched_off.hpp"
 
 namespace mpm {
 
@@ -60,6 +61,13 @@ class Controller {
 
   /// Replaces the soft limits of the CVs from the next step on.
   virtual void set_cv_soft(const Limits& limits) = 0;
+
+  /// What operators have taken from it, from the next step on, until this is called again; nothing before. An
+  /// MV that is off acts from that step on where it is held, as a measured disturbance does, and the next
+  /// move is counted from there: its moves, and its targets where there are any, are this position. A CV that
+  /// is off counts for nothing but the output bias. Throws InputError for what SwitchedOff::validate()
+  /// refuses, and if the CVs that are left do not determine the moves (MpcQp).
+  virtual void set_off(const SwitchedOff& off) = 0;
 
   /// The setpoints from the next step on; ny numbers, of which those of CVs without a setpoint are not read.
   /// They are zero until this is called.

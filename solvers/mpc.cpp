@@ -1,10 +1,13 @@
 #include "solvers/mpc.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
+#include "plants/non_finite.hpp"
 #include "solvers/prediction.hpp"
 
 namespace mpm {
@@ -47,15 +50,17 @@ std::string_view to_string(ControlStatus status) {
 
 Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& options,
          const QpSolverFactory& factory)
-    : nu_(mv_count),
-      model_(model, checked(options, model, mv_count).sample_time),
+    : G_(model),
+      options_(checked(options, model, mv_count)),
+      factory_(factory),
+      nu_(mv_count),
+      model_(model, options.sample_time),
       scratch_(model_),
-      qp_(model, mv_count, options),
-      solver_(factory(qp_.structure())),
       simulated_analysers_(options.analysers),
       setpoint_(Eigen::VectorXd::Zero(model.rows())),
-      setpoint_weight_(options.setpoint_weight),
-      cv_soft_(options.cv_soft) {
+      cv_soft_(options.cv_soft),
+      off_(SwitchedOff::none(model.rows(), mv_count)) {
+  program_ = &program_without(off_);
   Eigen::MatrixXd gain = model.steady_gain();
   for (Eigen::Index cv = 0; cv < model.rows(); ++cv)
     if (model.is_integrating(cv)) {
@@ -65,7 +70,7 @@ Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& o
   md_gain_ = gain.rightCols(model.cols() - mv_count);
   if (options.has_targets()) {
     targets_.emplace(gain.leftCols(mv_count), options, factory);
-    pass_on_limits();
+    pass_on_targets();
   }
   input_.setZero(model.cols());
   for (Eigen::VectorXd* of_cv : {&bias_, &ramp_, &ramp_share_, &y_model_})
@@ -91,15 +96,15 @@ void Mpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<con
   ramp_.setZero();
   if (targets_)
     targets_->reset();
-  solver_->reset();
+  program_->solver->reset();
   move_.status = ControlStatus::ok;
   move_.u = u;
   move_.u_target = u;
+  off_.hold(move_.u);
 }
 
 void Mpc::set_cv_soft(const Limits& limits) {
   limits.validate("cv_soft", model_.output_count());
-  qp_.set_cv_soft(limits);
   cv_soft_ = limits;
   pass_on_limits();
 }
@@ -107,19 +112,61 @@ void Mpc::set_cv_soft(const Limits& limits) {
 void Mpc::set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) {
   require_signal("setpoints", y_set, setpoint_.size());
   setpoint_ = y_set;
+  pass_on_targets();
+}
+
+void Mpc::set_off(const SwitchedOff& off) {
+  off.validate(model_.output_count(), nu_);
+  Program& program = program_without(off);
+  if (&program != program_)
+    program.solver->reset();
+  program_ = &program;
+  off_ = off;
+  off_.hold(move_.u);
+  std::vector<Eigen::Index> held;
+  for (Eigen::Index mv = 0; mv < nu_; ++mv)
+    if (off_.has_mv(mv))
+      held.push_back(mv);
+  program_->qp.set_held(std::move(held));
+  if (targets_)
+    targets_->set_held(off_.position);
   pass_on_limits();
 }
 
-/// The target optimizer sees a setpoint as a range without width, and of a CV that integrates its rate.
+Mpc::Program& Mpc::program_without(const SwitchedOff& off) {
+  std::vector<bool> without(static_cast<std::size_t>(G_.rows()));
+  for (Eigen::Index cv = 0; cv < G_.rows(); ++cv)
+    without[static_cast<std::size_t>(cv)] = off.cvs(cv) && options_.has_setpoint(cv);
+  if (const auto known = programs_.find(without); known != programs_.end())
+    return known->second;
+  MpcOptions options = options_;
+  options.setpoint_weight = off.cvs.select(0.0, options_.setpoint_weight);
+  MpcQp qp(G_, nu_, options);
+  std::unique_ptr<QpSolver> solver = factory_(qp.structure());
+  return programs_.emplace(std::move(without), Program{std::move(qp), std::move(solver)}).first->second;
+}
+
 void Mpc::pass_on_limits() {
+  program_->qp.set_cv_limits(off_.opened(options_.cv_hard), off_.opened(cv_soft_));
+  pass_on_targets();
+}
+
+/// The target optimizer sees a setpoint as a range without width, of a CV that integrates its rate, and of
+/// one that is off nothing.
+void Mpc::pass_on_targets() {
   if (!targets_)
     return;
   target_range_ = cv_soft_;
   for (Eigen::Index cv = 0; cv < setpoint_.size(); ++cv)
-    if (setpoint_weight_(cv) > 0.0)
+    if (options_.has_setpoint(cv))
       target_range_.lower(cv) = target_range_.upper(cv) = setpoint_(cv);
   for (const Eigen::Index cv : integrating_)
     target_range_.lower(cv) = target_range_.upper(cv) = 0.0;
+  for (Eigen::Index cv = 0; cv < setpoint_.size(); ++cv)
+    if (off_.cvs(cv)) {
+      target_range_.lower(cv) = -kInfinity;
+      target_range_.upper(cv) = kInfinity;
+    }
   targets_->set_cv_soft(target_range_);
 }
 
@@ -130,7 +177,7 @@ std::optional<SolvedQp> Mpc::target_problem() const {
 }
 
 std::optional<SolvedQp> Mpc::move_problem() const {
-  return SolvedQp{solver_->structure(), qp_.data(), solver_->result()};
+  return SolvedQp{program_->solver->structure(), program_->qp.data(), program_->solver->result()};
 }
 
 Eigen::VectorXd Mpc::nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) {
@@ -195,6 +242,7 @@ bool Mpc::solve_targets() {
     return false;
   move_.kkt_residual = target.kkt_residual;
   move_.u_target = target.x;
+  off_.hold(move_.u_target);
   return true;
 }
 
@@ -204,13 +252,14 @@ void Mpc::solve_moves() {
   for (const Eigen::Index cv : integrating_)
     for (Eigen::Index l = 0; l < free_.cols(); ++l)
       free_(cv, l) += static_cast<double>(l + 1) * ramp_(cv);
-  const QpResult& plan =
-      solver_->solve(qp_.update({free_, input_.head(nu_), move_.u_target, setpoint_, measured_}));
+  const QpResult& plan = program_->solver->solve(
+      program_->qp.update({free_, input_.head(nu_), move_.u_target, setpoint_, measured_}));
   note(plan);
   if (move_.status != ControlStatus::ok)
     return;
   move_.kkt_residual = std::max(move_.kkt_residual, plan.kkt_residual);
   move_.u += plan.x.head(nu_);
+  off_.hold(move_.u);
 }
 
 }  // namespace mpm

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -30,6 +32,10 @@ namespace mpm {
 /// 3. The moves from the free response with MVs held at u(k-1) and MDs held at d(k) (6.20). Setpoints are
 ///    those of this sample, held over the horizon: the controller does not know their changes beforehand.
 ///
+/// An MV that is off (SwitchedOff) is an input that the model knows: it stays where it is held in both
+/// problems, the structures of which do not change. A CV that is off has no limits in either; where it has a
+/// setpoint, the moves come from a second program without it.
+///
 /// | symbol | meaning                     | shape |
 /// |--------|-----------------------------|-------|
 /// | G0     | nominal model, MVs then MDs | ny x (nu + nd) |
@@ -46,6 +52,9 @@ class Mpc final : public Controller {
   void set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) override;
   /// In the MPC and in the target optimizer, as set_setpoints().
   void set_cv_soft(const Limits& limits) override;
+  /// Makes a program of its own the first time that just these CVs with a setpoint are off, and a solver
+  /// forgets its warm start when it is taken up again.
+  void set_off(const SwitchedOff& off) override;
   void set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) override;
   /// Forgets the warm start of the target optimizer.
   Eigen::VectorXd nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) override;
@@ -53,26 +62,37 @@ class Mpc final : public Controller {
   std::optional<SolvedQp> move_problem() const override;
 
  private:
+  /// The moves of one sample, as a problem and its solver.
+  struct Program {
+    MpcQp qp;
+    std::unique_ptr<QpSolver> solver;
+  };
+
+  Program& program_without(const SwitchedOff& off);
   void pass_on_limits();
+  void pass_on_targets();
   void feed_back(const Eigen::Ref<const Eigen::VectorXd>& y);
   void note(const QpResult& answer);
   bool solve_targets();
   void solve_moves();
 
+  const TransferMatrix G_;
+  const MpcOptions options_;
+  const QpSolverFactory factory_;
   Eigen::Index nu_;
   std::vector<Eigen::Index> integrating_;  ///< CVs
   Eigen::MatrixXd md_gain_;  ///< at the steady state; of a CV that integrates over the prediction horizon
   LinearPlant model_, scratch_;
-  MpcQp qp_;
+  std::map<std::vector<bool>, Program> programs_;  ///< by the CVs with a setpoint that are off
+  Program* program_ = nullptr;
   std::optional<TargetOptimizer> targets_;
-  std::unique_ptr<QpSolver> solver_;
   Eigen::VectorXd input_;  ///< (u(k-1), d(k)), then what acts, (u(k), d(k))
   AnalyserHold simulated_analysers_;
   bool is_pending_ = false;  ///< input_ acts, and the model has not been advanced with it
   bool has_bias_ = false;    ///< since reset()
   Eigen::VectorXd bias_, ramp_, ramp_share_, y_at_zero_, setpoint_, measured_, y_model_;
-  Eigen::VectorXd setpoint_weight_;
   Limits cv_soft_, target_range_;
+  SwitchedOff off_;
   Eigen::MatrixXd free_;  ///< ny x Hp
   ControlMove move_;
 };

@@ -121,6 +121,9 @@ const QpData& MpcQp::update(const MpcSample& sample) {
   // An MV outside of its limits returns as fast as it may.
   data_.lower.head(mv_count_) = data_.lower.head(mv_count_).cwiseMax(-move_limit_).cwiseMin(move_limit_);
   data_.upper.head(mv_count_) = data_.upper.head(mv_count_).cwiseMin(move_limit_).cwiseMax(-move_limit_);
+  for (const Eigen::Index mv : held_)
+    for (int i = 0; i < control_horizon_; ++i)
+      data_.lower(i * mv_count_ + mv) = data_.upper(i * mv_count_ + mv) = 0.0;
   for (Eigen::Index cv = 0; cv < sample.free.rows(); ++cv)
     for (Eigen::Index l = 0; l < prediction_horizon_; ++l) {
       const Eigen::Index row = cv * prediction_horizon_ + l;

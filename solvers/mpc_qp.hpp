@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -37,8 +39,14 @@ class MpcQp {
   /// The problem of the last update.
   const QpData& data() const { return data_; }
 
-  /// Replaces the soft limits of the CVs (ny each).
-  void set_cv_soft(const Limits& limits) { cv_soft_ = limits; }
+  /// Replaces the limits of the CVs (ny each).
+  void set_cv_limits(const Limits& hard, const Limits& soft) {
+    cv_hard_ = hard;
+    cv_soft_ = soft;
+  }
+
+  /// MVs that do not move: v_j(i) = 0 in the place of their limits.
+  void set_held(std::vector<Eigen::Index> mvs) { held_ = std::move(mvs); }
 
  private:
   MpcQp(RowMajorMatrix forced, Eigen::Index mv_count, const MpcOptions& options);
@@ -48,6 +56,7 @@ class MpcQp {
   int control_horizon_;
   Limits mv_hard_, cv_hard_, cv_soft_;
   Eigen::VectorXd move_limit_;  ///< nu; infinite: none
+  std::vector<Eigen::Index> held_;
   TargetTracking targets_;
   SetpointTracking setpoints_;
   std::shared_ptr<const QpStructure> structure_;

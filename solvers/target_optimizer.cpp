@@ -39,7 +39,7 @@ std::shared_ptr<const QpStructure> target_structure(const Eigen::MatrixXd& stati
 
 TargetOptimizer::TargetOptimizer(const Eigen::MatrixXd& static_gain, const MpcOptions& options,
                                  const QpSolverFactory& factory)
-    : cv_soft_(options.cv_soft) {
+    : mv_hard_(options.mv_hard), cv_soft_(options.cv_soft) {
   const auto structure = target_structure(static_gain, options);
   data_ = QpData::unconstrained(*structure);
   data_.gradient = options.mv_cost;
@@ -48,6 +48,11 @@ TargetOptimizer::TargetOptimizer(const Eigen::MatrixXd& static_gain, const MpcOp
   data_.lower = options.mv_hard.lower;
   data_.upper = options.mv_hard.upper;
   solver_ = factory(structure);
+}
+
+void TargetOptimizer::set_held(const Eigen::Ref<const Eigen::VectorXd>& position) {
+  data_.lower = position.array().isNaN().select(mv_hard_.lower, position);
+  data_.upper = position.array().isNaN().select(mv_hard_.upper, position);
 }
 
 const QpResult& TargetOptimizer::solve(const Eigen::Ref<const Eigen::VectorXd>& y_at_zero) {

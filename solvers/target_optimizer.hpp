@@ -41,13 +41,16 @@ class TargetOptimizer {
   /// Replaces the soft limits of the CVs (ny each).
   void set_cv_soft(const Limits& limits) { cv_soft_ = limits; }
 
+  /// Targets that are given: `position` (nu), NaN where the limits of the MV count.
+  void set_held(const Eigen::Ref<const Eigen::VectorXd>& position);
+
   void reset() { solver_->reset(); }
 
   /// The problem of the last solve.
   SolvedQp problem() const { return {solver_->structure(), data_, solver_->result()}; }
 
  private:
-  Limits cv_soft_;
+  Limits mv_hard_, cv_soft_;
   QpData data_;
   std::unique_ptr<QpSolver> solver_;
 };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "analysis/sensitivity/active_limit.hpp"
+#include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/loop/signals.hpp"
 
 namespace mpm {
@@ -108,7 +109,8 @@ LoopConditions loop_conditions(const Study& study, const BasisCase& basis, const
   const Limits& hard = study.controller.mv_hard;
   conditions.mv_at_limit =
       share_of(loop.samples_done, free_mvs(study, basis.point), [&](Eigen::Index k, Eigen::Index mv) {
-        return at_or_below(loop.u(mv, k), hard.lower(mv)) || at_or_above(loop.u(mv, k), hard.upper(mv));
+        return at_or_below(loop.u(mv, k), hard.lower(mv)) || at_or_above(loop.u(mv, k), hard.upper(mv)) ||
+               is_off(study, VariableSort::mv, mv, k);
       });
   return conditions;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "solvers/mpc_objective.hpp"
 
@@ -33,7 +34,7 @@ LoopCost loop_cost(const Study& study, const Trajectory& loop) {
       if (controller.has_soft_limit(cv))
         cost.cv(cv) += of_slack(cv) * violation * violation +
                        (controller.has_slack_cost(cv) ? controller.slack_cost(cv) * violation : 0.0);
-      if (controller.has_setpoint(cv))
+      if (controller.has_setpoint(cv) && !is_off(study, VariableSort::cv, cv, k))
         cost.cv(cv) += of_setpoint(cv) * std::pow(loop.y(cv, k) - loop.y_set(cv, k), 2);
     }
     if (k > 0)

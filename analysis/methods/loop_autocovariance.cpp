@@ -59,6 +59,7 @@ Study unlimited_study(const Study& study, Eigen::Index samples) {
   unlimited.controller.cv_hard = Limits::none(study.cv_count());
   unlimited.simulation.samples = static_cast<int>(samples);
   unlimited.simulation.limit_steps.clear();
+  unlimited.simulation.off.clear();
   return unlimited;
 }
 

@@ -8,6 +8,7 @@
 
 #include "analysis/validation/record_check.hpp"
 #include "plants/non_finite.hpp"
+#include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/study/study_controller.hpp"
 
@@ -45,11 +46,16 @@ Eigen::MatrixXd chosen(const RecordFrame& frame, const PlantRecord& record, cons
   const std::vector<LimitStep>& steps = study.simulation.limit_steps;
   controller->set_setpoints(study.simulation.initial_setpoint);
   controller->reset(record.u.col(0), record.d.col(0));
+  OffSchedule schedule(study);
   Eigen::MatrixXd u(record.u.rows(), record.samples());
   for (Eigen::Index k = 0; k < record.samples(); ++k) {
     if (y_set.size() > 0)
       controller->set_setpoints(y_set.col(k));
-    if (std::any_of(steps.begin(), steps.end(), [k](const LimitStep& step) { return step.sample == k; }))
+    const bool switches = schedule.go_on(k, record.u.col(k));
+    if (switches)
+      controller->set_off(schedule.off());
+    if (switches ||
+        std::any_of(steps.begin(), steps.end(), [k](const LimitStep& step) { return step.sample == k; }))
       controller->set_cv_soft(soft_limits(study, k));
     const ControlMove& move = controller->step(y.col(k), record.d.col(k));
     if (move.status != ControlStatus::ok) {
@@ -61,6 +67,13 @@ Eigen::MatrixXd chosen(const RecordFrame& frame, const PlantRecord& record, cons
     controller->set_acting(record.u.col(k));
   }
   return u;
+}
+
+/// The MVs where the controller has them, NaN elsewhere.
+Eigen::MatrixXd moved_by_controller(const PlantRecord& record) {
+  if (record.u_off.size() == 0)
+    return record.u;
+  return (record.u_off.array() == 1.0).select(kNaN, record.u.array());
 }
 
 /// 1 where moves are compared, 0 elsewhere: in what is not judged, and where the controller may have seen
@@ -130,15 +143,18 @@ ControllerCheck check_controller(const RecordFrame& frame, const PlantRecord& re
   const Eigen::Index nu = record.u.rows();
   ControllerCheck check{.agreement = Eigen::VectorXd::Constant(nu, kNaN),
                         .pull = Eigen::VectorXd::Constant(nu, kNaN),
-                        .is_closed_loop = answers(record.u, loop.y - loop.y_sim),
+                        .is_closed_loop = answers(moved_by_controller(record), loop.y - loop.y_sim),
                         .away = cvs_away_from_setpoints(frame.as_kept, record)};
   const Eigen::MatrixXd u = chosen(frame, record, loop, check.failure);
   if (u.size() == 0)
     return check;
-  const Eigen::ArrayXd counts = compared_samples(frame, record);
-  if (counts.sum() < static_cast<double>(kFewestMoves))
-    return check;
+  const Eigen::ArrayXd compared = compared_samples(frame, record);
   for (Eigen::Index mv = 0; mv < nu; ++mv) {
+    Eigen::ArrayXd counts = compared;
+    for (Eigen::Index k = 0; k < record.samples(); ++k)
+      counts(k) *= record.has_mv_off(mv, k) ? 0.0 : 1.0;
+    if (counts.sum() < static_cast<double>(kFewestMoves))
+      continue;
     const Eigen::ArrayXd there = record.u.row(mv).transpose();
     const Eigen::ArrayXd off = u.row(mv).transpose().array() - there;
     const double count = counts.sum(), mean = (counts * there).sum() / count;

@@ -16,9 +16,11 @@ namespace mpm {
 inline constexpr double kLeastAgreement = -1.0;
 
 /// Is the record of the controller of the study? It is run on the recorded CVs, MDs and setpoints; its model
-/// is moved by the recorded MVs, and its next move u_c is compared with the recorded one.
+/// is moved by the recorded MVs, operators take from it what they had taken, and its next move u_c is
+/// compared with the recorded one.
 struct ControllerCheck {
-  /// 1 - sum (u - u_c)^2 / sum (u - mean u)^2 of each MV, nu, over the samples at which all CVs are there;
+  /// 1 - sum (u - u_c)^2 / sum (u - mean u)^2 of each MV, nu, over the samples at which all CVs are there and
+  /// the controller has the MV;
   /// NaN of one that never moves. Moves would tell controllers apart more finely, but also the historian: of
   /// a record of this very controller with rounded and averaged columns they agree with -64 where levels do
   /// with 0.93.

@@ -46,7 +46,8 @@ PlantRecord with_lead(const PlantRecord& record, Eigen::Index lead) {
   PlantRecord longer = record;
   for (Eigen::MatrixXd PlantRecord::*const signals :
        {&PlantRecord::y, &PlantRecord::u, &PlantRecord::d, &PlantRecord::u_target, &PlantRecord::y_set,
-        &PlantRecord::lower, &PlantRecord::upper, &PlantRecord::y_sim, &PlantRecord::candidates}) {
+        &PlantRecord::lower, &PlantRecord::upper, &PlantRecord::y_sim, &PlantRecord::u_off,
+        &PlantRecord::y_off, &PlantRecord::candidates}) {
     const Eigen::MatrixXd& all = record.*signals;
     if (all.cols() == 0)
       continue;

@@ -23,8 +23,9 @@ struct TrialFrame {
   double bias = 0.0;      ///< kTrialBias, or 0
 };
 
-/// The record with `lead` samples before its first one, in which MDs, setpoints and limits move as they do
-/// after it, in the reverse order: nobody knows how they moved. At most as many as the record has less one.
+/// The record with `lead` samples before its first one, in which MDs, setpoints, limits and modes move as
+/// they do after it, in the reverse order: nobody knows how they moved. At most as many as the record has
+/// less one.
 PlantRecord with_lead(const PlantRecord& record, Eigen::Index lead);
 
 /// The loop of an experiment of the study as the record of the plant is: without what was before it, with

@@ -1,6 +1,7 @@
 #include "analysis/sensitivity/control_structure.hpp"
 
 #include "analysis/sensitivity/active_limit.hpp"
+#include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/loop/signals.hpp"
 
 namespace mpm {
@@ -28,6 +29,8 @@ std::vector<ControlStructure> control_structures(const Study& study, const Traje
     const Limits soft = soft_limits(study, k);
     for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
       const double lower = soft.lower(cv), upper = soft.upper(cv);
+      if (is_off(study, VariableSort::cv, cv, k))
+        continue;
       if (options.has_setpoint(cv))
         structure.active.push_back({cv, ConstraintKind::setpoint});
       else if (at_or_above(y(cv, k), upper))
@@ -37,7 +40,7 @@ std::vector<ControlStructure> control_structures(const Study& study, const Traje
     }
     for (Eigen::Index mv = 0; mv < u.rows(); ++mv)
       if (at_or_below(u(mv, k), options.mv_hard.lower(mv)) ||
-          at_or_above(u(mv, k), options.mv_hard.upper(mv)))
+          at_or_above(u(mv, k), options.mv_hard.upper(mv)) || is_off(study, VariableSort::mv, mv, k))
         structure.fixed_mvs.push_back(mv);
   }
   return structures;

@@ -328,9 +328,16 @@ std::vector<std::string> check_record(const Study& study, const PlantRecord& rec
 
 std::vector<Eigen::Index> cvs_away_from_setpoints(const Study& study, const PlantRecord& record) {
   std::vector<Eigen::Index> away;
+  const auto kept = [&record](Eigen::Index cv) {
+    Eigen::RowVectorXd y = record.y.row(cv);
+    for (Eigen::Index k = 0; k < y.size(); ++k)
+      if (record.has_cv_off(cv, k))
+        y(k) = kNaN;
+    return y;
+  };
   for (Eigen::Index cv = 0; cv < record.y.rows(); ++cv)
     if (study.controller.has_setpoint(cv) && std::isnan(record.y_set(cv, 0)) &&
-        stays_away(record.y.row(cv), study.simulation.initial_setpoint(cv)))
+        stays_away(kept(cv), study.simulation.initial_setpoint(cv)))
       away.push_back(cv);
   return away;
 }

@@ -267,6 +267,7 @@ class DataSketcher {
       line(assigned("tags", [&](std::size_t column) { return toml_literal(file().names[column]); }));
       write_operating_point();
       write_setpoints();
+      write_modes();
     }
     for (const std::string& variable : missing_)
       line(fmt::format("# To do: no column is called like {}: add it to tags.", in_comment(variable)));
@@ -288,20 +289,44 @@ class DataSketcher {
          }));
   }
 
-  /// AI101.SP beside AI101.PV
+  /// The name of the column beside one, as AI101.SP is beside AI101.PV; none: there is none.
+  std::optional<std::string> beside(std::size_t column, const std::string& ending) const {
+    const auto found = file().find(file().names[column].substr(0, file().names[column].size() - 2) + ending);
+    return found ? std::optional(toml_literal(file().names[*found])) : std::nullopt;
+  }
+
+  bool ends_with(std::size_t column, const std::string& ending) const {
+    return small_letters(file().names[column]).ends_with(ending);
+  }
+
   void write_setpoints() {
-    const std::string text = assigned("setpoint", [&](std::size_t column) -> std::optional<std::string> {
-      std::string name = file().names[column];
-      if (!small_letters(name).ends_with("pv"))
-        return std::nullopt;
-      name.replace(name.size() - 2, 2, "SP");
-      const auto found = file().find(name);
-      return found ? std::optional(toml_literal(file().names[*found])) : std::nullopt;
+    const std::string text = assigned("setpoint", [&](std::size_t column) {
+      return ends_with(column, "pv") ? beside(column, "SP") : std::nullopt;
     });
     if (text.empty())
       return;
     line("# Guess: the setpoints of the time.");
     line(text);
+  }
+
+  /// FC11.MODE beside FC11.SP, FC11.OP or FC11.PV, of CVs and MVs.
+  void write_modes() {
+    const std::string text = assigned("mode", [&](std::size_t column) {
+      const bool is_tag = ends_with(column, ".sp") || ends_with(column, ".op") || ends_with(column, ".pv");
+      return is_tag && !is_md(column) ? beside(column, "MODE") : std::nullopt;
+    });
+    if (text.empty())
+      return;
+    line("# Guess: whether the controller has the variable; the words for yes are in mode_on.");
+    line(text);
+  }
+
+  bool is_md(std::size_t column) const {
+    return std::any_of(columns_.begin(), columns_.end(), [&](const auto& of) {
+      return of.second == column &&
+             std::any_of(plant_.mds.begin(), plant_.mds.end(),
+                         [&](const PlantModel::Variable& md) { return md.name == of.first; });
+    });
   }
 
   void write_others() {

@@ -1,5 +1,6 @@
 #include "results/records/plant_record_file.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -82,6 +83,8 @@ class RecordReader {
         group(cvs, [&](const std::string& name) { return companion(name, data_.upper, "upper"); });
     record_.y_sim =
         group(cvs, [&](const std::string& name) { return companion(name, data_.y_sim, "y_sim"); });
+    record_.u_off = off(mvs);
+    record_.y_off = off(cvs);
     read_candidates();
     leave_out_without_controller();
     refuse_missing();
@@ -132,6 +135,28 @@ class RecordReader {
         tag != tags.end() || (column && signals_.has_numbers(*column));  // exports have empty columns
     return recorded ? grid_.held(signals_.numbers(*column, variable))
                     : Eigen::RowVectorXd::Constant(grid_.samples(), kNaN);
+  }
+
+  /// 1 where operators have a variable, 0 elsewhere; empty if the file says it of none.
+  Eigen::MatrixXd off(const std::vector<PlantModel::Variable>& variables) {
+    const auto has_mode = [this](const PlantModel::Variable& each) { return data_.mode.contains(each.name); };
+    if (std::none_of(variables.begin(), variables.end(), has_mode))
+      return {};
+    return group(variables, [this](const std::string& name) -> Eigen::RowVectorXd {
+      if (!data_.mode.contains(name))
+        return Eigen::RowVectorXd::Zero(grid_.samples());
+      const Eigen::RowVectorXd in_use = grid_.held(signals_.in_use(name));
+      if (in_use.hasNaN())
+        throw InputError(signals_.where("mode", name),
+                         fmt::format("no value in '{}'", cut_utf8(data_.mode.at(name), kShownBytes)),
+                         "a word of data.mode_on where the controller has " + name);
+      const Eigen::RowVectorXd off = (in_use.array() != 1.0).cast<double>();
+      if (off.any())
+        record_.warnings.push_back(fmt::format(
+            "{} is off in {} of the samples, in which '{}' is none of data.mode_on ({})", name,
+            percent(off.mean()), cut_utf8(data_.mode.at(name), kShownBytes), fmt::join(data_.mode_on, ", ")));
+      return off;
+    });
   }
 
   /// Signals beside those of the loop, in units of their own: a regression looks at their moves only.

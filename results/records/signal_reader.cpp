@@ -207,10 +207,17 @@ bool SignalReader::is_word(const std::string& cell, const std::vector<std::strin
 }
 
 RowSignal SignalReader::controller_on() const {
-  const std::size_t column = file_.column(file_.file + ": data.controller_on", data_.controller_on);
+  return is_on(file_.column(file_.file + ": data.controller_on", data_.controller_on), data_.on_values);
+}
+
+RowSignal SignalReader::in_use(const std::string& variable) const {
+  return is_on(file_.column(where("mode", variable), data_.mode.at(variable)), data_.mode_on);
+}
+
+RowSignal SignalReader::is_on(std::size_t column, const std::vector<std::string>& words) const {
   RowSignal on;
   for (const std::string& cell : file_.columns[column])
-    on.push_back(cell.empty() ? kNaN : is_word(cell, data_.on_values) ? 1.0 : 0.0);
+    on.push_back(cell.empty() ? kNaN : is_word(cell, words) ? 1.0 : 0.0);
   return on;
 }
 

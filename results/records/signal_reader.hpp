@@ -41,11 +41,16 @@ class SignalReader {
   /// 1 where the controller is on, 0 where it is off, NaN where nothing is said.
   RowSignal controller_on() const;
 
+  /// 1 where the controller has the variable (data.mode), 0 where operators have it, NaN where nothing is
+  /// said.
+  RowSignal in_use(const std::string& variable) const;
+
   bool has_numbers(std::size_t column) const;
   /// "FILE: data.KEY.VARIABLE"
   std::string where(const std::string& key, const std::string& variable) const;
 
  private:
+  RowSignal is_on(std::size_t column, const std::vector<std::string>& words) const;
   void fill(std::size_t column);
   std::pair<double, double> hard_limits(const std::string& variable) const;
   void drop_implausible(std::size_t column, const std::string& variable, RowSignal& signal);

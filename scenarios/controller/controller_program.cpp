@@ -123,6 +123,7 @@ class ProgramController final : public Controller {
         factory_(factory),
         nu_(static_cast<Eigen::Index>(plant.mvs.size())),
         soft_(options.cv_soft),
+        off_(SwitchedOff::none(G_.rows(), nu_)),
         y_set_(Eigen::VectorXd::Zero(G_.rows())) {
     ProgramJson context{{"call", "context"}};
     context.update(loop_context_json(plant, options, samples));
@@ -162,13 +163,17 @@ class ProgramController final : public Controller {
     guarded([&] {
       if (!running_)
         throw InputError("a step of a program that was not reset");
-      const ProgramJson answer = asked(running_->talk.ask({{"call", "step"},
-                                                           {"y", vector_json(y)},
-                                                           {"d", vector_json(d)},
-                                                           {"u", vector_json(acting_)},
-                                                           {"y_set", vector_json(setpoints())},
-                                                           {"cv_soft", limits_json(soft_)}}));
-      take_move(answer);
+      ProgramJson question{{"call", "step"},
+                           {"y", vector_json(y)},
+                           {"d", vector_json(d)},
+                           {"u", vector_json(acting_)},
+                           {"y_set", vector_json(setpoints())},
+                           {"cv_soft", limits_json(soft_)}};
+      if (off_.has_any()) {
+        question["mv_off"] = vector_json(off_.position);
+        question["cv_off"] = std::vector<bool>(off_.cvs.begin(), off_.cvs.end());
+      }
+      take_move(asked(running_->talk.ask(question)));
     });
     acting_ = move_.u;
     return move_;
@@ -177,6 +182,10 @@ class ProgramController final : public Controller {
   void set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) override { acting_ = u; }
   void set_cv_soft(const Limits& limits) override { soft_ = limits; }
   void set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) override { y_set_ = y_set; }
+  void set_off(const SwitchedOff& off) override {
+    off.validate(G_.rows(), nu_);
+    off_ = off;
+  }
 
   Eigen::VectorXd nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) override {
     Mpc built_in(G_, nu_, options_, factory_);
@@ -223,6 +232,8 @@ class ProgramController final : public Controller {
     move_.u = mvs_of(answer, "u", nu_).cwiseMax(options_.mv_hard.lower).cwiseMin(options_.mv_hard.upper);
     if (answer.contains("u_target"))
       move_.u_target = mvs_of(answer, "u_target", nu_);
+    off_.hold(move_.u);
+    off_.hold(move_.u_target);
   }
 
   /// NaN, null in JSON, for a CV without one.
@@ -236,6 +247,7 @@ class ProgramController final : public Controller {
   std::string context_;
   std::unique_ptr<ControllerTalks::Running> running_;
   Limits soft_;
+  SwitchedOff off_;
   Eigen::VectorXd y_set_, acting_;
   ControlMove move_;
   std::string failure_;  ///< empty: none so far

@@ -18,8 +18,10 @@ class ControllerTalks;
 ///   {"call": "reset", "u": [...], "d": [...], "y": [...]}       ->  {}
 ///   {"call": "step", "y", "d", "u", "y_set", "cv_soft"}         ->  {"u": [...], "u_target": [...]}
 ///
-/// each with the number of the message (ProgramTalk). Copies share their programs: as many run as controllers
-/// are at work at the same time in one process, and those that have nothing to do wait for the next loop.
+/// each with the number of the message (ProgramTalk). While variables are off, a step has "mv_off" and
+/// "cv_off" as well, and what it answers for an MV that is off is not used. Copies share their programs: as
+/// many run as controllers are at work at the same time in one process, and those that have nothing to do
+/// wait for the next loop.
 class ControllerProgram {
  public:
   ControllerProgram(std::vector<std::string> command, double time_limit);

@@ -101,6 +101,32 @@ toml::array limit_steps(const Study& study, const PlantRecord& record) {
   return steps;
 }
 
+/// A table for each time that a variable is off, and for each move of an MV while it is.
+toml::array off_spells(const Study& study, const PlantRecord& record) {
+  toml::array spells;
+  const auto add = [&](const char* sort, const std::string& name, Eigen::Index begin, Eigen::Index end) {
+    spells.push_back(toml::table{{sort, name}, {"sample", begin}, {"samples", end - begin}});
+  };
+  for (Eigen::Index mv = 0; mv < record.u_off.rows(); ++mv)
+    for (Eigen::Index k = 0, end = 0; k < record.samples(); k = std::max(end, k + 1)) {
+      for (end = k;
+           end < record.samples() && record.has_mv_off(mv, end) && record.u(mv, end) == record.u(mv, k);)
+        ++end;
+      if (end == k)
+        continue;
+      add("mv", name_of(study.plant.mvs, mv), k, end);
+      spells.back().as_table()->insert("level", record.u(mv, k));
+    }
+  for (Eigen::Index cv = 0; cv < record.y_off.rows(); ++cv)
+    for (Eigen::Index k = 0, end = 0; k < record.samples(); k = std::max(end, k + 1)) {
+      for (end = k; end < record.samples() && record.has_cv_off(cv, end);)
+        ++end;
+      if (end > k)
+        add("cv", name_of(study.plant.cvs, cv), k, end);
+    }
+  return spells;
+}
+
 const char* word_of(GapFill fill) {
   switch (fill) {
     case GapFill::none:
@@ -173,7 +199,7 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
     text.erase("onset");
 
   toml::table& simulation = table_in(text, "simulation");
-  for (const char* key : {"step", "random_steps", "limit_step", "md_noise", "excitation", "dither"})
+  for (const char* key : {"step", "random_steps", "limit_step", "md_noise", "excitation", "dither", "off"})
     simulation.erase(key);
   simulation.insert_or_assign("samples", record.samples());
   toml::array steps;
@@ -186,6 +212,8 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
     simulation.insert_or_assign("step", std::move(steps));
   if (!limits.empty())
     simulation.insert_or_assign("limit_step", std::move(limits));
+  if (toml::array off = off_spells(study, record); !off.empty())
+    simulation.insert_or_assign("off", std::move(off));
 
   toml::table& historian = table_in(text, "record");
   historian.erase("missing");

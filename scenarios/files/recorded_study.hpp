@@ -12,7 +12,8 @@
 namespace mpm {
 
 /// The study whose loops are as long as the record, under its measured disturbances, and with the setpoints
-/// and soft limits as they were at the time (those of the study where they were not recorded). Its basis case
+/// and soft limits as they were at the time (those of the study where they were not recorded). What operators
+/// had taken is off, MVs where they were recorded. Its basis case
 /// is the nominal loop of the record, and its experiments are loops of this very controller, excitation and
 /// length. Samples are missing in them as often as in the record, in gaps of the same mean length, filled as
 /// the [data] says, and they have as many candidates, up to 9, one of which drives every second disturbance;

@@ -85,6 +85,12 @@ OptionKeys data_keys(Study& study) {
   DataOptions& o = study.data;
   const Variables cvs = [&study] { return variable_names(study.plant.cvs); };
   const Variables mvs = [&study] { return variable_names(study.plant.mvs); };
+  const Variables loop = [&study] {
+    std::vector<std::string> names = variable_names(study.plant.cvs);
+    for (const std::string& mv : variable_names(study.plant.mvs))
+      names.push_back(mv);
+    return names;
+  };
   const Variables all = [&study] {
     std::vector<std::string> names = variable_names(study.plant.cvs);
     for (const std::string& input : input_names(study.plant))
@@ -186,6 +192,16 @@ OptionKeys data_keys(Study& study) {
                  "words for a good quality, in upper or lower case; numbers count in any form (`192.0`). "
                  "`opc`: words that begin with good, and the good codes of OPC, those of OPC UA if there is "
                  "one of 2^30 or above, otherwise those of OPC DA (192 and others)"),
+      columns(
+          "mode", o.mode, loop,
+          "whether the controller has a CV or an MV, over time; each holds until the next one. While it has "
+          "not, operators hold the MV where it was recorded, and the CV has no limits and no setpoint")
+          .otherwise("none: it has all of them")
+          .allow("columns"),
+      key::texts(
+          "mode_on", o.mode_on, "texts",
+          "words of `mode` for a variable that the controller has, in upper or lower case; numbers count in "
+          "any form"),
       key::option("stored_on_change", "list of texts",
                   "variables that were stored only when they changed: their last value holds until the next "
                   "one, and nothing of them is missing in between")

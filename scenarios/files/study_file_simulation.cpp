@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -101,6 +102,77 @@ void take_step(const TomlTable& table, SignalStep& step, Study& study) {
       table.refuse("sample", fmt::format("{} for a second step of this variable", step.sample),
                    "one step a sample");
   steps.push_back(step);
+}
+
+OptionKeys off_keys(OffSpell& spell, const Study& study) {
+  const int samples = study.simulation.samples;
+  return {
+      key::option("mv", "text", "the MV that operators hold")
+          .otherwise("this or `cv`")
+          .allow("name of an MV"),
+      key::option("cv", "text", "the CV that the controller leaves alone")
+          .otherwise("this or `mv`")
+          .allow("name of a CV"),
+      key::whole("sample", spell.sample, 0, samples - 1, "first sample at which it is off", "samples")
+          .required()
+          .allow("0 to `samples` - 1"),
+      key::whole("samples", spell.samples, 1, samples, "for how long", "samples")
+          .required()
+          .allow("1 to `simulation.samples`; before the next table of this variable"),
+      key::option("level", "number", "of an MV: where it is held, which may be outside of its limits", "MV")
+          .otherwise("where it was")
+          .allow("finite")};
+}
+
+/// With a CV less, something else has to determine the moves.
+void refuse_undetermined_moves(const TomlTable& table, const Study& study) {
+  const MpcOptions& controller = study.controller;
+  for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
+    if (!study.controller_program && controller.move_suppression(mv) == 0.0 &&
+        controller.target_weight(mv) == 0.0)
+      table.refuse(
+          "cv",
+          fmt::format("a CV with a setpoint, beside the MV {} without move_suppression and target_weight",
+                      study.plant.mvs[static_cast<std::size_t>(mv)].name),
+          "one of them above 0 for every MV: without the CV nothing determines the move");
+}
+
+void take_off(const TomlTable& table, OffSpell& spell, Study& study) {
+  const bool of_mv = table.has("mv");
+  if (of_mv == table.has("cv"))
+    table.refuse("", of_mv ? "both mv and cv" : "neither mv nor cv", "exactly one of the two");
+  spell.sort = of_mv ? VariableSort::mv : VariableSort::cv;
+  spell.variable =
+      static_cast<Eigen::Index>(of_mv ? read_one_of(table, "mv", variable_names(study.plant.mvs))
+                                      : read_one_of(table, "cv", variable_names(study.plant.cvs)));
+  if (!of_mv && study.controller.has_setpoint(spell.variable))
+    refuse_undetermined_moves(table, study);
+  if (!of_mv && table.has("level"))
+    table.refuse("level", "where a CV is held", "none, or the MV that is held");
+  if (table.has("level"))
+    spell.level = read_number(table, "level", NumberRule::finite());
+  study.simulation.off.push_back(spell);
+}
+
+/// Sorts them; two of one variable at one time are refused.
+void sort_off(const TomlTable& simulation, Study& study) {
+  std::vector<OffSpell>& spells = study.simulation.off;
+  const auto in_time = [](const OffSpell& a, const OffSpell& b) {
+    return std::tie(a.sample, a.sort, a.variable) < std::tie(b.sample, b.sort, b.variable);
+  };
+  std::stable_sort(spells.begin(), spells.end(), in_time);
+  std::map<std::pair<VariableSort, Eigen::Index>, int> ends;
+  for (const OffSpell& spell : spells) {
+    const auto& variables = spell.sort == VariableSort::mv ? study.plant.mvs : study.plant.cvs;
+    int& end = ends[{spell.sort, spell.variable}];
+    if (spell.sample < end)
+      simulation.refuse(
+          "off",
+          fmt::format("a table of {} that begins at sample {}, and one before it that ends at {}",
+                      variables[static_cast<std::size_t>(spell.variable)].name, spell.sample, end),
+          "tables of one variable one after the other");
+    end = spell.end();
+  }
 }
 
 OptionKeys random_steps_keys(SimulationOptions& options) {
@@ -279,8 +351,16 @@ OptionKeys simulation_keys(Study& study) {
           [&options](const TomlTable&, Dither& dither) { options.dither.push_back(dither); },
           "test signals, added to the moves of MVs, the same under every seed; those of one MV add up")
           .allow("one or more"),
+      key::list<OffSpell>(
+          "off", kMaxSteps, [&study](OffSpell& spell) { return off_keys(spell, study); },
+          [&study](const TomlTable& table, OffSpell& spell) { take_off(table, spell, study); },
+          "MVs and CVs that are switched off for a while, in every experiment; several tables of one MV in "
+          "turn "
+          "are moves of its operator")
+          .allow("one or more"),
       key::check([&study](const TomlTable& table) {
         sort_steps(study.simulation);
+        sort_off(table, study);
         read_excitation(table, study);
       })};
 }

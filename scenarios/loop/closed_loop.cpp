@@ -15,6 +15,7 @@
 #include "plants/non_finite.hpp"
 #include "scenarios/faults/other_fault.hpp"
 #include "scenarios/loop/excitation.hpp"
+#include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/loop/world.hpp"
 #include "scenarios/study/study_controller.hpp"
@@ -74,15 +75,19 @@ void begin(Plant& plant, const Eigen::VectorXd& input, Trajectory& trajectory) {
   }
 }
 
-/// What stands between the controller and the plant: a valve, an operator, a changed limit.
+/// What stands between the controller and the plant: a valve, operators, a changed limit.
 class Surroundings {
  public:
   Surroundings(const Study& study, const LoopSignals& signals)
-      : study_(study), faults_(signals.faults), u_d_(signals.u_d) {}
+      : study_(study), faults_(signals.faults), u_d_(signals.u_d), schedule_(study) {}
 
-  /// Before the controller decides on sample k: its soft limits, where they move.
-  void prepare(Eigen::Index k, Controller& controller) const {
-    if (!some_limit_moves(study_, k) && !(faults_.limit && k == faults_.limit->sample))
+  /// Before the controller decides on sample k: what is off, and its soft limits, where they move. `before`
+  /// are the MVs that act until then.
+  void prepare(Eigen::Index k, const Eigen::Ref<const Eigen::VectorXd>& before, Controller& controller) {
+    const bool switches = schedule_.go_on(k, before);
+    if (switches)
+      controller.set_off(schedule_.off());
+    if (!switches && !some_limit_moves(study_, k) && !(faults_.limit && k == faults_.limit->sample))
       return;
     Limits limits = soft_limits(study_, k);
     if (faults_.limit && k >= faults_.limit->sample) {
@@ -91,6 +96,9 @@ class Surroundings {
     }
     controller.set_cv_soft(limits);
   }
+
+  /// The MVs `u` with those that are off where they are held.
+  void hold_off(Eigen::Ref<Eigen::VectorXd> u) const { schedule_.off().hold(u); }
 
   /// `u` is what the controller asks for at sample k; it becomes what the record has, and `acting` what the
   /// plant gets.
@@ -113,6 +121,7 @@ class Surroundings {
   const Study& study_;
   const LoopFaults& faults_;
   const Eigen::MatrixXd& u_d_;
+  OffSchedule schedule_;
   std::optional<StickyValve> valve_;
 };
 
@@ -221,7 +230,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     analysers.pass(trajectory.y.col(k));
     if (signals.y_set.size() > 0)
       controller.set_setpoints(signals.y_set.col(k));
-    surroundings.prepare(k, controller);
+    surroundings.prepare(k, u_before, controller);
     const ControlMove& move = controller.step(trajectory.y.col(k), trajectory.d.col(k));
     trajectory.solver.steps += 1;
     trajectory.solver.iterations += move.iterations;
@@ -241,6 +250,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     if (signals.dither.size() > 0) {
       const Limits& hard = study.controller.mv_hard;
       u = (move.u + signals.dither.col(k)).cwiseMax(hard.lower).cwiseMin(hard.upper);
+      surroundings.hold_off(u);
       controller.set_acting(u);
     }
     surroundings.pass(k, u_before, u, input.head(study.mv_count()));

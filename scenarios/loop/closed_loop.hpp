@@ -108,6 +108,9 @@ using StepObserver = std::function<void(const Controller& controller)>;
 /// the steady state of the nominal model at zero disturbances that Controller::nominal_target() gives for the
 /// first setpoints. The soft limits are those of soft_limits() at each sample.
 ///
+/// Variables are off as `[[simulation.off]]` says, from the sample of a table on: an MV without a level stays
+/// where it acted until then, and has no dither (Controller::set_off()).
+///
 /// What acts, and what the record shows, is the move of the controller and the dither, within the hard limits
 /// of the MV. The controller knows it, as one does that is told of a plant test: its model has the MVs that
 /// act, and it plans without the dither.

@@ -19,9 +19,12 @@ namespace mpm {
 /// | y_set    | y_set        | ny x N | setpoints; NaN in a row without a column                        |
 /// |          | lower, upper | ny x N | soft limits; NaN in a row without a column                      |
 /// | y_sim    | y_sim        | ny x N | output of the model; NaN in a row without a column              |
+/// |          | u_off        | nu x N | 1 where operators have the MV, 0 elsewhere; empty: nowhere      |
+/// |          | y_off        | ny x N | the same of the CVs                                             |
 /// |          | candidates   | nc x N | signals that the model does not know, without their means       |
 struct PlantRecord {
   Eigen::MatrixXd y, u, d, u_target, y_set, lower, upper, y_sim, candidates;
+  Eigen::MatrixXd u_off = {}, y_off = {};
   std::vector<std::string> candidate_names;  ///< their columns
   std::vector<std::string> stamps;           ///< of the samples, for people
   /// First sample of the benchmark period and the one after its last; equal: there is none.
@@ -29,6 +32,9 @@ struct PlantRecord {
   std::vector<std::string> warnings;  ///< a sentence each
 
   Eigen::Index samples() const { return y.cols(); }
+  /// Had operators this variable at sample k?
+  bool has_mv_off(Eigen::Index mv, Eigen::Index k) const { return u_off.size() > 0 && u_off(mv, k) == 1.0; }
+  bool has_cv_off(Eigen::Index cv, Eigen::Index k) const { return y_off.size() > 0 && y_off(cv, k) == 1.0; }
 };
 
 }  // namespace mpm

@@ -8,6 +8,8 @@
 #include <variant>
 
 #include "plants/linear/linear_plant.hpp"
+#include "plants/non_finite.hpp"
+#include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
@@ -217,6 +219,11 @@ Limits soft_limits(const Study& study, Eigen::Index k) {
     limits.lower(step.cv) = step.lower;
     limits.upper(step.cv) = step.upper;
   }
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    if (is_off(study, VariableSort::cv, cv, k)) {
+      limits.lower(cv) = -kInfinity;
+      limits.upper(cv) = kInfinity;
+    }
   return limits;
 }
 

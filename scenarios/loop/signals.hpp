@@ -27,7 +27,8 @@ Eigen::MatrixXd setpoints(const Study& study);
 /// under every seed. Empty (0 x 0) when no MV has one.
 Eigen::MatrixXd dither(const Study& study);
 
-/// The soft limits of the CVs from sample k on: those of the controller, moved by the limit steps up to k.
+/// The soft limits of the CVs from sample k on: those of the controller, moved by the limit steps up to k;
+/// none of a CV that is off.
 Limits soft_limits(const Study& study, Eigen::Index k);
 
 /// The measurement noise of the experiment for a noise factor of 1 (NoiseOptions), ny x samples: white and

@@ -53,6 +53,8 @@ struct DataOptions {
   Names y_sim;              ///< output of the model, as the CV is recorded; without one: computed
   Names target;             ///< of MVs, as the MV is recorded
   Names quality;            ///< of any variable
+  Names mode;               ///< of CVs and MVs: does the controller have it?
+  std::vector<std::string> mode_on{"1", "on", "true", "auto", "cas", "rcas", "rout"};
   std::vector<std::string> good_quality{"good", "opc"};
   std::vector<std::string> stored_on_change;  ///< variables whose last value holds until the next one
   std::string controller_on;                  ///< column; empty: the controller is always on

@@ -10,10 +10,10 @@ namespace {
 auto members(const SimulationOptions& options) {
   const auto& [samples, noise_standard_deviation, noise, initial_setpoint, setpoint_steps, limit_steps, steps,
                random_steps, step_interval, step_level, md_noise_standard_deviation, md_noise_time_constant,
-               dither, excitation] = options;
+               dither, off, excitation] = options;
   return std::tie(samples, noise_standard_deviation, noise, initial_setpoint, setpoint_steps, limit_steps,
                   steps, random_steps, step_interval, step_level, md_noise_standard_deviation,
-                  md_noise_time_constant, dither, excitation);
+                  md_noise_time_constant, dither, off, excitation);
 }
 
 }  // namespace

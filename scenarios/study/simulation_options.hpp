@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "scenarios/faults/other_fault.hpp"
 #include "scenarios/faults/signal_sequence.hpp"
 #include "scenarios/random/distribution.hpp"
 
@@ -35,6 +37,18 @@ struct Dither {
   int hold;
 
   bool operator==(const Dither&) const = default;
+};
+
+/// A CV or an MV that operators have taken from the controller for a while.
+struct OffSpell {
+  VariableSort sort;
+  Eigen::Index variable;
+  int sample, samples;
+  std::optional<double> level = {};  ///< of an MV, where it is held; none: where it was when this began
+
+  /// First sample at which the controller has it again, if no other spell begins there.
+  int end() const { return sample + samples; }
+  bool operator==(const OffSpell&) const = default;
 };
 
 /// Density of the innovations of the measurement noise, scaled to variance 1.
@@ -76,6 +90,7 @@ struct SimulationOptions {
   double md_noise_time_constant =
       0.0;                          ///< of its autocorrelation exp(-t/tau), time unit of the plant; 0: white
   std::vector<Dither> dither = {};  ///< of MVs; the same under every seed
+  std::vector<OffSpell> off = {};   ///< in the order of their samples; the same in every experiment
   /// Of the steps and variations above: in every loop the same ones, the benchmark among them, or in every
   /// loop other ones (with_excitation()).
   SignalSequence excitation = SignalSequence::shared;

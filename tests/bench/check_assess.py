@@ -354,6 +354,48 @@ def check_healthy(bench, study):
     assert rates["false_alarm_healthy"]["hits"] <= 2 and rates["detected_impact"]["value"] > 0.5, rates
 
 
+def check_modes(bench, study):
+    """What operators had taken is told by columns that have a value where it changes, and missed without them."""
+    spells = [("R", 110, 50), ("R", 160, 40), ("xB", 130, 90), ("S", 290, 60)]
+    levels = {110: ", level = 0.03", 160: ", level = -0.02"}
+    tables = ", ".join(f"{{{'cv' if name == 'xB' else 'mv'} = '{name}', sample = {k}, samples = {n}{levels.get(k, '')}}}"
+                       for name, k, n in spells)
+    text = re.sub(r"(?ms)^\[experiments\].*?(?=^\[)", "", pathlib.Path(study).read_text())
+    (bench.folder / "switched.toml").write_text(
+        text.replace("samples = 400\n", f"samples = 400\noff = [{tables}]\n", 1)
+        + "\n[experiments]\nmpm = 0\nud = 0\nmpm_ud = 0\nhealthy = 1\n")
+    bench.run("run", "switched.toml", "--methods", "order", "--store", "all", "-o", "switched.h5", "--quiet")
+    rows = bench.exported("switched.h5", 0)
+    for row in rows:
+        row.update({"R.MODE": "", "S.MODE": "", "xB.MODE": ""})
+    for name in ("R", "S", "xB"):
+        rows[0][f"{name}.MODE"] = "AUTO"
+        for variable, k, n in spells:
+            if variable == name:
+                rows[k + n][f"{name}.MODE"] = "auto"
+        for variable, k, _ in spells:
+            if variable == name:
+                rows[k][f"{name}.MODE"] = "MAN"
+    with open(bench.folder / "switched.csv", "w", newline="") as file:
+        columns = ["time", "y.xD", "y.xB", "u.R", "u.S", "d.F", "R.MODE", "S.MODE", "xB.MODE"]
+        writer = csv.DictWriter(file, columns, extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(rows)
+    modes = bench.folder / "modes.toml"
+    modes.write_text(pathlib.Path(study).read_text()
+                     + "\n[data]\nmode = {R = 'R.MODE', S = 'S.MODE', xB = 'xB.MODE'}\n")
+
+    def assessed(by, trials):
+        return json.loads(bench.run("assess", by, "switched.csv", "--trials", trials, "--calibration", f"{by.stem}.h5",
+                                    "--json", "--quiet", "--jobs", 2).stdout)
+    told = assessed(modes, 60)
+    assert told["found"] == "nothing" and told["controller"]["alike"], (told["verdict"], told["controller"])
+    assert min(told["controller"]["agreement"].values()) > 0.99, told["controller"]
+    assert any("R is off in 22.5 %" in warning for warning in told["warnings"]), told["warnings"]
+    untold = assessed(pathlib.Path(study), 0)
+    assert not untold["controller"]["alike"], untold["controller"]
+
+
 def main(program, study):
     with tempfile.TemporaryDirectory() as name:
         bench = Bench(program, pathlib.Path(name))
@@ -369,6 +411,7 @@ def main(program, study):
         check_trust(bench, study)
         check_valve(bench, study)
         check_healthy(bench, study)
+        check_modes(bench, study)
 
 
 if __name__ == "__main__":

@@ -31,6 +31,10 @@ for line in sys.stdin:
     else:
         steps += 1
         u = [0.5 * old - 0.3 * y for old, y in zip(request["u"], request["y"])]
+        if how == "off" and ("mv_off" in request) != (steps > 5 and steps <= 10):
+            sys.exit("variables are off at step %d" % steps)
+        if how == "off" and "mv_off" in request and (request["mv_off"], request["cv_off"]) != ([None, 0.25], [True, False]):
+            sys.exit("other variables are off")
         answer = {"number": number, "u": u}
         if how == "floods":
             sys.stderr.write("x" * 300000)

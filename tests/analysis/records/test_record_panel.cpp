@@ -143,6 +143,66 @@ TEST_CASE("the controller of a record is known by its moves", "[records]") {
   }
 }
 
+/// wood-berry with an MV that an operator moves and a CV that is left alone.
+Study switched_wood_berry() {
+  Study study = find_study("wood-berry");
+  study.simulation.off = {{VariableSort::mv, 0, 110, 50, 0.03},
+                          {VariableSort::cv, 1, 130, 90, {}},
+                          {VariableSort::mv, 0, 160, 40, -0.02}};
+  return study;
+}
+
+/// Its record with the modes.
+PlantRecord switched_record(const Study& study, const TransferMatrix& plant) {
+  PlantRecord record = recorded_loop(study, plant, 50);
+  record.u_off.setZero(2, record.samples());
+  record.y_off.setZero(2, record.samples());
+  record.u_off.row(0).segment(60, 90).setOnes();
+  record.y_off.row(1).segment(80, 90).setOnes();
+  return record;
+}
+
+TEST_CASE("with its modes a record is of its controller, without them it is not", "[records]") {
+  const Study study = switched_wood_berry();
+  const PlantRecord record = switched_record(study, study.plant.G);
+  const RecordFrame frame = frame_of(record, false, 0.05);
+  const std::vector<OffSpell> expected{{VariableSort::mv, 0, 60, 50, 0.03},
+                                       {VariableSort::cv, 1, 80, 90, {}},
+                                       {VariableSort::mv, 0, 110, 40, -0.02}};
+  CHECK(frame.as_kept.simulation.off == expected);
+  const ControllerCheck check = check_controller(frame, record, judged_loop(frame, record));
+  CHECK(check.agreement.minCoeff() > 0.99);
+  CHECK(check.is_alike());
+  CHECK(model_score(frame, record) < 1.3);
+
+  PlantRecord without = record;
+  without.u_off = without.y_off = {};
+  const RecordFrame blind = frame_of(without, false, 0.05);
+  const ControllerCheck other = check_controller(blind, without, judged_loop(blind, without));
+  INFO(other.agreement.transpose());
+  CHECK_FALSE(other.is_alike());
+}
+
+TEST_CASE("simulated records have the MVs where operators held them, also before the record", "[records]") {
+  const Study study = switched_wood_berry();
+  const PlantRecord record = switched_record(study, study.plant.G);
+  const PlantRecord longer = with_lead(record, 100);
+  CHECK(longer.has_mv_off(0, 100 - 60));
+  CHECK_FALSE(longer.has_mv_off(0, 100 - 59));
+  CHECK(longer.has_cv_off(1, 180));
+  const TrialFrame made{.record = record,
+                        .study = trial_study(recorded_study(find_study("wood-berry"), longer, {"order"}, {}),
+                                             {.healthy = 2, .faulty = 2, .model_error = 0.05}),
+                        .lead = 100,
+                        .bias = 0.0};
+  const ExperimentDraw draw = draw_experiment(made.study, 0);
+  const Trajectory loop = simulate_experiment(made.study, draw, qp_solver_factory("auto"));
+  const PlantRecord trial = trial_record(made, draw, loop);
+  CHECK(trial.u_off == record.u_off);
+  CHECK(trial.u.row(0).segment(60, 90) == record.u.row(0).segment(60, 90));
+  CHECK(loop.u(0, 40) == record.u(0, 60));
+}
+
 TEST_CASE("a column that is late is named, and no other", "[records]") {
   const Study study = find_study("wood-berry");
   const PlantRecord record = recorded_loop(study, study.plant.G, 0);

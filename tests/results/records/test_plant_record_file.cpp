@@ -98,6 +98,38 @@ TEST_CASE("rows become samples of the controller", "[records]") {
   CHECK(nearest.y(0, 0) == 1.0);
 }
 
+TEST_CASE("modes hold until the next one, and say what operators had taken", "[records]") {
+  std::string text = "time,level,heat,hot,cold,drain,HC.MODE,AI.IN\n";
+  for (const char* row :
+       {"0,1,5,9,1,7,AUTO,1", "1,2,6,9,1,7,,", "2,3,5,8,1,7,MAN,0.0", "3,4,5,8,1,7,,1.0", "4,3,6,9,1,7,Cas,"})
+    text += std::string(row) + "\n";
+  const PlantRecord record =
+      read_plant_record(study_with("mode = {hot = 'HC.MODE', heat = 'AI.IN'}"), text, "r.csv");
+  Eigen::MatrixXd u_off(2, 5), y_off(2, 5);
+  u_off << 0, 0, 1, 1, 0, 0, 0, 0, 0, 0;
+  y_off << 0, 0, 0, 0, 0, 0, 0, 1, 0, 0;
+  CHECK(record.u_off == u_off);
+  CHECK(record.y_off == y_off);
+  CHECK(!record.y.hasNaN());  // a CV that is off is measured
+  CHECK(record.warnings ==
+        std::vector<std::string>{
+            "hot is off in 40 % of the samples, in which 'HC.MODE' is none of data.mode_on (1, "
+            "on, true, auto, cas, rcas, rout)",
+            "heat is off in 20 % of the samples, in which 'AI.IN' is none of data.mode_on (1, "
+            "on, true, auto, cas, rcas, rout)"});
+  const PlantRecord manual =
+      read_plant_record(study_with("mode = {hot = 'HC.MODE'}\nmode_on = ['man']"), text, "r.csv");
+  CHECK(manual.u_off.row(0) == (1.0 - u_off.row(0).array()).matrix());
+  CHECK(manual.y_off.size() == 0);
+  CHECK_THROWS_WITH(read_plant_record(study_with("mode = {hot = 'HC.MOD'}"), text, "r.csv"),
+                    Catch::Contains("r.csv: data.mode.hot: found no column 'HC.MOD'"));
+  text = "time,level,heat,hot,cold,drain,HC.MODE\n0,1,5,9,1,7,\n1,2,6,9,1,7,\n2,3,5,8,1,7,\n";
+  CHECK_THROWS_WITH(
+      read_plant_record(study_with("mode = {hot = 'HC.MODE'}"), text, "r.csv"),
+      "r.csv: data.mode.hot: found no value in 'HC.MODE'; allowed: a word of data.mode_on where the "
+      "controller has hot");
+}
+
 TEST_CASE("values are deviations in the unit of the study", "[records]") {
   const std::string text = record_text({"0,81,5,9,1,7", "1,82,5,9,1,7", "2,83,5,9,1,7"});
   const PlantRecord record = read_plant_record(

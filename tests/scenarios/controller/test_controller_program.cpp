@@ -139,6 +139,18 @@ TEST_CASE("controller program: infeasible, beyond the limits, and with targets",
   CHECK(targets.u_target.col(2) == Eigen::Vector2d(1.0, 2.0));
 }
 
+TEST_CASE("controller program: it is told what is off, and does not move it", "[controller-program]") {
+  Study study = odd_study("off");
+  study.simulation.off = {{VariableSort::cv, 0, 5, 5, {}}, {VariableSort::mv, 1, 5, 5, 0.25}};
+  const Trajectory loop = loop_of(study);
+  INFO(loop.message);
+  REQUIRE(loop.status == ControlStatus::ok);
+  CHECK((loop.u.row(1).segment(5, 5).array() == 0.25).all());
+  CHECK((loop.u_target.row(1).segment(5, 5).array() == 0.25).all());
+  CHECK(loop.u(1, 10) != 0.25);
+  CHECK(loop.u(1, 10) == Approx(0.5 * 0.25 - 0.3 * loop.y(1, 10)).epsilon(1e-12));  // it goes on from there
+}
+
 TEST_CASE("controller program: what it says of itself", "[controller-program]") {
   CHECK(runs_on_model(odd_study("fine")));
   CHECK(!runs_on_model(odd_study("plant-only")));

@@ -1,5 +1,6 @@
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -56,6 +57,23 @@ TEST_CASE("a recorded study has what moved the plant, to the last bit", "[record
   CHECK(study.monitoring == MonitoringOptions{40, 10});
   CHECK(study.seed == study_with().seed);
   CHECK(study.record.missing_share == 0.0);
+}
+
+TEST_CASE("a recorded study has off what operators had taken, MVs where they put them", "[recorded_study]") {
+  PlantRecord record = moving_record();
+  record.u.row(0).segment(10, 4).setConstant(0.25);
+  record.u_off.setZero(2, kSamples);
+  record.u_off.row(0).segment(10, 5).setOnes();
+  record.u_off(0, kSamples - 1) = 1.0;
+  record.y_off.setZero(2, kSamples);
+  record.y_off.row(1).segment(0, 30).setOnes();
+  const Study study = recorded_study(study_with(), record, {"order"}, {});
+  const std::vector<OffSpell> expected{{VariableSort::cv, 1, 0, 30, {}},
+                                       {VariableSort::mv, 0, 10, 4, 0.25},
+                                       {VariableSort::mv, 0, 14, 1, record.u(0, 14)},
+                                       {VariableSort::mv, 0, kSamples - 1, 1, record.u(0, kSamples - 1)}};
+  CHECK(study.simulation.off == expected);
+  CHECK(trial_study(study, {.healthy = 2, .faulty = 2}).simulation.off == expected);
 }
 
 TEST_CASE("a recorded study misses as many samples as the record, in gaps as long", "[recorded_study]") {

@@ -82,6 +82,8 @@ std::string random_study_text() {
       "md_noise = {standard_deviation = 0.1, time_constant = 3}\n"
       "limit_step = [{cv = 'heat', sample = 9, soft = [-inf, 0.4]}]\n"
       "dither = [{mv = 'cold', amplitude = 0.1, hold = 4}]\n"
+      "off = [{mv = 'hot', sample = 7, samples = 5}, {mv = 'hot', sample = 12, samples = 3, level = 0.3}, "
+      "{cv = 'heat', sample = 4, samples = 30}]\n"
       "[[simulation.step]]\ncv = \"level\"\nsample = 5\nlevel = 0.2\n");
   text +=
       "healthy = 4\ntuning = 5\nother = 6\n"
@@ -109,7 +111,8 @@ std::string random_study_text() {
       "','\n"
       "tags = {level = 'LI 1', drain = 'FI 3'}\noperating_point = {heat = 80.5}\nscale = {hot = -2}\n"
       "setpoint = {level = 'LC 1'}\nlower = {level = 'lo'}\nupper = {heat = 'hi'}\ny_sim = {heat = 'model'}\n"
-      "target = {hot = 'best'}\nquality = {level = 'q'}\ngood_quality = ['ok']\ncontroller_on = 'on'\n"
+      "target = {hot = 'best'}\nmode = {hot = 'm', heat = 'n'}\nmode_on = ['in']\nquality = {level = "
+      "'q'}\ngood_quality = ['ok']\ncontroller_on = 'on'\n"
       "on_values = ['yes']\ncv_resampling = 'nearest'\nstart = 'rest'\nmost_missing = 0.5\nfill = 'hold'\n"
       "candidates = ['FI 9']\n"
       "period = ['0', '9']\nbenchmark = ['1', '4']\n[reference]\n";

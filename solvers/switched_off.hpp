@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+#include "solvers/mpc_options.hpp"
+
+namespace mpm {
+
+/// The variables that operators have taken from a controller.
+///
+/// | symbol | member   | shape | meaning                                                              |
+/// |--------|----------|-------|----------------------------------------------------------------------|
+/// |        | position | nu    | where an operator holds the MV; NaN: the controller moves it         |
+/// |        | cvs      | ny    | the CV has no setpoint and no limit, but counts in the output bias   |
+struct SwitchedOff {
+  Eigen::VectorXd position;
+  Eigen::Array<bool, Eigen::Dynamic, 1> cvs;
+
+  static SwitchedOff none(Eigen::Index cv_count, Eigen::Index mv_count);
+
+  bool has_mv(Eigen::Index mv) const { return !std::isnan(position(mv)); }
+  bool has_any() const { return cvs.any() || !position.array().isNaN().all(); }
+  /// `u` (nu) with the MVs that are off where they are held.
+  void hold(Eigen::Ref<Eigen::VectorXd> u) const;
+  /// `limits` of the CVs (ny) without those of CVs that are off.
+  Limits opened(Limits limits) const;
+  /// Throws InputError for other sizes, and for an infinite position.
+  void validate(Eigen::Index cv_count, Eigen::Index mv_count) const;
+};
+
+}  // namespace mpm
