@@ -30,12 +30,9 @@ struct WindowRule {
 /// least squares give the plant b, as in `prewhitened_groups`. The points of the machines are the models in
 /// units of their own standard errors, for those of b grow with the noise and shrink with the excitation:
 ///
-/// | machine | point                                                                                | length
-/// |
-/// |---------|--------------------------------------------------------------------------------------|--------|
-/// | plant   | L^-1 R (b - b_0),  R'R = (A X)'(A X) / sigma^2,  L L' = I + R C_0 R'                  | m | |
-/// noise   | L^-1 R (a - a_0),  R'R = C_a^-1,  L L' = I + R C_a0 R', and the logarithm of the ratio of the
-/// variances of the innovations over its standard deviation | p + 1  |
+/// - plant (m numbers): L^-1 R (b - b_0) with R'R = (A X)'(A X) / sigma^2 and L L' = I + R C_0 R',
+/// - noise (p + 1): L^-1 R (a - a_0) with R'R = C_a^-1 and L L' = I + R C_a0 R', and the logarithm of the
+///   ratio of the variances of the innovations over its standard deviation,
 ///
 /// with a of `kHighestNoiseOrder`. b_0, a_0 and the variance of the whole period contain each of its windows,
 /// whose deviations are therefore divided by sqrt(1 - window/N). Few of the windows are independent,

@@ -250,7 +250,7 @@ TEST_CASE("with spells of both kinds the active-set method and Ipopt move the sa
   INFO(tuning.first);
   Eigen::MatrixXd by_back_end[2];
   int place = 0;
-  for (const std::string& back_end : {"active-set", "ipopt"}) {
+  for (const char* const back_end : {"active-set", "ipopt"}) {
     Mpc controller(small_model(), 2, tuning.second, qp_solver_factory(back_end));
     controller.set_setpoints(off_setpoint());
     const Eigen::Vector2d start(0.05, 0.1);
