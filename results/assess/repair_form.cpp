@@ -117,8 +117,8 @@ Table prospects_table(const Study& study, const std::vector<RepairProspect>& pro
   Table table(
       fmt::format(
           "Channels by the part of the cost of the loop that their repair takes away, in %: expected, "
-          "and the probability that it is above {:g} %. Those in bold are proposed: a repair that "
-          "takes away cost and worsens no CV by more than {:.0f} %.",
+          "and the probability that it is above {:g} %. A repair is proposed if it takes away cost and "
+          "worsens no CV by more than {:.0f} %.",
           100.0 * worth, 100.0 * (kNoticeableChange - 1.0)),
       {{"channel", Table::Align::left},
        {"expected"},
