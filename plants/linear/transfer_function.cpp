@@ -83,7 +83,8 @@ Eigen::VectorXd with_argument_scaled(Eigen::VectorXd coefficients, double factor
 }
 
 template <class Change>
-std::optional<StepCoefficients> changed(const std::optional<StepCoefficients>& step, const Change& change) {
+std::optional<StepCoefficients> with_change(const std::optional<StepCoefficients>& step,
+                                            const Change& change) {
   return step ? std::optional(change(*step)) : std::nullopt;
 }
 
@@ -146,7 +147,7 @@ TransferFunction TransferFunction::with_gain_scaled(double factor) const {
   }
   const TransferFunction G = without_washout();
   return with_rational_part(G.numerator_ * factor, G.denominator_, dead_time_,
-                            changed(step_, [&](const auto& S) { return S.with_gain_scaled(factor); }));
+                            with_change(step_, [&](const auto& S) { return S.with_gain_scaled(factor); }));
 }
 
 TransferFunction TransferFunction::with_time_scaled(double factor) const {
@@ -159,7 +160,7 @@ TransferFunction TransferFunction::with_time_scaled(double factor) const {
   return with_rational_part(
       std::pow(factor, integrators) * with_argument_scaled(G.numerator_, factor),
       with_argument_scaled(G.denominator_, factor), dead_time_,
-      changed(step_, [&](const auto& S) { return S.with_time_scaled(factor, dead_time_); }));
+      with_change(step_, [&](const auto& S) { return S.with_time_scaled(factor, dead_time_); }));
 }
 
 TransferFunction TransferFunction::with_dead_time_shifted(double delta) const {
@@ -169,8 +170,9 @@ TransferFunction TransferFunction::with_dead_time_shifted(double delta) const {
                      "a finite number >= 0");
   }
   const TransferFunction G = without_washout();
-  return with_rational_part(G.numerator_, G.denominator_, shifted,
-                            changed(step_, [&](const auto& S) { return S.with_dead_time_shifted(delta); }));
+  return with_rational_part(G.numerator_, G.denominator_, shifted, with_change(step_, [&](const auto& S) {
+                              return S.with_dead_time_shifted(delta);
+                            }));
 }
 
 double TransferFunction::residence_time() const {
