@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "analysis/methods/method_panel.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
@@ -80,32 +79,6 @@ TEST_CASE("mpmbench: where the likelihood sees both faults, the order test says 
     CHECK(source(alone, draw) == FaultSource::mpm_ud);
     CHECK(source(together, draw) == truth);
   }
-}
-
-TEST_CASE("mpmbench: a valve that sticks is named by its MV, and a mismatch names none") {
-  Study study = find_study("wood-berry");
-  study.assessment.model = AssessmentModel::benchmark;
-  const BasisCase basis = run_basis_case(study, testing::kFactory);
-  MethodPanel panel(study, assessment_context(study, basis, testing::kFactory), {"mpmbench"});
-  const auto said = [&](const ExperimentDraw& draw) {
-    return panel
-        .assess(assessed_loop(study, basis.point, simulate_experiment(study, draw, testing::kFactory)),
-                nullptr)
-        .front();
-  };
-  for (const Eigen::Index mv : {0, 1}) {
-    ExperimentDraw sticks = draw_with({}, {});
-    sticks.kind = ExperimentKind::other;
-    const double range = study.controller.mv_hard.upper(mv) - study.controller.mv_hard.lower(mv);
-    sticks.other = OtherFault{OtherFaultKind::stiction, mv, 0.1 * range, 0.07 * range};
-    const AssessmentRecord answer = said(sticks);
-    INFO("MV " << mv);
-    REQUIRE(answer.flagged);
-    CHECK(answer.predicted_source == FaultSource::other);
-    CHECK(answer.number("valve_mv") == static_cast<double>(mv));
-    CHECK_FALSE(answer.named_mismatch());
-  }
-  CHECK(std::isnan(said(draw_with({{0, 0, MismatchParameter::gain, 0.5}}, {})).number("valve_mv")));
 }
 
 TEST_CASE("mpmbench: what costs nothing is not flagged, and no source is named") {

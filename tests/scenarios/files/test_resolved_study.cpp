@@ -370,7 +370,7 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
   const Keys without_value{{"sensitivity", "active_cvs"}, {"sensitivity", "fixed_mvs"},
                            {"mismatch", "impact"},        {"mismatch", "plant_parameter"},
                            {"disturbance", "impact"},     {"other", "impact"},
-                           {"assessment", "washout"}};
+                           {"assessment", "washout"},     {"assessment", "arx-oe"}};
   for (const char* name : {"experiments",
                            "mismatch",
                            "mismatch.parameter_weights",

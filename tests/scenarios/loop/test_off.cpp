@@ -22,14 +22,21 @@
 namespace mpm {
 namespace {
 
-/// The small study with these tables [[simulation.off]].
+/// The small study with these tables [[simulation.off]]. Its MV cold has a limit, which is what its target
+/// has where heat is off.
 std::string off_text(const std::string& tables) {
-  return testing::replaced(testing::small_study(), "noise_standard_deviation = 0.01",
+  const std::string bounded =
+      testing::replaced(testing::small_study(), "hard = [-inf, inf]", "hard = [-1, inf]");
+  return testing::replaced(bounded, "noise_standard_deviation = 0.01",
                            "noise_standard_deviation = 0.01\noff = [" + tables + "]");
 }
 
+/// The level may be anywhere: an operator holds an MV where it breaks the hard limits of a CV.
 Study off_study(const std::string& tables) {
-  return parse_study(off_text(tables), "s.toml");
+  Study study = parse_study(off_text(tables), "s.toml");
+  study.controller.cv_hard.lower(0) = -kInfinity;
+  study.controller.cv_hard.upper(0) = kInfinity;
+  return study;
 }
 
 Trajectory loop_with(const Study& study) {
@@ -40,7 +47,7 @@ Trajectory loop_with(const Study& study) {
 
 TEST_CASE("an MV that is off acts where its operator puts it, and without a level stays where it was",
           "[off]") {
-  const Trajectory all = loop_with(off_study(""));
+  const Trajectory all = loop_with(off_study("{mv = 'hot', sample = 59, samples = 1}"));
   const Study study = off_study(
       "{mv = 'hot', sample = 20, samples = 5}, {mv = 'hot', sample = 30, samples = 10, level = 0.125}, "
       "{mv = 'hot', sample = 25, samples = 5, level = 6}");  // 6 is beyond the hard limit of 5
@@ -89,7 +96,7 @@ TEST_CASE("soft limits of a CV that is off are none, and are back where they hav
 
 TEST_CASE("every loop has the same spells, also where each has an excitation of its own", "[off]") {
   Study study = off_study(
-      "{mv = 'hot', sample = 20, samples = 5, level = 0.1}, {cv = 'level', sample = 3, samples = 9}");
+      "{mv = 'hot', sample = 20, samples = 5, level = 0.1}, {cv = 'heat', sample = 3, samples = 9}");
   study.simulation.excitation = SignalSequence::each;
   CHECK(with_excitation(study, 3).simulation.off == study.simulation.off);
   CHECK(with_excitation(study, 3).simulation.steps != study.simulation.steps);
