@@ -126,7 +126,7 @@ double CounterfactualLoop::distance(double ivar, Eigen::Index cv) const {
 
 /// ny x N of the noise that the benchmark has shown, added to the outputs.
 Eigen::MatrixXd CounterfactualLoop::drawn_noise_of(Eigen::Index samples, int draw) const {
-  RandomStream random(kNoiseSeed, draw, StreamId::background);
+  RandomStream random(kNoiseSeed, static_cast<std::uint64_t>(draw), StreamId::background);
   Eigen::MatrixXd noise(study_.cv_count(), samples);
   for (Eigen::Index cv = 0; cv < noise.rows(); ++cv)
     noise.row(cv) = drawn_noise(learnt_->of(cv).noise(), samples, random);

@@ -16,13 +16,13 @@
 namespace mpm {
 namespace {
 
-constexpr double kRounding = 1e-9;       // of an interval
-constexpr double kTimesToSettle = 21.0;  // sums of time constants: e^-21 = 1e-9
+constexpr double kRoundingOfPlace = 1e-9;  // of an interval
+constexpr double kTimesToSettle = 21.0;    // sums of time constants: e^-21 = 1e-9
 
 /// x, or the whole number that it is but for rounding.
 double snapped(double x) {
   const double nearest = std::round(x);
-  return std::abs(x - nearest) <= kRounding * std::max(1.0, std::abs(x)) ? nearest : x;
+  return std::abs(x - nearest) <= kRoundingOfPlace * std::max(1.0, std::abs(x)) ? nearest : x;
 }
 
 }  // namespace

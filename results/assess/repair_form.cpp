@@ -136,14 +136,15 @@ Table prospects_table(const Study& study, const std::vector<RepairProspect>& pro
 
 nlohmann::ordered_json repair_json(const ChannelRepair& repair) {
   const auto list = [](const Eigen::VectorXd& of) { return std::vector<double>(of.begin(), of.end()); };
-  using Json = nlohmann::ordered_json;
-  return {{"parameter", repair.parameter ? Json(to_string(*repair.parameter)) : Json()},
-          {"size", repair.parameter ? fitted_json(size_of(repair)) : Json()},
+  return {{"parameter", repair.parameter ? nlohmann::ordered_json(to_string(*repair.parameter))
+                                         : nlohmann::ordered_json()},
+          {"size", repair.parameter ? fitted_json(size_of(repair)) : nlohmann::ordered_json()},
           {"estimated_by", repair.named ? "verdict" : "fit"},
           {"gain_factor", fitted_json(repair.gain_factor)},
           {"time_factor", fitted_json(repair.time_factor)},
           {"dead_time_shift", fitted_json(repair.dead_time_shift)},
-          {"explained", std::isnan(repair.explained) ? Json() : Json(repair.explained)},
+          {"explained", std::isnan(repair.explained) ? nlohmann::ordered_json()
+                                                     : nlohmann::ordered_json(repair.explained)},
           {"transfer_function",
            {{"numerator", list(repair.model.numerator())},
             {"denominator", list(repair.model.denominator())},
@@ -151,20 +152,19 @@ nlohmann::ordered_json repair_json(const ChannelRepair& repair) {
 }
 
 nlohmann::ordered_json information_json(const ChannelInformation& told) {
-  using Json = nlohmann::ordered_json;
-  Json alike = Json::array();
+  nlohmann::ordered_json alike = nlohmann::ordered_json::array();
   for (const MismatchParameter parameter : told.alike)
     alike.push_back(to_string(parameter));
   return {{"parameters", told.parameters},
           {"rank", told.rank},
-          {"condition", std::isfinite(told.condition) ? Json(told.condition) : Json()},
+          {"condition",
+           std::isfinite(told.condition) ? nlohmann::ordered_json(told.condition) : nlohmann::ordered_json()},
           {"alike", alike}};
 }
 
 nlohmann::ordered_json prospects_json(const Study& study, const std::vector<RepairProspect>& prospects) {
-  using Json = nlohmann::ordered_json;
   const double worth = study.assessment.of<AdequacyOptions>().worth;
-  Json json = Json::array();
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const RepairProspect& prospect : prospects)
     json.push_back({{"cv", cv_name(study, prospect.repair.channel.cv)},
                     {"mv", mv_name(study, prospect.repair.channel.mv)},

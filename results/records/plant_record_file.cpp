@@ -150,7 +150,7 @@ class RecordReader {
         throw InputError(signals_.where("mode", name),
                          fmt::format("no value in '{}'", cut_utf8(data_.mode.at(name), kShownBytes)),
                          "a word of data.mode_on where the controller has " + name);
-      const Eigen::RowVectorXd off = (in_use.array() != 1.0).cast<double>();
+      Eigen::RowVectorXd off = (in_use.array() != 1.0).cast<double>();
       if (off.any())
         record_.warnings.push_back(fmt::format(
             "{} is off in {} of the samples, in which '{}' is none of data.mode_on ({})", name,
