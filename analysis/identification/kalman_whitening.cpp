@@ -5,6 +5,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "analysis/identification/sum_of_outer_products.hpp"
+
 namespace mpm {
 namespace {
 
@@ -54,7 +56,7 @@ class Gains {
     return log_determinant_;
   }
 
-  Eigen::ArrayXd S, inverse_S, K;
+  Eigen::ArrayXd S, inverse_S, root_inverse_S, K;
 
  private:
   static constexpr int kFactors = 16;  // of S <= 1e19 before the logarithm is taken
@@ -75,6 +77,7 @@ class Gains {
       S = ahead + 1.0;
     }
     inverse_S = S.inverse();
+    root_inverse_S = inverse_S.sqrt();
     K = covariance * inverse_S;
     const Eigen::ArrayXd next = ahead - K * covariance;
     settled_ = previous_ && ((next - P_).abs() <= 1e-13 * (1.0 + next)).all();
@@ -93,6 +96,61 @@ class Gains {
   int factors_ = 0;
 };
 
+/// Of one series, all models abreast.
+WhitenedProducts squares_abreast(const NoiseModels& models,
+                                 const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& z) {
+  Gains gains(models);
+  Eigen::ArrayXd state = Eigen::ArrayXd::Zero(models.count()), squares = state, innovation(models.count());
+  for (Eigen::Index k = 0; k < z.size(); ++k) {
+    if (std::isnan(z(k))) {
+      state *= models.a;
+      gains.skip();
+      continue;
+    }
+    const bool chained = gains.observe();
+    innovation = (chained ? z(k) - models.phi * z(k - 1) : z(k)) - gains.state_factor(chained) * state;
+    state = models.a * state + gains.K * innovation;
+    squares += innovation * gains.inverse_S * innovation;
+  }
+  return {gains.log_determinant(), {squares}};
+}
+
+/// Of several series, model by model: all series abreast, and their products in blocks of samples.
+WhitenedProducts products_of_rows(const NoiseModels& models,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& series) {
+  const Eigen::Index p = series.rows();
+  Gains gains(models);
+  std::vector<SumOfOuterProducts> sums(static_cast<std::size_t>(models.count()), SumOfOuterProducts(p));
+  Eigen::MatrixXd state = Eigen::MatrixXd::Zero(p, models.count());
+  Eigen::VectorXd z(p), innovation(p);
+  for (Eigen::Index k = 0; k < series.cols(); ++k) {
+    if (std::isnan(series(0, k))) {
+      state *= models.a.matrix().asDiagonal();
+      gains.skip();
+      continue;
+    }
+    const bool chained = gains.observe();
+    z = series.col(k);
+    if (chained)
+      z -= models.phi * series.col(k - 1);
+    for (Eigen::Index model = 0; model < models.count(); ++model) {
+      innovation = z - gains.state_factor(chained)(model) * state.col(model);
+      state.col(model) = models.a(model) * state.col(model) + gains.K(model) * innovation;
+      sums[static_cast<std::size_t>(model)].next() = gains.root_inverse_S(model) * innovation;
+    }
+  }
+  WhitenedProducts all{gains.log_determinant(), {}};
+  all.products.assign(static_cast<std::size_t>(p * (p + 1) / 2), Eigen::ArrayXd(models.count()));
+  for (Eigen::Index model = 0; model < models.count(); ++model) {
+    const Eigen::MatrixXd& lower = sums[static_cast<std::size_t>(model)].lower();
+    std::size_t pair = 0;
+    for (Eigen::Index i = 0; i < p; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j)
+        all.products[pair++](model) = lower(i, j);
+  }
+  return all;
+}
+
 }  // namespace
 
 const Eigen::ArrayXd& WhitenedProducts::of(Eigen::Index i, Eigen::Index j) const {
@@ -103,42 +161,7 @@ const Eigen::ArrayXd& WhitenedProducts::of(Eigen::Index i, Eigen::Index j) const
 
 WhitenedProducts whitened_products(const NoiseModels& models,
                                    const Eigen::Ref<const Eigen::MatrixXd>& series) {
-  const Eigen::Index p = series.rows();
-  WhitenedProducts sums;
-  if (models.count() == 1) {  // abreast there is nothing to gain, and products of whole rows are faster
-    double log_determinant = 0.0;
-    const Eigen::MatrixXd white = whitened(models, series, log_determinant);
-    const Eigen::MatrixXd products = white * white.transpose();
-    sums.log_determinant = Eigen::ArrayXd::Constant(1, log_determinant);
-    for (Eigen::Index i = 0; i < p; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j)
-        sums.products.emplace_back(Eigen::ArrayXd::Constant(1, products(i, j)));
-    return sums;
-  }
-  Gains gains(models);
-  sums.products.assign(static_cast<std::size_t>(p * (p + 1) / 2), Eigen::ArrayXd::Zero(models.count()));
-  Eigen::ArrayXXd state = Eigen::ArrayXXd::Zero(models.count(), p);
-  Eigen::ArrayXXd innovation(models.count(), p);
-  Eigen::ArrayXd scaled(models.count());
-  for (Eigen::Index k = 0; k < series.cols(); ++k) {
-    if (std::isnan(series(0, k))) {
-      state.colwise() *= models.a;
-      gains.skip();
-      continue;
-    }
-    const bool chained = gains.observe();
-    std::size_t pair = 0;
-    for (Eigen::Index i = 0; i < p; ++i) {
-      const double z = chained ? series(i, k) - models.phi * series(i, k - 1) : series(i, k);
-      innovation.col(i) = z - gains.state_factor(chained) * state.col(i);
-      state.col(i) = models.a * state.col(i) + gains.K * innovation.col(i);
-      scaled = innovation.col(i) * gains.inverse_S;
-      for (Eigen::Index j = 0; j <= i; ++j)
-        sums.products[pair++] += scaled * innovation.col(j);
-    }
-  }
-  sums.log_determinant = gains.log_determinant();
-  return sums;
+  return series.rows() == 1 ? squares_abreast(models, series.row(0)) : products_of_rows(models, series);
 }
 
 WhitenedProducts marginalised(const WhitenedProducts& sums, Eigen::Index rows, Eigen::Index q) {
@@ -184,7 +207,7 @@ Eigen::MatrixXd whitened(const NoiseModels& models, const Eigen::Ref<const Eigen
     if (chained)
       innovation -= models.phi * series.col(k - 1);
     state = a * state + gains.K(0) * innovation;
-    white.col(k) = innovation * std::sqrt(gains.inverse_S(0));
+    white.col(k) = gains.root_inverse_S(0) * innovation;
   }
   log_determinant = gains.log_determinant()(0);
   return white;

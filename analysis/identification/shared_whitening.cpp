@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/identification/sum_of_outer_products.hpp"
+
 namespace mpm {
 namespace {
 
@@ -32,6 +34,7 @@ class SharedWhitening::Filter {
         H_(Eigen::MatrixXd::Zero(of.states_, static_cast<Eigen::Index>(outputs_.size()))),
         K_(H_),
         S_(Eigen::VectorXd::Ones(H_.cols())),
+        root_S_(S_),
         log_S_(Eigen::VectorXd::Zero(H_.cols())),
         state_(Eigen::MatrixXd::Zero(of.states_, rows)),
         next_(state_) {
@@ -46,19 +49,23 @@ class SharedWhitening::Filter {
 
   SharedProducts run(Eigen::Index first, Eigen::Index last) {
     const Eigen::Index rows = state_.cols();
-    SharedProducts sums{Eigen::VectorXd::Zero(S_.size()),
-                        std::vector<Eigen::MatrixXd>(outputs_.size(), Eigen::MatrixXd::Zero(rows, rows))};
+    SharedProducts sums{Eigen::VectorXd::Zero(S_.size()), {}};
+    std::vector<SumOfOuterProducts> products(outputs_.size(), SumOfOuterProducts(rows));
     for (Eigen::Index k = first; k < last; ++k) {
       const bool same = find_observed(k);
       const bool settled = same && settled_;
       for (std::size_t i = 0, row = 1; i < outputs_.size(); ++i) {
         const auto own = static_cast<Eigen::Index>(row);
         row += static_cast<std::size_t>(outputs_[i].series->rows() - 1);
-        if (observed_[i])
-          observe(i, k, own, settled, sums);
+        if (observed_[i]) {
+          observe(i, k, own, settled, products[i]);
+          sums.log_determinant(static_cast<Eigen::Index>(i)) += log_S_(static_cast<Eigen::Index>(i));
+        }
       }
       advance(same, settled);
     }
+    for (SumOfOuterProducts& each : products)
+      sums.products.emplace_back(each.lower().selfadjointView<Eigen::Lower>());
     return sums;
   }
 
@@ -95,7 +102,8 @@ class SharedWhitening::Filter {
     return same;
   }
 
-  void observe(std::size_t i, Eigen::Index k, Eigen::Index own_row, bool settled, SharedProducts& sums) {
+  void observe(std::size_t i, Eigen::Index k, Eigen::Index own_row, bool settled,
+               SumOfOuterProducts& products) {
     const auto column = static_cast<Eigen::Index>(i);
     if (!settled)
       renew(column, outputs_[i].white);
@@ -105,14 +113,14 @@ class SharedWhitening::Filter {
     if (state_.cols() > 1)
       innovation_.segment(own_row, z.size() - 1) += z.tail(z.size() - 1).transpose();
     state_.noalias() += K_.col(column) * innovation_;
-    sums.log_determinant(column) += log_S_(column);
-    sums.products[i].noalias() += (innovation_.transpose() / S_(column)) * innovation_;
+    products.next() = innovation_.transpose() / root_S_(column);
   }
 
   /// Gain and variance of the innovation of a series, given the series before it in the same sample.
   void renew(Eigen::Index column, double white) {
     const Eigen::VectorXd covariance = P_ * H_.col(column);
     S_(column) = H_.col(column).dot(covariance) + white * white;
+    root_S_(column) = std::sqrt(S_(column));
     log_S_(column) = std::log(S_(column));
     K_.col(column) = covariance / S_(column);
     P_.noalias() -= K_.col(column) * covariance.transpose();
@@ -131,7 +139,7 @@ class SharedWhitening::Filter {
 
   const std::vector<SharedOutput>& outputs_;
   Eigen::MatrixXd F_, Q_, H_, K_, P_;
-  Eigen::VectorXd S_, log_S_, previous_ = Eigen::VectorXd::Zero(F_.rows());
+  Eigen::VectorXd S_, root_S_, log_S_, previous_ = Eigen::VectorXd::Zero(F_.rows());
   Eigen::MatrixXd state_, next_;
   Eigen::RowVectorXd innovation_;
   std::vector<bool> observed_;

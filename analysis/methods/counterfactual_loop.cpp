@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <boost/math/distributions/students_t.hpp>
 
@@ -133,25 +134,40 @@ Eigen::MatrixXd CounterfactualLoop::drawn_noise_of(Eigen::Index samples, int dra
   return from_washout(study_, noise);
 }
 
+/// y0 of the whole record under each draw of the noise; empty if a loop does not run to its end.
+const std::vector<Eigen::MatrixXd>& CounterfactualLoop::outputs_under_noise(const Eigen::MatrixXd& d) {
+  if (drawn_d_.cols() == d.cols() && drawn_d_ == d)  // no MDs: 0 x N
+    return drawn_y_;
+  drawn_d_ = d;
+  drawn_y_.clear();
+  for (int draw = 0; draw < kNoiseDraws; ++draw) {
+    Trajectory nominal = run_closed_loop(study_, plant_,
+                                         {.d = d,
+                                          .noise = Eigen::MatrixXd::Zero(study_.cv_count(), d.cols()),
+                                          .y_d = drawn_noise_of(d.cols(), draw),
+                                          .y_set = y_set_,
+                                          .dither = dither_},
+                                         factory_);
+    if (nominal.status != ControlStatus::ok) {
+      drawn_y_.clear();
+      break;
+    }
+    drawn_y_.push_back(std::move(nominal.y));
+  }
+  return drawn_y_;
+}
+
 /// Ivar with the mean of the nominal variance over draws of the noise, ny, and what chance makes of it; none
 /// if a loop does not run to its end.
 std::optional<Eigen::VectorXd> CounterfactualLoop::indices_under_noise(const AssessedLoop& loop) {
   const AssessedLoop& whole = loop.from_start();
   const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
+  const std::vector<Eigen::MatrixXd>& outputs = outputs_under_noise(whole.d);
+  if (outputs.empty())
+    return std::nullopt;
   Eigen::ArrayXXd drawn(whole.y.rows(), kNoiseDraws);
-  for (int draw = 0; draw < kNoiseDraws; ++draw) {
-    const Trajectory nominal =
-        run_closed_loop(study_, plant_,
-                        {.d = whole.d,
-                         .noise = Eigen::MatrixXd::Zero(whole.y.rows(), whole.y.cols()),
-                         .y_d = drawn_noise_of(whole.y.cols(), draw),
-                         .y_set = y_set_,
-                         .dither = dither_},
-                        factory_);
-    if (nominal.status != ControlStatus::ok)
-      return std::nullopt;
-    drawn.col(draw) = variances(loop.in_window(nominal.y), centres);
-  }
+  for (int draw = 0; draw < kNoiseDraws; ++draw)
+    drawn.col(draw) = variances(loop.in_window(outputs[static_cast<std::size_t>(draw)]), centres);
   constexpr double n = kNoiseDraws;
   const double tails = kChance / static_cast<double>(drawn.rows());
   const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 1.0 - 0.5 * tails);

@@ -60,8 +60,8 @@ class CounterfactualLoop {
   explicit CounterfactualLoop(const AssessmentContext& context);
 
   /// Flagged if some Ivar lies outside the band of impact, with the number `ivar` of each CV and no verdict
-  /// on single CVs; failed if the controller does not run on its own model. Simulates one closed loop, or
-  /// none if the disturbances are those of the previous record; and kNoiseDraws more if an Ivar is outside.
+  /// on single CVs; failed if the controller does not run on its own model. Simulates one closed loop, and
+  /// kNoiseDraws more if an Ivar is outside; none of them if the disturbances are those of the record before.
   Assessment impact(const AssessedLoop& loop);
 
   /// Ivar_diag of each CV, ny; NaN if its loop does not run to its end. Simulates one closed loop for each
@@ -87,6 +87,7 @@ class CounterfactualLoop {
   Eigen::VectorXd indices(const AssessedLoop& loop, const Trajectory& nominal,
                           const Eigen::Ref<const Eigen::VectorXd>& added) const;
   std::optional<Eigen::VectorXd> indices_under_noise(const AssessedLoop& loop);
+  const std::vector<Eigen::MatrixXd>& outputs_under_noise(const Eigen::MatrixXd& d);
   Eigen::MatrixXd drawn_noise_of(Eigen::Index samples, int draw) const;
   bool outside(const Eigen::VectorXd& ivar) const;
   bool has_impact(double ivar, Eigen::Index cv) const;
@@ -97,9 +98,11 @@ class CounterfactualLoop {
   TransferMatrix plant_;  ///< G0, or what the benchmark has shown of the plant
   QpSolverFactory factory_;
   Eigen::MatrixXd y_set_, dither_;
-  std::vector<Simulated> loops_;  ///< y0, then y0_diag of each CV
-  Eigen::VectorXd noise_;         ///< v of each CV; empty when the basis case cannot be simulated
-  Eigen::VectorXd chance_;        ///< c of each CV of the last record; 0: no draws
+  std::vector<Simulated> loops_;          ///< y0, then y0_diag of each CV
+  Eigen::MatrixXd drawn_d_;               ///< under which `drawn_y_` was simulated
+  std::vector<Eigen::MatrixXd> drawn_y_;  ///< y0 under each draw; empty where one does not run to its end
+  Eigen::VectorXd noise_;                 ///< v of each CV; empty when the basis case cannot be simulated
+  Eigen::VectorXd chance_;                ///< c of each CV of the last record; 0: no draws
 };
 
 }  // namespace mpm
