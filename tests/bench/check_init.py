@@ -138,6 +138,14 @@ def check_step_model(run, folder):
     impacts = [json.loads(run("validate", path, "--json", "--experiments", 8).stdout)["impact"]
                for path in (study, by_steps)]
     assert impacts[0] == impacts[1], impacts
+    # Five lags are none of the forms: the study has the coefficients themselves.
+    lags = [1 - math.exp(-k / 5) * sum((k / 5) ** i / math.factorial(i) for i in range(5)) for k in range(1, 101)]
+    model.write_text("time,y/u\n" + "".join(f"{k},{value!r}\n" for k, value in enumerate(lags, 1)))
+    said = run("init", folder / "lags.toml", "--step-response", model).stderr
+    assert "%, so that the study has the coefficients" in said, said
+    channel, = tomllib.loads((folder / "lags.toml").read_text())["plant"]["channel"]
+    assert channel["step"] == lags and channel["step_interval"] == 1, channel
+    assert "leaves up to" in run("validate", folder / "lags.toml", "--experiments", 2).stdout
     for content, message in (("time,y/u\n" + "".join(f"{k},{1 - math.exp(-k / 60)}\n" for k in range(1, 61)), "of a CV that integrates, its rate"),
                              ("time,y/u\n1,1\n2,2\n4,3\n", "model.csv:4: time: found 4"),
                              ("time,b\n1,2\n", "the column 'b'; allowed: CV/INPUT, or time"),
