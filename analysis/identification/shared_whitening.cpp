@@ -24,27 +24,32 @@ Eigen::MatrixXd stationary_covariance(Eigen::MatrixXd F, Eigen::MatrixXd Q) {
 
 }  // namespace
 
-/// The filter under one disturbance. The state is [x(k), x(k-1), those of each channel, each slow noise].
+/// The filter under one disturbance. The state is [x(k), x(k-1), those of each channel, each slow noise]; a
+/// series sees x(k-1), its channel and its noise alone, so that F and H act on rows.
 class SharedWhitening::Filter {
  public:
   Filter(const SharedWhitening& of, double a, double b, Eigen::Index rows)
       : outputs_(of.outputs_),
-        F_(Eigen::MatrixXd::Zero(of.states_, of.states_)),
-        Q_(Eigen::MatrixXd::Zero(of.states_, of.states_)),
-        H_(Eigen::MatrixXd::Zero(of.states_, static_cast<Eigen::Index>(outputs_.size()))),
-        K_(H_),
-        S_(Eigen::VectorXd::Ones(H_.cols())),
+        a_(a),
+        Q_(Eigen::VectorXd::Zero(of.states_)),
+        K_(Eigen::MatrixXd::Zero(of.states_, static_cast<Eigen::Index>(outputs_.size()))),
+        S_(Eigen::VectorXd::Ones(K_.cols())),
         root_S_(S_),
-        log_S_(Eigen::VectorXd::Zero(H_.cols())),
-        state_(Eigen::MatrixXd::Zero(of.states_, rows)),
+        log_S_(Eigen::VectorXd::Zero(K_.cols())),
+        previous_(Eigen::VectorXd::Zero(of.states_)),
+        state_(Rows::Zero(of.states_, rows)),
         next_(state_) {
-    F_(0, 0) = a;
-    Q_(0, 0) = b * b;
-    F_(1, 0) = 1.0;
+    Q_(0) = b * b;
     Eigen::Index at = kInputStates;
-    for (std::size_t i = 0; i < outputs_.size(); ++i)
-      at = add(outputs_[i], static_cast<Eigen::Index>(i), at);
-    P_ = stationary_covariance(F_, Q_);
+    for (const SharedOutput& output : outputs_) {
+      first_.push_back(at);
+      at += output.channel.A.rows();
+      if (has_slow_noise(output))
+        Q_(at++) = output.b * output.b;
+    }
+    Rows F(of.states_, of.states_);
+    propagate(Rows::Identity(of.states_, of.states_), F);
+    P_ = stationary_covariance(F, Q_.asDiagonal());
   }
 
   SharedProducts run(Eigen::Index first, Eigen::Index last) {
@@ -65,27 +70,43 @@ class SharedWhitening::Filter {
       advance(same, settled);
     }
     for (SumOfOuterProducts& each : products)
-      sums.products.emplace_back(each.lower().selfadjointView<Eigen::Lower>());
+      sums.products.emplace_back(each.lower());
     return sums;
   }
 
  private:
-  /// The states of one series from `at` on; where those of the next one begin.
-  Eigen::Index add(const SharedOutput& output, Eigen::Index i, Eigen::Index at) {
-    const DiscreteChannel& channel = output.channel;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  static bool has_slow_noise(const SharedOutput& output) { return output.b != 0.0; }
+
+  /// next = F M
+  void propagate(const Rows& M, Rows& next) const {
+    next.row(0) = a_ * M.row(0);
+    next.row(1) = M.row(0);
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+      const DiscreteChannel& channel = outputs_[i].channel;
+      const Eigen::Index at = first_[i], n = channel.A.rows();
+      for (Eigen::Index r = 0; r < n; ++r) {
+        next.row(at + r) = channel.b_now(r) * M.row(0) + channel.b_previous(r) * M.row(1);
+        for (Eigen::Index c = 0; c < n; ++c)
+          if (channel.A(r, c) != 0.0)
+            next.row(at + r) += channel.A(r, c) * M.row(at + c);
+      }
+      if (has_slow_noise(outputs_[i]))
+        next.row(at + n) = outputs_[i].a * M.row(at + n);
+    }
+  }
+
+  /// seen = H_i' M
+  template <class States>
+  void observe_state(std::size_t i, const States& M, Eigen::RowVectorXd& seen) const {
+    const DiscreteChannel& channel = outputs_[i].channel;
     const Eigen::Index n = channel.A.rows();
-    F_.block(at, at, n, n) = channel.A;
-    F_.block(at, 0, n, 1) = channel.b_now;
-    F_.block(at, 1, n, 1) = channel.b_previous;
-    H_.block(at, i, n, 1) = channel.c.transpose();
-    H_(1, i) = channel.d;
-    at += n;
-    if (output.b == 0.0)
-      return at;
-    F_(at, at) = output.a;
-    Q_(at, at) = output.b * output.b;
-    H_(at, i) = 1.0;
-    return at + 1;
+    seen = channel.d * M.row(1);
+    for (Eigen::Index r = 0; r < n; ++r)
+      seen += channel.c(r) * M.row(first_[i] + r);
+    if (has_slow_noise(outputs_[i]))
+      seen += M.row(first_[i] + n);
   }
 
   /// Which series have a sample; whether they are those of the sample before.
@@ -106,9 +127,10 @@ class SharedWhitening::Filter {
                SumOfOuterProducts& products) {
     const auto column = static_cast<Eigen::Index>(i);
     if (!settled)
-      renew(column, outputs_[i].white);
+      renew(i, outputs_[i].white);
     const auto z = outputs_[i].series->col(k + outputs_[i].channel.delay);
-    innovation_ = -(H_.col(column).transpose() * state_);
+    observe_state(i, state_, innovation_);
+    innovation_ = -innovation_;
     innovation_(0) += z(0);
     if (state_.cols() > 1)
       innovation_.segment(own_row, z.size() - 1) += z.tail(z.size() - 1).transpose();
@@ -117,31 +139,40 @@ class SharedWhitening::Filter {
   }
 
   /// Gain and variance of the innovation of a series, given the series before it in the same sample.
-  void renew(Eigen::Index column, double white) {
-    const Eigen::VectorXd covariance = P_ * H_.col(column);
-    S_(column) = H_.col(column).dot(covariance) + white * white;
+  void renew(std::size_t i, double white) {
+    const auto column = static_cast<Eigen::Index>(i);
+    observe_state(i, P_, covariance_);
+    observe_state(i, covariance_.transpose(), variance_);
+    S_(column) = variance_(0) + white * white;
     root_S_(column) = std::sqrt(S_(column));
     log_S_(column) = std::log(S_(column));
-    K_.col(column) = covariance / S_(column);
-    P_.noalias() -= K_.col(column) * covariance.transpose();
+    K_.col(column) = covariance_.transpose() / S_(column);
+    P_.noalias() -= K_.col(column) * covariance_;
   }
 
   void advance(bool same, bool settled) {
-    next_.noalias() = F_ * state_;
+    propagate(state_, next_);
     state_.swap(next_);
     if (settled)
       return;
     const Eigen::VectorXd before = P_.diagonal();
-    P_ = (F_ * P_ * F_.transpose() + Q_).eval();
+    next_P_.resizeLike(P_);
+    propagate(P_, next_P_);
+    turned_ = next_P_.transpose();
+    propagate(turned_, P_);
+    P_.diagonal() += Q_;
     settled_ = same && ((before - previous_).cwiseAbs().array() <= kSteady * (1e-12 + before.array())).all();
     previous_ = before;
   }
 
   const std::vector<SharedOutput>& outputs_;
-  Eigen::MatrixXd F_, Q_, H_, K_, P_;
-  Eigen::VectorXd S_, root_S_, log_S_, previous_ = Eigen::VectorXd::Zero(F_.rows());
-  Eigen::MatrixXd state_, next_;
-  Eigen::RowVectorXd innovation_;
+  std::vector<Eigen::Index> first_;  ///< state of each series
+  double a_;
+  Eigen::VectorXd Q_;  ///< diagonal
+  Eigen::MatrixXd K_;
+  Eigen::VectorXd S_, root_S_, log_S_, previous_;
+  Rows state_, next_, P_, next_P_, turned_;
+  Eigen::RowVectorXd innovation_, covariance_, variance_;
   std::vector<bool> observed_;
   bool settled_ = false;
 };

@@ -24,8 +24,9 @@ struct SharedOutput {
 
 /// Of the first row of all series, and of the rows below them, p = 1 + sum (p_i - 1) in all.
 struct SharedProducts {
-  Eigen::VectorXd log_determinant;        ///< of the innovations of each series
-  std::vector<Eigen::MatrixXd> products;  ///< of the whitened rows in the innovations of each series, p x p
+  Eigen::VectorXd log_determinant;  ///< of the innovations of each series
+  /// Of the whitened rows in the innovations of each series, p x p, the lower triangles.
+  std::vector<Eigen::MatrixXd> products;
 };
 
 /// Whitens series with a shared disturbance by a Kalman filter. The series are shifted against each other by

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -61,25 +62,95 @@ Eigen::Matrix2d at_least(const Eigen::Matrix2d& curvature, const LogPoint& width
 
 }  // namespace
 
-/// The work on one MV.
+/// The likelihood of some CVs under a disturbance on an MV.
+class InputLikelihood::OfCvs {
+ public:
+  OfCvs(const InputLikelihood& all, const std::vector<std::size_t>& cvs, Eigen::Index mv)
+      : whitening_(outputs(all, cvs, mv)) {
+    for (const std::size_t cv : cvs) {
+      const Eigen::MatrixXd& series = all.series_[cv];
+      const auto observed = (!series.row(0).array().isNaN()).count();
+      likelihoods_.push_back({all.freedom_, static_cast<double>(observed)});
+      directions_.push_back(series.rows() - 1);
+    }
+  }
+
+  /// x(k+1) = a x(k) + b w(k); with the directions of the models, or of e alone.
+  double operator()(double a, double b, bool directions) const {
+    const SharedProducts sums = whitening_.products(a, b, directions);
+    const Eigen::Index q = sums.products.front().rows() - 1;
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(q);
+    double sum = 0.0;
+    if (q > 0) {
+      Eigen::MatrixXd all = Eigen::MatrixXd::Zero(q + 1, q + 1);
+      for (const Eigen::MatrixXd& lower : sums.products)
+        all += lower;
+      const Eigen::LLT<Eigen::MatrixXd> inner(all.bottomRightCorner(q, q) + Eigen::MatrixXd::Identity(q, q));
+      z = inner.solve(all.bottomLeftCorner(q, 1));
+      sum -= inner.matrixLLT().diagonal().array().log().sum();
+    }
+    Eigen::VectorXd weights(q + 1);
+    weights << 1.0, -z;
+    Eigen::Index own = 0;
+    for (std::size_t i = 0; i < likelihoods_.size(); ++i) {
+      const Eigen::Index count = q > 0 ? directions_[i] : 0;
+      const Eigen::VectorXd weighted = sums.products[i].selfadjointView<Eigen::Lower>() * weights;
+      const double squares = weights.dot(weighted) + z.segment(own, count).squaredNorm();
+      sum += likelihoods_[i](sums.log_determinant(static_cast<Eigen::Index>(i)), squares);
+      own += count;
+    }
+    return sum;
+  }
+
+ private:
+  static std::vector<SharedOutput> outputs(const InputLikelihood& all, const std::vector<std::size_t>& cvs,
+                                           Eigen::Index mv) {
+    std::vector<SharedOutput> outputs;
+    for (const std::size_t cv : cvs) {
+      const ModelErrors& model = all.models_[cv];
+      const BaseNoise& noise = model.noise();
+      DiscreteChannel channel =
+          discretise(model.model()(0, mv).without_step_coefficients(), all.sample_time_);
+      channel.c /= noise.deviation;
+      channel.d /= noise.deviation;
+      const bool coloured = noise.phi != 0.0;
+      outputs.push_back({channel, coloured ? noise.phi : noise.a,
+                         coloured ? std::sqrt(1.0 - noise.phi * noise.phi) : noise.b, noise_white(noise),
+                         &all.series_[cv]});
+    }
+    return outputs;
+  }
+
+  SharedWhitening whitening_;
+  std::vector<ScaleLikelihood> likelihoods_;
+  std::vector<Eigen::Index> directions_;
+};
+
+/// The work on one MV, over the CVs that it moves; log L of the others is the same for every disturbance.
 class InputLikelihood::OfMv {
  public:
-  OfMv(const InputLikelihood& all, Eigen::Index mv) : all_(all), whitening_(outputs(all, mv)) {
+  OfMv(const InputLikelihood& all, Eigen::Index mv) : sample_time_(all.sample_time_) {
     double most = 0.0;
     Eigen::Index samples = 0;
-    for (std::size_t i = 0; i < all.models_.size(); ++i) {
-      const ModelErrors& model = all.models_[i];
+    std::vector<std::size_t> moved;
+    for (std::size_t cv = 0; cv < all.models_.size(); ++cv) {
+      const ModelErrors& model = all.models_[cv];
       const TransferFunction& channel = model.model()(0, mv);
+      samples = std::max(samples, all.series_[cv].cols());
+      if (channel.is_zero()) {
+        of_others_.e += all.unmoved_[cv].e;
+        of_others_.with_directions += all.unmoved_[cv].with_directions;
+        continue;
+      }
       const double gain = channel.is_integrating() ? 1.0 : channel.static_gain();
-      if (!channel.is_zero())
-        most = std::max(most, std::abs(gain) / model.noise().deviation);
-      samples = std::max(samples, all.series_[i].cols());
-      const auto observed = (!all.series_[i].row(0).array().isNaN()).count();
-      likelihoods_.push_back({all.freedom_, static_cast<double>(observed)});
+      most = std::max(most, std::abs(gain) / model.noise().deviation);
+      moved.push_back(cv);
     }
     moves_ = most > 0.0;
-    low_ = {std::log(all.sample_time_), std::log(kSmallestMove / most)};
-    high_ = {std::log(std::max(2.0, 0.5 * static_cast<double>(samples)) * all.sample_time_),
+    if (moves_)
+      of_moved_.emplace(all, moved, mv);
+    low_ = {std::log(sample_time_), std::log(kSmallestMove / most)};
+    high_ = {std::log(std::max(2.0, 0.5 * static_cast<double>(samples)) * sample_time_),
              std::log(kLargestMove / most)};
   }
 
@@ -123,56 +194,19 @@ class InputLikelihood::OfMv {
   }
 
  private:
-  static std::vector<SharedOutput> outputs(const InputLikelihood& all, Eigen::Index mv) {
-    std::vector<SharedOutput> outputs;
-    for (std::size_t i = 0; i < all.models_.size(); ++i) {
-      const BaseNoise& noise = all.models_[i].noise();
-      DiscreteChannel channel =
-          discretise(all.models_[i].model()(0, mv).without_step_coefficients(), all.sample_time_);
-      channel.c /= noise.deviation;
-      channel.d /= noise.deviation;
-      const bool coloured = noise.phi != 0.0;
-      outputs.push_back({channel, coloured ? noise.phi : noise.a,
-                         coloured ? std::sqrt(1.0 - noise.phi * noise.phi) : noise.b, noise_white(noise),
-                         &all.series_[i]});
-    }
-    return outputs;
-  }
-
   std::pair<double, double> parameters(const LogPoint& at) const {
-    const double a = std::exp(-all_.sample_time_ / std::exp(at(0)));
+    const double a = std::exp(-sample_time_ / std::exp(at(0)));
     return {a, std::exp(at(1)) * std::sqrt(1.0 - a * a)};
   }
 
   double log_likelihood(const LogPoint& at, bool directions) const {
     const auto [a, b] = parameters(at);
-    const SharedProducts sums = whitening_.products(a, b, directions);
-    const Eigen::Index q = sums.products.front().rows() - 1;
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(q);
-    double sum = 0.0;
-    if (q > 0) {
-      Eigen::MatrixXd all = Eigen::MatrixXd::Zero(q + 1, q + 1);
-      for (const Eigen::MatrixXd& products : sums.products)
-        all += products;
-      const Eigen::LLT<Eigen::MatrixXd> inner(all.bottomRightCorner(q, q) + Eigen::MatrixXd::Identity(q, q));
-      z = inner.solve(all.bottomLeftCorner(q, 1));
-      sum -= inner.matrixLLT().diagonal().array().log().sum();
-    }
-    Eigen::VectorXd weights(q + 1);
-    weights << 1.0, -z;
-    Eigen::Index own = 0;
-    for (std::size_t i = 0; i < likelihoods_.size(); ++i) {
-      const Eigen::Index count = q > 0 ? all_.series_[i].rows() - 1 : 0;
-      const double squares = weights.dot(sums.products[i] * weights) + z.segment(own, count).squaredNorm();
-      sum += likelihoods_[i](sums.log_determinant(static_cast<Eigen::Index>(i)), squares);
-      own += count;
-    }
-    return sum;
+    return (*of_moved_)(a, b, directions) + (directions ? of_others_.with_directions : of_others_.e);
   }
 
-  const InputLikelihood& all_;
-  SharedWhitening whitening_;
-  std::vector<ScaleLikelihood> likelihoods_;
+  double sample_time_;
+  std::optional<OfCvs> of_moved_;
+  LogLikelihood of_others_;
   bool moves_ = false;
   LogPoint low_, high_, start_ = LogPoint::Zero();
 };
@@ -180,7 +214,19 @@ class InputLikelihood::OfMv {
 InputLikelihood::InputLikelihood(const std::vector<ModelErrors>& models,
                                  const std::vector<Eigen::MatrixXd>& series, double sample_time,
                                  double noise_freedom)
-    : models_(models), series_(series), sample_time_(sample_time), freedom_(noise_freedom) {}
+    : models_(models),
+      series_(series),
+      sample_time_(sample_time),
+      freedom_(noise_freedom),
+      unmoved_(models.size()) {
+  for (std::size_t cv = 0; cv < models.size(); ++cv)
+    for (Eigen::Index mv = 0; mv < models[cv].model().cols(); ++mv)
+      if (models[cv].model()(0, mv).is_zero()) {
+        const OfCvs alone(*this, {cv}, mv);
+        unmoved_[cv] = {alone(0.0, 0.0, false), alone(0.0, 0.0, true)};
+        break;
+      }
+}
 
 std::vector<InputEvidence> InputLikelihood::of_mvs(Eigen::Index mvs) const {
   std::vector<OfMv> each;

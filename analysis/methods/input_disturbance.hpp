@@ -40,11 +40,17 @@ class InputLikelihood {
   std::vector<InputEvidence> of_mvs(Eigen::Index mvs) const;
 
  private:
+  class OfCvs;
   class OfMv;
+
+  struct LogLikelihood {
+    double e = 0.0, with_directions = 0.0;  ///< of e alone, and with the directions of the model
+  };
 
   const std::vector<ModelErrors>& models_;
   const std::vector<Eigen::MatrixXd>& series_;
   double sample_time_, freedom_;
+  std::vector<LogLikelihood> unmoved_;  ///< of each CV without a disturbance; 0 where all MVs move it
 };
 
 }  // namespace mpm

@@ -91,7 +91,7 @@ TEST_CASE(
   const Eigen::MatrixXd products = there * factor.solve(there.transpose());
   Eigen::MatrixXd found = Eigen::MatrixXd::Zero(4, 4);
   for (const Eigen::MatrixXd& of_series : sums.products)
-    found += of_series;
+    found += Eigen::MatrixXd(of_series.selfadjointView<Eigen::Lower>());
   // The filter stops renewing its gains where they change by less than 1e-9.
   CHECK((found - products).norm() < 1e-6 * products.norm());
   CHECK(sums.log_determinant.sum() ==
