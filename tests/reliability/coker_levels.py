@@ -10,6 +10,7 @@ minute of processor time a record.
 
 import csv
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -58,13 +59,14 @@ def plant_study(coker, channels):
 
 
 def main(program, sources, records=6):
+    program = os.path.abspath(program)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
 
         def run(*words):
             return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder, check=True).stdout
 
-        coker = pathlib.Path(sources) / "scenarios/studies/coker.toml"
+        coker = pathlib.Path(sources).absolute() / "scenarios/studies/coker.toml"
         steps = ("--samples", 200, "--step", "DV1=1", "--step", "DV2=1")
         plant = plant_study(coker.read_text(), re.sub(r"(?m)^#.*\n", "", run("identify", coker, *steps)))
         (folder / "plant.toml").write_text(plant)
