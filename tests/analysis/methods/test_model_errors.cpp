@@ -121,27 +121,6 @@ TEST_CASE("errors of a model learnt from one record explain those of another, as
   CHECK(without / kPlants > N + 4.0 * deviation);
 }
 
-// The level of a reboiler has no dead time, and outputs that move by 1e4 times the noise: what would be
-// learnt of a negative one, which the model cannot have, would be missing in the next record.
-TEST_CASE("no error is learnt that makes a dead time negative") {
-  const Study study = find_study("suite-column-levels");
-  constexpr Eigen::Index MB = 3, N = 300;
-  const Eigen::VectorXd initial = Eigen::VectorXd::Zero(study.plant.G.cols());
-  double squares = 0.0;
-  constexpr int kRecords = 10;
-  for (std::uint64_t number = 0; number < kRecords; ++number) {
-    const ModelErrors errors(study, MB, relative_errors(study, MB, kShare, 0.5), white(400, number),
-                             input_moves(study.plant.G.cols(), 400, number), initial, 1e-6);
-    const Eigen::MatrixXd u = input_moves(study.plant.G.cols(), N, 100 + number);
-    const Eigen::RowVectorXd left = (white(N, 200 + number) - errors.correction(u, initial)) / kNoise;
-    const Eigen::MatrixXd Z = errors.directions(errors.slopes(u, initial));
-    const Eigen::MatrixXd C = Z.transpose() * Z + Eigen::MatrixXd::Identity(N, N);
-    squares += left * C.llt().solve(left.transpose());
-  }
-  // Chi-square variables of N degrees of freedom, as above.
-  CHECK(squares / kRecords == Approx(N).margin(4.0 * std::sqrt(2.0 * N / kRecords)));
-}
-
 TEST_CASE(
     "the background of a record is learnt beside the errors of the model, and its sizes are left open") {
   const Study study = find_study("setpoint-methods");
