@@ -30,7 +30,7 @@ struct WhitenedProducts {
   const Eigen::ArrayXd& of(Eigen::Index i, Eigen::Index j) const;
 };
 
-/// By a Kalman filter with one state, which runs over all models abreast. `series` (p x N) has one series a
+/// By a Kalman filter with one state, whose gains are those of all series. `series` (p x N) has one series a
 /// row; a sample at which the first one is NaN is not observed in any. With phi != 0 the filter forgets what
 /// n was before a gap.
 WhitenedProducts whitened_products(const NoiseModels& models,

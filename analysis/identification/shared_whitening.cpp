@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/identification/sum_of_outer_products.hpp"
+#include "plants/row_major.hpp"
 
 namespace mpm {
 namespace {
@@ -33,28 +34,27 @@ class SharedWhitening::Filter {
         a_(a),
         Q_(Eigen::VectorXd::Zero(of.states_)),
         K_(Eigen::MatrixXd::Zero(of.states_, static_cast<Eigen::Index>(outputs_.size()))),
-        S_(Eigen::VectorXd::Ones(K_.cols())),
-        root_S_(S_),
+        root_S_(Eigen::VectorXd::Ones(K_.cols())),
         log_S_(Eigen::VectorXd::Zero(K_.cols())),
         previous_(Eigen::VectorXd::Zero(of.states_)),
-        state_(Rows::Zero(of.states_, rows)),
+        state_(RowMajorMatrix::Zero(of.states_, rows)),
         next_(state_) {
     Q_(0) = b * b;
     Eigen::Index at = kInputStates;
     for (const SharedOutput& output : outputs_) {
       first_.push_back(at);
-      at += output.channel.A.rows();
-      if (has_slow_noise(output))
-        Q_(at++) = output.b * output.b;
+      at += output.states();
+      if (output.has_slow_noise())
+        Q_(at - 1) = output.b * output.b;
     }
-    Rows F(of.states_, of.states_);
-    propagate(Rows::Identity(of.states_, of.states_), F);
+    RowMajorMatrix F(of.states_, of.states_);
+    propagate(RowMajorMatrix::Identity(of.states_, of.states_), F);
     P_ = stationary_covariance(F, Q_.asDiagonal());
   }
 
   SharedProducts run(Eigen::Index first, Eigen::Index last) {
     const Eigen::Index rows = state_.cols();
-    SharedProducts sums{Eigen::VectorXd::Zero(S_.size()), {}};
+    SharedProducts sums{Eigen::VectorXd::Zero(K_.cols()), {}};
     std::vector<SumOfOuterProducts> products(outputs_.size(), SumOfOuterProducts(rows));
     for (Eigen::Index k = first; k < last; ++k) {
       const bool same = find_observed(k);
@@ -75,12 +75,8 @@ class SharedWhitening::Filter {
   }
 
  private:
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-  static bool has_slow_noise(const SharedOutput& output) { return output.b != 0.0; }
-
   /// next = F M
-  void propagate(const Rows& M, Rows& next) const {
+  void propagate(const RowMajorMatrix& M, RowMajorMatrix& next) const {
     next.row(0) = a_ * M.row(0);
     next.row(1) = M.row(0);
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
@@ -92,7 +88,7 @@ class SharedWhitening::Filter {
           if (channel.A(r, c) != 0.0)
             next.row(at + r) += channel.A(r, c) * M.row(at + c);
       }
-      if (has_slow_noise(outputs_[i]))
+      if (outputs_[i].has_slow_noise())
         next.row(at + n) = outputs_[i].a * M.row(at + n);
     }
   }
@@ -105,7 +101,7 @@ class SharedWhitening::Filter {
     seen = channel.d * M.row(1);
     for (Eigen::Index r = 0; r < n; ++r)
       seen += channel.c(r) * M.row(first_[i] + r);
-    if (has_slow_noise(outputs_[i]))
+    if (outputs_[i].has_slow_noise())
       seen += M.row(first_[i] + n);
   }
 
@@ -143,10 +139,10 @@ class SharedWhitening::Filter {
     const auto column = static_cast<Eigen::Index>(i);
     observe_state(i, P_, covariance_);
     observe_state(i, covariance_.transpose(), variance_);
-    S_(column) = variance_(0) + white * white;
-    root_S_(column) = std::sqrt(S_(column));
-    log_S_(column) = std::log(S_(column));
-    K_.col(column) = covariance_.transpose() / S_(column);
+    const double S = variance_(0) + white * white;
+    root_S_(column) = std::sqrt(S);
+    log_S_(column) = std::log(S);
+    K_.col(column) = covariance_.transpose() / S;
     P_.noalias() -= K_.col(column) * covariance_;
   }
 
@@ -170,8 +166,8 @@ class SharedWhitening::Filter {
   double a_;
   Eigen::VectorXd Q_;  ///< diagonal
   Eigen::MatrixXd K_;
-  Eigen::VectorXd S_, root_S_, log_S_, previous_;
-  Rows state_, next_, P_, next_P_, turned_;
+  Eigen::VectorXd root_S_, log_S_, previous_;
+  RowMajorMatrix state_, next_, P_, next_P_, turned_;
   Eigen::RowVectorXd innovation_, covariance_, variance_;
   std::vector<bool> observed_;
   bool settled_ = false;
@@ -180,7 +176,7 @@ class SharedWhitening::Filter {
 SharedWhitening::SharedWhitening(std::vector<SharedOutput> outputs)
     : outputs_(std::move(outputs)), states_(kInputStates), rows_(1), longest_delay_(0) {
   for (const SharedOutput& output : outputs_) {
-    states_ += output.channel.A.rows() + (output.b == 0.0 ? 0 : 1);
+    states_ += output.states();
     rows_ += output.series->rows() - 1;
     longest_delay_ = std::max<Eigen::Index>(longest_delay_, output.channel.delay);
   }

@@ -20,6 +20,9 @@ struct SharedOutput {
   double a = 0.0, b = 0.0;        ///< of the slow noise of the series; b = 0: it has none
   double white = 1.0;             ///< standard deviation of the white one
   const Eigen::MatrixXd* series;  ///< p_i x N: z, NaN where there is no sample, and what is whitened with it
+
+  bool has_slow_noise() const { return b != 0.0; }
+  Eigen::Index states() const { return channel.A.rows() + (has_slow_noise() ? 1 : 0); }
 };
 
 /// Of the first row of all series, and of the rows below them, p = 1 + sum (p_i - 1) in all.

@@ -4,8 +4,8 @@
 
 namespace mpm {
 
-/// sum over k of v(k) v(k)', of vectors that come one by one. They are kept until there are enough of them
-/// for a product of matrices, which is several times as fast as one of vectors.
+/// sum over k of v(k) v(k)', of vectors v(k) of p elements that come one by one. They are kept until there
+/// are enough of them for a product of matrices, which is several times as fast as one of vectors.
 class SumOfOuterProducts {
  public:
   explicit SumOfOuterProducts(Eigen::Index size)
@@ -18,17 +18,18 @@ class SumOfOuterProducts {
     return kept_.col(count_++);
   }
 
-  /// The sum so far; what lies above its diagonal is 0.
+  /// The sum so far, p x p; what lies above its diagonal is 0.
   const Eigen::MatrixXd& lower() {
     fold();
     return sum_;
   }
 
  private:
-  static constexpr Eigen::Index kBlock = 64;
+  static constexpr Eigen::Index kBlock = 64;  // 25 kB of 50 elements: within a first-level cache
 
   void fold() {
-    sum_.selfadjointView<Eigen::Lower>().rankUpdate(kept_.leftCols(count_));
+    if (count_ > 0)
+      sum_.selfadjointView<Eigen::Lower>().rankUpdate(kept_.leftCols(count_));
     count_ = 0;
   }
 

@@ -146,15 +146,14 @@ class InputLikelihood::OfMv {
       most = std::max(most, std::abs(gain) / model.noise().deviation);
       moved.push_back(cv);
     }
-    moves_ = most > 0.0;
-    if (moves_)
+    if (most > 0.0)
       of_moved_.emplace(all, moved, mv);
     low_ = {std::log(sample_time_), std::log(kSmallestMove / most)};
     high_ = {std::log(std::max(2.0, 0.5 * static_cast<double>(samples)) * sample_time_),
              std::log(kLargestMove / most)};
   }
 
-  bool moves() const { return moves_; }
+  bool moves() const { return of_moved_.has_value(); }
 
   /// The best of a few points by e alone: where to search, and log L there.
   double first_look() {
@@ -207,7 +206,6 @@ class InputLikelihood::OfMv {
   double sample_time_;
   std::optional<OfCvs> of_moved_;
   LogLikelihood of_others_;
-  bool moves_ = false;
   LogPoint low_, high_, start_ = LogPoint::Zero();
 };
 

@@ -50,7 +50,7 @@ class InputLikelihood {
   const std::vector<ModelErrors>& models_;
   const std::vector<Eigen::MatrixXd>& series_;
   double sample_time_, freedom_;
-  std::vector<LogLikelihood> unmoved_;  ///< of each CV without a disturbance; 0 where all MVs move it
+  std::vector<LogLikelihood> unmoved_;  ///< of each CV without a disturbance; 0 where all inputs move it
 };
 
 }  // namespace mpm

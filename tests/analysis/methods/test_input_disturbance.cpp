@@ -72,6 +72,23 @@ TEST_CASE("a disturbance on an MV: without one its evidence is that of nothing l
   }
 }
 
+TEST_CASE("a disturbance on an MV: a CV that it does not move adds what it has without one") {
+  Study study = find_study("setpoint-methods");
+  study.plant.G(2, 0) = TransferFunction::zero();
+  const double Ts = study.controller.sample_time, freedom = 4.0;
+  std::vector<ModelErrors> models = exact_models(study, {kDeviation});
+  std::vector<Eigen::MatrixXd> series = disturbed(study, 0, 0.05);
+  const InputEvidence all = InputLikelihood(models, series, Ts, freedom).of_mvs(1).front();
+  const WhitenedProducts sums =
+      marginalised(whitened_products(base_models({}, false).models, series[2]), 1, 1);
+  models.pop_back();
+  series.pop_back();
+  const InputEvidence moved = InputLikelihood(models, series, Ts, freedom).of_mvs(1).front();
+  const double alone = ScaleLikelihood{freedom, kRecord}(sums.log_determinant(0), sums.of(0, 0)(0));
+  CHECK(all.log_evidence == Approx(moved.log_evidence + alone).epsilon(1e-9));
+  CHECK(all.b == Approx(moved.b).epsilon(1e-9));
+}
+
 TEST_CASE("a disturbance on an MV: -infinity where it moves nothing") {
   Study study = find_study("setpoint-methods");
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
