@@ -17,25 +17,25 @@ bool has_analysers(const std::vector<AnalyserTiming>& timings) {
 }
 
 AnalyserHold::AnalyserHold(const std::vector<AnalyserTiming>& timings) {
-  for (std::size_t cv = 0; cv < timings.size(); ++cv)
-    if (timings[cv].is_analyser())
+  for (std::size_t i = 0; i < timings.size(); ++i)
+    if (timings[i].is_analyser())
       channels_.push_back(
-          {static_cast<Eigen::Index>(cv), timings[cv], Eigen::VectorXd::Zero(timings[cv].delay + 1), 0.0});
+          {static_cast<Eigen::Index>(i), timings[i], Eigen::VectorXd::Zero(timings[i].delay + 1), 0.0});
 }
 
 void AnalyserHold::reset(const Eigen::Ref<const Eigen::VectorXd>& y) {
   sample_ = 0;
   for (Channel& channel : channels_)
-    channel.shown = y(channel.cv);
+    channel.shown = y(channel.variable);
 }
 
 void AnalyserHold::pass(Eigen::Ref<Eigen::VectorXd> y) {
   for (Channel& channel : channels_) {
-    channel.past(sample_ % channel.past.size()) = y(channel.cv);
+    channel.past(sample_ % channel.past.size()) = y(channel.variable);
     if (const Eigen::Index taken = channel.timing.taken(sample_);
         taken >= 0 && taken == sample_ - channel.timing.delay)
       channel.shown = channel.past(taken % channel.past.size());
-    y(channel.cv) = channel.shown;
+    y(channel.variable) = channel.shown;
   }
   ++sample_;
 }
@@ -56,6 +56,38 @@ AnalyserTiming with_first_of(AnalyserTiming timing, const Eigen::Ref<const Eigen
   changes.maxCoeff(&first);
   timing.first = static_cast<int>(first);
   return timing;
+}
+
+Eigen::MatrixXd as_shown(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd signals,
+                         const Eigen::Ref<const Eigen::VectorXd>& rest) {
+  AnalyserHold analysers(timings);
+  analysers.reset(rest);
+  for (auto y : signals.colwise())
+    analysers.pass(y);
+  return signals;
+}
+
+Eigen::MatrixXd as_taken(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd shown) {
+  for (std::size_t i = 0; i < timings.size(); ++i) {
+    const AnalyserTiming& timing = timings[i];
+    if (!timing.is_analyser())
+      continue;
+    auto signal = shown.row(static_cast<Eigen::Index>(i));
+    const Eigen::RowVectorXd of_record = signal;
+    const AnalyserTiming at_once{.period = timing.period, .delay = 0, .first = timing.first};
+    const Eigen::Index last = timing.taken(signal.size() - 1);
+    for (Eigen::Index k = 0; k < signal.size(); ++k) {
+      const Eigen::Index taken = std::min(at_once.taken(k), last);
+      signal(k) = of_record(taken < 0 ? 0 : taken + timing.delay);
+    }
+  }
+  return shown;
+}
+
+Eigen::MatrixXd as_taken_in_record(std::vector<AnalyserTiming> timings, const Eigen::MatrixXd& shown) {
+  for (std::size_t i = 0; i < timings.size(); ++i)
+    timings[i] = with_first_of(timings[i], shown.row(static_cast<Eigen::Index>(i)));
+  return as_taken(timings, shown);
 }
 
 }  // namespace mpm

@@ -22,13 +22,13 @@ struct AnalyserTiming {
   bool operator==(const AnalyserTiming&) const = default;
 };
 
-/// Is one of the CVs an analyser's?
+/// Is one of the variables measured by an analyser?
 bool has_analysers(const std::vector<AnalyserTiming>& timings);
 
-/// The analysers of all CVs, one sample after the other: what is shown at sample k is y(taken(k)).
+/// The analysers of all CVs or MDs, one sample after the other: what is shown at sample k is y(taken(k)).
 class AnalyserHold {
  public:
-  /// One timing a CV; empty: all CVs are measured at every sample.
+  /// One timing a variable; empty: all are measured at every sample.
   explicit AnalyserHold(const std::vector<AnalyserTiming>& timings);
 
   /// Starts at sample 0 and shows `y` (ny) until the first analyses are there.
@@ -38,7 +38,7 @@ class AnalyserHold {
 
  private:
   struct Channel {
-    Eigen::Index cv;
+    Eigen::Index variable;
     AnalyserTiming timing;
     Eigen::VectorXd past;  ///< the last delay + 1 values, a ring
     double shown;
@@ -53,5 +53,16 @@ Eigen::RowVectorXd analyses(const AnalyserTiming& timing, const Eigen::Ref<const
 
 /// The timing with the `first` under which most changes of `shown` (N, NaN where missing) are new analyses.
 AnalyserTiming with_first_of(AnalyserTiming timing, const Eigen::Ref<const Eigen::RowVectorXd>& shown);
+
+/// `signals` (n x N) as their analysers show them, `rest` (n) until the first analyses are there.
+Eigen::MatrixXd as_shown(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd signals,
+                         const Eigen::Ref<const Eigen::VectorXd>& rest);
+
+/// What is known in the end of signals of which analysers have shown `shown` (n x N): each analysis from the
+/// sample at which it was taken on, held to the next one. Before the first one it is what was shown at the
+/// start.
+Eigen::MatrixXd as_taken(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd shown);
+/// The same of the record of a plant, which tells by its changes when samples are taken (with_first_of()).
+Eigen::MatrixXd as_taken_in_record(std::vector<AnalyserTiming> timings, const Eigen::MatrixXd& shown);
 
 }  // namespace mpm

@@ -17,7 +17,7 @@ const MpcOptions& checked(const MpcOptions& options, const TransferMatrix& model
   if (mv_count < 1 || mv_count > model.cols())
     throw InputError("mv_count", fmt::format("{}", mv_count),
                      fmt::format("1 to {} (model columns)", model.cols()));
-  options.validate(model.rows(), mv_count);
+  options.validate(model.rows(), mv_count, model.cols() - mv_count);
   return options;
 }
 
@@ -68,6 +68,8 @@ Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& o
       gain.row(cv) *= options.prediction_horizon * options.sample_time;
     }
   md_gain_ = gain.rightCols(model.cols() - mv_count);
+  if (has_analysers(options.md_analysers))
+    late_.emplace(model_, nu_, options.md_analysers);
   if (options.has_targets()) {
     targets_.emplace(gain.leftCols(mv_count), options, factory);
     pass_on_targets();
@@ -90,6 +92,8 @@ void Mpc::reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<con
   require_signal("measured disturbances", d, md_gain_.cols());
   input_ << u, d;
   model_.reset(input_);
+  if (late_)
+    late_->reset(model_, input_);
   simulated_analysers_.reset(model_.output());
   is_pending_ = false;
   has_bias_ = false;
@@ -194,6 +198,10 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   require_signal("measured disturbances", d, md_gain_.cols());
   if (is_pending_)
     model_.advance(input_);
+  if (is_pending_ && late_)
+    late_->advance(input_);
+  if (late_)
+    late_->correct(d, model_);
   measured_ = y;
   feed_back(y);
   input_ << move_.u, d;

@@ -10,6 +10,7 @@
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/transfer_matrix.hpp"
 #include "solvers/controller.hpp"
+#include "solvers/late_measurements.hpp"
 #include "solvers/mpc_options.hpp"
 #include "solvers/mpc_qp.hpp"
 #include "solvers/qp_solver.hpp"
@@ -22,7 +23,8 @@ namespace mpm {
 ///
 /// At sample k, from the measured CVs y(k) and MDs d(k):
 /// 1. Output-bias feedback: b(k) = y(k) - y_sim(k), y_sim = G0 (u, d), is added to every prediction. Of a CV
-///    of an analyser y_sim is that at the sample at which the analysis was taken. The bias of a CV that
+///    of an analyser y_sim is that at the sample at which the analysis was taken; MDs that are measured late
+///    act in it from when they were measured (LateMeasurements). The bias of a CV that
 ///    integrates may have a ramp, r(k) = r(k-1) + alpha (b(k) - b(k-1) - r(k-1)): what is not known flows
 ///    into a level all the time. Its prediction l samples ahead has b(k) + l r(k).
 /// 2. The targets for the steady state K_d d(k) + b(k) + K u (6.19). A CV that integrates is at a steady
@@ -83,6 +85,7 @@ class Mpc final : public Controller {
   std::vector<Eigen::Index> integrating_;  ///< CVs
   Eigen::MatrixXd md_gain_;  ///< at the steady state; of a CV that integrates over the prediction horizon
   LinearPlant model_, scratch_;
+  std::optional<LateMeasurements> late_;
   std::map<std::vector<bool>, Program> programs_;  ///< by the CVs with a setpoint that are off
   Program* program_ = nullptr;
   std::optional<TargetOptimizer> targets_;

@@ -48,6 +48,16 @@ void require_move_blocks(const MpcOptions& options) {
                     options.prediction_horizon));
 }
 
+void require_timings(const char* name, const std::vector<AnalyserTiming>& timings, Eigen::Index count) {
+  if (!timings.empty() && static_cast<Eigen::Index>(timings.size()) != count)
+    throw InputError(name, fmt::format("{}", timings.size()), fmt::format("{}, or none", count));
+  for (const AnalyserTiming& timing : timings)
+    if (timing.period < 1 || timing.delay < 0 || timing.first < 0 || timing.first >= timing.period)
+      throw InputError(
+          name, fmt::format("period {}, delay {}, first {}", timing.period, timing.delay, timing.first),
+          "period >= 1, delay >= 0, first from 0 to period - 1");
+}
+
 auto members(const Limits& limits) {
   const auto& [lower, upper] = limits;
   return std::tie(lower, upper);
@@ -55,13 +65,13 @@ auto members(const Limits& limits) {
 
 auto members(const MpcOptions& options) {
   const auto& [sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
-               setpoint_weight, slack_weight, slack_cost, reference_time, bias_ramp, analysers, move_blocks,
-               weight_convention, slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost, resting_value,
-               resting_weight, target_violation_cost] = options;
+               setpoint_weight, slack_weight, slack_cost, reference_time, bias_ramp, analysers, md_analysers,
+               move_blocks, weight_convention, slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost,
+               resting_value, resting_weight, target_violation_cost] = options;
   return std::tie(sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
                   setpoint_weight, slack_weight, slack_cost, reference_time, bias_ramp, analysers,
-                  move_blocks, weight_convention, slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost,
-                  resting_value, resting_weight, target_violation_cost);
+                  md_analysers, move_blocks, weight_convention, slack_form, mv_hard, move_limit, cv_hard,
+                  cv_soft, mv_cost, resting_value, resting_weight, target_violation_cost);
 }
 
 }  // namespace
@@ -124,7 +134,7 @@ bool MpcOptions::has_soft_limits() const {
   return cv_soft.lower.array().isFinite().any() || cv_soft.upper.array().isFinite().any();
 }
 
-void MpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) const {
+void MpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count, Eigen::Index md_count) const {
   if (!(std::isfinite(sample_time) && sample_time > 0))
     throw InputError("sample_time", fmt::format("{}", sample_time), "a number > 0");
   if (prediction_horizon < 1)
@@ -151,14 +161,8 @@ void MpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count) const {
   require_optional_weights("bias_ramp", bias_ramp, cv_count);
   if ((bias_ramp.array() > 1.0).any())
     throw InputError("bias_ramp", fmt::format("{}", bias_ramp.maxCoeff()), "numbers from 0 to 1");
-  if (!analysers.empty() && static_cast<Eigen::Index>(analysers.size()) != cv_count)
-    throw InputError("analysers", fmt::format("{}", analysers.size()), fmt::format("{}, or none", cv_count));
-  for (const AnalyserTiming& timing : analysers)
-    if (timing.period < 1 || timing.delay < 0 || timing.first < 0 || timing.first >= timing.period)
-      throw InputError(
-          "analysers",
-          fmt::format("period {}, delay {}, first {}", timing.period, timing.delay, timing.first),
-          "period >= 1, delay >= 0, first from 0 to period - 1");
+  require_timings("analysers", analysers, cv_count);
+  require_timings("md_analysers", md_analysers, md_count);
   require_optional_weights("resting_weight", resting_weight, mv_count);
   if (resting_weight.size() != resting_value.size() || !resting_value.allFinite())
     throw InputError("resting_value", fmt::format("{} numbers", resting_value.size()),

@@ -64,7 +64,7 @@ struct Limits {
 /// | du_max   | move_limit         | nu    | MV a sample                 |
 /// | tau_ref  | reference_time     | ny    | time unit of the plant      |
 /// | alpha    | bias_ramp          | ny    | 1                           |
-/// |          | analysers          | ny    | samples                     |
+/// |          | analysers, md_analysers | ny, nd | samples                |
 struct MpcOptions {
   double sample_time = 1.0;
   int prediction_horizon = 1;
@@ -82,6 +82,9 @@ struct MpcOptions {
   /// Of CVs that an analyser measures: the output-bias feedback compares an analysis with the model at the
   /// sample at which it was taken. Empty: none.
   std::vector<AnalyserTiming> analysers = {};
+  /// Of MDs that are measured late: a value that is new was measured `delay` samples before, and the model is
+  /// corrected from there on (LateMeasurements). Empty: none.
+  std::vector<AnalyserTiming> md_analysers = {};
   /// Samples for which each planned position of the MVs is held but the last, which is held to the end of the
   /// horizon (move blocking); empty: one sample each.
   std::vector<int> move_blocks = {};
@@ -114,7 +117,7 @@ struct MpcOptions {
   std::vector<int> move_starts() const;
 
   /// Throws InputError for sizes, signs or horizons that make no controller.
-  void validate(Eigen::Index cv_count, Eigen::Index mv_count) const;
+  void validate(Eigen::Index cv_count, Eigen::Index mv_count, Eigen::Index md_count) const;
 
   friend bool operator==(const MpcOptions& a, const MpcOptions& b);
 };

@@ -11,6 +11,7 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/chain_numbers.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "plants/analyser.hpp"
 #include "scenarios/loop/candidates.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/historian.hpp"
@@ -167,8 +168,9 @@ ExperimentRunner::FinishedLoop ExperimentRunner::finished(const ExperimentDraw& 
       loop.message = "no S0 of its own: " + loop.own->basis.explanation;
   }
   if (loop.status != ExperimentStatus::ok)
-    loop.assessed.y_sim = simulated_output(study.assessed_model(), study.controller.sample_time,
-                                           basis_.point.u, loop.trajectory.u, loop.trajectory.d);
+    loop.assessed.y_sim =
+        simulated_output(study.assessed_model(), study.controller.sample_time, basis_.point.u,
+                         loop.trajectory.u, as_taken(study.controller.md_analysers, loop.trajectory.d));
   else if (loop.own)
     loop.assessed =
         assessed_loop(loop.own->study, loop.own->basis.point, recorded(study, draw.index, loop.trajectory));

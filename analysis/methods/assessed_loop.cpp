@@ -8,6 +8,7 @@
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/washout.hpp"
+#include "plants/analyser.hpp"
 #include "plants/linear/settling_time.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/draw.hpp"
@@ -154,12 +155,13 @@ std::vector<Eigen::Index> AssessedLoop::setpoint_cvs() const {
 }
 
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop) {
+  const Eigen::MatrixXd d = as_taken(study.controller.md_analysers, loop.d);
   const auto simulated = [&](const TransferMatrix& model) {
-    return simulated_output(model, study.controller.sample_time, point.u, loop.u, loop.d);
+    return simulated_output(model, study.controller.sample_time, point.u, loop.u, d);
   };
   const Eigen::MatrixXd y_sim = simulated(study.plant.G);
   AssessedLoop assessed{
-      .y = loop.y, .u = loop.u, .u_target = loop.u_target, .d = loop.d, .y_sim = y_sim, .y_set = {}};
+      .y = loop.y, .u = loop.u, .u_target = loop.u_target, .d = d, .y_sim = y_sim, .y_set = {}};
   take_analyses(study, FirstAnalysis::of_study, assessed.y);
   assessed.y_set =
       study.assessment.setpoints == AssessmentSetpoints::optimizer && study.controller.has_targets()
@@ -184,16 +186,17 @@ Eigen::Index samples_to_settle(const Study& study, const OperatingPoint& point, 
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const PlantRecord& record,
                            Eigen::Index unjudged) {
   const Eigen::Index before = 3 * unjudged;  // a system of higher order needs more than its settling time
+  const Eigen::MatrixXd d = as_taken_in_record(study.controller.md_analysers, record.d);
   const auto simulated = [&](const TransferMatrix& model) -> Eigen::MatrixXd {
     return simulated_output(model, study.controller.sample_time, point.u, after_rest(record.u, before),
-                            after_rest(record.d, before))
+                            after_rest(d, before))
         .rightCols(record.samples());
   };
   const Eigen::MatrixXd y_sim = simulated(study.plant.G);
   AssessedLoop loop{.y = record.y,
                     .u = record.u,
                     .u_target = where_recorded(record.u_target, point.u.replicate(1, record.samples())),
-                    .d = record.d,
+                    .d = d,
                     .y_sim = where_recorded(record.y_sim, y_sim),
                     .y_set = Eigen::MatrixXd::Constant(record.y.rows(), record.samples(), kNaN),
                     .candidates = record.candidates};

@@ -11,6 +11,7 @@
 #include "analysis/methods/model_errors.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "analysis/statistics/washout.hpp"
+#include "plants/analyser.hpp"
 #include "plants/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/random/random_stream.hpp"
@@ -40,13 +41,14 @@ CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
   const Study& of_basis = context.study_of_benchmark();
   const SetpointTrajectories centres = variance_centres(of_basis, 0, y_basis.cols());
   const Eigen::MatrixXd quiet = Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols());
-  const Trajectory nominal = run_closed_loop(of_basis, plant_,
-                                             {.d = context.basis.trajectory.d,
-                                              .noise = quiet,
-                                              .y_d = quiet,
-                                              .y_set = setpoints(of_basis),
-                                              .dither = dither_},
-                                             factory_);
+  const Trajectory nominal =
+      run_closed_loop(of_basis, plant_,
+                      {.d = as_taken(of_basis.controller.md_analysers, context.basis.trajectory.d),
+                       .noise = quiet,
+                       .y_d = quiet,
+                       .y_set = setpoints(of_basis),
+                       .dither = dither_},
+                      factory_);
   if (nominal.status == ControlStatus::ok)
     noise_ = noise_variance(variances(y_basis, centres), variances(nominal.y, centres));
 }

@@ -113,9 +113,14 @@ std::vector<std::string> column_lags(const RecordFrame& frame, const PlantRecord
     return {};
   return {
       fmt::format("the column of {} seems to be {} sample{} too {}: the model explains the record better "
-                  "when it is shifted (errors {:.0f} % smaller); look at how the historian stamps it",
+                  "when it is shifted (errors {:.0f} % smaller); look at how the historian stamps it{}",
                   best.name, std::abs(best.shift), std::abs(best.shift) == 1 ? "" : "s",
-                  best.shift < 0 ? "late" : "early", 100.0 * (1.0 - std::exp(-0.5 * best.gain)))};
+                  best.shift < 0 ? "late" : "early", 100.0 * (1.0 - std::exp(-0.5 * best.gain)),
+                  !best.is_cv && best.place >= study.mv_count() && best.shift < 0
+                      ? fmt::format(", or whether the controller has it late as well (analyser_delay in "
+                                    "[controller.md.{}])",
+                                    best.name)
+                      : "")};
 }
 
 }  // namespace mpm

@@ -3,6 +3,8 @@
 #include <set>
 #include <utility>
 
+#include "plants/analyser.hpp"
+
 namespace mpm {
 namespace {
 
@@ -31,15 +33,9 @@ const NominalSensitivity& NominalEstimator::sensitivity_of(const ControlStructur
 }
 
 Eigen::MatrixXd NominalEstimator::simulated(const Trajectory& loop) const {
-  Eigen::MatrixXd y_sim =
-      simulated_output(study_.plant.G, study_.controller.sample_time, point_.u, loop.u, loop.d);
-  if (has_analysers(study_.controller.analysers)) {
-    AnalyserHold analysers(study_.controller.analysers);
-    analysers.reset(y_sim.col(0));
-    for (auto y : y_sim.colwise())
-      analysers.pass(y);
-  }
-  return y_sim;
+  const Eigen::MatrixXd y_sim = simulated_output(study_.plant.G, study_.controller.sample_time, point_.u,
+                                                 loop.u, as_taken(study_.controller.md_analysers, loop.d));
+  return as_shown(study_.controller.analysers, y_sim, y_sim.col(0));
 }
 
 NominalOutputs NominalEstimator::estimate(const Trajectory& loop) {

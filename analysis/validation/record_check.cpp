@@ -10,6 +10,7 @@
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "plants/analyser.hpp"
 #include "plants/error.hpp"
 #include "plants/non_finite.hpp"
 
@@ -215,7 +216,9 @@ void check_setpoints(const Study& study, const PlantRecord& record, std::vector<
 // --- Exchanged columns ---
 
 Eigen::MatrixXd simulated(const Study& study, const Eigen::MatrixXd& u, const Eigen::MatrixXd& d) {
-  const Eigen::MatrixXd moves = u.colwise() - u.col(0), disturbances = d.colwise() - d.col(0);
+  const Eigen::MatrixXd moves = u.colwise() - u.col(0);
+  const Eigen::MatrixXd disturbances =
+      as_taken_in_record(study.controller.md_analysers, d.colwise() - d.col(0));
   return simulated_output(study.assessed_model(), study.controller.sample_time,
                           Eigen::VectorXd::Zero(u.rows()), moves, disturbances);
 }

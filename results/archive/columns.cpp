@@ -3,6 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "plants/analyser.hpp"
+
 namespace mpm {
 namespace {
 
@@ -82,7 +84,9 @@ std::vector<Column<Trajectory>> loop_columns() {
 std::vector<SignalColumn> signal_columns(const Study& study) {
   const PlantModel& plant = study.plant;
   const std::string u_comment = "u(k) acts from sample k on";
-  const std::string d_comment = "d(k) acts from sample k on";
+  const std::string d_comment = has_analysers(study.controller.md_analysers)
+                                    ? "d(k) acts from sample k on; of an analyser what it shows at sample k"
+                                    : "d(k) acts from sample k on";
   std::vector<SignalColumn> columns{
       {{"y", "measured CVs, noise included", common_unit(plant.cvs), "", {}, "time"}, "cv", &Trajectory::y},
       {{"u", "MVs", common_unit(plant.mvs), u_comment, {}, "time"}, "mv", &Trajectory::u},

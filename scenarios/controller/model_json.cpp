@@ -45,9 +45,9 @@ Json model_json(const PlantModel& plant, double sample_time, Eigen::Index sample
   return {{"inputs", inputs}, {"transfer_functions", channels}, {"step_responses", steps}};
 }
 
-Json analyser_json(const MpcOptions& controller, int AnalyserTiming::*member) {
+Json analyser_json(const std::vector<AnalyserTiming>& timings, int AnalyserTiming::*member) {
   Json numbers = Json::array();
-  for (const AnalyserTiming& timing : controller.analysers)
+  for (const AnalyserTiming& timing : timings)
     numbers.push_back(timing.*member);
   return numbers;
 }
@@ -63,8 +63,10 @@ Json controller_json(const MpcOptions& controller) {
           {"slack_cost", vector_json(controller.slack_cost)},
           {"reference_time", vector_json(controller.reference_time)},
           {"bias_ramp", vector_json(controller.bias_ramp)},
-          {"analyser_period", analyser_json(controller, &AnalyserTiming::period)},
-          {"analyser_delay", analyser_json(controller, &AnalyserTiming::delay)},
+          {"analyser_period", analyser_json(controller.analysers, &AnalyserTiming::period)},
+          {"analyser_delay", analyser_json(controller.analysers, &AnalyserTiming::delay)},
+          {"md_analyser_period", analyser_json(controller.md_analysers, &AnalyserTiming::period)},
+          {"md_analyser_delay", analyser_json(controller.md_analysers, &AnalyserTiming::delay)},
           {"move_starts", controller.move_starts()},
           {"move_limit", vector_json(controller.move_limit)},
           {"resting_value", vector_json(controller.resting_value)},

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "plants/analyser.hpp"
 #include "plants/error.hpp"
 #include "scenarios/files/study_variant.hpp"
 #include "scenarios/loop/calibration.hpp"
@@ -203,7 +204,7 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
     simulation.erase(key);
   simulation.insert_or_assign("samples", record.samples());
   toml::array steps;
-  add_md_steps(study, record.d, steps);
+  add_md_steps(study, as_taken_in_record(study.controller.md_analysers, record.d), steps);
   add_setpoints(study, record.y_set, text, steps);
   toml::array limits = limit_steps(study, record);
   if (steps.empty() && limits.empty() && (study.md_count() > 0 || study.controller.has_setpoints()))

@@ -162,15 +162,26 @@ OptionKeys keys(CvOptions& cv) {
       key::check([&cv](const TomlTable& table) { read_setpoint_and_range(table, cv); })};
 }
 
-/// One table for each of the variables, none more.
+OptionKeys keys(AnalyserTiming& md) {
+  return {key::whole("analyser_period", md.period, 1, kMaxHorizon,
+                     "samples from one measurement to the next, between which it is held", "samples"),
+          key::whole("analyser_delay", md.delay, 0, kMaxHorizon,
+                     "samples from the measurement to when controller and historian have it", "samples")};
+}
+
+enum class Tables { of_all, of_some };
+
+/// One table for each of the variables, or for some of them, none more.
 template <class Variable>
 OptionKey variable_tables(const char* name, const std::vector<PlantModel::Variable>& variables,
                           std::function<void(const TomlTable&, Eigen::Index, const Variable&)> take,
-                          const char* meaning) {
-  const auto read = [&variables, take](const TomlTable& controller, const std::string& key) {
+                          const char* meaning, Tables which = Tables::of_all) {
+  const auto read = [&variables, take, which](const TomlTable& controller, const std::string& key) {
     const std::vector<std::string> names = variable_names(variables);
     const TomlTable tables = controller.table(key, names);
     for (std::size_t i = 0; i < names.size(); ++i) {
+      if (which == Tables::of_some && !tables.has(names[i]))
+        continue;
       Variable variable;
       const OptionKeys of_variable = keys(variable);
       const TomlTable table = tables.table(names[i], key_names(of_variable));
@@ -182,7 +193,8 @@ OptionKey variable_tables(const char* name, const std::vector<PlantModel::Variab
     Variable variable;
     return keys(variable);
   };
-  return key::option(name, "table of tables", meaning).required().read(read).with(".NAME", below);
+  OptionKey tables = key::option(name, "table of tables", meaning).read(read).with(".NAME", below);
+  return which == Tables::of_all ? std::move(tables).required() : std::move(tables).otherwise("none");
 }
 
 void resize(Study& study) {
@@ -196,6 +208,7 @@ void resize(Study& study) {
         &options.bias_ramp, &study.simulation.initial_setpoint})
     of_cv->setZero(cvs);
   options.analysers.assign(static_cast<std::size_t>(cvs), {});
+  options.md_analysers.assign(static_cast<std::size_t>(study.md_count()), {});
   options.move_limit.setConstant(mvs, kInfinity);
   options.mv_hard = Limits::none(mvs);
   options.cv_hard = Limits::none(cvs);
@@ -274,6 +287,9 @@ OptionKeys controller_keys(Study& study) {
     set_limits(options.cv_soft, i, cv.soft);
     set_limits(options.cv_hard, i, cv.hard);
   };
+  const auto take_md = [&options](const TomlTable&, Eigen::Index i, const AnalyserTiming& md) {
+    options.md_analysers[static_cast<std::size_t>(i)] = md;
+  };
   const auto read_control_horizon = [&options](const TomlTable& table, const std::string& key) {
     options.control_horizon = static_cast<int>(read_whole(table, key, 1, options.prediction_horizon));
   };
@@ -314,8 +330,13 @@ OptionKeys controller_keys(Study& study) {
                       "1"),
           variable_tables<MvOptions>("mv", study.plant.mvs, take_mv, "one table for each MV, by name"),
           variable_tables<CvOptions>("cv", study.plant.cvs, take_cv, "one table for each CV, by name"),
+          variable_tables<AnalyserTiming>("md", study.plant.mds, take_md,
+                                          "one table for each MD that is measured late, by name",
+                                          Tables::of_some),
           key::check([&study](const TomlTable& table) {
-            table.located("", [&] { return study.controller.validate(study.cv_count(), study.mv_count()); });
+            table.located("", [&] {
+              return study.controller.validate(study.cv_count(), study.mv_count(), study.md_count());
+            });
           }),
           program_key(study.controller_program)};
 }

@@ -47,7 +47,6 @@ Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
   trajectory.y.setZero(study.cv_count(), samples);
   trajectory.u.setZero(study.mv_count(), samples);
   trajectory.u_target.setZero(study.mv_count(), samples);
-  trajectory.d = signals.d_measured.size() > 0 ? signals.d_measured : signals.d;
   trajectory.y_set = signals.y_set;
   return trajectory;
 }
@@ -216,6 +215,8 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   controller.reset(input.head(study.mv_count()), d_rest);
 
   Trajectory trajectory = empty_trajectory(study, signals);
+  trajectory.d = as_shown(study.controller.md_analysers,
+                          signals.d_measured.size() > 0 ? signals.d_measured : signals.d, d_rest);
   Surroundings surroundings(study, signals);
   Eigen::VectorXd u = input.head(study.mv_count());
   Eigen::VectorXd u_before = u;

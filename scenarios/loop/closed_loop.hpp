@@ -47,7 +47,7 @@ std::string_view to_string(LoopFailure failure);
 /// | y        | y        | ny x N | measured CVs, noise included; as analysers show them |
 /// | u        | u        | nu x N | MVs, u(k) acts from sample k on              |
 /// | u_target | u_target | nu x N | targets of the optimizer                     |
-/// | d        | d        | nd x N | measured disturbances, d(k) acts from k on   |
+/// | d        | d        | nd x N | measured disturbances, d(k) acts from k on; as analysers show them |
 /// | y_set    | y_set    | ny x N | setpoints; empty when no CV has one          |
 ///
 /// They are what a historian of the loop has: of a valve that sticks and of a disturbance on an MV it sees
@@ -97,7 +97,7 @@ struct LoopSignals {
   /// Test signals that are added to the moves of the controller, nu x N; empty: none.
   Eigen::MatrixXd dither{};
   Eigen::MatrixXd u_d{};         ///< added to the MVs on their way to the plant, nu x N; empty: nothing
-  Eigen::MatrixXd d_measured{};  ///< MDs as controller and record have them, nd x N; empty: d
+  Eigen::MatrixXd d_measured{};  ///< MDs as they are measured, nd x N; empty: d
   LoopFaults faults{};
 };
 

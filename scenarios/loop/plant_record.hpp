@@ -9,7 +9,8 @@
 namespace mpm {
 
 /// The records of a plant on the samples of the controller of a study, in the study's units and as deviations
-/// from the operating point: what a file of records says under the [data] of the study.
+/// from the operating point: what a file of records says under the [data] of the study, CVs and MDs of
+/// analysers as these have shown them.
 ///
 /// | symbol   | member       | shape  | meaning                                                         |
 /// |----------|--------------|--------|-----------------------------------------------------------------|

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -62,6 +63,32 @@ TEST_CASE("analyser: gaps of a record do not hide when analyses come", "[analyse
   Eigen::RowVectorXd shown = shown_of({5, 2, 1}, signal, 0.5).row(0);
   shown.segment(20, 13).setConstant(kNaN);
   CHECK(with_first_of({5, 2, 0}, shown).first == 1);
+}
+
+TEST_CASE("analyser: what is known in the end stands where it was measured", "[analyser]") {
+  Eigen::MatrixXd signals(3, 40);
+  signals.row(0).setLinSpaced(0.0, 5.0);
+  signals.row(1) = signals.row(0).array().sin();
+  signals.row(2) = signals.row(0).array().cos();
+  const std::vector<AnalyserTiming> timings{{}, {1, 3, 0}, {5, 2, 4}};
+  const Eigen::Vector3d rest(7.0, 8.0, 9.0);
+  const Eigen::MatrixXd shown = as_shown(timings, signals, rest);
+  CHECK(shown.row(0) == signals.row(0));
+  CHECK((shown.row(1).head(3).array() == 8.0).all());
+  CHECK(shown.row(1).tail(37) == signals.row(1).head(37));
+  CHECK((shown.row(2).head(6).array() == 9.0).all());
+  CHECK(shown(2, 10) == signals(2, 4));
+  CHECK(shown(2, 11) == signals(2, 9));
+
+  const Eigen::MatrixXd known = as_taken(timings, shown);
+  CHECK(known.row(0) == signals.row(0));
+  CHECK(known.row(1).head(37) == signals.row(1).head(37));
+  CHECK((known.row(1).tail(3).array() == signals(1, 36)).all());
+  CHECK((known.row(2).head(4).array() == 9.0).all());
+  for (Eigen::Index k = 4; k < 40; ++k)  // the analysis of sample 39 would be shown at 41
+    CHECK(known(2, k) == signals(2, std::min<Eigen::Index>((k - 4) / 5 * 5 + 4, 34)));
+  CHECK(as_shown(timings, known, rest) == shown);
+  CHECK(as_taken_in_record({{}, {1, 3, 0}, {5, 2, 0}}, shown) == known);
 }
 
 TEST_CASE("analyser: a second start shows what was measured then", "[analyser]") {

@@ -16,7 +16,7 @@ std::string refusal(Spoil spoil) {
   MpcOptions options = samples::p1_options();
   spoil(options);
   try {
-    options.validate(7, 3);
+    options.validate(7, 3, 2);
   } catch (const InputError& error) {
     return error.what();
   }

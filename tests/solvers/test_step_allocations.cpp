@@ -27,6 +27,8 @@ TEST_CASE("a step of the closed loop of P1 allocates nothing, whatever disturbs 
     options.slack_weight.setZero();
     options.cv_soft = Limits::none(7);
   }
+  if (GENERATE(false, true))
+    options.md_analysers = {{1, 4}, {3, 2}};
   const PlantModel p1 = benchmark_plant("shell-7x3");
   const auto mv_count = static_cast<Eigen::Index>(p1.mvs.size());
   Mpc controller(p1.G, mv_count, options, qp_solver_factory(back_end));

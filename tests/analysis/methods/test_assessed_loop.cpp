@@ -12,6 +12,7 @@
 #include "plants/non_finite.hpp"
 #include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/plant_record.hpp"
+#include "scenarios/loop/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // What a method of assessment gets to see of a loop, and when it is asked at all.
@@ -332,6 +333,23 @@ TEST_CASE("analyses stand where the stream was sampled, in a loop and in the rec
     if ((k + 5) % 4 == 0)
       CHECK(recorded.y(1, k) == loop.y(1, k + 5));
   }
+}
+
+TEST_CASE("an MD that is measured late stands where it acted, in a loop and in the record of it",
+          "[analyser]") {
+  Study study = find_study("wood-berry");
+  study.simulation.noise_standard_deviation.setZero();
+  study.controller.md_analysers = {{1, 6}};  // later than the feed reaches the bottom product
+  const OperatingPoint point = operating_point(study, testing::kFactory);
+  const Trajectory trajectory = simulate_experiment(study, {}, testing::kFactory);
+  const AssessedLoop loop = assessed_loop(study, point, trajectory);
+  const Eigen::Index known = loop.samples() - 6;
+  CHECK(loop.d.leftCols(known) == measured_disturbances(study).leftCols(known));
+  CHECK(trajectory.d.rightCols(known) == loop.d.leftCols(known));
+  CHECK((loop.y - loop.y_sim).leftCols(known).cwiseAbs().maxCoeff() < 1e-9);  // the model is exact
+  const AssessedLoop recorded = assessed_loop(study, point, record_of(trajectory, 0), 0);
+  CHECK(recorded.d == loop.d);
+  CHECK((recorded.y_sim - loop.y_sim).cwiseAbs().maxCoeff() < 1e-12);
 }
 
 TEST_CASE("a method that needs every sample gets analyses held, others what is there", "[analyser]") {

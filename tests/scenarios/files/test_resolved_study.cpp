@@ -260,6 +260,7 @@ std::string tuned_study_text() {
                   "[controller.mv.hot]\nresting_value = 0.5\nresting_weight = 2");
   text = replaced(text, "hard = [-4, 5]", "hard = [-4, 5]\nmove_limit = 0.5");
   text = replaced(text, "slack_weight = 8\nsoft = [0, 1]", "setpoint_weight = 1\nreference_time = 4");
+  text += "\n[controller.md.drain]\nanalyser_period = 3\nanalyser_delay = 2\n";
   return replaced(text, "slack_weight = 9",
                   "slack_weight = 9\nslack_cost = 6\nanalyser_period = 5\nanalyser_delay = 3");
 }

@@ -62,8 +62,7 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
       {"sample_time = 1", "sampletime = 1", "sampletime",
        "controller: found unknown key 'sampletime' (nearest: 'sample_time'); allowed: sample_time, "
        "prediction_horizon, control_horizon, move_blocks, weight_convention, slack, target_violation_cost, "
-       "mv, cv, "
-       "program"},
+       "mv, cv, md, program"},
       {"cost = 6", "cost = 6\nzzz = 1", "zzz",
        "controller.mv.cold: found unknown key 'zzz'; allowed: cost, move_suppression, target_weight, "
        "resting_value, resting_weight, hard, move_limit"},
@@ -104,6 +103,10 @@ TEST_CASE("missing tables and keys are refused at the line of their table", "[st
        "plant.time_unit: found nothing; allowed: a text that is not empty"},
       {"unit = \"K\"\n", "", "[[plant.cv]]\nname = \"heat\"",
        "plant.cv[1].unit: found nothing; allowed: a text that is not empty"},
+      {"[simulation]\n", "[controller.md.rain]\nanalyser_delay = 3\n[simulation]\n", "[controller.md.rain]",
+       "controller.md: found unknown key 'rain' (nearest: 'drain'); allowed: drain"},
+      {"[simulation]\n", "[controller.md.drain]\nanalyser_delay = -1\n[simulation]\n", "analyser_delay",
+       "controller.md.drain.analyser_delay: found -1; allowed: a whole number from 0 to 2000"},
       {"sample_time = 1\n", "", "[controller]",
        "controller.sample_time: found nothing; allowed: a number > 0"},
       {"[controller.cv.heat]\nslack_weight = 9\nsoft = [-inf, 0.5]\nhard = [-inf, 3]\n", "",

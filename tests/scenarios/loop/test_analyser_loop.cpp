@@ -70,4 +70,42 @@ TEST_CASE("analyser: a constant disturbance on its CV is rejected", "[analyser]"
   CHECK(loop.y(kBottom, 399) == Approx(study.controller.cv_soft.upper(kBottom)).margin(2e-3));
 }
 
+TEST_CASE("an MD that is told as late as its dead times allow is one that acts that much earlier",
+          "[analyser]") {
+  // The dead times of the feed are 8.1 and 3.4 min: told 3 samples late it is one of 5.1 and 0.4 min.
+  Study late = analysed_column({});
+  late.controller.md_analysers = {{1, 3}};
+  Study sooner = analysed_column({});
+  for (Eigen::Index cv : {kTop, kBottom}) {
+    TransferFunction& channel = sooner.plant.G(cv, 2);
+    channel = TransferFunction(channel.numerator(), channel.denominator(), channel.dead_time() - 3.0);
+  }
+  const LoopSignals feed_step = moved_by(0.3, 0.0, 0);
+  LoopSignals three_later = feed_step;
+  three_later.d.setZero();
+  three_later.d.rightCols(kLoopSamples - 8).setConstant(0.3);
+  const Trajectory told_late = loop_of(late, feed_step), at_once = loop_of(sooner, three_later);
+  CHECK((told_late.u.col(7) - told_late.u.col(0)).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK((told_late.u.col(8) - told_late.u.col(7)).cwiseAbs().maxCoeff() > 1e-3);
+  CHECK((told_late.u - at_once.u).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK((told_late.y - at_once.y).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK(told_late.d == three_later.d);  // the record has it when the controller has
+}
+
+TEST_CASE("an MD that is told later than it acts is no output bias once it is told", "[analyser]") {
+  // The feed steps at sample 5 and moves the bottom product from sample 9 on: told 9 samples late, at 14.
+  Study late = analysed_column({});
+  late.controller.md_analysers = {{1, 9}};
+  const Study at_once = analysed_column({});
+  const LoopSignals feed_step = moved_by(0.3, 0.0, 0);
+  const Trajectory told_late = loop_of(late, feed_step), told_at_once = loop_of(at_once, feed_step);
+  const auto difference = [&](Eigen::Index k) {
+    return (told_late.u_target - told_at_once.u_target).col(k).cwiseAbs().maxCoeff();
+  };
+  CHECK(difference(4) < 1e-9);
+  CHECK(difference(13) > 1e-3);
+  CHECK(difference(14) < 1e-9);  // the model explains all of y in both loops
+  CHECK((told_late.y - told_at_once.y).col(20).cwiseAbs().maxCoeff() > 1e-3);
+}
+
 }  // namespace mpm

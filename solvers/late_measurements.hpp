@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plants/analyser.hpp"
+#include "plants/linear/linear_plant.hpp"
+
+namespace mpm {
+
+/// The model of a controller that learns of some MDs late. A value d(k) that is new was measured `delay`
+/// samples before: it was that from sample k - delay on, and the model has had another one since then. The
+/// model is run again over these samples, so that y_sim(k) is the one of all that is known at sample k, and
+/// the outputs that the disturbance has moved already are no output bias.
+class LateMeasurements {
+ public:
+  /// One timing an MD; `model` has the MDs after the MVs.
+  LateMeasurements(const LinearPlant& model, Eigen::Index mv_count,
+                   const std::vector<AnalyserTiming>& timings);
+
+  /// Sample 0, at which `model` rests at `input` (nu + nd).
+  void reset(const LinearPlant& model, const Eigen::Ref<const Eigen::VectorXd>& input);
+  /// The model is advanced with `input` to the next sample.
+  void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
+  /// Puts `model` at the state of this sample where the MDs `d` (nd) that are told now say something new of
+  /// those before. Allocates nothing.
+  void correct(const Eigen::Ref<const Eigen::VectorXd>& d, LinearPlant& model);
+
+ private:
+  Eigen::Index first_known() const { return std::max<Eigen::Index>(0, sample_ - past_.cols()); }
+  auto past(Eigen::Index k) { return past_.col(k % past_.cols()); }
+
+  Eigen::VectorX<Eigen::Index> delay_;  ///< of each MD
+  LinearPlant settled_;                 ///< at the first sample whose input may still change
+  Eigen::MatrixXd past_;                ///< inputs from there on, a ring of the longest delay
+  Eigen::VectorXd told_;                ///< the MDs at the last sample
+  Eigen::Index sample_ = 0;
+};
+
+}  // namespace mpm
