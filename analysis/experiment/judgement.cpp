@@ -63,7 +63,7 @@ void judge_mismatch(const Mismatch& truth, const AssessmentRecord& assessment, J
   judgement.parameter = correctness(right);
   if (!right || std::isnan(named->size))
     return;
-  judgement.size = correctness(named->lower <= truth.value && truth.value <= named->upper);
+  judgement.size = correctness(named->holds(truth.value));
   judgement.size_error =
       std::abs(named->size - truth.value) / std::abs(truth.value - without_mismatch(truth.parameter));
 }

@@ -42,6 +42,11 @@ SizeBound bound_within(double estimate, double first, double last, double share)
                                     : SizeBound::none;
 }
 
+bool NamedMismatch::holds(double value) const {
+  return (lower <= value || (bound == SizeBound::at_most && value <= upper)) &&
+         (value <= upper || (bound == SizeBound::at_least && lower <= value));
+}
+
 std::optional<Eigen::Index> Assessment::worst_cv() const {
   std::optional<Eigen::Index> worst;
   for (std::size_t i = 0; i < cvs.size(); ++i) {

@@ -60,6 +60,9 @@ struct NamedMismatch {
   double size = kNaN;                 ///< as Mismatch::value; NaN: the method gives no size
   double lower = kNaN, upper = kNaN;  ///< its interval, of the confidence aggregate.confidence; NaN: none
   SizeBound bound = SizeBound::none;  ///< the size lies at an end of the range that was searched
+
+  /// Does the interval hold `value`? At an end at which the size is only a bound it is open.
+  bool holds(double value) const;
 };
 
 /// One number of a method, by a name of MethodDescription::numbers. Of the whole loop (cv and column -1), of

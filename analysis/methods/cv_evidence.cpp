@@ -114,14 +114,15 @@ class RecordLikelihood {
     CvEvidence evidence{};
     evidence.mismatch_alone = on_grids(base, &evidence.healthy);
     const double fitted_alone = evidence.healthy;
-    const double of_others = gain_of_other_noises(e_, directions_);
+    const double of_others = gain_of_other_noises(e_, directions_, [](const auto&, const auto&) {});
     evidence.healthy += of_others;
     // All of them, however far behind the best: between two sizes of a grid a likelihood may lose more than
     // any margin when e is large against the noise.
+    std::vector<bool> is_narrow(responses_.size(), false);
     for (std::size_t i = 0; i < responses_.size(); ++i)
       if (evidence.mismatch_alone[i].best_log_likelihood > fitted_alone + kFaint)
-        look_again(i, false, evidence.mismatch_alone[i]);
-    count_other_noises(of_others, evidence.mismatch_alone);
+        is_narrow[i] = look_again(i, false, evidence.mismatch_alone[i]);
+    count_other_noises(of_others, is_narrow, evidence.mismatch_alone);
     const WeighedModels disturbances = scan(e_, directions_);
     evidence.ud = disturbances.log_evidence();
     const Eigen::Index strongest = disturbances.best();
@@ -175,41 +176,44 @@ class RecordLikelihood {
     return scan_disturbances(prior_.disturbances, base_, rest_, likelihood_, stacked(e, directions));
   }
 
-  /// log of the mean likelihood of e over the noises that the benchmark leaves possible, less that of the
-  /// fitted one.
-  double gain_of_other_noises(const Eigen::Ref<const Eigen::MatrixXd>& e,
-                              const Eigen::Ref<const Eigen::MatrixXd>& directions) const {
-    const std::vector<PossibleNoises>& possible = model_.noises().possible;
-    if (possible.empty())
+  /// The likelihood of the first of the series under each model.
+  Eigen::ArrayXd log_likelihoods(const WhitenedProducts& sums) const {
+    const Eigen::ArrayXd& squares = sums.of(0, 0);
+    Eigen::ArrayXd all(squares.size());
+    for (Eigen::Index i = 0; i < all.size(); ++i)
+      all(i) = likelihood_(sums.log_determinant(i), squares(i));
+    return all;
+  }
+
+  /// Products of the series; the directions are integrated out.
+  static WhitenedProducts products(const NoiseModels& models, const Eigen::Ref<const Eigen::MatrixXd>& series,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& directions) {
+    return marginalised(whitened_products(models, stacked(series, directions)), series.rows(),
+                        directions.rows());
+  }
+
+  /// log of the mean likelihood of the first of the series over the noises that the benchmark leaves
+  /// possible, less that of the fitted one. `under` is told each set of noises and the products under them.
+  template <class Under>
+  double gain_of_other_noises(const Eigen::Ref<const Eigen::MatrixXd>& series,
+                              const Eigen::Ref<const Eigen::MatrixXd>& directions, Under under) const {
+    if (model_.noises().possible.empty())
       return 0.0;
-    const Eigen::MatrixXd series = stacked(e, directions);
-    // Of many noises most are hopeless, which e alone shows.
-    const auto hopeful = [&](const PossibleNoises& noises) {
-      const WhitenedProducts sums = whitened_products({noises.a, noises.b, noises.phi, rest_}, e);
-      Eigen::ArrayXd all = noises.log_weight;
-      for (Eigen::Index i = 0; i < all.size(); ++i)
-        all(i) += likelihood_(sums.log_determinant(i), sums.of(0, 0)(i));
-      std::vector<Eigen::Index> kept;
-      for (Eigen::Index i = 0; i < all.size(); ++i)
-        if (all(i) > all.maxCoeff() - kLost)
-          kept.push_back(i);
-      return PossibleNoises{noises.phi, noises.a(kept), noises.b(kept), noises.log_weight(kept)};
-    };
-    const auto log_likelihoods = [&](const NoiseModels& models) {
-      const WhitenedProducts sums = marginalised(whitened_products(models, series), 1, directions.rows());
-      Eigen::ArrayXd all(models.count());
-      for (Eigen::Index i = 0; i < all.size(); ++i)
-        all(i) = likelihood_(sums.log_determinant(i), sums.of(0, 0)(i));
-      return all;
-    };
     double mean = -kInfinity;
-    for (const PossibleNoises& all : possible) {
-      const PossibleNoises noises = hopeful(all);
-      for (const double each :
-           (noises.log_weight + log_likelihoods({noises.a, noises.b, noises.phi, rest_})).eval())
+    for (const PossibleNoises& possible : model_.noises().possible) {
+      const NoiseModels models{possible.a, possible.b, possible.phi, rest_};
+      // Of many noises most are hopeless, which the first of the series alone shows.
+      const WeighedModels noises =
+          WeighedModels{models, possible.log_weight,
+                        log_likelihoods(whitened_products(models, series.topRows(1)))}
+              .within(kLost);
+      const WhitenedProducts sums = products(noises.models, series, directions);
+      under(noises, sums);
+      for (const double each : (noises.log_prior + log_likelihoods(sums)).eval())
         mean = log_sum(mean, each);
     }
-    return mean - log_likelihoods(base_models(base_, rest_).models)(0);
+    return mean -
+           log_likelihoods(products(base_models(base_, rest_).models, series.topRows(1), directions))(0);
   }
 
   /// The whitened series without the directions: of each the part that they cannot explain, in N + q numbers,
@@ -270,29 +274,18 @@ class RecordLikelihood {
 
   /// The evidence of one mismatch around its best size, with the exact m and its slope there: under the base
   /// noise, or under the disturbances that are in what m leaves. Replaces `evidence` when the posterior is
-  /// narrow enough for a slope.
-  void look_again(std::size_t i, bool disturbed, MismatchEvidence& evidence) const {
+  /// narrow enough for a slope, and says so.
+  bool look_again(std::size_t i, bool disturbed, MismatchEvidence& evidence) const {
     const MismatchResponses& response = responses_[i];
     const auto [low, high] = support(response.prior().size);
-    Eigen::MatrixXd pair(2, e_.size());
     double size = evidence.best_size;
     MismatchEvidence closer = nothing_yet();
     for (int step = 0; step < kMostSteps; ++step) {
-      pair.row(0) = e_ - this->response(i, size);
-      pair.row(1) = response.slope(size, input(i), initial(i)) / base_.deviation;
-      const Eigen::MatrixXd directions = directions_with(i, size);
+      const Eigen::MatrixXd pair = error_and_slope(i, size), directions = directions_with(i, size);
       const WeighedModels models =
           disturbed ? scan(pair.row(0), directions).main_ones() : base_models(base_, rest_);
-      const WhitenedProducts sums =
-          marginalised(whitened_products(models.models, stacked(pair, directions)), 2, directions.rows());
       closer = nothing_yet();
-      for (Eigen::Index node = 0; node < models.models.count(); ++node) {
-        const Parabola parabola{sums.of(0, 0)(node), sums.of(1, 0)(node), sums.of(1, 1)(node)};
-        CellEvidence cell = cell_evidence(parabola, {size, 1.0, low - size, high - size},
-                                          response.prior().size, sums.log_determinant(node), likelihood_);
-        cell.size.log_mass += models.log_prior(node);
-        add(closer, cell);
-      }
+      add_sizes(i, size, models, products(models.models, pair, directions), closer);
       double mean = 0.0, deviation = 0.0, total = 0.0;
       for (const TruncatedNormal& part : closer.sizes) {
         const double weight = std::exp(part.log_mass - closer.log_evidence);
@@ -303,11 +296,11 @@ class RecordLikelihood {
         total += weight;
       }
       if (!(total > 0.0))
-        return;
+        return false;
       mean /= total;
       deviation /= total;
       if (!response.is_linear() && deviation > kNarrow * (high - low))
-        return;
+        return false;
       const bool still = std::abs(mean - size) < kStill * deviation;
       size = mean;
       if (still)
@@ -315,20 +308,55 @@ class RecordLikelihood {
     }
     closer.best_size = size;
     evidence = weighed(std::move(closer), std::log(response.prior().weight));
+    return true;
+  }
+
+  /// What a mismatch of this size leaves, and its slope there.
+  Eigen::MatrixXd error_and_slope(std::size_t i, double size) const {
+    Eigen::MatrixXd pair(2, e_.size());
+    pair.row(0) = e_ - response(i, size);
+    pair.row(1) = responses_[i].slope(size, input(i), initial(i)) / base_.deviation;
+    return pair;
+  }
+
+  /// Sizes around one under each of the models, from the products of error_and_slope().
+  void add_sizes(std::size_t i, double size, const WeighedModels& models, const WhitenedProducts& sums,
+                 MismatchEvidence& evidence) const {
+    const Distribution& prior = responses_[i].prior().size;
+    const auto [low, high] = support(prior);
+    for (Eigen::Index node = 0; node < models.models.count(); ++node) {
+      const Parabola parabola{sums.of(0, 0)(node), sums.of(1, 0)(node), sums.of(1, 1)(node)};
+      CellEvidence cell = cell_evidence(parabola, {size, 1.0, low - size, high - size}, prior,
+                                        sums.log_determinant(node), likelihood_);
+      cell.size.log_mass += models.log_prior(node);
+      add(evidence, cell);
+    }
   }
 
   /// The best mismatches under all noises that are possible, the others with what these bring without a
-  /// fault.
-  void count_other_noises(double without, std::vector<MismatchEvidence>& mismatches) const {
+  /// fault. The sizes of one that is narrow are those under all of these noises.
+  void count_other_noises(double without, const std::vector<bool>& is_narrow,
+                          std::vector<MismatchEvidence>& mismatches) const {
     double best = -kInfinity;
     for (const MismatchEvidence& each : mismatches)
       best = std::max(best, each.best_log_likelihood);
     for (std::size_t i = 0; i < mismatches.size(); ++i) {
       const double size = mismatches[i].best_size;
-      const double gain = mismatches[i].best_log_likelihood > best - kWorthALook
-                              ? gain_of_other_noises(e_ - response(i, size), directions_with(i, size))
-                              : without;
+      if (!(mismatches[i].best_log_likelihood > best - kWorthALook)) {
+        mismatches[i] = weighed(std::move(mismatches[i]), without);
+        continue;
+      }
+      MismatchEvidence under_all = nothing_yet();
+      const double gain =
+          gain_of_other_noises(error_and_slope(i, size), directions_with(i, size),
+                               [&](const WeighedModels& noises, const WhitenedProducts& sums) {
+                                 add_sizes(i, size, noises, sums, under_all);
+                               });
       mismatches[i] = weighed(std::move(mismatches[i]), gain);
+      if (is_narrow[i] && !under_all.sizes.empty()) {
+        const double to_same_mass = mismatches[i].log_evidence - under_all.log_evidence;
+        mismatches[i].sizes = weighed(std::move(under_all), to_same_mass).sizes;
+      }
     }
   }
 
