@@ -146,6 +146,38 @@ TEST_CASE(
   CHECK(total == Approx(1.0).margin(0.2));  // without those that hardly have a share
 }
 
+TEST_CASE("a plant that answers sooner than a model without dead time is explained as well as that can") {
+  constexpr double kGain = 2.0, kSamplesOfLag = 30.0, kLittleNoise = 0.005;
+  constexpr Eigen::Index kSamples = 400;
+  Study study = find_study("setpoint-methods");
+  const double Ts = study.controller.sample_time;
+  study.plant.G(0, 0) = TransferFunction::first_order(kGain, kSamplesOfLag * Ts);
+  for (Eigen::Index input = 1; input < study.plant.G.cols(); ++input)
+    study.plant.G(0, input) = TransferFunction::zero();
+  const Eigen::MatrixXd sooner = input_moves(study.plant.G.cols(), kSamples + 1, 5);
+  const Eigen::MatrixXd u = sooner.leftCols(kSamples);
+  const Eigen::RowVectorXd e =
+      (simulate(study.plant.G, Ts, sooner).rightCols(kSamples) - simulate(study.plant.G, Ts, u)).row(0) +
+      kLittleNoise * testing::white_noise(kSamples, 5).transpose();
+  const ModelErrors model(study, 0, relative_errors(study, 0, kShare, 0.0), e, u,
+                          Eigen::VectorXd::Zero(u.rows()), 1e-6, BaseNoise{kLittleNoise});
+  // -2 log of the probability of e and of these errors.
+  const auto distance = [&](double gain, double time_constant) {
+    const TransferMatrix plant = with_mismatches(
+        study.plant.G,
+        {{0, 0, MismatchParameter::gain, gain}, {0, 0, MismatchParameter::time_constant, time_constant}});
+    return (e - error_of(study, plant, u)).squaredNorm() / (kLittleNoise * kLittleNoise) +
+           (Eigen::Array2d(gain, time_constant) - 1.0).square().sum() / (kShare * kShare);
+  };
+  double least = kInfinity;
+  for (double gain = 0.7; gain < 1.3; gain += 0.01)
+    for (double time_constant = 0.7; time_constant < 1.3; time_constant += 0.01)
+      least = std::min(least, distance(gain, time_constant));
+  const TransferFunction& found = model.model()(0, 0);
+  CHECK(found.dead_time() < 1e-6 * Ts);
+  CHECK(distance(found.static_gain() / kGain, found.residence_time() / (kSamplesOfLag * Ts)) < least + 2.0);
+}
+
 TEST_CASE("gains that change along a record are learnt as errors that wander, constant ones are not") {
   const Study study = find_study("setpoint-methods");
   const TransferMatrix plant = imperfect_plant(study, 3);
