@@ -127,13 +127,14 @@ std::string words_on_guesses(const DataSketch& data, const StudySketch& sketch, 
       "\n# From {} as well: the noise in [simulation], and how far setpoints move{}.\n", data.file,
       !words.sample_time && sketch.sample_time ? ", and the sample time in [controller], one row of the file"
                                                : "");
-  for (const auto& [cv, period] : data.periods)
+  for (const auto& [variable, period] : data.periods) {
+    const bool is_cv = data.noise.contains(variable);
     text += fmt::format(
-        "# To do: {0} has a new value every {1} rows, as the CV of an analyser: if it is one, write "
-        "analyser_period, {1} "
-        "rows in samples, and analyser_delay into [controller.cv.{0}]. Its noise is that of the new "
-        "values.\n",
-        cv, period);
+        "# To do: {0} has a new value every {1} rows, as the {2} of an analyser: if it is one, write "
+        "analyser_period, {1} rows in samples, and analyser_delay into [controller.{3}.{0}].{4}\n",
+        variable, period, is_cv ? "CV" : "MD", is_cv ? "cv" : "md",
+        is_cv ? " Its noise is that of the new values." : "");
+  }
   for (const auto& [mv, rests] : data.rests)
     text += fmt::format("# To do: what {} costs, if it costs anything: {}.\n", mv, rests);
   return text + "\n";

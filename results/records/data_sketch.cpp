@@ -351,11 +351,10 @@ class DataSketcher {
       if (look.values.empty())
         continue;
       sketch_.spread[variable] = look.deviation;
-      if (is(plant_.cvs)) {
+      if (is(plant_.cvs))
         sketch_.noise[variable] = look.noise();
-        if (const std::optional<std::size_t> period = look.period())
-          sketch_.periods[variable] = *period;
-      }
+      if (const std::optional<std::size_t> period = look.period(); period && !is(plant_.mvs))
+        sketch_.periods[variable] = *period;
       if (is(plant_.mvs))
         sketch_.rests[variable] = look.rests();
     }

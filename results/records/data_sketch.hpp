@@ -17,7 +17,7 @@ struct DataSketch {
   std::map<std::string, double> noise;         ///< of each CV that has a column: standard deviation
   std::map<std::string, double> spread;        ///< of each variable that has a column: standard deviation
   std::map<std::string, std::string> rests;    ///< where each MV spends its time, in words
-  std::map<std::string, std::size_t> periods;  ///< of each CV that is held in between: rows
+  std::map<std::string, std::size_t> periods;  ///< of each CV and MD that is held in between: rows
 };
 
 /// Looks at a file for a plant: the column of each variable (its name, one that has it in its name, or the

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -202,18 +203,20 @@ TEST_CASE("a file gives first guesses of [data], which are called so", "[records
   plant.time_unit = "min";
   plant.cvs = {{"level", "1", ""}};
   plant.mvs = {{"flow", "1", ""}};
-  std::string text = "Time,LI1_level.PV,LI1_level.SP,FI flow,other\n";
+  plant.mds = {{"feed", "1", ""}};
+  std::string text = "Time,LI1_level.PV,LI1_level.SP,FI flow,AI feed,other\n";
   for (int k = 0; k < 50; ++k)
     text += "2024-03-01 12:" + std::to_string(10 + k) + "," + std::to_string(80 + k % 2) + ",80," +
-            std::to_string(k < 10 ? k : 9) + "," + std::to_string(k) + "\n";
+            std::to_string(k < 10 ? k : 9) + "," + std::to_string(k / 3) + "," + std::to_string(k) + "\n";
   const DataSketch sketch = data_sketch(plant, parse_csv(text, "f"));
   CHECK(sketch.step == Approx(1.0));
   CHECK(sketch.noise.at("level") == Approx(1.4826 * 2.0 / std::sqrt(6.0)));
   for (const char* part :
-       {"tags = {level = \"LI1_level.PV\", flow = \"FI flow\"}", "# Guess",
-        "operating_point = {level = 80.5, flow = 8.1}", "setpoint = {level = \"LI1_level.SP\"}",
+       {"tags = {level = \"LI1_level.PV\", flow = \"FI flow\", feed = \"AI feed\"}", "# Guess",
+        "operating_point = {level = 80.5, flow = 8.1, feed = 7.84}", "setpoint = {level = \"LI1_level.SP\"}",
         "period = [\"2024-03-01 12:10:00\", \"2024-03-01 12:59:00\"]", "#   other: 0 to 49"})
     CHECK_THAT(sketch.table, Catch::Contains(part));
+  CHECK(sketch.periods == std::map<std::string, std::size_t>{{"feed", 3}});
   CHECK_THAT(sketch.rests.at("flow"), Catch::Contains("upper tenth") && Catch::Contains("negative"));
 }
 
