@@ -11,6 +11,7 @@ LateMeasurements::LateMeasurements(const LinearPlant& model, Eigen::Index mv_cou
                  [](const AnalyserTiming& timing) { return timing.delay; });
   past_.setZero(mv_count + delay_.size(), std::max<Eigen::Index>(1, delay_.maxCoeff()));
   told_.setZero(delay_.size());
+  output_before_ = model.output();
 }
 
 void LateMeasurements::reset(const LinearPlant& model, const Eigen::Ref<const Eigen::VectorXd>& input) {
@@ -26,7 +27,7 @@ void LateMeasurements::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
   ++sample_;
 }
 
-void LateMeasurements::correct(const Eigen::Ref<const Eigen::VectorXd>& d, LinearPlant& model) {
+bool LateMeasurements::correct(const Eigen::Ref<const Eigen::VectorXd>& d, LinearPlant& model) {
   bool is_new = false;
   const Eigen::Index mv_count = past_.rows() - d.size();
   for (Eigen::Index md = 0; md < d.size(); ++md) {
@@ -39,10 +40,13 @@ void LateMeasurements::correct(const Eigen::Ref<const Eigen::VectorXd>& d, Linea
   }
   told_ = d;
   if (!is_new)
-    return;
+    return false;
   model = settled_;
-  for (Eigen::Index k = first_known(); k < sample_; ++k)
+  for (Eigen::Index k = first_known(); k < sample_; ++k) {
+    output_before_ = model.output();
     model.advance(past(k));
+  }
+  return true;
 }
 
 }  // namespace mpm

@@ -25,8 +25,10 @@ class LateMeasurements {
   /// The model is advanced with `input` to the next sample.
   void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
   /// Puts `model` at the state of this sample where the MDs `d` (nd) that are told now say something new of
-  /// those before. Allocates nothing.
-  void correct(const Eigen::Ref<const Eigen::VectorXd>& d, LinearPlant& model);
+  /// those before, and says whether they do. Allocates nothing.
+  bool correct(const Eigen::Ref<const Eigen::VectorXd>& d, LinearPlant& model);
+  /// The output of the corrected model at the sample before, ny.
+  const Eigen::VectorXd& output_before() const { return output_before_; }
 
  private:
   Eigen::Index first_known() const { return std::max<Eigen::Index>(0, sample_ - past_.cols()); }
@@ -36,6 +38,7 @@ class LateMeasurements {
   LinearPlant settled_;                 ///< at the first sample whose input may still change
   Eigen::MatrixXd past_;                ///< inputs from there on, a ring of the longest delay
   Eigen::VectorXd told_;                ///< the MDs at the last sample
+  Eigen::VectorXd output_before_;
   Eigen::Index sample_ = 0;
 };
 

@@ -200,8 +200,10 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
     model_.advance(input_);
   if (is_pending_ && late_)
     late_->advance(input_);
-  if (late_)
-    late_->correct(d, model_);
+  // What is known now of the sample before changes its bias: it is no ramp.
+  if (late_ && late_->correct(d, model_))
+    for (const Eigen::Index cv : integrating_)
+      bias_(cv) += y_model_(cv) - late_->output_before()(cv);
   measured_ = y;
   feed_back(y);
   input_ << move_.u, d;

@@ -127,4 +127,28 @@ TEST_CASE("a constant error of a level is no ramp", "[mpc]") {
   CHECK(std::abs(controller.step(y, none).u(0)) < 1e-9);
 }
 
+TEST_CASE("a flow that is measured late is no ramp of the bias once it is told", "[mpc][late_measurements]") {
+  constexpr double share = 0.5, flow = 0.2, g = kRate * kSample;
+  MpcOptions options = tank_options();
+  options.bias_ramp = Eigen::Vector2d(share, 0);
+  options.md_analysers = {{1, 4}};
+  Mpc controller(tank(), 2, options, qp_solver_factory("auto"));
+  LinearPlant plant(tank(), kSample);
+  Eigen::VectorXd input = Eigen::VectorXd::Zero(3);
+  input.head(2) = controller.nominal_target(input.tail(1));
+  controller.reset(input.head(2), input.tail(1));
+  plant.reset(input);
+  input(2) = flow;
+  double ramp = 0.0;
+  for (int k = 0; k < 12; ++k) {
+    const double told = k < 4 ? 0.0 : flow;
+    const ControlMove& move = controller.step(plant.output(), Eigen::VectorXd::Constant(1, told));
+    if (k > 0)  // of the bias, which rises by g flow until the flow is told, and then is none
+      ramp += share * ((k < 4 ? g * flow : 0.0) - ramp);
+    CHECK(move.u_target(1) == Approx(0.5 + told + ramp / g).margin(1e-7));
+    input.head(2) = move.u;
+    plant.advance(input);
+  }
+}
+
 }  // namespace mpm
