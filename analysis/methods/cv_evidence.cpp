@@ -465,11 +465,20 @@ Eigen::MatrixXd CvLikelihood::healthy_series(const Eigen::Ref<const Eigen::RowVe
 
 void CvLikelihood::add_growing(const Eigen::Ref<const Eigen::MatrixXd>& series,
                                const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                               const Eigen::Ref<const Eigen::VectorXd>& initial, double share,
+                               const Eigen::Ref<const Eigen::VectorXd>& initial,
+                               const Eigen::Ref<const Eigen::MatrixXd>& untold, double share,
                                CvEvidence& evidence) const {
   const auto samples = static_cast<double>((!series.row(0).array().isNaN()).count());
-  for (const GrowingMismatch& found : growing_mismatches(
-           model_.noise(), starts_from_rest_, {freedom_, samples}, responses_, series, inputs, initial)) {
+  const Eigen::MatrixXd without = slopes(inputs, initial, untold);
+  const auto directions = [&](std::size_t i, double size, const Eigen::RowVectorXd& part) {
+    const SizePrior& prior = responses_[i].prior();
+    const Eigen::MatrixXd with =
+        model_.slopes(without, {0, prior.channel.mv, prior.parameter, size}, inputs, initial);
+    return model_.directions(without + ((with - without).array().rowwise() * part.array()).matrix());
+  };
+  for (const GrowingMismatch& found :
+       growing_mismatches(model_.noise(), starts_from_rest_, {freedom_, samples}, responses_, series, inputs,
+                          initial, directions)) {
     TruncatedNormal size = found.size;
     size.log_mass += std::log(share);
     add(evidence.mismatch_alone[found.mismatch], {size, found.best_size, found.log_likelihood});

@@ -63,11 +63,11 @@ class CvLikelihood {
                                  const Eigen::Ref<const Eigen::MatrixXd>& untold) const;
 
   /// Adds to the evidence of mismatches that of growing_mismatches(), which are so probable among them as
-  /// `share` against those of the whole record. `series` is healthy_series().
+  /// `share` against those of the whole record. `series` is healthy_series() with the same `untold`.
   void add_growing(const Eigen::Ref<const Eigen::MatrixXd>& series,
                    const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                   const Eigen::Ref<const Eigen::VectorXd>& initial, double share,
-                   CvEvidence& evidence) const;
+                   const Eigen::Ref<const Eigen::VectorXd>& initial,
+                   const Eigen::Ref<const Eigen::MatrixXd>& untold, double share, CvEvidence& evidence) const;
 
  private:
   static constexpr double kUntold = 30.0;  ///< y_sim has them already: what is left of them is small

@@ -243,8 +243,9 @@ class FaultPosterior final : public AssessmentMethod {
     const StuckMv valve = stuck_mv(evidence, series, inputs);
     for (std::size_t i = 0; i < likelihoods_.size(); ++i)
       if (is_suspect(probabilities.cvs[i]))
-        likelihoods_[i]->add_growing(series[i], inputs.leftCols(series[i].cols()), initial_, kGrowingShare,
-                                     evidence[i]);
+        likelihoods_[i]->add_growing(series[i], inputs.leftCols(series[i].cols()), initial_,
+                                     untold_of(loop, static_cast<Eigen::Index>(i), series[i].cols()),
+                                     kGrowingShare, evidence[i]);
     probabilities = with_sticky_valve(
         with_input_disturbance(fault_probabilities(priors_, evidence), of_input), valve.log_weight);
     Assessment assessment = answer(probabilities, probabilities, evidence);

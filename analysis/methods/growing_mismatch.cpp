@@ -71,7 +71,7 @@ class GrowingSearch {
                 const std::vector<MismatchResponses>& responses,
                 const Eigen::Ref<const Eigen::MatrixXd>& series,
                 const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                const Eigen::Ref<const Eigen::VectorXd>& initial)
+                const Eigen::Ref<const Eigen::VectorXd>& initial, const DirectionsOfGrowing& directions)
       : base_(std::move(base)),
         deviation_(deviation),
         likelihood_(likelihood),
@@ -79,6 +79,7 @@ class GrowingSearch {
         series_(series),
         inputs_(inputs),
         initial_(initial),
+        directions_(directions),
         samples_(series.cols()) {}
 
   std::vector<GrowingMismatch> run() const {
@@ -154,18 +155,33 @@ class GrowingSearch {
     return best;
   }
 
-  /// log L less that of what all hypotheses share, and its slopes.
-  Look look(std::size_t i, const Growth& at) const {
+  /// What a mismatch makes of e of which this part (N) is there at each sample, as ChangingPlant has it: a
+  /// gain goes over at the input, anything else at the output.
+  Eigen::RowVectorXd response_of_part(std::size_t i, double size, const Eigen::RowVectorXd& part) const {
     const MismatchResponses& response = responses_[i];
-    const Eigen::Index q = series_.rows() - 1;
-    const Eigen::RowVectorXd m = response.at(at(0), input(i), initial(i)) / deviation_;
+    if (response.is_linear())
+      return response.at(size, input(i).cwiseProduct(part), 0.0) / deviation_;
+    return response.at(size, input(i), initial(i)).cwiseProduct(part) / deviation_;
+  }
+
+  Eigen::RowVectorXd slope_of_part(std::size_t i, double size, const Eigen::RowVectorXd& part) const {
+    const MismatchResponses& response = responses_[i];
+    if (response.is_linear())
+      return response.slope(size, input(i).cwiseProduct(part), 0.0) / deviation_;
+    return response.slope(size, input(i), initial(i)).cwiseProduct(part) / deviation_;
+  }
+
+  /// log L less that of what all hypotheses share, and its slopes.
+  Look look(std::size_t i, const Growth& at, const Eigen::Ref<const Eigen::MatrixXd>& directions) const {
+    const Eigen::Index q = directions.rows();
     const Eigen::RowVectorXd share = ramp(samples_, at(1), at(2));
+    const auto response = [&](const Eigen::RowVectorXd& part) { return response_of_part(i, at(0), part); };
     Eigen::MatrixXd rows(4 + q, samples_);
-    rows.row(0) = series_.row(0) - m.cwiseProduct(share);
-    rows.row(1) = (response.slope(at(0), input(i), initial(i)) / deviation_).cwiseProduct(share);
-    rows.row(2) = m.cwiseProduct(ramp(samples_, at(1) + 1.0, at(2)) - share);
-    rows.row(3) = m.cwiseProduct(ramp(samples_, at(1), at(2) + 1.0) - share);
-    rows.bottomRows(q) = series_.bottomRows(q);
+    rows.row(0) = series_.row(0) - response(share);
+    rows.row(1) = slope_of_part(i, at(0), share);
+    rows.row(2) = response(ramp(samples_, at(1) + 1.0, at(2)) - share);
+    rows.row(3) = response(ramp(samples_, at(1), at(2) + 1.0) - share);
+    rows.bottomRows(q) = directions;
     const WhitenedProducts sums = marginalised(whitened_products(base_.models, rows), 4, q);
     Look found{likelihood_(sums.log_determinant(0), sums.of(0, 0)(0)), {}, {}};
     const double precision = likelihood_.precision(sums.of(0, 0)(0));
@@ -196,13 +212,21 @@ class GrowingSearch {
   std::optional<GrowingMismatch> refine(const Start& start) const {
     const std::size_t i = start.mismatch;
     Growth at = within(i, start.at);
-    Look here = look(i, at);
+    climb(i, series_.bottomRows(series_.rows() - 1), at);
+    const Eigen::MatrixXd directions = directions_(i, at(0), ramp(samples_, at(1), at(2)));
+    const Look here = climb(i, directions, at);
+    return evidence(i, at, here);
+  }
+
+  /// To the largest likelihood, from `at` on.
+  Look climb(std::size_t i, const Eigen::Ref<const Eigen::MatrixXd>& directions, Growth& at) const {
+    Look here = look(i, at, directions);
     for (int step = 0; step < kMostRefinements; ++step) {
       Growth move = with_prior(i, here.information).llt().solve(here.slope);
       double gained = 0.0;
       for (int halving = 0; halving < kMostHalvings; ++halving, move *= 0.5) {
         const Growth next = within(i, at + move);
-        const Look there = look(i, next);
+        const Look there = look(i, next, directions);
         if (there.log_likelihood <= here.log_likelihood)
           continue;
         gained = there.log_likelihood - here.log_likelihood;
@@ -213,7 +237,7 @@ class GrowingSearch {
       if (gained < kEnough)
         break;
     }
-    return evidence(i, at, here);
+    return here;
   }
 
   std::optional<GrowingMismatch> evidence(std::size_t i, const Growth& at, const Look& here) const {
@@ -239,6 +263,7 @@ class GrowingSearch {
   const Eigen::Ref<const Eigen::MatrixXd>& series_;
   const Eigen::Ref<const Eigen::MatrixXd>& inputs_;
   const Eigen::Ref<const Eigen::VectorXd>& initial_;
+  const DirectionsOfGrowing& directions_;
   Eigen::Index samples_;
 };
 
@@ -249,9 +274,10 @@ std::vector<GrowingMismatch> growing_mismatches(const BaseNoise& noise, bool sta
                                                 const std::vector<MismatchResponses>& responses,
                                                 const Eigen::Ref<const Eigen::MatrixXd>& series,
                                                 const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                                const Eigen::Ref<const Eigen::VectorXd>& initial) {
+                                                const Eigen::Ref<const Eigen::VectorXd>& initial,
+                                                const DirectionsOfGrowing& directions) {
   return GrowingSearch(base_models(noise, starts_from_rest), noise.deviation, likelihood, responses, series,
-                       inputs, initial)
+                       inputs, initial, directions)
       .run();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,11 +21,17 @@ struct GrowingMismatch {
   double log_likelihood;  ///< at the best size, onset and end
 };
 
+/// What is unknown of the model where this mismatch (its place, its size) is there in this part (N) at each
+/// sample, q x N in standard deviations of the noise.
+using DirectionsOfGrowing =
+    std::function<Eigen::MatrixXd(std::size_t mismatch, double size, const Eigen::RowVectorXd& part)>;
+
 /// What explains the simulation error of a CV by a mismatch that grows,
 ///
-///   e(k) = r(k) m(theta)(k) + Z' z + n,   r(k) = 0 before the onset, 1 from the end on, a line between,
+///   e = m(theta) of which r(k) is there + Z' z + n,   r(k) = 0 before the onset, 1 from the end on, a line
 ///
-/// which is exact where the inputs and the response before the onset do not matter, as of a gain. The
+/// between, as ChangingPlant has it: a gain goes over at the input, anything else at the output. Z are those
+/// of a healthy model on the way, and `directions` in the end. The
 /// evidence is the integral over size, onset and end by Laplace's method. The onset is uniform over the
 /// record, the growth uniform up to its length. Onsets of a coarse grid are tried of every parameter, the
 /// best few are refined by Gauss and Newton.
@@ -39,6 +46,7 @@ std::vector<GrowingMismatch> growing_mismatches(const BaseNoise& noise, bool sta
                                                 const std::vector<MismatchResponses>& responses,
                                                 const Eigen::Ref<const Eigen::MatrixXd>& series,
                                                 const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                                const Eigen::Ref<const Eigen::VectorXd>& initial);
+                                                const Eigen::Ref<const Eigen::VectorXd>& initial,
+                                                const DirectionsOfGrowing& directions);
 
 }  // namespace mpm
