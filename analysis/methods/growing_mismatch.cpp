@@ -155,30 +155,30 @@ class GrowingSearch {
     return best;
   }
 
-  /// What a mismatch makes of e of which this part (N) is there at each sample, as ChangingPlant has it: a
-  /// gain goes over at the input, anything else at the output.
-  Eigen::RowVectorXd response_of_part(std::size_t i, double size, const Eigen::RowVectorXd& part) const {
-    const MismatchResponses& response = responses_[i];
-    if (response.is_linear())
-      return response.at(size, input(i).cwiseProduct(part), 0.0) / deviation_;
-    return response.at(size, input(i), initial(i)).cwiseProduct(part) / deviation_;
-  }
+  using Response = Eigen::RowVectorXd (MismatchResponses::*)(double,
+                                                             const Eigen::Ref<const Eigen::RowVectorXd>&,
+                                                             double) const;
 
-  Eigen::RowVectorXd slope_of_part(std::size_t i, double size, const Eigen::RowVectorXd& part) const {
+  /// The response, or its slope, where this part (N) of the mismatch is there at each sample, as
+  /// ChangingPlant has it: a gain goes over at the input, anything else at the output.
+  Eigen::RowVectorXd of_part(Response what, std::size_t i, double size,
+                             const Eigen::RowVectorXd& part) const {
     const MismatchResponses& response = responses_[i];
     if (response.is_linear())
-      return response.slope(size, input(i).cwiseProduct(part), 0.0) / deviation_;
-    return response.slope(size, input(i), initial(i)).cwiseProduct(part) / deviation_;
+      return (response.*what)(size, input(i).cwiseProduct(part), 0.0) / deviation_;
+    return (response.*what)(size, input(i), initial(i)).cwiseProduct(part) / deviation_;
   }
 
   /// log L less that of what all hypotheses share, and its slopes.
   Look look(std::size_t i, const Growth& at, const Eigen::Ref<const Eigen::MatrixXd>& directions) const {
     const Eigen::Index q = directions.rows();
     const Eigen::RowVectorXd share = ramp(samples_, at(1), at(2));
-    const auto response = [&](const Eigen::RowVectorXd& part) { return response_of_part(i, at(0), part); };
+    const auto response = [&](const Eigen::RowVectorXd& part) {
+      return of_part(&MismatchResponses::at, i, at(0), part);
+    };
     Eigen::MatrixXd rows(4 + q, samples_);
     rows.row(0) = series_.row(0) - response(share);
-    rows.row(1) = slope_of_part(i, at(0), share);
+    rows.row(1) = of_part(&MismatchResponses::slope, i, at(0), share);
     rows.row(2) = response(ramp(samples_, at(1) + 1.0, at(2)) - share);
     rows.row(3) = response(ramp(samples_, at(1), at(2) + 1.0) - share);
     rows.bottomRows(q) = directions;

@@ -28,13 +28,13 @@ using DirectionsOfGrowing =
 
 /// What explains the simulation error of a CV by a mismatch that grows,
 ///
-///   e = m(theta) of which r(k) is there + Z' z + n,   r(k) = 0 before the onset, 1 from the end on, a line
+///   e = m(theta, r) + Z' z + n,   r(k) = 0 before the onset, 1 from the end on, a line between.
 ///
-/// between, as ChangingPlant has it: a gain goes over at the input, anything else at the output. Z are those
-/// of a healthy model on the way, and `directions` in the end. The
-/// evidence is the integral over size, onset and end by Laplace's method. The onset is uniform over the
-/// record, the growth uniform up to its length. Onsets of a coarse grid are tried of every parameter, the
-/// best few are refined by Gauss and Newton.
+/// m(theta, r) is the response to a mismatch of which the part r(k) is there at sample k, as ChangingPlant
+/// has it: a gain goes over at the input, anything else at the output. The evidence is the integral over
+/// size, onset and end by Laplace's method. The onset is uniform over the record, the growth uniform up to
+/// its length. Onsets of a coarse grid are tried of every parameter; the best few are refined by Gauss and
+/// Newton, at first with the Z of a healthy model, and then with `directions`.
 ///
 /// | symbol | name      | shape         | unit                             |
 /// |--------|-----------|---------------|----------------------------------|
