@@ -64,7 +64,8 @@ struct Limits {
 /// | du_max   | move_limit         | nu    | MV a sample                 |
 /// | tau_ref  | reference_time     | ny    | time unit of the plant      |
 /// | alpha    | bias_ramp          | ny    | 1                           |
-/// |          | analysers, md_analysers | ny, nd | samples                |
+/// |          | analysers          | ny    | samples                     |
+/// |          | md_analysers       | nd    | samples                     |
 struct MpcOptions {
   double sample_time = 1.0;
   int prediction_horizon = 1;

@@ -43,8 +43,7 @@ SizeBound bound_within(double estimate, double first, double last, double share)
 }
 
 bool NamedMismatch::holds(double value) const {
-  return (lower <= value || (bound == SizeBound::at_most && value <= upper)) &&
-         (value <= upper || (bound == SizeBound::at_least && lower <= value));
+  return (lower <= value || bound == SizeBound::at_most) && (value <= upper || bound == SizeBound::at_least);
 }
 
 std::optional<Eigen::Index> Assessment::worst_cv() const {

@@ -75,6 +75,14 @@ OptionKeys keys(MvOptions& mv) {
               .allow("> 0")};
 }
 
+OptionKey analyser_period(AnalyserTiming& timing, const char* meaning) {
+  return key::whole("analyser_period", timing.period, 1, kMaxHorizon, meaning, "samples");
+}
+
+OptionKey analyser_delay(AnalyserTiming& timing, const char* meaning) {
+  return key::whole("analyser_delay", timing.delay, 0, kMaxHorizon, meaning, "samples");
+}
+
 struct CvOptions {
   double setpoint_weight = 0.0, setpoint = 0.0, slack_weight = 0.0, slack_cost = 0.0, reference_time = 0.0;
   std::optional<double> bias_ramp;
@@ -122,51 +130,47 @@ void read_setpoint_and_range(const TomlTable& table, CvOptions& cv) {
 }
 
 OptionKeys keys(CvOptions& cv) {
-  return {
-      key::option("setpoint_weight", "number", "Q_y of (2.26), W of (3.30)", "1 / CV^2")
-          .otherwise("none: no setpoint")
-          .allow("> 0"),
-      key::option("setpoint", "number", "setpoint at the start; `simulation.step` changes it", "CV")
-          .otherwise("0")
-          .allow("finite; with `setpoint_weight`"),
-      key::option("slack_weight", "number", "tau_y of (6.20)", "1 / CV^2")
-          .otherwise("required with `soft` and without `slack_cost`")
-          .allow("> 0"),
-      key::option("slack_cost", "number",
-                  "linear cost of a violation of the soft limits, beside or in place of `slack_weight`",
-                  "1 / CV")
-          .otherwise("none")
-          .allow("> 0"),
-      key::option("reference_time", "number",
-                  "time constant of the reference trajectory: the CV is asked to approach its setpoint "
-                  "from where it is",
-                  "time")
-          .otherwise("none: at once")
-          .allow("> 0; with `setpoint_weight`"),
-      key::option(
-          "bias_ramp", "number",
-          "of a CV that integrates: the share of what the output bias moves from one sample to the next "
-          "that counts as its ramp. 0: the bias is a constant, and a flow that is not known leaves an "
-          "offset")
-          .otherwise(fmt::format("{} for a CV that integrates", kBiasRamp))
-          .allow("0 to 1; for a CV that integrates"),
-      key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
-          .otherwise("required without a setpoint")
-          .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
-      key::whole("analyser_period", cv.analyser.period, 1, kMaxHorizon,
-                 "of a CV of an analyser: samples from one analysis to the next, between which it is held",
-                 "samples"),
-      key::whole("analyser_delay", cv.analyser.delay, 0, kMaxHorizon,
-                 "samples from taking a sample of the stream to the analysis", "samples"),
-      key::limits("hard", cv.hard, "hard limits; a loop that cannot keep them is infeasible", "CV"),
-      key::check([&cv](const TomlTable& table) { read_setpoint_and_range(table, cv); })};
+  return {key::option("setpoint_weight", "number", "Q_y of (2.26), W of (3.30)", "1 / CV^2")
+              .otherwise("none: no setpoint")
+              .allow("> 0"),
+          key::option("setpoint", "number", "setpoint at the start; `simulation.step` changes it", "CV")
+              .otherwise("0")
+              .allow("finite; with `setpoint_weight`"),
+          key::option("slack_weight", "number", "tau_y of (6.20)", "1 / CV^2")
+              .otherwise("required with `soft` and without `slack_cost`")
+              .allow("> 0"),
+          key::option("slack_cost", "number",
+                      "linear cost of a violation of the soft limits, beside or in place of `slack_weight`",
+                      "1 / CV")
+              .otherwise("none")
+              .allow("> 0"),
+          key::option("reference_time", "number",
+                      "time constant of the reference trajectory: the CV is asked to approach its setpoint "
+                      "from where it is",
+                      "time")
+              .otherwise("none: at once")
+              .allow("> 0; with `setpoint_weight`"),
+          key::option(
+              "bias_ramp", "number",
+              "of a CV that integrates: the share of what the output bias moves from one sample to the next "
+              "that counts as its ramp. 0: the bias is a constant, and a flow that is not known leaves an "
+              "offset")
+              .otherwise(fmt::format("{} for a CV that integrates", kBiasRamp))
+              .allow("0 to 1; for a CV that integrates"),
+          key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
+              .otherwise("required without a setpoint")
+              .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
+          analyser_period(
+              cv.analyser,
+              "of a CV of an analyser: samples from one analysis to the next, between which it is held"),
+          analyser_delay(cv.analyser, "samples from taking a sample of the stream to the analysis"),
+          key::limits("hard", cv.hard, "hard limits; a loop that cannot keep them is infeasible", "CV"),
+          key::check([&cv](const TomlTable& table) { read_setpoint_and_range(table, cv); })};
 }
 
 OptionKeys keys(AnalyserTiming& md) {
-  return {key::whole("analyser_period", md.period, 1, kMaxHorizon,
-                     "samples from one measurement to the next, between which it is held", "samples"),
-          key::whole("analyser_delay", md.delay, 0, kMaxHorizon,
-                     "samples from the measurement to when controller and historian have it", "samples")};
+  return {analyser_period(md, "samples from one measurement to the next, between which it is held"),
+          analyser_delay(md, "samples from the measurement to when controller and historian have it")};
 }
 
 enum class Tables { of_all, of_some };
