@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/error.hpp"
+#include "base/system/program_trust.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/version.hpp"
-#include "plants/error.hpp"
-#include "plants/system/program_trust.hpp"
 #include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {

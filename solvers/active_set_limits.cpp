@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {

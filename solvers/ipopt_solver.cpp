@@ -9,8 +9,8 @@
 #include <coin/IpTNLP.hpp>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/reduced_program.hpp"
 #include "solvers/working_set.hpp"
 

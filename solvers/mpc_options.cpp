@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
-#include "plants/same_members.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
+#include "base/same_members.hpp"
 
 namespace mpm {
 namespace {

@@ -6,8 +6,8 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/prediction.hpp"
 
 namespace mpm {

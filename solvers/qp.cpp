@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "plants/row_major.hpp"
+#include "base/row_major.hpp"
 #include "solvers/lanes/lane_program.hpp"
 #include "solvers/lanes/lane_vector.hpp"
 

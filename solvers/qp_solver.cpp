@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/certified_solver.hpp"
 #include "solvers/ipopt_solver.hpp"

@@ -1,7 +1,7 @@
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 
-#include "plants/system/program_trust.hpp"
+#include "base/system/program_trust.hpp"
 
 /// The programs of tests are our own.
 int main(int argc, char** argv) {

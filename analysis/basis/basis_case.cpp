@@ -7,7 +7,7 @@
 #include "analysis/basis/self_check.hpp"
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/study/study_controller.hpp"

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/draw.hpp"
 
 namespace mpm {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

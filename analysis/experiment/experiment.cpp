@@ -9,7 +9,7 @@
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/fault_scale.hpp"
 #include "analysis/experiment/judgement.hpp"
-#include "analysis/methods/chain_numbers.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/analyser.hpp"
 #include "scenarios/loop/candidates.hpp"

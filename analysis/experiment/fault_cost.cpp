@@ -8,7 +8,7 @@
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/statistics/ratio_of_means.hpp"
 #include "analysis/statistics/variance.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/signals.hpp"
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "analysis/indicators/diagnosis.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/fault_draw.hpp"
 #include "scenarios/random/random_stream.hpp"
 

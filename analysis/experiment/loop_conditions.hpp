@@ -7,7 +7,7 @@
 
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/study/study.hpp"
 

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 
 #include "analysis/experiment/experiment.hpp"
-#include "analysis/methods/channel_fit.hpp"
-#include "analysis/methods/repair_prospects.hpp"
+#include "analysis/methods/ours/channel_fit.hpp"
+#include "analysis/methods/ours/repair_prospects.hpp"
 
 // What an engineer does with a named channel: correct it, and put it into the controller.
 

@@ -7,7 +7,7 @@
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/repaired_model.hpp"
 #include "analysis/statistics/ratio_of_means.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/excitation.hpp"
 
 namespace mpm {

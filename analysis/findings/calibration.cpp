@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "analysis/statistics/conformal_threshold.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

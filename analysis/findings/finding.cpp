@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

@@ -8,7 +8,7 @@
 
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/sample_summary.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/faults/fault.hpp"
 
 namespace mpm {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "analysis/findings/finding.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

@@ -13,7 +13,7 @@
 #include "analysis/statistics/regression.hpp"
 #include "analysis/statistics/roc.hpp"
 #include "analysis/statistics/sample_summary.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

@@ -9,7 +9,7 @@
 
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/statistics/clustered_rate.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -12,7 +12,7 @@
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
-#include "scenarios/files/suite_file.hpp"
+#include "analysis/study_files/suite_file.hpp"
 
 namespace mpm {
 

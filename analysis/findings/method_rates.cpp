@@ -15,7 +15,7 @@
 #include "analysis/findings/monitored_loop.hpp"
 #include "analysis/findings/world_counts.hpp"
 #include "analysis/statistics/holm.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

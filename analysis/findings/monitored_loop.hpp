@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "analysis/experiment/experiment.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 // What comes of a method that watches a loop through a moving window.
 

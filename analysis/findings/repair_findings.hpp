@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/experiment/repair.hpp"
-#include "analysis/methods/repair_prospects.hpp"
+#include "analysis/methods/ours/repair_prospects.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "analysis/statistics/quantile.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

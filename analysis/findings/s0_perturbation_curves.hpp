@@ -5,7 +5,7 @@
 
 #include "analysis/findings/collector.hpp"
 #include "analysis/statistics/interval.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 // What the modified models of s0_perturbation.hpp do to Ivar_diag over the experiments of a study.
 

@@ -7,10 +7,10 @@
 
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/loop_outcome.hpp"
-#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {

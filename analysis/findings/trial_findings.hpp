@@ -19,7 +19,7 @@ struct TrialGuard {
 };
 
 /// How far an answer on a record is to be trusted: what the same method made of simulated loops like it
-/// (scenarios/files/recorded_study.hpp), of which the truth is known.
+/// (analysis/study_files/recorded_study.hpp), of which the truth is known.
 struct TrialFindings {
   /// The conformal threshold of the scores of the loops without a fault at kTrialFalseAlarms; with too few of
   /// them the largest score. NaN without such loops.

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "analysis/identification/least_squares.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

@@ -10,7 +10,7 @@
 #include "analysis/identification/nested_least_squares.hpp"
 #include "analysis/statistics/f_distribution.hpp"
 #include "analysis/statistics/sample_spacing.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/QR>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

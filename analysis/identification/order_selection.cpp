@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/identification/prediction_error_fit.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

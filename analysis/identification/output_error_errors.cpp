@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/statistics/discrete_filter.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

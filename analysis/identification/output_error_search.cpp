@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "analysis/identification/lane_cholesky.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

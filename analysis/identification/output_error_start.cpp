@@ -9,7 +9,7 @@
 #include "analysis/identification/least_squares.hpp"
 #include "analysis/identification/prediction_error_start.hpp"
 #include "analysis/statistics/discrete_filter.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -8,7 +8,7 @@
 #include "analysis/identification/prediction_error.hpp"
 #include "analysis/identification/prediction_error_search.hpp"
 #include "analysis/identification/prediction_error_start.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

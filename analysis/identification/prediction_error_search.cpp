@@ -7,7 +7,7 @@
 #include <ceres/ceres.h>
 
 #include "analysis/identification/prediction_error.hpp"
-#include "plants/row_major.hpp"
+#include "base/row_major.hpp"
 
 namespace mpm {
 namespace {

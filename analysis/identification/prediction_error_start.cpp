@@ -7,7 +7,7 @@
 
 #include "analysis/identification/arx.hpp"
 #include "analysis/identification/least_squares.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/f_distribution.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

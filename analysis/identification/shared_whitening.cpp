@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "analysis/identification/sum_of_outer_products.hpp"
-#include "plants/row_major.hpp"
+#include "base/row_major.hpp"
 
 namespace mpm {
 namespace {

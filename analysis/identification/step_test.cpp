@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/nonlinear/nonlinear_model.hpp"
 #include "scenarios/loop/signals.hpp"

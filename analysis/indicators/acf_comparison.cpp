@@ -8,8 +8,8 @@
 #include "analysis/statistics/correlation.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/signal_check.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

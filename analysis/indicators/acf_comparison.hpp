@@ -10,7 +10,7 @@
 #include "analysis/indicators/acf_oscillation.hpp"
 #include "analysis/indicators/number_column.hpp"
 #include "analysis/statistics/autocorrelation.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

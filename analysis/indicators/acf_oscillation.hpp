@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "analysis/statistics/autocorrelation.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

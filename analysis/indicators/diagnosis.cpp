@@ -8,7 +8,7 @@
 
 #include "analysis/indicators/simulation_error.hpp"
 #include "analysis/statistics/variance.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
 
 namespace mpm {

@@ -9,7 +9,7 @@
 #include "analysis/indicators/mpm_indicator.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {

@@ -7,7 +7,7 @@
 #include "analysis/indicators/moment_scatter.hpp"
 #include "analysis/indicators/mpm_indicator.hpp"
 #include "analysis/indicators/number_column.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "analysis/indicators/moment_scatter.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

@@ -8,7 +8,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "analysis/statistics/signal_check.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

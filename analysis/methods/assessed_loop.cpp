@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/methods/model_errors.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/washout.hpp"
+#include "base/non_finite.hpp"
 #include "plants/analyser.hpp"
 #include "plants/linear/settling_time.hpp"
-#include "plants/non_finite.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/historian.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

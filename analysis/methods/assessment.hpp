@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/faults/fault.hpp"
 
 namespace mpm {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/model_errors.hpp"
-#include "plants/error.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

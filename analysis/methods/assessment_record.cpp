@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "analysis/methods/method_table.hpp"
-#include "plants/non_finite.hpp"
-#include "plants/row_major.hpp"
+#include "base/non_finite.hpp"
+#include "base/row_major.hpp"
 
 namespace mpm {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "analysis/methods/assessment.hpp"
 #include "analysis/methods/assessment_method.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/study/study.hpp"
 
 // The answers of methods as they are kept for all loops of a study: a vector of numbers for each loop, and a

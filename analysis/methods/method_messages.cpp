@@ -12,9 +12,9 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
-#include "plants/system/foreign_text.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
+#include "base/system/foreign_text.hpp"
 #include "scenarios/controller/model_json.hpp"
 
 namespace mpm {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "analysis/methods/method_table.hpp"
-#include "plants/system/thread_clock.hpp"
+#include "base/system/thread_clock.hpp"
 
 namespace mpm {
 MethodPanel::MethodPanel(const Study& study, AssessmentContext context,

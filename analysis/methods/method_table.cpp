@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/study/assessment_options.hpp"
 #include "scenarios/toml/option_keys.hpp"
 #include "scenarios/toml/toml_table.hpp"

@@ -14,9 +14,9 @@
 
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "plants/error.hpp"
-#include "plants/system/foreign_text.hpp"
-#include "plants/system/program_talk.hpp"
+#include "base/error.hpp"
+#include "base/system/foreign_text.hpp"
+#include "base/system/program_talk.hpp"
 
 namespace mpm {
 namespace {

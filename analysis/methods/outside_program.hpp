@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/methods/assessment_method.hpp"
-#include "scenarios/files/method_file.hpp"
+#include "analysis/methods/method_file.hpp"
 
 namespace mpm {
 

@@ -7,12 +7,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-#include "analysis/methods/base_noise.hpp"
+#include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/statistics/sample_spacing.hpp"
 #include "analysis/statistics/signal_check.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

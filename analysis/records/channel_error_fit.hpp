@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/assessed_loop.hpp"
-#include "analysis/methods/model_errors.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {

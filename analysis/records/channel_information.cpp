@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "analysis/records/channel_error_fit.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

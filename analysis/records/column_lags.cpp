@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/records/channel_error_fit.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/faults/fault.hpp"
 
 namespace mpm {

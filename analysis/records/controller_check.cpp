@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/validation/record_check.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/study/study_controller.hpp"

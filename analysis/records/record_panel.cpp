@@ -10,8 +10,8 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/validation/benchmark_period.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/historian.hpp"
 #include "scenarios/study/window_scan.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/candidates.hpp"
 #include "scenarios/loop/historian.hpp"
 #include "scenarios/loop/signals.hpp"

@@ -9,8 +9,8 @@
 #include "analysis/indicators/simulation_error.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/quantile.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "analysis/reproduction/scenario_quantities.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

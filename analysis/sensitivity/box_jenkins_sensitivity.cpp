@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/sensitivity/identified_sensitivity.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {

@@ -5,8 +5,8 @@
 #include "analysis/identification/prediction_error_fit.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "analysis/statistics/variance.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

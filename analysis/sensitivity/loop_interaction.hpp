@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {

@@ -8,9 +8,9 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/zero_order_hold.hpp"
-#include "plants/non_finite.hpp"
 #include "scenarios/faults/other_fault.hpp"
 #include "scenarios/loop/world.hpp"
 #include "solvers/mpc_qp.hpp"

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
+#include "base/row_major.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/non_finite.hpp"
-#include "plants/row_major.hpp"
 
 namespace mpm {
 namespace {

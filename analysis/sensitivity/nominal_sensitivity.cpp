@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/sensitivity/active_limit.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "scenarios/study/study_controller.hpp"
 #include "solvers/mpc.hpp"

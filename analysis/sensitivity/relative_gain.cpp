@@ -6,8 +6,8 @@
 #include <Eigen/SVD>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -8,9 +8,9 @@
 #include <unsupported/Eigen/NonLinearOptimization>
 #include <unsupported/Eigen/NumericalDiff>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

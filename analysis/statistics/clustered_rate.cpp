@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/student.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/signal_check.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -5,7 +5,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

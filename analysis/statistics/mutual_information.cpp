@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/signal_check.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

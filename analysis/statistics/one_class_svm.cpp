@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <libsvm/svm.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "analysis/statistics/quantile.hpp"
 #include "analysis/statistics/signal_check.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

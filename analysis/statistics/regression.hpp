@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "analysis/statistics/interval.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/statistics/interval.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {

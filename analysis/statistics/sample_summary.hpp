@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/statistics/interval.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

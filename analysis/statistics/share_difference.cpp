@@ -9,8 +9,8 @@
 
 #include "analysis/statistics/clustered_rate.hpp"
 #include "analysis/statistics/student.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

@@ -10,9 +10,9 @@
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/analyser.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "analysis/sensitivity/active_limit.hpp"
 #include "analysis/sensitivity/loop_stability.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/settling_time.hpp"
-#include "plants/non_finite.hpp"
 #include "scenarios/loop/draw.hpp"
 
 namespace mpm {

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/error.hpp"
 #include "bench/execution/experiment_work.hpp"
-#include "plants/error.hpp"
 #include "results/archive/columns.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "solvers/qp_solver.hpp"

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "base/error.hpp"
 #include "bench/execution/run_options.hpp"
 #include "bench/execution/stop_request.hpp"
 #include "bench/parts/part_folder.hpp"
-#include "plants/error.hpp"
 #include "results/archive/campaign.hpp"
 
 namespace mpm {

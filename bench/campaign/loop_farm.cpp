@@ -9,9 +9,9 @@
 #include <mutex>
 #include <utility>
 
+#include "base/error.hpp"
 #include "bench/execution/thread_loop.hpp"
 #include "bench/execution/worker_pool.hpp"
-#include "plants/error.hpp"
 #include "results/files/byte_stream.hpp"
 
 namespace mpm {

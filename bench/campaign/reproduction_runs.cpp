@@ -11,15 +11,15 @@
 #include <fmt/format.h>
 
 #include "analysis/reproduction/seeded_reproduction.hpp"
+#include "analysis/study_files/resolved_study.hpp"
+#include "base/error.hpp"
 #include "bench/campaign/loop_farm.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_identity.hpp"
-#include "plants/error.hpp"
 #include "results/files/byte_stream.hpp"
-#include "scenarios/files/resolved_study.hpp"
 
 namespace mpm {
 namespace {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "base/error.hpp"
+#include "base/system/program_trust.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/execution/experiment_work.hpp"
-#include "plants/error.hpp"
-#include "plants/system/program_trust.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "solvers/qp_solver.hpp"
 

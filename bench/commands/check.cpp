@@ -6,18 +6,18 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/study_files/suite_file.hpp"
+#include "base/error.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
-#include "plants/error.hpp"
 #include "results/gates/board_gates.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_file.hpp"
 #include "results/gates/gate_report.hpp"
 #include "results/suite/board_file.hpp"
-#include "scenarios/files/suite_file.hpp"
 
 namespace mpm {
 namespace {

@@ -10,15 +10,15 @@
 #include <fmt/ranges.h>
 
 #include "analysis/findings/finished_board.hpp"
+#include "analysis/study_files/suite_file.hpp"
+#include "base/error.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
 #include "bench/version.hpp"
-#include "plants/error.hpp"
 #include "results/document/document_text.hpp"
 #include "results/suite/board_file.hpp"
 #include "results/suite/leaderboard_output.hpp"
-#include "scenarios/files/suite_file.hpp"
 
 namespace mpm {
 namespace {

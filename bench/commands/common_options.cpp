@@ -10,12 +10,12 @@
 #include <fmt/ranges.h>
 #include <sched.h>
 
+#include "analysis/methods/method_file.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/outside_program.hpp"
+#include "base/system/program_trust.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/files/outside_files.hpp"
-#include "plants/system/program_trust.hpp"
-#include "scenarios/files/method_file.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

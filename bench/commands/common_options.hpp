@@ -29,7 +29,7 @@ void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::stri
 /// --set of a command that runs studies: parse_study_changes().
 void add_changes(CLI::App& app, std::vector<std::string>& changes, const std::string& description);
 void add_archive(CLI::App& app, std::string& archive);
-/// --trust-programs of a command that may simulate loops of what it opens (plants/system/program_trust).
+/// --trust-programs of a command that may simulate loops of what it opens (base/system/program_trust).
 void add_trust(CLI::App& app);
 void add_index(CLI::App& app, std::int64_t& index);
 void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments, const std::string& description);

@@ -14,6 +14,8 @@
 #include <fmt/ranges.h>
 
 #include "analysis/methods/method_table.hpp"
+#include "base/error.hpp"
+#include "base/system/temporary_folder.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
@@ -29,8 +31,6 @@
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_identity.hpp"
 #include "bench/version.hpp"
-#include "plants/error.hpp"
-#include "plants/system/temporary_folder.hpp"
 #include "results/archive/archive.hpp"
 #include "results/blind/verdict_file.hpp"
 #include "results/document/document_json.hpp"

@@ -10,12 +10,12 @@
 #include <fmt/ranges.h>
 #include <sys/resource.h>
 
+#include "base/error.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/campaign/study_pilot.hpp"
 #include "bench/console/output.hpp"
 #include "bench/shards/shard_folder.hpp"
-#include "plants/error.hpp"
 
 namespace mpm {
 namespace {

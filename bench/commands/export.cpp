@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "analysis/methods/assessed_loop.hpp"
+#include "base/error.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
@@ -23,7 +24,6 @@
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_identity.hpp"
 #include "bench/shards/shard_store.hpp"
-#include "plants/error.hpp"
 #include "results/archive/csv_table.hpp"
 #include "results/blind/blind_loops.hpp"
 

@@ -11,15 +11,15 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/identification/step_test.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
-#include "plants/error.hpp"
 #include "plants/linear/step_response_fit.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "scenarios/toml/toml_literal.hpp"
 
 namespace mpm {

@@ -12,6 +12,9 @@
 #include <unistd.h>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "analysis/study_files/study_template.hpp"
+#include "base/error.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/option_checks.hpp"
@@ -19,11 +22,8 @@
 #include "bench/commands/step_model.hpp"
 #include "bench/console/output.hpp"
 #include "bench/files/new_file.hpp"
-#include "plants/error.hpp"
 #include "results/records/data_sketch.hpp"
 #include "results/records/record_file.hpp"
-#include "scenarios/files/study_file.hpp"
-#include "scenarios/files/study_template.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace mpm {

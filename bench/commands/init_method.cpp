@@ -11,12 +11,12 @@
 #include <fmt/ranges.h>
 
 #include "analysis/methods/method_table.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
 #include "bench/files/new_file.hpp"
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "analysis/study_files/study_library.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/console/output.hpp"
-#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

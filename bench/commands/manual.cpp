@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/study_files/study_file_keys.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/console/manual_page.hpp"
 #include "bench/console/output.hpp"
 #include "bench/version.hpp"
 #include "results/gates/gate_file.hpp"
-#include "scenarios/files/study_file_keys.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/study_files/resolved_study.hpp"
 #include "bench/commands/dry_run.hpp"
 #include "bench/files/outside_files.hpp"
-#include "scenarios/files/resolved_study.hpp"
 
 namespace mpm {
 

@@ -4,12 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/experiment_loop.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
-#include "plants/error.hpp"
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/trajectory_figure.hpp"

@@ -9,6 +9,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/error.hpp"
+#include "base/system/program_trust.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/experiment_loop.hpp"
@@ -16,8 +18,6 @@
 #include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
-#include "plants/error.hpp"
-#include "plants/system/program_trust.hpp"
 #include "results/report/change_report.hpp"
 
 namespace mpm {

@@ -12,6 +12,8 @@
 
 #include "analysis/reproduction/scenario_quantities.hpp"
 #include "analysis/reproduction/seeded_reproduction.hpp"
+#include "analysis/study_files/study_change.hpp"
+#include "base/error.hpp"
 #include "bench/campaign/reproduction_runs.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
@@ -22,12 +24,10 @@
 #include "bench/files/output_file.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
-#include "plants/error.hpp"
 #include "results/document/document_html.hpp"
 #include "results/document/document_text.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/reproduction/reproduction.hpp"
-#include "scenarios/files/study_change.hpp"
 
 namespace mpm {
 namespace {

@@ -12,7 +12,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/study_files/study_change.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "analysis/validation/study_warnings.hpp"
+#include "base/error.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/commands/commands.hpp"
@@ -29,12 +32,9 @@
 #include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_identity.hpp"
-#include "plants/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/document/document_text.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/files/study_change.hpp"
-#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

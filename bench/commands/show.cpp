@@ -6,12 +6,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "analysis/study_files/study_library.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "results/records/netcdf_columns.hpp"
-#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/files/study_template.hpp"
+#include "analysis/study_files/study_template.hpp"
 
 namespace mpm {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/records/record_file.hpp"
 #include "scenarios/toml/toml_table.hpp"
 

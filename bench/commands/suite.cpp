@@ -15,6 +15,8 @@
 #include "analysis/findings/finished_board.hpp"
 #include "analysis/findings/leaderboard.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/study_files/suite_file.hpp"
+#include "base/error.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
@@ -24,7 +26,6 @@
 #include "bench/files/output_file.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/version.hpp"
-#include "plants/error.hpp"
 #include "results/document/document_html.hpp"
 #include "results/document/document_text.hpp"
 #include "results/plot/figure_drawing.hpp"
@@ -33,7 +34,6 @@
 #include "results/suite/board_columns.hpp"
 #include "results/suite/board_file.hpp"
 #include "results/suite/leaderboard_output.hpp"
-#include "scenarios/files/suite_file.hpp"
 #include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {

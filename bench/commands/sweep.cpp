@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/study_files/sweep_file.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
@@ -19,7 +20,6 @@
 #include "results/document/document_json.hpp"
 #include "results/document/document_markdown.hpp"
 #include "results/summary/sweep_document.hpp"
-#include "scenarios/files/sweep_file.hpp"
 
 namespace mpm {
 namespace {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/study_files/study_library.hpp"
 #include "analysis/validation/study_forecast.hpp"
 #include "analysis/validation/study_warnings.hpp"
 #include "bench/campaign/study_pilot.hpp"
@@ -15,7 +16,6 @@
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "results/text/number_json.hpp"
-#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/methods/method_table.hpp"
-#include "plants/system/thread_clock.hpp"
+#include "base/system/thread_clock.hpp"
 
 namespace mpm {
 ExperimentWork::ExperimentWork(const Study& study, const Study& basis_study, const BasisCase& basis,

@@ -4,7 +4,7 @@
 
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 

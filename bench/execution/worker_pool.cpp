@@ -18,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "plants/system/socket_bytes.hpp"
+#include "base/system/socket_bytes.hpp"
 
 namespace mpm {
 namespace {

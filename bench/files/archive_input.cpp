@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/files/archive_error.hpp"
 

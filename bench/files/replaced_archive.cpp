@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/archive/archive.hpp"
 
 namespace mpm {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "bench/parts/whole_number.hpp"
-#include "plants/error.hpp"
 
 namespace mpm {
 namespace {

@@ -10,12 +10,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/study_files/study_file.hpp"
+#include "base/error.hpp"
+#include "base/system/input_file.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
-#include "plants/error.hpp"
-#include "plants/system/input_file.hpp"
 #include "results/files/atomic_file.hpp"
-#include "scenarios/files/study_file.hpp"
 
 namespace mpm {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "bench/perf/short_clock.hpp"
-#include "plants/error.hpp"
 
 extern "C" {
 #include <api.h>

@@ -5,11 +5,11 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include "analysis/study_files/study_library.hpp"
+#include "base/system/thread_clock.hpp"
 #include "bench/perf/benchmarks.hpp"
 #include "bench/perf/timed_plant.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/system/thread_clock.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
 

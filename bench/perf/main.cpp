@@ -8,10 +8,10 @@
 #include <CLI/CLI.hpp>
 #include <benchmark/benchmark.h>
 
+#include "analysis/study_files/study_library.hpp"
 #include "bench/perf/benchmarks.hpp"
 #include "bench/perf/octave_file.hpp"
 #include "bench/version.hpp"
-#include "scenarios/files/study_library.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/experiment/experiment.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 
 namespace mpm {

@@ -10,9 +10,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/study_files/study_library.hpp"
 #include "bench/perf/daqp_rival.hpp"
 #include "bench/perf/qp_timing.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {

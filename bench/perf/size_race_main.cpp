@@ -13,10 +13,10 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/quantile.hpp"
+#include "base/system/thread_clock.hpp"
 #include "bench/perf/daqp_rival.hpp"
 #include "bench/perf/hpipm_rival.hpp"
 #include "bench/perf/sparse_loop.hpp"
-#include "plants/system/thread_clock.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 
 namespace mpm {

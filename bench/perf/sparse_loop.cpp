@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "base/system/thread_clock.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/system/thread_clock.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {

@@ -5,9 +5,9 @@
 #include <sys/resource.h>
 
 #include "analysis/basis/basis_case.hpp"
+#include "base/error.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/perf/benchmarks.hpp"
-#include "plants/error.hpp"
 
 namespace mpm {
 namespace {

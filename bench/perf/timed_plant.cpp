@@ -1,6 +1,6 @@
 #include "bench/perf/timed_plant.hpp"
 
-#include "plants/system/thread_clock.hpp"
+#include "base/system/thread_clock.hpp"
 
 namespace mpm {
 

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
-#include "plants/system/input_file.hpp"
+#include "base/error.hpp"
+#include "base/system/input_file.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/byte_stream.hpp"
 #include "results/files/file_seal.hpp"

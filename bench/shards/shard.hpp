@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "bench/shards/shard_identity.hpp"
-#include "plants/error.hpp"
 #include "results/files/archive_error.hpp"
 
 namespace mpm {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/files/archive_error.hpp"
 
 namespace mpm {

@@ -9,9 +9,9 @@
 #include <fmt/ranges.h>
 
 #include "analysis/methods/method_table.hpp"
+#include "base/error.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/version.hpp"
-#include "plants/error.hpp"
 
 namespace mpm {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "bench/execution/run_options.hpp"
-#include "plants/error.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {

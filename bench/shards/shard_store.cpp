@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/files/archive_error.hpp"
 
 namespace mpm {

@@ -4,7 +4,7 @@
 
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/experiment/experiment.hpp"
-#include "scenarios/files/study_file.hpp"
+#include "analysis/study_files/study_file.hpp"
 #include "solvers/qp_solver.hpp"
 
 int main() {

@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/same_members.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/settling_time.hpp"
 #include "plants/linear/transfer_function.hpp"
 #include "plants/linear/transfer_matrix.hpp"
-#include "plants/same_members.hpp"
 
 namespace mpm {
 namespace {

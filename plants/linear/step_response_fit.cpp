@@ -11,7 +11,7 @@
 #include <unsupported/Eigen/NonLinearOptimization>
 #include <unsupported/Eigen/NumericalDiff>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/transfer_matrix.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "base/non_finite.hpp"
 #include "plants/linear/transfer_function.hpp"
-#include "plants/non_finite.hpp"
 
 namespace mpm {
 

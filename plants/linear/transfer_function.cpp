@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
-#include "plants/same_members.hpp"
+#include "base/error.hpp"
+#include "base/same_members.hpp"
 
 namespace mpm {
 namespace {

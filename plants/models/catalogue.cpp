@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/models/coker.hpp"
 #include "plants/models/transfer_function_plants.hpp"
 #include "plants/nonlinear/quadruple_tank.hpp"

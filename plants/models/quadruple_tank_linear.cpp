@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/nonlinear/quadruple_tank.hpp"
 
 namespace mpm {

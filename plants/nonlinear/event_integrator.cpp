@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "base/system/forked_service.hpp"
 #include "plants/nonlinear/sundials_handles.hpp"
-#include "plants/system/forked_service.hpp"
 
 namespace mpm {
 namespace {

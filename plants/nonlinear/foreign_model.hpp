@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "plants/system/forked_service.hpp"
+#include "base/system/forked_service.hpp"
 
 namespace mpm {
 

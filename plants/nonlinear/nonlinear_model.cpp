@@ -4,9 +4,9 @@
 #include <tuple>
 #include <utility>
 
+#include "base/same_members.hpp"
 #include "plants/nonlinear/deviation_plant.hpp"
 #include "plants/nonlinear/foreign_plant.hpp"
-#include "plants/same_members.hpp"
 
 namespace mpm {
 namespace {

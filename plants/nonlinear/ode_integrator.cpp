@@ -6,7 +6,7 @@
 #include <arkode/arkode_erkstep.h>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/nonlinear/sundials_handles.hpp"
 
 namespace mpm {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 

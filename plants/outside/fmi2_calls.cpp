@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
+#include "base/system/forked_service.hpp"
 #include "plants/outside/fmi2.hpp"
 #include "plants/outside/fmu_calls.hpp"
 #include "plants/outside/fmu_library.hpp"
 #include "plants/outside/fmu_model_exchange.hpp"
-#include "plants/system/forked_service.hpp"
 
 namespace mpm {
 namespace {

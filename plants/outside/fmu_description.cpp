@@ -14,9 +14,9 @@
 #include <fmt/ranges.h>
 #include <pugixml.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/system/foreign_text.hpp"
 #include "plants/outside/fmi3.hpp"
-#include "plants/system/foreign_text.hpp"
 
 namespace mpm {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/system/forked_service.hpp"
+#include "base/system/forked_service.hpp"
 
 namespace mpm {
 

@@ -6,8 +6,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "base/system/forked_service.hpp"
 #include "plants/outside/fmi2.hpp"
-#include "plants/system/forked_service.hpp"
 
 namespace mpm {
 namespace {

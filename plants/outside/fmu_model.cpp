@@ -9,11 +9,11 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/system/fork_server.hpp"
+#include "base/system/program_trust.hpp"
 #include "plants/outside/fmu_instance.hpp"
 #include "plants/outside/fmu_package.hpp"
-#include "plants/system/fork_server.hpp"
-#include "plants/system/program_trust.hpp"
 
 namespace mpm {
 namespace {

@@ -15,8 +15,8 @@
 #include <fmt/format.h>
 #include <zip.h>
 
-#include "plants/error.hpp"
-#include "plants/system/foreign_text.hpp"
+#include "base/error.hpp"
+#include "base/system/foreign_text.hpp"
 
 namespace mpm {
 namespace {

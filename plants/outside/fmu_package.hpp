@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "base/system/temporary_folder.hpp"
 #include "plants/outside/fmu_description.hpp"
-#include "plants/system/temporary_folder.hpp"
 
 namespace mpm {
 

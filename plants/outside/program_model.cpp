@@ -8,8 +8,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "plants/system/child_process.hpp"
-#include "plants/system/foreign_text.hpp"
+#include "base/system/child_process.hpp"
+#include "base/system/foreign_text.hpp"
 
 namespace mpm {
 namespace {

@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "analysis/methods/chain_numbers.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
 #include "analysis/statistics/autocorrelation.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "results/archive/archive_groups.hpp"
 #include "results/archive/columns.hpp"
 #include "results/archive/dimensions.hpp"

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/error.hpp"
+#include "analysis/study_files/resolved_study.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "base/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/archive_groups.hpp"
 #include "results/files/archive_error.hpp"
-#include "scenarios/files/resolved_study.hpp"
-#include "scenarios/files/study_file.hpp"
 
 namespace mpm {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "analysis/methods/chain_numbers.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
 
 namespace mpm {
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/error.hpp"
-#include "plants/row_major.hpp"
+#include "base/error.hpp"
+#include "base/row_major.hpp"
 #include "results/archive/record_tables.hpp"
 #include "results/files/csv_text.hpp"
 #include "scenarios/loop/historian.hpp"

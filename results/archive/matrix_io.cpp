@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "plants/non_finite.hpp"
-#include "plants/row_major.hpp"
+#include "base/non_finite.hpp"
+#include "base/row_major.hpp"
 
 namespace mpm {
 namespace {

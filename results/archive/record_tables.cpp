@@ -9,8 +9,8 @@
 #include <variant>
 
 #include "analysis/experiment/judgement.hpp"
-#include "plants/non_finite.hpp"
-#include "plants/row_major.hpp"
+#include "base/non_finite.hpp"
+#include "base/row_major.hpp"
 #include "results/archive/columns.hpp"
 #include "scenarios/loop/candidates.hpp"
 #include "scenarios/loop/world.hpp"

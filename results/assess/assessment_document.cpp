@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "analysis/experiment/judgement.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/settling_time.hpp"
-#include "plants/non_finite.hpp"
 #include "results/assess/record_assessment.hpp"
 #include "results/assess/repair_form.hpp"
 #include "results/plot/panel_script.hpp"

@@ -10,7 +10,7 @@
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_record.hpp"
-#include "analysis/methods/repair_prospects.hpp"
+#include "analysis/methods/ours/repair_prospects.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/controller_check.hpp"
 #include "analysis/records/record_verdict.hpp"

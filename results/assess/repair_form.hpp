@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/experiment/repair.hpp"
-#include "analysis/methods/repair_prospects.hpp"
+#include "analysis/methods/ours/repair_prospects.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "results/document/document.hpp"
 #include "scenarios/study/study.hpp"

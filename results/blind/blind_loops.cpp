@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/methods/method_messages.hpp"
-#include "plants/non_finite.hpp"
-#include "plants/row_major.hpp"
+#include "base/non_finite.hpp"
+#include "base/row_major.hpp"
 #include "results/archive/dimensions.hpp"
 #include "results/archive/matrix_io.hpp"
 #include "results/files/atomic_file.hpp"

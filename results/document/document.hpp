@@ -13,7 +13,7 @@
 
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "results/plot/figure.hpp"
 
 // What a result says, once: sections of sentences, tables of typed cells, and figures. The writers make of it

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
-#include "plants/system/input_file.hpp"
+#include "base/error.hpp"
+#include "base/system/input_file.hpp"
 
 namespace mpm {
 namespace {

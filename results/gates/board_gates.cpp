@@ -11,8 +11,8 @@
 #include "analysis/findings/leaderboard_standing.hpp"
 #include "analysis/findings/loop_outcome.hpp"
 #include "analysis/findings/method_rates.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

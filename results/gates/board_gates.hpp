@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "analysis/findings/finished_board.hpp"
+#include "analysis/study_files/suite_file.hpp"
 #include "results/gates/gate_check.hpp"
-#include "scenarios/files/suite_file.hpp"
 
 namespace mpm {
 

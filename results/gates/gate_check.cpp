@@ -7,8 +7,8 @@
 
 #include "analysis/findings/run_change.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "analysis/findings/gate.hpp"
 #include "analysis/findings/judgement_changes.hpp"
+#include "analysis/study_files/study_differences.hpp"
 #include "results/archive/campaign.hpp"
 #include "results/gates/gate_file.hpp"
-#include "scenarios/files/study_differences.hpp"
 
 namespace mpm {
 

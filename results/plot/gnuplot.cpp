@@ -18,8 +18,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "plants/system/input_file.hpp"
-#include "plants/system/temporary_folder.hpp"
+#include "base/system/input_file.hpp"
+#include "base/system/temporary_folder.hpp"
 #include "results/files/utf8.hpp"
 
 namespace mpm {

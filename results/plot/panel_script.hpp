@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "results/plot/figure.hpp"
 #include "results/plot/plot_axis.hpp"
 

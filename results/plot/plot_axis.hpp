@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

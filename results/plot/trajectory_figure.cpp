@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "results/archive/variable_text.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/records/written_date.hpp"
 
 namespace mpm {

@@ -13,7 +13,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/findings/monitored_loop.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 #include "results/records/stamped_rows.hpp"

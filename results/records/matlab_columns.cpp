@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/csv_text.hpp"
 #include "results/files/utf8.hpp"

@@ -14,8 +14,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "plants/error.hpp"
-#include "plants/system/forked_service.hpp"
+#include "base/error.hpp"
+#include "base/system/forked_service.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/csv_text.hpp"

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 #include "scenarios/toml/nearest_name.hpp"

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/monitored_loop.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 #include "results/records/implausible_values.hpp"

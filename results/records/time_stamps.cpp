@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/monitored_loop.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 #include "results/records/written_date.hpp"

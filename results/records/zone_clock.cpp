@@ -13,7 +13,7 @@
 #include <date/tz.h>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
 

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/run_change.hpp"
+#include "analysis/study_files/study_differences.hpp"
 #include "results/document/document_html.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/change_report.hpp"
 #include "results/text/experiment_text.hpp"
-#include "scenarios/files/study_differences.hpp"
 
 namespace mpm {
 namespace {

@@ -16,12 +16,12 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/statistics/clustered_rate.hpp"
-#include "plants/error.hpp"
-#include "plants/system/foreign_text.hpp"
+#include "analysis/study_files/resolved_study.hpp"
+#include "base/error.hpp"
+#include "base/system/foreign_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/sha256.hpp"
 #include "results/files/utf8.hpp"
-#include "scenarios/files/resolved_study.hpp"
 
 namespace mpm {
 namespace {

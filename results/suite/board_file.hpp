@@ -6,7 +6,7 @@
 #include <string>
 
 #include "analysis/findings/finished_board.hpp"
-#include "scenarios/files/suite_file.hpp"
+#include "analysis/study_files/suite_file.hpp"
 
 // The file SUITE.board.json (docs/suite.md): a letter for each loop and method, from which the rates of a
 // leaderboard are counted again, and a method of one's own is paired with those in the file.

@@ -11,9 +11,9 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
-#include "plants/system/program_talk.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
+#include "base/system/program_talk.hpp"
 #include "scenarios/controller/model_json.hpp"
 #include "solvers/mpc.hpp"
 

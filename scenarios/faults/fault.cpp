@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "plants/same_members.hpp"
+#include "base/same_members.hpp"
 
 namespace mpm {
 namespace {

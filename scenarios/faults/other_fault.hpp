@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/distribution.hpp"
 
 // What can be wrong in a loop whose model is right and whose plant nobody disturbs: instruments, valves,

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/signals.hpp"
 

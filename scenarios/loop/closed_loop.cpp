@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/changing_plant.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/non_finite.hpp"
 #include "scenarios/faults/other_fault.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/off_schedule.hpp"

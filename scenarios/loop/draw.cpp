@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/loop/fault_draw.hpp"
 #include "scenarios/loop/world.hpp"
 #include "scenarios/random/random_stream.hpp"

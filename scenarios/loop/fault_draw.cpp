@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/loop/signals.hpp"
 
 namespace mpm {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/random/random_stream.hpp"
 

@@ -1,6 +1,6 @@
 #include "scenarios/loop/off_schedule.hpp"
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <variant>
 
+#include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/non_finite.hpp"
 #include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/random/random_stream.hpp"
 

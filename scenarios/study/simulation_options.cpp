@@ -2,7 +2,7 @@
 
 #include <tuple>
 
-#include "plants/same_members.hpp"
+#include "base/same_members.hpp"
 
 namespace mpm {
 namespace {

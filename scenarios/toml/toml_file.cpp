@@ -2,8 +2,8 @@
 
 #include <fstream>
 
-#include "plants/error.hpp"
-#include "plants/system/input_file.hpp"
+#include "base/error.hpp"
+#include "base/system/input_file.hpp"
 #include "scenarios/toml/toml_text.hpp"
 
 namespace mpm {

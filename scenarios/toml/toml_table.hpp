@@ -7,7 +7,7 @@
 
 #include <toml++/toml.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/toml/toml_draft.hpp"
 
 namespace mpm {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/toml/toml_literal.hpp"
 
 namespace mpm {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_text.hpp"
 

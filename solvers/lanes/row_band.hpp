@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "plants/row_major.hpp"
+#include "base/row_major.hpp"
 
 namespace mpm {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "plants/row_major.hpp"
+#include "base/row_major.hpp"
 #include "solvers/lanes/lane_kernels.hpp"
 #include "solvers/lanes/lane_vector.hpp"
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "analysis/experiment/experiment.hpp"
-#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
+#include "analysis/study_files/study_library.hpp"
 
 namespace mpm::testing {
 

@@ -4,10 +4,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/study_files/study_library.hpp"
 #include "bench/command_line.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/csv_table.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

@@ -8,10 +8,10 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/parts/loop_ranges.hpp"
 #include "bench/parts/part_folder.hpp"
-#include "plants/error.hpp"
 
 namespace {
 

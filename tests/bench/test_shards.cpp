@@ -11,13 +11,13 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include "base/error.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "bench/parts/loop_ranges.hpp"
 #include "bench/shards/shard.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_store.hpp"
-#include "plants/error.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"

@@ -8,10 +8,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/error.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/shards/shard.hpp"
 #include "bench/shards/shard_store.hpp"
-#include "plants/error.hpp"
 #include "results/files/byte_stream.hpp"
 #include "results/files/file_seal.hpp"
 #include "tests/results/made_up_campaign.hpp"

@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/non_finite.hpp"
 #include "plants/analyser.hpp"
-#include "plants/non_finite.hpp"
 
 namespace mpm {
 namespace {

@@ -17,7 +17,7 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/kind_findings.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/archive/archive.hpp"
 #include "scenarios/faults/fault.hpp"
 #include "scenarios/random/random_stream.hpp"

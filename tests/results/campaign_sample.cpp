@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "scenarios/files/study_file.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "tests/results/made_up_campaign.hpp"

@@ -9,10 +9,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "analysis/methods/chain_numbers.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "plants/non_finite.hpp"
-#include "scenarios/files/study_file.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm::testing {

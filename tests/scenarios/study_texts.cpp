@@ -8,8 +8,8 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
-#include "scenarios/files/study_file.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "base/error.hpp"
 
 namespace mpm::testing {
 

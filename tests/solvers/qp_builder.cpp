@@ -1,6 +1,6 @@
 #include "tests/solvers/qp_builder.hpp"
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm::samples {
 namespace {

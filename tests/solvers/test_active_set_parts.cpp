@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/active_set_certificate.hpp"
 #include "solvers/active_set_correction.hpp"
 #include "solvers/active_set_curvature.hpp"

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/non_finite.hpp"
 #include "plants/models/catalogue.hpp"
-#include "plants/non_finite.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/ipopt_solver.hpp"
 #include "solvers/mpc_qp.hpp"

@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/active_set_certificate.hpp"
 #include "solvers/active_set_dual.hpp"
 #include "solvers/active_set_solver.hpp"

@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "solvers/qp_solver.hpp"
 #include "tests/solvers/qp_builder.hpp"

@@ -6,7 +6,7 @@
 #include <Eigen/QR>
 #include <catch2/catch.hpp>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/equilibrated_program.hpp"
 #include "tests/solvers/qp_builder.hpp"

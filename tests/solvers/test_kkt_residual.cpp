@@ -1,7 +1,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/qp.hpp"
 #include "tests/solvers/qp_builder.hpp"
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/linear_vertex.hpp"

@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "tests/solvers/small_loop.hpp"
 
 // How the controller behaves in a closed loop, and what it refuses.

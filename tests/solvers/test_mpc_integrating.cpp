@@ -2,9 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/non_finite.hpp"
 #include "solvers/mpc.hpp"
 
 // The controller of a CV that integrates.

@@ -4,9 +4,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/non_finite.hpp"
 #include "tests/solvers/small_loop.hpp"
 
 // MVs and CVs that operators take from the controller for a while.

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "tests/solvers/p1_controller.hpp"
 
 // Every refusal of the controller's options, by the quantity it has to name.

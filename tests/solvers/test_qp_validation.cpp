@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/qp.hpp"
 #include "tests/solvers/qp_builder.hpp"
 

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
-#include "scenarios/files/study_change.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_change.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "solvers/qp_solver.hpp"
 
 namespace {

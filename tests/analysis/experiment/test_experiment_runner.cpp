@@ -5,8 +5,8 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
-#include "plants/same_members.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/same_members.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -5,10 +5,10 @@
 
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/judgement.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/nonlinear/quadruple_tank.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "tests/analysis/experiment/brittle_tank.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/experiment/fault_cost.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/world.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

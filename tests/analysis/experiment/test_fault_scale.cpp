@@ -5,7 +5,7 @@
 
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/fault_scale.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace {

@@ -3,8 +3,8 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/judgement_changes.hpp"
 #include "analysis/findings/kind_findings.hpp"
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "tests/analysis/made_up_record.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/findings/study_findings.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

@@ -5,7 +5,7 @@
 
 #include "analysis/experiment/repair.hpp"
 #include "analysis/findings/repair_findings.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/historian.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -6,7 +6,7 @@
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/repair_gain.hpp"
 #include "analysis/experiment/repaired_model.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // What the repair of a channel would bring, in worlds in which it is known.

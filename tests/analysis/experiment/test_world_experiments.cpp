@@ -3,7 +3,7 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/sensitivity/loop_stability.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/findings/fault_size.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "tests/analysis/made_up_record.hpp"
 

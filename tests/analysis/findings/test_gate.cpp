@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/findings/gate.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace {

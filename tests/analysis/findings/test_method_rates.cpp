@@ -7,9 +7,9 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/findings/method_rates.hpp"
-#include "analysis/methods/badwe2009.hpp"
+#include "analysis/methods/literature/badwe2009.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "tests/analysis/made_up_record.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/findings/monitored_loop.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
 // Windows of 100 samples every 50, in records of 400 samples of 4 min: they end at 100, 150, ... 400.

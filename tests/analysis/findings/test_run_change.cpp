@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/findings/run_change.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
 namespace mpm {

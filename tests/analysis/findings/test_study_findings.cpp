@@ -5,7 +5,7 @@
 
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/indicators/diagnosis.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
 namespace {

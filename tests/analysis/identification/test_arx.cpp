@@ -5,7 +5,7 @@
 
 #include "analysis/identification/arx.hpp"
 #include "analysis/identification/least_squares.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::Identification;

@@ -6,7 +6,7 @@
 
 #include "analysis/identification/autoregression.hpp"
 #include "analysis/statistics/sample_spacing.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/signals.hpp"
 

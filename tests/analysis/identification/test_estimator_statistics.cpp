@@ -10,7 +10,7 @@
 
 #include "analysis/identification/prediction_error.hpp"
 #include "analysis/identification/prediction_error_fit.hpp"
-#include "analysis/methods/partial_correlation.hpp"
+#include "analysis/methods/literature/partial_correlation.hpp"
 #include "analysis/statistics/autocorrelation.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "tests/analysis/exact_interval.hpp"

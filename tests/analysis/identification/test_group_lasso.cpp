@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/group_lasso.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/signals.hpp"
 
 namespace mpm {

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/kalman_whitening.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 namespace mpm {

@@ -2,7 +2,7 @@
 
 #include "analysis/identification/least_squares.hpp"
 #include "analysis/identification/nested_least_squares.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::kRankTolerance;

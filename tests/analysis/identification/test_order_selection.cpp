@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/order_selection.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::OrderCriterion;

@@ -15,8 +15,8 @@
 #include "analysis/identification/prediction_error_options.hpp"
 #include "analysis/identification/signal_bank.hpp"
 #include "analysis/statistics/discrete_filter.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::OutputErrorFit;

@@ -6,7 +6,7 @@
 
 #include "analysis/identification/polynomial_model.hpp"
 #include "analysis/identification/prediction_error.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::PolynomialModel;

@@ -7,7 +7,7 @@
 #include "analysis/identification/prediction_error_fit.hpp"
 #include "analysis/identification/prediction_error_search.hpp"
 #include "analysis/identification/prediction_error_start.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::box_jenkins_order;

@@ -7,8 +7,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/prewhitened_test.hpp"
-#include "analysis/methods/error_regression.hpp"
-#include "plants/non_finite.hpp"
+#include "analysis/methods/shared/error_regression.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/signals.hpp"
 

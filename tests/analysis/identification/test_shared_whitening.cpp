@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/shared_whitening.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/transfer_function.hpp"
-#include "plants/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 namespace mpm {

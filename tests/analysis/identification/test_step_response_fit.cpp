@@ -3,11 +3,11 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/identification/step_test.hpp"
-#include "plants/error.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/step_response_fit.hpp"
 #include "plants/linear/transfer_matrix.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {

@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/indicators/acf_comparison.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/column_checks.hpp"
 #include "tests/analysis/signals.hpp"
 

@@ -7,8 +7,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/indicators/acf_oscillation.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 using Eigen::Index;

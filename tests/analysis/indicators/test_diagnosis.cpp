@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/indicators/diagnosis.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 TEST_CASE("location margin: how much farther the first index is from 1 than the second") {

@@ -7,7 +7,7 @@
 
 #include "analysis/indicators/distribution_indicators.hpp"
 #include "analysis/indicators/scatter_ellipse.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/column_checks.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/plants/allocation_counter.hpp"

@@ -8,8 +8,8 @@
 #include "analysis/indicators/mpm_indicator.hpp"
 #include "analysis/statistics/correlation.hpp"
 #include "analysis/statistics/moving_moments.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/plants/allocation_counter.hpp"
 

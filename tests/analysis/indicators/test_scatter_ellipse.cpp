@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/indicators/scatter_ellipse.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/signals.hpp"
 
 using Eigen::Index;

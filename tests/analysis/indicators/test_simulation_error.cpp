@@ -4,7 +4,7 @@
 
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/indicators/simulation_error.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/assessment_record.hpp"
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 
 // An answer as it is kept: every number in its place, and back again by its name.
 

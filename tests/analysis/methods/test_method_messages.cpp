@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/methods/method_messages.hpp"
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 
 // What methods from outside are told and what they answer: docs/bring_your_own.md.
 

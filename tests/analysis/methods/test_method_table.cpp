@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/method_table.hpp"
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

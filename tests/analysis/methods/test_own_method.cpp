@@ -6,11 +6,11 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/files/resolved_study.hpp"
-#include "scenarios/files/study_change.hpp"
-#include "scenarios/files/study_file.hpp"
-#include "scenarios/files/study_file_keys.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/resolved_study.hpp"
+#include "analysis/study_files/study_change.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "analysis/study_files/study_file_keys.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/toml/option_keys.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -7,8 +7,8 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "scenarios/files/study_file.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/historian.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

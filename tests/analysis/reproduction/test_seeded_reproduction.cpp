@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/reproduction/seeded_reproduction.hpp"
-#include "plants/non_finite.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

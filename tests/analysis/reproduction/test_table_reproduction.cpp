@@ -10,8 +10,8 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/reproduction/scenario_quantities.hpp"
 #include "analysis/reproduction/table_reproduction.hpp"
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

@@ -6,8 +6,8 @@
 
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
-#include "plants/non_finite.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/non_finite.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // Which constraints a controller works at, and y0 by the S0 of each (assumptions A, B and C of 3.3.3).

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/sensitivity/identified_sensitivity.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/identification/identification_samples.hpp"
 
 using mpm::IdentificationStatus;

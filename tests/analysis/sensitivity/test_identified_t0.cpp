@@ -7,9 +7,9 @@
 
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/statistics/quantile.hpp"
-#include "plants/error.hpp"
-#include "scenarios/files/study_file.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 
 using namespace mpm;
 

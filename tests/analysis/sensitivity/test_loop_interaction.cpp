@@ -6,8 +6,8 @@
 
 #include "analysis/sensitivity/loop_interaction.hpp"
 #include "analysis/sensitivity/relative_gain.hpp"
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 
 using mpm::active_frequency_response;
 using mpm::ConstraintKind;

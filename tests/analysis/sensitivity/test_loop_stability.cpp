@@ -6,9 +6,9 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/sensitivity/loop_stability.hpp"
-#include "plants/non_finite.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/controller/controller_program.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -6,8 +6,8 @@
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/sensitivity/unsettled.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/autocorrelation.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 using Eigen::Index;

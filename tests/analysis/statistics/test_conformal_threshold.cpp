@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/conformal_threshold.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {

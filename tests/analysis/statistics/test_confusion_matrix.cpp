@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/confusion_matrix.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 using mpm::ConfusionMatrix;
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/estimate.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {

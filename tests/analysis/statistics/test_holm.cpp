@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/holm.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace mpm {
 namespace {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/interval.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/exact_interval.hpp"
 
 namespace {

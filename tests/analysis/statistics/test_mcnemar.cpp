@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/mcnemar.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/one_class_svm.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "tests/analysis/signals.hpp"
 
 namespace mpm {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/quantile.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 
 using mpm::sorted_quantile;
 

@@ -10,8 +10,8 @@
 
 #include "analysis/statistics/correlation.hpp"
 #include "analysis/statistics/regression.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "tests/analysis/signals.hpp"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/roc.hpp"
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "analysis/statistics/clustered_rate.hpp"
 #include "analysis/statistics/mcnemar.hpp"
 #include "analysis/statistics/share_difference.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/statistics/truncated_normal.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {

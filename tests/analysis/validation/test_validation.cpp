@@ -5,11 +5,11 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "analysis/validation/benchmark_period.hpp"
 #include "analysis/validation/study_forecast.hpp"
 #include "analysis/validation/study_warnings.hpp"
-#include "plants/non_finite.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/study_files/study_library.hpp"
 #include "bench/perf/qp_sequence.hpp"
-#include "scenarios/files/study_library.hpp"
 
 namespace mpm {
 

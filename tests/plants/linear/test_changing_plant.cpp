@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/linear/changing_plant.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/nonlinear/ode_plant.hpp"

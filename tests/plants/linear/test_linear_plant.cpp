@@ -3,9 +3,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/non_finite.hpp"
 #include "tests/plants/plant_samples.hpp"
 
 // Properties of LinearPlant as a whole: superposition, steady states, copies, refused input.

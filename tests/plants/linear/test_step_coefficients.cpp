@@ -2,10 +2,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/zero_order_hold.hpp"
-#include "plants/non_finite.hpp"
 #include "tests/plants/plant_samples.hpp"
 
 // Channels by the coefficients of their step responses.

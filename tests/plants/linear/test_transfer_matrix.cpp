@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/linear/transfer_matrix.hpp"
 #include "tests/plants/plant_samples.hpp"
 

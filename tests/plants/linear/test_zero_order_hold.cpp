@@ -3,9 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/linear/zero_order_hold.hpp"
-#include "plants/non_finite.hpp"
 #include "tests/plants/plant_samples.hpp"
 
 namespace mpm {

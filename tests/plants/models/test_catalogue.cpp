@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/models/catalogue.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/models/catalogue.hpp"
 #include "plants/nonlinear/deviation_plant.hpp"

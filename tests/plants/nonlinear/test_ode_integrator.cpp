@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/nonlinear/ode_integrator.hpp"
 #include "plants/nonlinear/ode_plant.hpp"
 

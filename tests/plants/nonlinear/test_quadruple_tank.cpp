@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/nonlinear/ode_plant.hpp"
 #include "plants/nonlinear/quadruple_tank.hpp"
 

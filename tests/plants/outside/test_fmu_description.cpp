@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/outside/fmu_description.hpp"
 
 namespace mpm {

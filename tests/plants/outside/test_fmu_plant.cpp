@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/nonlinear/foreign_plant.hpp"
 #include "plants/nonlinear/quadruple_tank.hpp"
 #include "plants/outside/fmu_instance.hpp"

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/nonlinear/foreign_plant.hpp"
 #include "plants/outside/program_model.hpp"

@@ -4,11 +4,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/non_finite.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "base/non_finite.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/files/archive_error.hpp"
-#include "scenarios/files/study_file.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "tests/results/made_up_campaign.hpp"

@@ -5,7 +5,8 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "analysis/methods/chain_numbers.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
+#include "analysis/study_files/study_file.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/archive_record_reader.hpp"
 #include "results/archive/hdf5_file.hpp"
@@ -14,7 +15,6 @@
 #include "results/document/document_text.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/files/study_file.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/csv_table.hpp"
 #include "tests/results/made_up_campaign.hpp"

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "analysis/methods/chain_numbers.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/csv_table.hpp"
 #include "results/archive/record_bytes.hpp"

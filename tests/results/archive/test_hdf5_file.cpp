@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/atomic_file.hpp"

@@ -10,8 +10,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "analysis/methods/chain_numbers.hpp"
-#include "plants/error.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
+#include "base/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/files/byte_stream.hpp"

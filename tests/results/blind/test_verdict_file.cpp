@@ -6,10 +6,10 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "results/blind/blind_loops.hpp"
 #include "results/blind/verdict_file.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "solvers/qp_solver.hpp"
 #include "tests/results/made_up_campaign.hpp"
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/findings/loop_outcome.hpp"
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/gates/board_gates.hpp"
 #include "results/gates/gate_report.hpp"
 

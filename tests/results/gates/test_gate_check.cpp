@@ -2,10 +2,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "base/error.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_report.hpp"
-#include "scenarios/files/study_file.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

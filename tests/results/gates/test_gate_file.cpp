@@ -2,11 +2,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_file.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 #include "tests/scenarios/study_texts.hpp"
 

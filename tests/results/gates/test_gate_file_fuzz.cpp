@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_report.hpp"
 #include "tests/results/made_up_campaign.hpp"

@@ -7,13 +7,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/study_files/study_library.hpp"
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/gnuplot.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/svg_text.hpp"
 #include "results/plot/trajectory_figure.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

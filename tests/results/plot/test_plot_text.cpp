@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/plot/figure_format.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/text/experiment_text.hpp"

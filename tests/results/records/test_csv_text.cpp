@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/files/csv_text.hpp"
 
 // The one rule by which the CSV of others is read, and what this program writes for spreadsheets.

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "results/records/implausible_values.hpp"
 
 // What no instrument has measured is found, and nothing that one can measure.

@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/archive/archive.hpp"
 #include "results/records/netcdf_columns.hpp"
 #include "tests/results/made_up_campaign.hpp"

@@ -6,12 +6,12 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include "plants/error.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "base/error.hpp"
 #include "results/records/csv_columns.hpp"
 #include "results/records/plant_record_file.hpp"
 #include "results/records/time_stamps.hpp"
 #include "results/records/written_date.hpp"
-#include "scenarios/files/study_file.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
 // Files of records: their text, their time stamps, and the samples that come of them.

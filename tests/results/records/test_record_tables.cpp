@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "results/files/utf8.hpp"
 #include "results/records/csv_columns.hpp"
 #include "results/records/data_sketch.hpp"

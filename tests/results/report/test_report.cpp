@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/method_rates.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "results/archive/archive.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/document/document_html.hpp"

@@ -7,7 +7,7 @@
 
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/method_words.hpp"
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "results/document/document_json.hpp"
 #include "results/document/document_text.hpp"
 #include "results/summary/comparison.hpp"

@@ -8,9 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "plants/error.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "scenarios/files/study_file.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/study/study_controller.hpp"

@@ -4,9 +4,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "scenarios/faults/other_fault.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/fault_draw.hpp"
 #include "scenarios/loop/signals.hpp"

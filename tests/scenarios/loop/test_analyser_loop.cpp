@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

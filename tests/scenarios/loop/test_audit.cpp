@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/audit.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "scenarios/files/study_file.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "base/error.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
 

@@ -2,13 +2,13 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/nonlinear/deviation_plant.hpp"
 #include "plants/nonlinear/ode_plant.hpp"
 #include "plants/nonlinear/quadruple_tank.hpp"
-#include "scenarios/files/study_file.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/scenarios/study_texts.hpp"

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/error.hpp"
 #include "scenarios/loop/draw.hpp"
 
 namespace {

@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "scenarios/files/study_file.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/scenarios/study_texts.hpp"

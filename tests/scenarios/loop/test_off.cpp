@@ -6,9 +6,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/non_finite.hpp"
-#include "scenarios/files/study_file.hpp"
-#include "scenarios/files/study_library.hpp"
+#include "analysis/study_files/study_file.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/off_schedule.hpp"

@@ -6,9 +6,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/study_files/study_file.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "scenarios/files/study_file.hpp"
-#include "scenarios/files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"

@@ -7,8 +7,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
-#include "plants/non_finite.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "tests/scenarios/goodness_of_fit.hpp"
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/study/window_scan.hpp"
 
 namespace {

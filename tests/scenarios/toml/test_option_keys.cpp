@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "plants/error.hpp"
+#include "base/error.hpp"
 #include "scenarios/toml/option_keys.hpp"
 #include "scenarios/toml/toml_draft.hpp"
 #include "scenarios/toml/toml_table.hpp"

@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include "plants/non_finite.hpp"
+#include "base/non_finite.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
 #include "solvers/lanes/lane_kernels.hpp"
 #include "solvers/lanes/lane_vector.hpp"

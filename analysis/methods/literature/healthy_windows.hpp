@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/literature/model_comparison.hpp"
+#include "analysis/statistics/one_class_svm.hpp"
+
+namespace mpm {
+
+/// How records are cut into windows, and when a window is outside.
+struct WindowRule {
+  Eigen::Index window = 0;  ///< samples
+  Eigen::Index step = 0;    ///< samples from the start of a window to that of the next one
+  double nu = 0.01;         ///< share of what a machine learns from that it leaves outside
+  double share = 0.5;       ///< share of the windows of a record that must lie outside
+
+  /// Of a record of this many samples.
+  Eigen::Index windows(Eigen::Index samples) const {
+    return samples < window ? 0 : (samples - window) / step + 1;
+  }
+};
+
+/// Plants and noise models of the overlapping windows of a healthy period of one CV, and two one-class
+/// support vector machines that have learnt them (Lu, Forbes, Loewen, Backstroem, Dumont and Gopaluni 2020).
+///
+/// In each window the noise model of e - X b_0, the autoregression of least BIC, prewhitens e and X, and
+/// least squares give the plant b, as in `prewhitened_groups`. The points of the machines are the models in
+/// units of their own standard errors, for those of b grow with the noise and shrink with the excitation:
+///
+/// - plant (m numbers): L^-1 R (b - b_0) with R'R = (A X)'(A X) / sigma^2 and L L' = I + R C_0 R',
+/// - noise (p + 1): L^-1 R (a - a_0) with R'R = C_a^-1 and L L' = I + R C_a0 R', and the logarithm of the
+///   ratio of the variances of the innovations over its standard deviation,
+///
+/// with a of `kHighestNoiseOrder`. b_0, a_0 and the variance of the whole period contain each of its windows,
+/// whose deviations are therefore divided by sqrt(1 - window/N). Few of the windows are independent,
+/// N/window: a machine learns from them and from points that are drawn, `kMachinePoints` in all, with the
+/// covariance of the windows drawn towards one variance in all directions, of weight m against N/window, and
+/// no less than 1.
+class HealthyWindows {
+ public:
+  /// @throws InputError as `refined_groups`, and when the period is not longer than a window
+  HealthyWindows(const PlantAndNoise& period, const WindowRule& rule);
+
+  /// OneClassSvm::outsideness() that more than the share of the windows of the record exceed: above 0 they
+  /// lie outside. The noise of a window is e - X b_0 where its plant is inside, and e - X b of
+  /// `refined_groups` where it is not; less than 1 % of the variance of X (b - b_0) is not judged. -infinity
+  /// without a regressor, or without noise.
+  struct Outside {
+    double plant, noise;
+  };
+  /// @throws InputError as `refined_groups`, and for a record that is shorter than a window
+  Outside outside(const PlantAndNoise& record) const;
+
+ private:
+  Eigen::VectorXd plant_point(const PlantAndNoise& window, bool own) const;
+  Eigen::VectorXd noise_point(const Eigen::VectorXd& v, bool own) const;
+  PlantAndNoise window_of(const PlantAndNoise& record, Eigen::Index number) const;
+  std::optional<OneClassSvm> machine_of(const std::vector<Eigen::VectorXd>& points) const;
+  Outside outside_window(const PlantAndNoise& window) const;
+
+  WindowRule rule_;
+  HealthyModel whole_;
+  NoiseEstimate noise_;
+  Eigen::MatrixXd noise_covariance_;
+  double own_deviation_;  ///< sqrt(1 - window/N)
+  double independent_;    ///< N/window
+  std::optional<OneClassSvm> plants_, noises_;
+};
+
+/// Points that a machine learns from, those of the windows among them.
+inline constexpr Eigen::Index kMachinePoints = 300;
+
+}  // namespace mpm

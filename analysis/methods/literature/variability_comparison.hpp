@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/statistics/interval.hpp"
+#include "base/non_finite.hpp"
+
+namespace mpm {
+
+/// Options of `compare_variability`.
+struct VariabilityOptions {
+  /// Of the limits of each eigenvalue (2.10), (2.11) and of the angles (2.14). The thesis takes 0.95.
+  double confidence = 0.95;
+  /// Largest lag of the sum (2.9); 0: all, as the thesis prints it. All lags overstate the sum and so widen
+  /// the limits (`autocorrelation_factor`): a change is called significant too rarely, not too often.
+  Eigen::Index largest_lag = 0;
+
+  /// @throws InputError unless 0 < confidence < 1 and largest_lag >= 0
+  void validate() const;
+  bool operator==(const VariabilityOptions&) const = default;
+};
+
+/// What became of the variability along a direction, or of a CV.
+enum class VariabilityChange : std::int8_t {
+  none = 0,    ///< 1 lies within the limits
+  worse = 1,   ///< both limits lie above 1
+  better = 2,  ///< both limits lie below 1
+};
+
+/// "none", "worse" or "better".
+std::string_view to_string(VariabilityChange change);
+
+/// One generalised eigenvector (2.8).
+struct VariabilityDirection {
+  double mu = kNaN;           ///< ratio of the variances along it
+  Eigen::VectorXd p;          ///< ny; unit length
+  double f_benchmark = kNaN;  ///< f_I of (2.9)
+  double f_monitored = kNaN;  ///< f_II of (2.9)
+  Interval limits;  ///< LL (2.11), UL (2.10); the latter is +infinity for records that are too short
+  VariabilityChange change = VariabilityChange::none;
+};
+
+enum class VariabilityStatus : std::int8_t {
+  ok = 0,
+  /// The control errors of the benchmark are linearly dependent: some direction has no variance to compare
+  /// with, and I_v has none to be divided by. Nothing else is known then.
+  singular_benchmark = 1,
+};
+
+/// "ok" or "singular benchmark".
+std::string_view to_string(VariabilityStatus status);
+
+/// The result of a comparison of a monitored period with a benchmark period.
+struct VariabilityComparison {
+  VariabilityStatus status = VariabilityStatus::ok;
+  double i_v = kNaN;                             ///< I_v (2.7), the product of all mu
+  std::vector<VariabilityDirection> directions;  ///< ny of them, mu descending
+  Eigen::VectorXd cos_worse;                     ///< cos theta^w (2.12) of each CV
+  Eigen::VectorXd cos_better;                    ///< cos theta^b (2.13) of each CV
+  /// (2.14): a CV whose cosine is above it is to be held responsible for the change, and may be for both.
+  double beta = kNaN;
+};
+
+/// Compares the variability of the control errors of two periods, after Yu and Qin (2008), section 2.2.2 and
+/// appendix A1.3 of the thesis:
+///
+///   I_v = det cov(e_II) / det cov(e_I)       (2.7)
+///   cov(e_II) p = mu cov(e_I) p              (2.8)
+///
+/// with limits of each mu from the autocorrelation of the errors along p (2.9 to 2.11), and the CVs near to
+/// the subspaces of those p whose mu is significantly above or below 1 (2.12 to 2.14; (2.13) is printed with
+/// P_w in place of P_b).
+///
+/// | symbol    | name               | meaning                                  | shape     | unit  |
+/// |-----------|--------------------|------------------------------------------|-----------|-------|
+/// | e_I, e_II | benchmark, monitored | control errors y - y_set of the periods | ny x ns_d | of CV |
+///
+/// The periods may differ in length. mu, I_v and the limits do not depend on the units of the CVs, nor on any
+/// other linear map of the errors; the angles do. A constant offset has no covariance and is not seen.
+/// @throws InputError for no CV, fewer than 2 samples, different numbers of CVs, values that are not finite,
+///   and invalid options
+VariabilityComparison compare_variability(const Eigen::Ref<const Eigen::MatrixXd>& benchmark,
+                                          const Eigen::Ref<const Eigen::MatrixXd>& monitored,
+                                          const VariabilityOptions& options = {});
+
+}  // namespace mpm

@@ -1,0 +1,60 @@
+#include "analysis/methods/method_file.hpp"
+
+#include <sstream>
+#include <string_view>
+
+#include "scenarios/toml/toml_file.hpp"
+#include "scenarios/toml/toml_table.hpp"
+#include "scenarios/toml/toml_text.hpp"
+#include "scenarios/toml/toml_values.hpp"
+
+namespace mpm {
+namespace {
+
+const std::vector<std::string> kMethodKeys{"command", "time_limit", "options"};
+
+bool is_method_name(std::string_view name) {
+  constexpr std::size_t kLongest = 64;
+  return !name.empty() && name.size() <= kLongest &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
+             std::string_view::npos;
+}
+
+std::string program_options(const TomlTable& table) {
+  const toml::node* const node = table.find("options");
+  if (node == nullptr)
+    return "{}";
+  if (!node->is_table())
+    table.refuse("options", describe(*node), "a table");
+  std::ostringstream text;
+  text << toml::json_formatter{*node->as_table()};
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<MethodProgram> load_method_file(const std::filesystem::path& path) {
+  const std::string file_name = path.string();
+  const toml::table toml = parse_toml(read_toml_file(path, "a file of methods"), file_name);
+  const TomlTable document(toml, file_name, {"method"});
+  std::vector<std::string> names;
+  if (const toml::table* const methods = toml["method"].as_table())
+    for (const auto& [name, value] : *methods)
+      names.emplace_back(name.str());
+  const TomlTable methods = document.table("method", names);
+  if (names.empty())
+    methods.refuse("", "no method", "tables [method.NAME]");
+  std::vector<MethodProgram> programs;
+  for (const std::string& name : names) {
+    if (!is_method_name(name))
+      methods.refuse(name, in_quotes(name), "a name of 1 to 64 letters, digits, '-' and '_'");
+    const TomlTable table = methods.table(name, kMethodKeys);
+    MethodProgram program{
+        .name = name, .command = read_command(table, "command"), .options = program_options(table)};
+    program.time_limit = read_time_limit_or(table, "time_limit", program.time_limit);
+    programs.push_back(std::move(program));
+  }
+  return programs;
+}
+
+}  // namespace mpm

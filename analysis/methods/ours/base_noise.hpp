@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/ours/disturbance_scan.hpp"
+#include "scenarios/random/random_stream.hpp"
+
+namespace mpm {
+
+/// Samples of a record from which a noise can be fitted.
+inline constexpr Eigen::Index kFewestNoiseSamples = 10;
+
+/// The noise that simulation errors `e` (N, NaN where there is no sample) of a healthy loop show: white, an
+/// AR(1), or an AR(1) state under white noise, whichever has the largest log L - p log(N) / 2 with its p
+/// parameters. The last one is what the errors look like where a plant is not quite its model. Its deviation
+/// is `least` or more. Throws InputError for fewer than
+/// kFewestNoiseSamples samples.
+BaseNoise fitted_base_noise(const Eigen::Ref<const Eigen::RowVectorXd>& e, double least);
+
+/// Noises with the same phi, and the logarithm of the posterior probability of each.
+struct PossibleNoises {
+  double phi = 0.0;
+  Eigen::ArrayXd a, b, log_weight;  ///< a and b of BaseNoise
+};
+
+/// Noises that a healthy record leaves possible: the fitted one, and all that have been tried for it. Before
+/// the record is seen, white noise, an AR(1) with any phi, and AR(1) states under white noise are as probable
+/// as each other.
+struct NoisePosterior {
+  BaseNoise best;
+  std::vector<PossibleNoises> possible;  ///< none: the best is known
+  double log_evidence = 0.0;             ///< of the record, all of them counted
+};
+
+/// A slow disturbance of up to this part of the standard deviation of the measurement noise is background,
+/// which healthy loops have too: it adds a quarter to the variance of the noise.
+inline constexpr double kLargestBackground = 0.5;
+
+/// N samples of this noise, CV unit, from its stationary state on.
+Eigen::RowVectorXd drawn_noise(const BaseNoise& noise, Eigen::Index samples, RandomStream& random);
+
+/// Standard deviation of the slow part of a noise over that of its white part.
+double slow_part(const BaseNoise& noise);
+
+/// Counts backgrounds that the record does not show among those that are possible: a small part of the weight
+/// goes to each AR(1) state up to kLargestBackground, since a background may be another one next month.
+void add_unseen_backgrounds(NoisePosterior& noise, Eigen::Index samples);
+
+/// For simulation errors of which the rows of `directions` (q x N, q > 0, CV unit) explain a part with
+/// coefficients z ~ N(0, I), which are integrated out.
+NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
+                               const Eigen::Ref<const Eigen::MatrixXd>& directions, double least);
+
+/// The standard deviation of white noise whose differences between neighbours are as those of `e` in the
+/// median: what changes slowly hardly adds to it. Neighbours are as far apart as the samples of the signal
+/// (sample_spacing()). 0 without neighbours.
+double deviation_of_steps(const Eigen::Ref<const Eigen::RowVectorXd>& e);
+
+/// The record without outliers: samples that are off the median of two neighbours on each side by more than
+/// six standard deviations of that distance over the record (from its median), and by more than twice the
+/// range of these neighbours, so that a signal which rises steeply for a while keeps its samples. NaN there,
+/// as where there is no sample.
+Eigen::RowVectorXd without_outliers(const Eigen::Ref<const Eigen::RowVectorXd>& e);
+
+}  // namespace mpm

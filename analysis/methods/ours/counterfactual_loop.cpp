@@ -1,0 +1,227 @@
+#include "analysis/methods/ours/counterfactual_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <boost/math/distributions/students_t.hpp>
+
+#include "analysis/indicators/diagnosis.hpp"
+#include "analysis/methods/ours/base_noise.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
+#include "analysis/statistics/variance.hpp"
+#include "analysis/statistics/washout.hpp"
+#include "base/non_finite.hpp"
+#include "plants/analyser.hpp"
+#include "scenarios/loop/signals.hpp"
+#include "scenarios/random/random_stream.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kLeastNominalShare = 0.1;
+constexpr std::uint64_t kNoiseSeed = 47;
+
+/// e = y - y_sim of the whole record, its gaps closed.
+Eigen::MatrixXd errors_of(const Study& study, const AssessedLoop& whole) {
+  return from_washout(study, whole.y - whole.y_sim);
+}
+
+}  // namespace
+
+CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
+    : study_(context.study),
+      learnt_(context.learnt),
+      plant_(learnt_ ? learnt_->plant() : context.study.plant.G),
+      factory_(context.factory),
+      y_set_(setpoints(context.study)),
+      dither_(dither(context.study)),
+      loops_(static_cast<std::size_t>(context.study.cv_count()) + 1) {
+  const Eigen::MatrixXd y_basis = gaps_closed(recorded_basis(context));
+  const Study& of_basis = context.study_of_benchmark();
+  const SetpointTrajectories centres = variance_centres(of_basis, 0, y_basis.cols());
+  const Eigen::MatrixXd quiet = Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols());
+  const Trajectory nominal =
+      run_closed_loop(of_basis, plant_,
+                      {.d = as_taken(of_basis.controller.md_analysers, context.basis.trajectory.d),
+                       .noise = quiet,
+                       .y_d = quiet,
+                       .y_set = setpoints(of_basis),
+                       .dither = dither_},
+                      factory_);
+  if (nominal.status == ControlStatus::ok)
+    noise_ = noise_variance(variances(y_basis, centres), variances(nominal.y, centres));
+}
+
+Assessment CounterfactualLoop::impact(const AssessedLoop& loop) {
+  if (noise_.size() == 0)
+    return Assessment::failed("the controller does not run on its own model without noise");
+  const AssessedLoop& whole = loop.from_start();
+  const Trajectory& nominal = simulated(0, whole.d, Eigen::MatrixXd::Zero(whole.y.rows(), whole.y.cols()));
+  if (nominal.status != ControlStatus::ok)
+    return Assessment::failed("the controller does not run on its own model under these disturbances");
+  Eigen::VectorXd ivar = indices(loop, nominal, noise_);
+  chance_.setZero(ivar.size());
+  if (learnt_ && outside(ivar))
+    if (const std::optional<Eigen::VectorXd> under_noise = indices_under_noise(loop))
+      ivar = *under_noise;
+  Assessment assessment;
+  assessment.score = 0.0;
+  for (Eigen::Index cv = 0; cv < ivar.size(); ++cv) {
+    assessment.score = std::max(assessment.score, distance(ivar(cv), cv));
+    assessment.flagged = assessment.flagged || has_impact(ivar(cv), cv);
+    assessment.numbers.push_back({"ivar", ivar(cv), cv});
+  }
+  return assessment;
+}
+
+Eigen::VectorXd CounterfactualLoop::ivar_diag(const AssessedLoop& loop) {
+  const AssessedLoop& whole = loop.from_start();
+  AssessedLoop corrected;
+  const Eigen::MatrixXd e = errors_of(study_, learnt_ ? learnt_->corrected(whole, corrected) : whole);
+  const bool is_drawn = chance_.size() > 0 && chance_.maxCoeff() > 0.0;
+  const Eigen::MatrixXd noise = is_drawn ? drawn_noise_of(e.cols(), 0) : Eigen::MatrixXd();
+  const Eigen::VectorXd added = is_drawn ? Eigen::VectorXd::Zero(e.rows()) : noise_;
+  Eigen::VectorXd found(e.rows());
+  for (Eigen::Index cv = 0; cv < e.rows(); ++cv) {
+    Eigen::MatrixXd others = e;
+    if (is_drawn)
+      others.row(cv) = noise.row(cv);
+    else
+      others.row(cv).setZero();
+    const Trajectory& nominal = simulated(static_cast<std::size_t>(cv) + 1, whole.d, others);
+    found(cv) = nominal.status == ControlStatus::ok ? indices(loop, nominal, added)(cv) : kNaN;
+  }
+  return found;
+}
+
+std::vector<CvAssessment> CounterfactualLoop::located(const Eigen::VectorXd& ivar_diag,
+                                                      const Assessment& impact) const {
+  const bool has_none = ivar_diag.array().isNaN().all();
+  std::vector<CvAssessment> cvs(static_cast<std::size_t>(ivar_diag.size()));
+  for (Eigen::Index cv = 0; cv < ivar_diag.size(); ++cv) {
+    const double ivar = has_none ? impact.number("ivar", cv) : ivar_diag(cv);
+    if (!std::isnan(ivar))
+      cvs[static_cast<std::size_t>(cv)] = {has_impact(ivar, cv), distance(ivar, cv)};
+  }
+  return cvs;
+}
+
+bool CounterfactualLoop::outside(const Eigen::VectorXd& ivar) const {
+  return std::any_of(ivar.begin(), ivar.end(),
+                     [&](double each) { return study_.diagnosis.has_impact(each); });
+}
+
+bool CounterfactualLoop::has_impact(double ivar, Eigen::Index cv) const {
+  return study_.diagnosis.has_impact(ivar) && std::abs(std::log(ivar)) > chance_(cv);
+}
+
+/// Of a variance index from 1, as the study measures it to locate a CV, as far as chance does not make it.
+double CounterfactualLoop::distance(double ivar, Eigen::Index cv) const {
+  const DiagnosisOptions& options = study_.diagnosis;
+  const double from_one = distance_from_one(ivar, options.location_distance);
+  if (chance_(cv) == 0.0)
+    return from_one;
+  const double edge =
+      distance_from_one(ivar > 1.0 ? options.impact_upper : options.impact_lower, options.location_distance);
+  return std::min(from_one, edge * std::abs(std::log(ivar)) / chance_(cv));
+}
+
+/// ny x N of the noise that the benchmark has shown, added to the outputs.
+Eigen::MatrixXd CounterfactualLoop::drawn_noise_of(Eigen::Index samples, int draw) const {
+  RandomStream random(kNoiseSeed, static_cast<std::uint64_t>(draw), StreamId::background);
+  Eigen::MatrixXd noise(study_.cv_count(), samples);
+  for (Eigen::Index cv = 0; cv < noise.rows(); ++cv)
+    noise.row(cv) = drawn_noise(learnt_->of(cv).noise(), samples, random);
+  return from_washout(study_, noise);
+}
+
+/// y0 of the whole record under each draw of the noise; empty if a loop does not run to its end.
+const std::vector<Eigen::MatrixXd>& CounterfactualLoop::outputs_under_noise(const Eigen::MatrixXd& d) {
+  if (drawn_d_.cols() == d.cols() && drawn_d_ == d)  // no MDs: 0 x N
+    return drawn_y_;
+  drawn_d_ = d;
+  drawn_y_.clear();
+  for (int draw = 0; draw < kNoiseDraws; ++draw) {
+    Trajectory nominal = run_closed_loop(study_, plant_,
+                                         {.d = d,
+                                          .noise = Eigen::MatrixXd::Zero(study_.cv_count(), d.cols()),
+                                          .y_d = drawn_noise_of(d.cols(), draw),
+                                          .y_set = y_set_,
+                                          .dither = dither_},
+                                         factory_);
+    if (nominal.status != ControlStatus::ok) {
+      drawn_y_.clear();
+      break;
+    }
+    drawn_y_.push_back(std::move(nominal.y));
+  }
+  return drawn_y_;
+}
+
+/// Ivar with the mean of the nominal variance over draws of the noise, ny, and what chance makes of it; none
+/// if a loop does not run to its end.
+std::optional<Eigen::VectorXd> CounterfactualLoop::indices_under_noise(const AssessedLoop& loop) {
+  const AssessedLoop& whole = loop.from_start();
+  const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
+  const std::vector<Eigen::MatrixXd>& outputs = outputs_under_noise(whole.d);
+  if (outputs.empty())
+    return std::nullopt;
+  Eigen::ArrayXXd drawn(whole.y.rows(), kNoiseDraws);
+  for (int draw = 0; draw < kNoiseDraws; ++draw)
+    drawn.col(draw) = variances(loop.in_window(outputs[static_cast<std::size_t>(draw)]), centres);
+  constexpr double n = kNoiseDraws;
+  const double tails = kChance / static_cast<double>(drawn.rows());
+  const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 1.0 - 0.5 * tails);
+  const Eigen::ArrayXXd logs = drawn.log();
+  const Eigen::ArrayXd squares = (logs.colwise() - logs.rowwise().mean()).square().rowwise().sum();
+  chance_ = t * (squares * (1.0 + 1.0 / n) / (n - 1.0)).sqrt();
+  const Eigen::MatrixXd y = loop.in_window(from_washout(study_, whole.y_sim) + errors_of(study_, whole));
+  return variances(y, centres).cwiseQuotient(drawn.rowwise().mean().matrix());
+}
+
+/// v of each CV from the variances of the benchmark and of the same loop without noise.
+Eigen::VectorXd CounterfactualLoop::noise_variance(const Eigen::VectorXd& noisy,
+                                                   const Eigen::VectorXd& quiet) const {
+  switch (study_.assessment.of<CounterfactualOptions>().noise) {
+    case NoiseVariance::difference:
+      return noisy - quiet;
+    case NoiseVariance::positive:
+      return (noisy - quiet).cwiseMax(0.0);
+    case NoiseVariance::none:
+      break;
+  }
+  return Eigen::VectorXd::Zero(noisy.size());
+}
+
+/// The loop of the controller on its model under the disturbances `d`, with `errors` added to the outputs.
+/// Each place keeps its last one: windows of a record ask for the same, and so do all records whose
+/// disturbances are those of the study.
+const Trajectory& CounterfactualLoop::simulated(std::size_t place, const Eigen::MatrixXd& d,
+                                                const Eigen::MatrixXd& errors) {
+  Simulated& kept = loops_[place];
+  if (kept.loop.y.size() == 0 || kept.d != d || kept.errors != errors) {
+    const LoopSignals signals{.d = d,
+                              .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
+                              .y_d = errors,
+                              .y_set = y_set_,
+                              .dither = dither_};
+    kept = {d, errors, run_closed_loop(study_, plant_, signals, factory_)};
+  }
+  return kept.loop;
+}
+
+/// var y / (var y0 + v) of each CV, ny.
+Eigen::VectorXd CounterfactualLoop::indices(const AssessedLoop& loop, const Trajectory& nominal,
+                                            const Eigen::Ref<const Eigen::VectorXd>& added) const {
+  const AssessedLoop& whole = loop.from_start();
+  const Eigen::MatrixXd y = loop.in_window(from_washout(study_, whole.y_sim) + errors_of(study_, whole));
+  const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
+  const Eigen::ArrayXd of_nominal = variance_indices(y, loop.in_window(nominal.y), centres);
+  // A v below 0 can outweigh a y0 that hardly moves: the nominal variance is not taken for less than a
+  // tenth of its own.
+  const Eigen::ArrayXd inverse = of_nominal.inverse() + added.array() / variances(y, centres).array();
+  return inverse.max(kLeastNominalShare * of_nominal.inverse()).inverse();
+}
+
+}  // namespace mpm

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/assessment.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+
+namespace mpm {
+
+/// What noise adds to the variance of a CV, of the method `counterfactual`: v of Ivar = var y / (var y0 + v).
+/// With var y_b that of the benchmark and var y0_b that of the same loop simulated without noise,
+enum class NoiseVariance : std::int8_t {
+  difference = 0,  ///< v = var y_b - var y0_b, which may be negative: noise also keeps CVs off their limits
+  positive = 1,    ///< v = max(0, var y_b - var y0_b): noise that adds to the variance or does nothing
+  none = 2,        ///< v = 0
+};
+
+/// Of the method `counterfactual`, analysis/methods/ours/counterfactual_method.
+struct CounterfactualOptions {
+  NoiseVariance noise = NoiseVariance::difference;
+
+  bool operator==(const CounterfactualOptions&) const = default;
+};
+
+/// Simulates the nominal loop itself, in place of filtering by S0. With the model G0 and the simulation
+/// errors e = y - y_sim of the record,
+///
+///   y0      = output of the controller on G0, under the recorded measured disturbances, without noise
+///   y0_diag = the same for CV i when the recorded errors e_j of all other CVs are added to the outputs of G0
+///   Ivar = var y / (var y0 + v),   Ivar_diag = var y_i / (var y0_diag,i + v_i),   v = var y_b - var y0_b
+///
+/// and G0 in the place of the plant corrected by what the benchmark shows of its errors
+/// (AssessmentContext::learnt), as in (3.24) and (4.14), but exact also where the loop leaves limits and
+/// reaches them again, for which no linear S0 exists: with the errors of all CVs added, the loop returns y. y
+/// contains noise and y0 does not; v is what noise adds to the variance, taken from the basis case y_b of the
+/// same controller (NoiseVariance has other choices). Gaps of e are filled by linear interpolation. For
+/// windows, the record is simulated once from its start.
+///
+/// v is of one realisation of the noise and of the excitation of the benchmark. A level that is free in its
+/// range has another variance in each record, and noise makes it smaller as often as larger. So, where errors
+/// of the model and its noise are learnt, an Ivar outside of the band is looked at again: the nominal loop is
+/// simulated under kNoiseDraws draws of that noise, with m the mean of var y0 over them and s the standard
+/// deviation of log var y0,
+///
+///   Ivar = var y / m,   c = s sqrt(1 + 1 / kNoiseDraws) t,   Ivar_diag = var y_i / var y0_diag,i
+///
+/// y0_diag with the first draw in CV i; t is the quantile of Student's distribution beyond which chance alone
+/// takes some CV with the probability kChance. An impact needs |log Ivar| > c, and the distance of Ivar from
+/// 1 counts as min(distance, a |log Ivar| / c) with a that of the edge of the band.
+class CounterfactualLoop {
+ public:
+  /// `context` must outlive it.
+  explicit CounterfactualLoop(const AssessmentContext& context);
+
+  /// Flagged if some Ivar lies outside the band of impact, with the number `ivar` of each CV and no verdict
+  /// on single CVs; failed if the controller does not run on its own model. Simulates one closed loop, and
+  /// kNoiseDraws more if an Ivar is outside; none of them if the disturbances are those of the record before.
+  Assessment impact(const AssessedLoop& loop);
+
+  /// Ivar_diag of each CV, ny; NaN if its loop does not run to its end. Simulates one closed loop for each
+  /// CV.
+  Eigen::VectorXd ivar_diag(const AssessedLoop& loop);
+
+  /// The verdict of Ivar_diag on each CV of a flagged loop; none where it is NaN. If all are NaN, no loop
+  /// runs to its end under the errors of the others, and Ivar of `impact` decides.
+  std::vector<CvAssessment> located(const Eigen::VectorXd& ivar_diag, const Assessment& impact) const;
+
+ private:
+  static constexpr int kNoiseDraws = 16;
+  static constexpr double kChance = 0.01;
+
+  /// A loop that was simulated, with what it was simulated under.
+  struct Simulated {
+    Eigen::MatrixXd d, errors;
+    Trajectory loop;
+  };
+
+  const Trajectory& simulated(std::size_t place, const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors);
+  Eigen::VectorXd noise_variance(const Eigen::VectorXd& noisy, const Eigen::VectorXd& quiet) const;
+  Eigen::VectorXd indices(const AssessedLoop& loop, const Trajectory& nominal,
+                          const Eigen::Ref<const Eigen::VectorXd>& added) const;
+  std::optional<Eigen::VectorXd> indices_under_noise(const AssessedLoop& loop);
+  const std::vector<Eigen::MatrixXd>& outputs_under_noise(const Eigen::MatrixXd& d);
+  Eigen::MatrixXd drawn_noise_of(Eigen::Index samples, int draw) const;
+  bool outside(const Eigen::VectorXd& ivar) const;
+  bool has_impact(double ivar, Eigen::Index cv) const;
+  double distance(double ivar, Eigen::Index cv) const;
+
+  const Study& study_;
+  std::shared_ptr<const LearntModel> learnt_;
+  TransferMatrix plant_;  ///< G0, or what the benchmark has shown of the plant
+  QpSolverFactory factory_;
+  Eigen::MatrixXd y_set_, dither_;
+  std::vector<Simulated> loops_;          ///< y0, then y0_diag of each CV
+  Eigen::MatrixXd drawn_d_;               ///< under which `drawn_y_` was simulated
+  std::vector<Eigen::MatrixXd> drawn_y_;  ///< y0 under each draw; empty where one does not run to its end
+  Eigen::VectorXd noise_;                 ///< v of each CV; empty when the basis case cannot be simulated
+  Eigen::VectorXd chance_;                ///< c of each CV of the last record; 0: no draws
+};
+
+}  // namespace mpm

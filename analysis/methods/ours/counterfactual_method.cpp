@@ -1,0 +1,60 @@
+#include <memory>
+
+#include "analysis/methods/assessment_method.hpp"
+#include "analysis/methods/ours/counterfactual_loop.hpp"
+#include "scenarios/toml/option_keys.hpp"
+
+namespace mpm {
+namespace {
+
+OptionKeys keys(CounterfactualOptions& options) {
+  return {key::choice(
+      "noise", options.noise, {"difference", "positive", "none"},
+      "v of Ivar = var y / (var y0 + v), what noise adds to the variance: var y - var y0 of the benchmark, "
+      "of either sign, since noise also keeps CVs off their limits; the same and not below 0; or 0")};
+}
+
+/// The impact by CounterfactualLoop; of a flagged loop, that of each CV.
+class Counterfactual final : public AssessmentMethod {
+ public:
+  explicit Counterfactual(const AssessmentContext& context) : nominal_(context) {}
+
+  Assessment assess(const AssessedLoop& loop) override {
+    Assessment assessment = nominal_.impact(loop);
+    if (assessment.status != AssessmentStatus::ok)
+      return assessment;
+    if (!assessment.flagged) {
+      assessment.cvs.resize(static_cast<std::size_t>(loop.y.rows()));
+      return assessment;
+    }
+    const Eigen::VectorXd ivar_diag = nominal_.ivar_diag(loop);
+    assessment.cvs = nominal_.located(ivar_diag, assessment);
+    for (Eigen::Index cv = 0; cv < ivar_diag.size(); ++cv)
+      assessment.numbers.push_back({"ivar_diag", ivar_diag(cv), cv});
+    return assessment;
+  }
+
+ private:
+  CounterfactualLoop nominal_;
+};
+
+}  // namespace
+
+AssessmentMethodInfo counterfactual_method() {
+  return {
+      {.name = "counterfactual",
+       .title = "counterfactual nominal output",
+       .verdict = "a modelling error has an impact: Ivar of some CV against the simulated nominal loop lies "
+                  "outside the band of impact",
+       .requirements = {.nominal_loop = true, .complete_record = false},
+       .locates_cvs = true,
+       .numbers = {{.name = "ivar",
+                    .meaning = "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise",
+                    .estimates_ivar_basis = true},
+                   {.name = "ivar_diag", .meaning = "var y / (var y0_diag + v), of flagged loops"}}},
+      {},
+      [](const AssessmentContext& context) { return std::make_unique<Counterfactual>(context); },
+      option_table<CounterfactualOptions>(keys, "of the simulated nominal loop")};
+}
+
+}  // namespace mpm

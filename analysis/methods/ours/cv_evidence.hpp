@@ -1,0 +1,87 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/ours/disturbance_scan.hpp"
+#include "analysis/methods/ours/fault_priors.hpp"
+#include "analysis/methods/ours/mismatch_responses.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
+#include "analysis/statistics/truncated_normal.hpp"
+
+namespace mpm {
+
+/// The evidence for one wrong parameter of one channel, in the order of CvPrior::mismatches.
+struct MismatchEvidence {
+  double log_evidence;  ///< the weight of channel, parameter and size among the mismatches of the CV included
+  double best_size;
+  double best_log_likelihood;
+  std::vector<TruncatedNormal> sizes;  ///< the posterior of the size, with log_evidence as its mass in all
+};
+
+/// Logarithms of the probability of one CV's simulation errors under each hypothesis about its fault.
+struct CvEvidence {
+  double healthy, mpm, ud, both;
+  std::vector<MismatchEvidence> mismatch_alone, mismatch_with_disturbance;
+  double disturbance_a, disturbance_b;  ///< of the best disturbance alone; b in CV units
+};
+
+/// The likelihood of the record of one CV. With e = y - y_sim of the CV and u the recorded MVs,
+///
+///   healthy      e = n
+///   mpm          e = m(theta) + n,        m(theta) = (G(theta) - G0) u of one channel and parameter
+///   ud           e = x + n,               x the disturbance, a first-order lag of white noise
+///   both         e = m(theta) + x + n
+///
+/// Where errors of the model are learnt (ModelErrors), G0 is the corrected model, and what is unknown of them
+/// is added to each hypothesis and integrated out. This is exact in closed loop, too: u(k) is made of what y
+/// was up to sample k, so that the probability of the record is the product of the probabilities of each y(k)
+/// given those before it and u, which the Kalman filter has. The sizes theta are integrated: between
+/// neighbours on a grid m is taken as a straight line, which makes the integral a closed one; the best
+/// parameters are looked at again around their best size, with the exact m and its slope. The disturbance is
+/// summed over scan_disturbances().
+class CvLikelihood {
+ public:
+  /// `prior` must outlive the likelihood.
+  CvLikelihood(ModelErrors model, double sample_time, const CvPrior& prior, double noise_freedom,
+               bool starts_from_rest);
+
+  /// `e` (N, CV unit) = y - y_sim of the nominal model: NaN where there is no sample; `inputs` (nu + nd x N)
+  /// with `initial` (nu + nd) before it. The rows of `untold` (c x N), AssessedLoop::untold, are in e with
+  /// coefficients of any size, kUntold standard deviations of the noise.
+  CvEvidence of(const Eigen::Ref<const Eigen::RowVectorXd>& e,
+                const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                const Eigen::Ref<const Eigen::VectorXd>& initial,
+                const Eigen::Ref<const Eigen::MatrixXd>& untold) const;
+
+  /// What a healthy loop has beside noise, in its standard deviations: e less the correction of the model,
+  /// and below it ModelErrors::directions(), (1 + q) x N.
+  Eigen::MatrixXd healthy_series(const Eigen::Ref<const Eigen::RowVectorXd>& e,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                 const Eigen::Ref<const Eigen::VectorXd>& initial,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& untold) const;
+
+  /// Adds to the evidence of mismatches that of growing_mismatches(), which are so probable among them as
+  /// `share` against those of the whole record. `series` is healthy_series() with the same `untold`.
+  void add_growing(const Eigen::Ref<const Eigen::MatrixXd>& series,
+                   const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                   const Eigen::Ref<const Eigen::VectorXd>& initial,
+                   const Eigen::Ref<const Eigen::MatrixXd>& untold, double share, CvEvidence& evidence) const;
+
+ private:
+  static constexpr double kUntold = 30.0;  ///< y_sim has them already: what is left of them is small
+
+  /// ModelErrors::slopes(), and below them what is untold.
+  Eigen::MatrixXd slopes(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                         const Eigen::Ref<const Eigen::VectorXd>& initial,
+                         const Eigen::Ref<const Eigen::MatrixXd>& untold) const;
+
+  ModelErrors model_;
+  const CvPrior& prior_;
+  double freedom_;
+  bool starts_from_rest_;
+  std::vector<MismatchResponses> responses_;  ///< one a mismatch of the prior
+};
+
+}  // namespace mpm

@@ -1,0 +1,509 @@
+#include "analysis/methods/ours/fault_posterior.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "analysis/methods/ours/base_noise.hpp"
+#include "analysis/methods/ours/input_disturbance.hpp"
+#include "analysis/methods/ours/sticky_valve_likelihood.hpp"
+#include "analysis/statistics/truncated_normal.hpp"
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+double log_weight(double prior, double evidence, double healthy) {
+  return prior > 0.0 ? std::log(prior) + evidence - healthy : -kInfinity;
+}
+
+/// The logarithm of the probability of a record without a fault.
+double healthy_evidence(const std::vector<CvEvidence>& evidence) {
+  double sum = 0.0;
+  for (const CvEvidence& of_cv : evidence)
+    sum += of_cv.healthy;
+  return sum;
+}
+
+/// Logarithms of the weights of the faults of a CV against none.
+struct CvWeights {
+  double mpm, ud, both;
+
+  double all() const { return log_sum(log_sum(mpm, ud), both); }
+};
+
+CvWeights weights_of_cv(const CvPrior& prior, const CvEvidence& evidence) {
+  return {log_weight(prior.mpm, evidence.mpm, evidence.healthy),
+          log_weight(prior.ud, evidence.ud, evidence.healthy),
+          log_weight(prior.both, evidence.both, evidence.healthy)};
+}
+
+std::vector<CvWeights> weights_of(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence) {
+  std::vector<CvWeights> weights;
+  for (std::size_t i = 0; i < evidence.size(); ++i)
+    weights.push_back(weights_of_cv(priors.cvs[i], evidence[i]));
+  return weights;
+}
+
+/// log(e^x - 1), x > 0.
+double log_expm1(double x) {
+  return x > 30.0 ? x + std::log1p(-std::exp(-x)) : std::log(std::expm1(x));
+}
+
+FaultProbabilities of_one_fault(const std::vector<CvWeights>& weights) {
+  double total = 0.0;  // log of the weight of nothing
+  for (const CvWeights& cv : weights)
+    total = log_sum(total, cv.all());
+  FaultProbabilities probabilities{std::exp(-total), 0.0, 0.0, 0.0, -kInfinity, {}};
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const CvWeights& cv = weights[i];
+    double others = 0.0;
+    for (std::size_t j = 0; j < weights.size(); ++j)
+      if (j != i)
+        others = log_sum(others, weights[j].all());
+    probabilities.cvs.push_back(
+        {std::exp(cv.mpm - total), std::exp(cv.ud - total), std::exp(cv.both - total), cv.all() - others});
+    probabilities.mpm += probabilities.cvs.back().mpm;
+    probabilities.ud += probabilities.cvs.back().ud;
+    probabilities.both += probabilities.cvs.back().both;
+    probabilities.log_odds = log_sum(probabilities.log_odds, cv.all());
+  }
+  return probabilities;
+}
+
+FaultProbabilities of_several_faults(const std::vector<CvWeights>& weights) {
+  FaultProbabilities probabilities{};
+  double log_healthy = 0.0, log_no_disturbance = 0.0, log_no_mismatch = 0.0;
+  for (const CvWeights& cv : weights) {
+    const double total = log_sum(0.0, cv.all());
+    probabilities.cvs.push_back(
+        {std::exp(cv.mpm - total), std::exp(cv.ud - total), std::exp(cv.both - total), cv.all()});
+    log_healthy -= total;
+    log_no_disturbance += log_sum(0.0, cv.mpm) - total;
+    log_no_mismatch += log_sum(0.0, cv.ud) - total;
+  }
+  probabilities.healthy = std::exp(log_healthy);
+  probabilities.mpm = std::exp(log_no_disturbance) - probabilities.healthy;
+  probabilities.ud = std::exp(log_no_mismatch) - probabilities.healthy;
+  probabilities.both = std::max(0.0, 1.0 - probabilities.healthy - probabilities.mpm - probabilities.ud);
+  probabilities.log_odds = log_healthy < 0.0 ? log_expm1(-log_healthy) : -kInfinity;
+  return probabilities;
+}
+
+/// Is the noise of the records of this study known to be normal, of a size that the study says, and kept as
+/// it was measured?
+bool noise_is_known(const Study& study) {
+  const RecordOptions& record = study.record;
+  const bool kept = record.quantisation == 0.0 && record.compression == 0.0 &&
+                    (record.missing_share == 0.0 || record.fill == GapFill::none);
+  return kept && !study.nonlinear && !study.names_scenarios() &&
+         study.simulation.noise.distribution == NoiseDistribution::normal &&
+         (study.simulation.noise_standard_deviation.array() > 0.0).all();
+}
+
+/// Where the inputs of the model rest before a record that begins at the operating point.
+Eigen::VectorXd initial_inputs(const AssessmentContext& context) {
+  Eigen::VectorXd initial = Eigen::VectorXd::Zero(context.study.plant.G.cols());
+  initial.head(context.basis.point.u.size()) = context.basis.point.u;
+  return initial;
+}
+
+/// The model of each CV with its errors, as the benchmark shows them; the ceiling knows what they are drawn
+/// from.
+std::vector<ModelErrors> learnt_models(const AssessmentContext& context, FaultPriors priors) {
+  const Study& study = context.study;
+  const AssessedLoop& benchmark = *context.benchmark;
+  const bool drawn = priors == FaultPriors::study;
+  std::vector<ModelErrors> models;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
+    std::optional<BaseNoise> known;
+    if (drawn && noise_is_known(study))
+      known = {study.simulation.noise_standard_deviation(cv), study.simulation.noise.autocorrelation};
+    const double least = least_noise(benchmark.y_sim.row(cv));
+    const Eigen::RowVectorXd e = without_outliers(benchmark.y.row(cv) - benchmark.y_sim.row(cv));
+    const ModelErrorPrior errors = drawn ? drawn_errors(study, cv) : ModelErrorPrior{};
+    if (!drawn && context.learnt)
+      models.push_back(context.learnt->of(cv));
+    else if (errors.channels.empty())
+      models.emplace_back(study, cv, known ? *known : fitted_base_noise(e, least));
+    else
+      models.emplace_back(study, cv, errors, e, model_inputs(benchmark), initial_inputs(context), least,
+                          known);
+  }
+  return models;
+}
+
+/// Of the noise of each CV, `whole`: with its slow part.
+Eigen::VectorXd deviations(const std::vector<ModelErrors>& models, bool whole) {
+  Eigen::VectorXd all(static_cast<Eigen::Index>(models.size()));
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const BaseNoise& noise = models[i].noise();
+    all(static_cast<Eigen::Index>(i)) =
+        whole ? std::hypot(noise.deviation, noise.deviation * noise.b / std::sqrt(1.0 - noise.a * noise.a))
+              : noise.deviation;
+  }
+  return all;
+}
+
+FaultSource most_probable_source(const FaultProbabilities::OfCv& cv, double least) {
+  const double largest = std::max({cv.mpm, cv.ud, cv.both, cv.other});
+  if (!(largest > 0.0) || largest < least * cv.fault())
+    return FaultSource::none;
+  if (largest == cv.other)
+    return FaultSource::other;
+  return largest == cv.mpm ? FaultSource::mpm : largest == cv.ud ? FaultSource::ud : FaultSource::mpm_ud;
+}
+
+const std::vector<MismatchEvidence>& mismatches_of_source(const CvEvidence& evidence, FaultSource source) {
+  return source == FaultSource::mpm ? evidence.mismatch_alone : evidence.mismatch_with_disturbance;
+}
+
+/// The same priors with every kind of fault as frequent as the others, and loops with one as those without.
+/// Scores are taken from them: they are held against those of loops of a calibration, whose study is the same
+/// but for its kinds.
+FaultPriorSet of_equal_kinds(const Study& study, FaultPriorSet priors) {
+  const auto channels_of = [&study](Eigen::Index cv) {
+    double count = 0.0;
+    for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
+      count += study.plant.G(cv, mv).is_zero() ? 0.0 : 1.0;
+    return count;
+  };
+  double channels = 0.0;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    channels += channels_of(cv);
+  constexpr double kThird = 1.0 / 3.0;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
+    CvPrior& prior = priors.cvs[static_cast<std::size_t>(cv)];
+    prior.mpm = prior.both = channels > 0.0 ? kThird * channels_of(cv) / channels : 0.0;
+    prior.ud = kThird / static_cast<double>(study.cv_count());
+  }
+  return priors;
+}
+
+/// Does the study draw faults of the kinds that the likelihood knows?
+bool draws_known_faults(const Study& study) {
+  return study.experiments.mpm + study.experiments.ud + study.experiments.mpm_ud > 0;
+}
+
+/// Samples may be missing, but what is there must be a number.
+void require_numbers(const AssessedLoop& loop) {
+  if (!model_inputs(loop.from_start()).allFinite() || !loop.y_sim.allFinite() || loop.y.array().isInf().any())
+    throw InputError("record of the loop", "a value that is not finite", "finite values, or missing CVs");
+}
+
+class FaultPosterior final : public AssessmentMethod {
+ public:
+  FaultPosterior(const AssessmentContext& context, FaultPriors priors)
+      : study_(context.study),
+        initial_(initial_inputs(context)),
+        models_(learnt_models(context, priors)),
+        priors_(fault_priors(context.study, priors,
+                             context.study.assessment.of<LikelihoodOptions>().fault_probability,
+                             deviations(models_, context.learnt != nullptr), context.learnt != nullptr)) {
+    if (priors == FaultPriors::study && !noise_is_known(study_))
+      priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
+    if (priors != FaultPriors::study && context.learnt)
+      discount_false_faults(context);
+    const FaultHypotheses asked = study_.assessment.of<LikelihoodOptions>().hypotheses;
+    asks_more_ = priors != FaultPriors::study &&
+                 (asked == FaultHypotheses::all || (asked == FaultHypotheses::learnt && context.learnt));
+    for_scores_ = priors == FaultPriors::study ? of_equal_kinds(study_, priors_) : priors_;
+    if (priors == FaultPriors::study && !draws_known_faults(study_))
+      priors_ = for_scores_;
+    for (std::size_t cv = 0; cv < models_.size(); ++cv)
+      likelihoods_.push_back(std::make_unique<CvLikelihood>(models_[cv], study_.controller.sample_time,
+                                                            priors_.cvs[cv], priors_.noise_freedom,
+                                                            priors_.starts_from_rest));
+  }
+
+  Assessment assess(const AssessedLoop& loop) override {
+    require_numbers(loop);
+    const Eigen::MatrixXd inputs = model_inputs(loop.from_start());
+    std::vector<CvEvidence> evidence;
+    std::vector<Eigen::RowVectorXd> errors;
+    for (std::size_t i = 0; i < likelihoods_.size(); ++i) {
+      const auto cv = static_cast<Eigen::Index>(i);
+      // A window is the record up to its end in which nothing is observed before it: what the inputs did
+      // before is known, and a disturbance may have been there.
+      Eigen::RowVectorXd e = Eigen::RowVectorXd::Constant(loop.first + loop.samples(), kNaN);
+      e.tail(loop.samples()) = without_outliers(loop.y.row(cv) - loop.y_sim.row(cv));
+      if (e.array().isNaN().all())
+        return Assessment::failed("a CV has no sample");
+      evidence.push_back(
+          likelihoods_[i]->of(e, inputs.leftCols(e.size()), initial_, untold_of(loop, cv, e.size())));
+      errors.push_back(std::move(e));
+    }
+    FaultProbabilities probabilities = fault_probabilities(priors_, evidence);
+    if (!asks_more_ || !is_flagged(probabilities))
+      return answer(probabilities, fault_probabilities(for_scores_, evidence), evidence);
+    const std::vector<Eigen::MatrixXd> series = healthy_series(loop, errors, inputs);
+    const double of_input = input_weight(evidence, series);
+    const StuckMv valve = stuck_mv(evidence, series, inputs);
+    for (std::size_t i = 0; i < likelihoods_.size(); ++i)
+      if (is_suspect(probabilities.cvs[i]))
+        likelihoods_[i]->add_growing(series[i], inputs.leftCols(series[i].cols()), initial_,
+                                     untold_of(loop, static_cast<Eigen::Index>(i), series[i].cols()),
+                                     kGrowingShare, evidence[i]);
+    probabilities = with_sticky_valve(
+        with_input_disturbance(fault_probabilities(priors_, evidence), of_input), valve.log_weight);
+    Assessment assessment = answer(probabilities, probabilities, evidence);
+    if (probabilities.other > 0.0)
+      assessment.numbers.push_back({"valve_mv", static_cast<double>(valve.mv)});
+    return assessment;
+  }
+
+ private:
+  bool is_flagged(const FaultProbabilities& probabilities) const {
+    return 1.0 - probabilities.healthy > study_.assessment.of<LikelihoodOptions>().flag_probability;
+  }
+
+  /// A CV in which something is wrong, and that not a disturbance beyond doubt.
+  static bool is_suspect(const FaultProbabilities::OfCv& cv) {
+    return cv.fault() > kSuspect && cv.ud < 1.0 - kSuspect;
+  }
+
+  /// Up to the end of the window; 0 x N of a record of the bench.
+  static Eigen::MatrixXd untold_of(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index samples) {
+    const std::vector<Eigen::MatrixXd>& untold = loop.from_start().untold;
+    return untold.empty() ? Eigen::MatrixXd(0, samples)
+                          : Eigen::MatrixXd(untold[static_cast<std::size_t>(cv)].leftCols(samples));
+  }
+
+  /// CvLikelihood::healthy_series() of each CV.
+  std::vector<Eigen::MatrixXd> healthy_series(const AssessedLoop& loop,
+                                              const std::vector<Eigen::RowVectorXd>& errors,
+                                              const Eigen::MatrixXd& inputs) const {
+    std::vector<Eigen::MatrixXd> series;
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      series.push_back(
+          likelihoods_[i]->healthy_series(errors[i], inputs.leftCols(errors[i].size()), initial_,
+                                          untold_of(loop, static_cast<Eigen::Index>(i), errors[i].size())));
+    return series;
+  }
+
+  /// log of the weight of a disturbance on some MV against nothing.
+  double input_weight(const std::vector<CvEvidence>& evidence,
+                      const std::vector<Eigen::MatrixXd>& series) const {
+    const double healthy = healthy_evidence(evidence);
+    const InputLikelihood likelihood(models_, series, study_.controller.sample_time, priors_.noise_freedom);
+    double sum = -kInfinity;
+    for (const InputEvidence& of_mv : likelihood.of_mvs(study_.mv_count()))
+      sum = log_sum(sum, log_weight(priors_.input, of_mv.log_evidence, healthy));
+    return sum;
+  }
+
+  /// The MV whose valve most likely sticks, and log of the weight of a valve of some MV against nothing.
+  struct StuckMv {
+    double log_weight = -kInfinity;
+    std::size_t mv = 0;
+  };
+
+  StuckMv stuck_mv(const std::vector<CvEvidence>& evidence, const std::vector<Eigen::MatrixXd>& series,
+                   const Eigen::MatrixXd& inputs) const {
+    const double healthy = healthy_evidence(evidence);
+    const std::vector<double> valves =
+        valve_log_evidence(models_, series, inputs, initial_, study_.mv_count(),
+                           study_.controller.sample_time, priors_.noise_freedom);
+    StuckMv found;
+    for (std::size_t mv = 0; mv < valves.size(); ++mv) {
+      found.log_weight = log_sum(found.log_weight, log_weight(priors_.input, valves[mv], healthy));
+      if (valves[mv] > valves[found.mv])
+        found.mv = mv;
+    }
+    return found;
+  }
+
+  /// A fault must be more probable than the false ones that one half of the benchmark shows under what the
+  /// other half teaches, in a record of the length of both: there the model of the errors is wrong (a
+  /// nonlinear plant). Where it is right, the halves show none, and the priors stay.
+  void discount_false_faults(const AssessmentContext& context) {
+    const AssessedLoop& benchmark = *context.benchmark;
+    const Eigen::MatrixXd inputs = model_inputs(benchmark.from_start());
+    const Eigen::Index middle = benchmark.first + benchmark.samples() / 2;
+    for (std::size_t i = 0; i < priors_.cvs.size(); ++i) {
+      CvPrior& prior = priors_.cvs[i];
+      const auto cv = static_cast<Eigen::Index>(i);
+      if (!context.learnt->of(cv).are_doubtful())
+        continue;
+      double false_odds = 0.0;
+      for (const bool first : {true, false}) {
+        const auto learns = [&](Eigen::Index k) { return (k < middle) == first; };
+        const std::optional<ModelErrors> half = context.learnt->of_part(study_, benchmark, cv, learns);
+        Eigen::RowVectorXd other = errors_in_window(benchmark, cv);
+        for (Eigen::Index k = 0; k < other.size(); ++k)
+          if (learns(k))
+            other(k) = kNaN;
+        if (!half || other.array().isNaN().all())
+          continue;
+        const CvLikelihood likelihood(*half, study_.controller.sample_time, prior, priors_.noise_freedom,
+                                      priors_.starts_from_rest);
+        false_odds = std::max(
+            false_odds,
+            weights_of_cv(prior, likelihood.of(other, inputs, initial_, Eigen::MatrixXd(0, other.size())))
+                .all());
+      }
+      const double left = std::exp(-kHalves * false_odds);
+      prior.mpm *= left;
+      prior.ud *= left;
+      prior.both *= left;
+      priors_.input *= left;
+    }
+  }
+
+  static constexpr double kGrowingShare = 0.5;  ///< of mismatches that grow, against those that do not
+  static constexpr double kSuspect = 1e-3;      ///< probability from which a CV is looked at more closely
+  static constexpr double kHalves = 2.0;  ///< of the benchmark in a record: log L grows with the samples
+  /// Degrees of freedom of the variance of a noise that is taken from the benchmark.
+  static constexpr double kUnknownNoise = 4.0;
+
+  Assessment answer(const FaultProbabilities& probabilities, const FaultProbabilities& scores,
+                    const std::vector<CvEvidence>& evidence) const {
+    const auto& options = study_.assessment.of<LikelihoodOptions>();
+    Assessment assessment;
+    assessment.flagged = is_flagged(probabilities);
+    assessment.score = scores.log_odds;
+    for (std::size_t i = 0; i < scores.cvs.size(); ++i)
+      assessment.cvs.push_back({probabilities.cvs[i].fault() > options.flag_probability,
+                                scores.cvs[i].log_odds, FaultSource::none});
+    const std::optional<Eigen::Index> worst = assessment.worst_cv();
+    for (std::size_t i = 0; i < assessment.cvs.size(); ++i) {
+      CvAssessment& cv = assessment.cvs[i];
+      if (cv.flagged == true || worst == static_cast<Eigen::Index>(i))
+        cv.source = most_probable_source(probabilities.cvs[i], options.source_probability);
+      name_mismatch(i, cv.source, evidence[i], worst == static_cast<Eigen::Index>(i), assessment);
+    }
+    add_numbers(probabilities, evidence, worst, assessment);
+    return assessment;
+  }
+
+  /// The most probable parameter of a CV with a mismatch: its channel, and of the worst CV its size.
+  void name_mismatch(std::size_t cv, FaultSource source, const CvEvidence& evidence, bool worst,
+                     Assessment& assessment) const {
+    if (!assessment.flagged || (source != FaultSource::mpm && source != FaultSource::mpm_ud))
+      return;
+    const auto& mismatches = mismatches_of_source(evidence, source);
+    const auto likeliest =
+        std::max_element(mismatches.begin(), mismatches.end(),
+                         [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+    const SizePrior& named =
+        priors_.cvs[cv].mismatches[static_cast<std::size_t>(likeliest - mismatches.begin())];
+    assessment.flagged_channels.push_back(named.channel);
+    if (!worst)
+      return;
+    const auto ends = support(named.size);
+    const Interval sizes = up_to_ends(shortest_interval(likeliest->sizes, study_.aggregate.confidence), ends);
+    // The likeliest size says whether larger ones would be likelier: the median lies within the range.
+    assessment.named_mismatch = {
+        named.channel, named.parameter, mixture_quantile(likeliest->sizes, 0.5),
+        sizes.lower,   sizes.upper,     bound_within(likeliest->best_size, ends.first, ends.second)};
+  }
+
+  /// An end that differs from one of the possible sizes by rounding is this one. A size that studies scale to
+  /// an effect often lies there.
+  static Interval up_to_ends(Interval sizes, std::pair<double, double> ends) {
+    const double rounding = 1e-9 * (ends.second - ends.first);
+    if (sizes.lower < ends.first + rounding)
+      sizes.lower = ends.first - rounding;
+    if (sizes.upper > ends.second - rounding)
+      sizes.upper = ends.second + rounding;
+    return sizes;
+  }
+
+  void add_numbers(const FaultProbabilities& probabilities, const std::vector<CvEvidence>& evidence,
+                   std::optional<Eigen::Index> worst, Assessment& assessment) const {
+    assessment.numbers = {{"p_healthy", probabilities.healthy},
+                          {"p_mpm", probabilities.mpm},
+                          {"p_ud", probabilities.ud},
+                          {"p_both", probabilities.both},
+                          {"p_other", probabilities.other}};
+    for (std::size_t i = 0; i < probabilities.cvs.size(); ++i) {
+      const auto cv = static_cast<Eigen::Index>(i);
+      const FaultProbabilities::OfCv& of_cv = probabilities.cvs[i];
+      assessment.numbers.push_back({"cv_p_mpm", of_cv.mpm, cv});
+      assessment.numbers.push_back({"cv_p_ud", of_cv.ud, cv});
+      assessment.numbers.push_back({"cv_p_both", of_cv.both, cv});
+      assessment.numbers.push_back({"cv_p_other", of_cv.other, cv});
+    }
+    if (!worst)
+      return;
+    const CvEvidence& of_worst = evidence[static_cast<std::size_t>(*worst)];
+    const double a = of_worst.disturbance_a;
+    assessment.numbers.push_back(
+        {"ud_gain", of_worst.disturbance_b / ((1.0 - a) * study_.disturbance.v_standard_deviation)});
+    assessment.numbers.push_back({"ud_time_constant", -study_.controller.sample_time / std::log(a)});
+  }
+
+  const Study& study_;
+  Eigen::VectorXd initial_;
+  std::vector<ModelErrors> models_;
+  FaultPriorSet priors_, for_scores_;
+  bool asks_more_ = false;  ///< beside the basic hypotheses
+  std::vector<std::unique_ptr<CvLikelihood>> likelihoods_;
+};
+
+}  // namespace
+
+FaultProbabilities fault_probabilities(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence) {
+  const std::vector<CvWeights> weights = weights_of(priors, evidence);
+  return priors.one_fault ? of_one_fault(weights) : of_several_faults(weights);
+}
+
+namespace {
+
+/// The weight of a further fault of the loop, of the source `of_loop` and `of_cv`.
+FaultProbabilities with_fault_of_mv(FaultProbabilities probabilities, double log_weight,
+                                    double FaultProbabilities::*of_loop,
+                                    double FaultProbabilities::OfCv::*of_cv) {
+  const double share = std::exp(log_weight - log_sum(log_sum(0.0, probabilities.log_odds), log_weight));
+  for (double FaultProbabilities::*each :
+       {&FaultProbabilities::healthy, &FaultProbabilities::mpm, &FaultProbabilities::ud,
+        &FaultProbabilities::both, &FaultProbabilities::other})
+    probabilities.*each *= 1.0 - share;
+  probabilities.*of_loop += share;
+  probabilities.log_odds = log_sum(probabilities.log_odds, log_weight);
+  for (FaultProbabilities::OfCv& cv : probabilities.cvs) {
+    const double fault = cv.fault();
+    for (double FaultProbabilities::OfCv::*each :
+         {&FaultProbabilities::OfCv::mpm, &FaultProbabilities::OfCv::ud, &FaultProbabilities::OfCv::both,
+          &FaultProbabilities::OfCv::other})
+      cv.*each *= 1.0 - share;
+    cv.*of_cv += share * fault;
+  }
+  return probabilities;
+}
+
+}  // namespace
+
+FaultProbabilities with_input_disturbance(FaultProbabilities probabilities, double log_weight) {
+  return with_fault_of_mv(std::move(probabilities), log_weight, &FaultProbabilities::ud,
+                          &FaultProbabilities::OfCv::ud);
+}
+
+FaultProbabilities with_sticky_valve(FaultProbabilities probabilities, double log_weight) {
+  return with_fault_of_mv(std::move(probabilities), log_weight, &FaultProbabilities::other,
+                          &FaultProbabilities::OfCv::other);
+}
+
+std::unique_ptr<AssessmentMethod> make_fault_posterior(const AssessmentContext& context, FaultPriors priors) {
+  return std::make_unique<FaultPosterior>(context, priors);
+}
+
+std::vector<AssessmentNumberInfo> fault_posterior_numbers() {
+  return {{"p_healthy", NumberScope::loop, "probability, given the record, that nothing is wrong"},
+          {"p_mpm", NumberScope::loop, "probability of mismatches alone"},
+          {"p_ud", NumberScope::loop, "probability of disturbances alone"},
+          {"p_both", NumberScope::loop, "probability of mismatches and disturbances"},
+          {"p_other", NumberScope::loop, "probability that a valve sticks"},
+          {"valve_mv", NumberScope::loop, "place of the MV whose valve that most likely is, from 0"},
+          {"ud_gain", NumberScope::loop, "gain of G_d of the likeliest disturbance alone on the worst CV",
+           "CV unit"},
+          {"ud_time_constant", NumberScope::loop, "its time constant", "time unit of the plant"},
+          {"cv_p_mpm", NumberScope::cv, "probability that the CV has a mismatch alone"},
+          {"cv_p_ud", NumberScope::cv, "probability that it has a disturbance alone"},
+          {"cv_p_both", NumberScope::cv, "probability that it has both"},
+          {"cv_p_other", NumberScope::cv, "probability that a valve that sticks shows in it"}};
+}
+
+}  // namespace mpm

@@ -1,0 +1,194 @@
+#include "analysis/methods/ours/repair_prospects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "analysis/indicators/diagnosis.hpp"
+#include "analysis/indicators/loop_cost.hpp"
+#include "analysis/methods/ours/base_noise.hpp"
+#include "analysis/methods/ours/mismatch_responses.hpp"
+#include "analysis/statistics/variance.hpp"
+#include "analysis/statistics/washout.hpp"
+#include "base/non_finite.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/signals.hpp"
+#include "scenarios/random/random_stream.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::uint64_t kDrawSeed = 43;
+/// Part of the mean square of a CV below which the error of a channel is not worth a simulation.
+constexpr double kFaintShare = 1e-3;
+
+}  // namespace
+
+/// The record, and what it says of the model of each CV.
+struct RepairProspects::Seen {
+  const AssessedLoop& whole;
+  Eigen::MatrixXd inputs;
+  std::vector<ModelErrors> models = {};
+
+  const ModelErrors& of(Eigen::Index cv) const { return models[static_cast<std::size_t>(cv)]; }
+};
+
+struct RepairProspects::Outcome {
+  double cost;
+  Eigen::VectorXd variances;
+};
+
+double RepairProspect::gain() const {
+  if (gains.empty())
+    return kNaN;
+  double mean = 0.0;
+  for (const double each : gains)
+    mean += each / static_cast<double>(gains.size());
+  return mean;
+}
+
+double RepairProspect::probability_above(double worth) const {
+  if (gains.empty())
+    return kNaN;
+  double above = 0.0;
+  for (const double each : gains)
+    above += each > worth ? 1.0 / static_cast<double>(gains.size()) : 0.0;
+  return above;
+}
+
+bool RepairProspect::is_proposed() const {
+  return gain() > 0.0 && variance_ratio.maxCoeff() <= kNoticeableChange;
+}
+
+RepairProspects::RepairProspects(const Study& study, const OperatingPoint& point,
+                                 const QpSolverFactory& factory)
+    : study_(study),
+      options_(study.assessment.of<AdequacyOptions>()),
+      initial_(Eigen::VectorXd::Zero(study.plant.G.cols())),
+      factory_(factory) {
+  initial_.head(point.u.size()) = point.u;
+}
+
+std::optional<std::vector<RepairProspect>> RepairProspects::of(
+    const AssessedLoop& loop, const std::optional<RepairedChannel>& given) const {
+  const AssessedLoop& whole = loop.from_start();
+  Seen seen{.whole = whole, .inputs = model_inputs(whole)};
+  for (Eigen::Index cv = 0; cv < study_.cv_count(); ++cv) {
+    const Eigen::RowVectorXd e = errors_in_window(loop, cv);
+    if ((!e.array().isNaN()).count() < kFewestNoiseSamples)
+      return std::nullopt;
+    seen.models.emplace_back(study_, cv,
+                             relative_errors(study_, cv, options_.deviation, study_.assessment.bias), e,
+                             seen.inputs, initial_, least_noise(whole.y_sim.row(cv)));
+  }
+  std::vector<RepairProspect> prospects = candidates(seen, given);
+  if (!prospects.empty())
+    run(seen, prospects);
+  return prospects;
+}
+
+std::vector<RepairProspect> RepairProspects::candidates(const Seen& seen,
+                                                        const std::optional<RepairedChannel>& given) const {
+  struct Weighed {
+    RepairedChannel repair;
+    double share;
+  };
+  std::vector<Weighed> all;
+  const Eigen::MatrixXd y = gaps_closed(seen.whole.y);
+  for (Eigen::Index cv = 0; cv < study_.cv_count(); ++cv)
+    for (Eigen::Index mv = 0; mv < study_.mv_count(); ++mv) {
+      const TransferFunction model = study_.assessed_channel(cv, mv);
+      const TransferFunction& found = seen.of(cv).model()(0, mv);
+      if (model.is_zero() || model == found || (given && given->channel == Channel{cv, mv}))
+        continue;
+      const double share =
+          (response(seen, found, mv) - response(seen, model, mv)).squaredNorm() / y.row(cv).squaredNorm();
+      if (share > kFaintShare)
+        all.push_back({{{cv, mv}, found.without_washout()}, share});
+    }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Weighed& a, const Weighed& b) { return a.share > b.share; });
+  std::vector<RepairProspect> prospects;
+  if (given)
+    prospects.push_back({.repair = *given, .gains = {}});
+  for (const Weighed& each : all)
+    if (static_cast<int>(prospects.size()) < options_.channels)
+      prospects.push_back({.repair = each.repair, .gains = {}});
+  return prospects;
+}
+
+Eigen::RowVectorXd RepairProspects::response(const Seen& seen, const TransferFunction& channel,
+                                             Eigen::Index input) const {
+  return channel_response(discretise(channel, study_.controller.sample_time), seen.inputs.row(input),
+                          initial_(input));
+}
+
+void RepairProspects::run(const Seen& seen, std::vector<RepairProspect>& prospects) const {
+  std::vector<Eigen::VectorXd> before(prospects.size(), Eigen::VectorXd::Zero(study_.cv_count()));
+  std::vector<Eigen::VectorXd> after = before;
+  RandomStream random(kDrawSeed, 0, StreamId::world);
+  for (int draw = 0; draw < options_.draws; ++draw) {
+    TransferMatrix plant = study_.plant.G;
+    Eigen::MatrixXd left = seen.whole.y;
+    for (Eigen::Index cv = 0; cv < plant.rows(); ++cv) {
+      const ModelErrors& model = seen.of(cv);
+      Eigen::VectorXd z(model.count());
+      for (double& each : z)
+        each = random.normal();
+      const TransferMatrix drawn = model.drawn(z);
+      for (Eigen::Index input = 0; input < plant.cols(); ++input) {
+        plant(cv, input) = drawn(0, input).without_washout();
+        if (!drawn(0, input).is_zero())
+          left.row(cv) -= response(seen, drawn(0, input), input);
+      }
+    }
+    left = from_washout(study_, left);
+    const std::optional<Outcome> now = outcome(study_.plant.G, plant, seen.whole.d, left);
+    for (std::size_t i = 0; i < prospects.size() && now; ++i) {
+      const RepairedChannel& repair = prospects[i].repair;
+      TransferMatrix repaired = study_.plant.G;
+      repaired(repair.channel.cv, repair.channel.mv) = repair.model;
+      const std::optional<Outcome> then = outcome(repaired, plant, seen.whole.d, left);
+      if (!then)
+        continue;
+      prospects[i].gains.push_back((now->cost - then->cost) / now->cost);
+      before[i] += now->variances;
+      after[i] += then->variances;
+    }
+  }
+  for (std::size_t i = 0; i < prospects.size(); ++i) {
+    std::sort(prospects[i].gains.begin(), prospects[i].gains.end());
+    prospects[i].variance_ratio = after[i].array() / before[i].array();
+  }
+}
+
+std::optional<RepairProspects::Outcome> RepairProspects::outcome(const TransferMatrix& model,
+                                                                 const TransferMatrix& plant,
+                                                                 const Eigen::MatrixXd& d,
+                                                                 const Eigen::MatrixXd& disturbance) const {
+  Study study = study_;
+  study.plant.G = model;
+  const Trajectory loop =
+      run_closed_loop(study, plant,
+                      {.d = d,
+                       .noise = Eigen::MatrixXd::Zero(disturbance.rows(), disturbance.cols()),
+                       .y_d = disturbance,
+                       .y_set = setpoints(study_),
+                       .dither = dither(study_)},
+                      factory_);
+  if (loop.status != ControlStatus::ok)
+    return std::nullopt;
+  return Outcome{loop_cost(study_, loop).total(),
+                 variances(loop.y, variance_centres(study_, 0, loop.y.cols()))};
+}
+
+std::vector<RepairProspect> ranked(std::vector<RepairProspect> prospects) {
+  std::stable_sort(prospects.begin(), prospects.end(), [](const RepairProspect& a, const RepairProspect& b) {
+    return !a.gains.empty() && (b.gains.empty() || a.gain() > b.gain());
+  });
+  return prospects;
+}
+
+}  // namespace mpm

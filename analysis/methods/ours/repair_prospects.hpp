@@ -1,0 +1,93 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/assessment.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
+#include "analysis/sensitivity/nominal_sensitivity.hpp"
+#include "plants/linear/transfer_function.hpp"
+#include "scenarios/study/study.hpp"
+#include "solvers/qp_solver.hpp"
+
+// What the repair of each channel would bring, from the record alone.
+
+namespace mpm {
+
+/// Of the method `adequacy`, and of whoever ranks repairs.
+struct AdequacyOptions {
+  double worth = 0.1;        ///< gain of a repair below which the model is adequate
+  double probability = 0.5;  ///< of a gain above it, from which on it is not
+  double deviation = 0.3;    ///< of the relative errors of the model before the record is seen
+  int draws = 8;
+  int channels = 4;
+
+  bool operator==(const AdequacyOptions&) const = default;
+};
+
+/// A variance counts as better or worse where it changes by more than this factor.
+inline constexpr double kNoticeableChange = 1.05;
+
+/// The channel of the model after its repair.
+struct RepairedChannel {
+  Channel channel;
+  TransferFunction model;  ///< without washout
+};
+
+/// What one repair brings on the plants that the record leaves possible.
+struct RepairProspect {
+  RepairedChannel repair;
+  std::vector<double> gains;  ///< ascending, of the plants on which all loops run to their end; may be empty
+  /// ny: mean variance of a CV on these plants after the repair over that before it.
+  Eigen::VectorXd variance_ratio = {};
+
+  /// Expected; NaN without a plant.
+  double gain() const;
+  /// Share of the plants on which the gain is larger; NaN without a plant.
+  double probability_above(double worth) const;
+  /// Whether it is expected to bring something, and to worsen no CV noticeably.
+  bool is_proposed() const;
+};
+
+/// The prospects of the channels of a study. The record gives the errors of gain, time constant and dead time
+/// of every channel a posterior (ModelErrors, prior of AdequacyOptions::deviation), disturbances and noise
+/// integrated out. With P a plant drawn from it, n what P leaves of the record and J the cost of a loop
+/// (LoopCost::total()),
+///
+///   gain(i, j) = (J(G0) - J(G0 with the repaired channel (i, j))) / J(G0)
+///
+/// of the loops of plant P under n, with the controller on either model. A channel is repaired to its
+/// posterior mean, but for one whose repair is `given`.
+class RepairProspects {
+ public:
+  /// All must outlive it. Options are those of the study.
+  RepairProspects(const Study& study, const OperatingPoint& point, const QpSolverFactory& factory);
+
+  /// Of the channels whose errors explain most of their CV, in this order, and of the given one; none where a
+  /// CV has too few samples. Costs 1 + channels closed loops a draw.
+  std::optional<std::vector<RepairProspect>> of(const AssessedLoop& loop,
+                                                const std::optional<RepairedChannel>& given = {}) const;
+
+ private:
+  struct Seen;
+  struct Outcome;
+
+  std::vector<RepairProspect> candidates(const Seen& seen, const std::optional<RepairedChannel>& given) const;
+  void run(const Seen& seen, std::vector<RepairProspect>& prospects) const;
+  Eigen::RowVectorXd response(const Seen& seen, const TransferFunction& channel, Eigen::Index input) const;
+  std::optional<Outcome> outcome(const TransferMatrix& model, const TransferMatrix& plant,
+                                 const Eigen::MatrixXd& d, const Eigen::MatrixXd& disturbance) const;
+
+  const Study& study_;
+  const AdequacyOptions& options_;
+  Eigen::VectorXd initial_;  ///< inputs before the record
+  const QpSolverFactory& factory_;
+};
+
+/// By expected gain, the largest first; those that run on no plant last.
+std::vector<RepairProspect> ranked(std::vector<RepairProspect> prospects);
+
+}  // namespace mpm

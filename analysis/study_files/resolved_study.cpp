@@ -1,0 +1,54 @@
+#include "analysis/study_files/resolved_study.hpp"
+
+#include <cstdint>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "analysis/study_files/study_file_keys.hpp"
+#include "analysis/study_files/study_file_parts.hpp"
+#include "base/error.hpp"
+#include "scenarios/toml/toml_draft.hpp"
+
+namespace mpm {
+
+namespace {
+
+TomlDraft resolved_draft(const Study& study) {
+  TomlDraft draft(key_names(study_file_keys("")));
+  Study read = read_study(study.source, study.name, &draft);
+  read.seed = study.seed;
+  read.methods = study.methods;
+  if (read != study)
+    throw InputError(fmt::format("defaults of the study '{}'", study.name),
+                     "a study that was changed after it was read",
+                     "a study as its text says it, with any seed and methods");
+  TomlDraft& heading = draft.table("study", key_names(study_file_keys("study")));
+  constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+  if (study.seed <= static_cast<std::uint64_t>(kLargestSeed))
+    heading.set("seed", static_cast<std::int64_t>(study.seed));
+  else
+    heading.comment("seed", fmt::format("{}, above what a study file can say, {}", study.seed, kLargestSeed));
+  draft.table("methods", key_names(study_file_keys("methods"))).set("names", study.methods);
+  return draft;
+}
+
+}  // namespace
+
+std::string resolved_study(const Study& study) {
+  return resolved_draft(study).text();
+}
+
+std::vector<TomlDraft::Line> resolved_lines(const Study& study) {
+  return resolved_draft(study).lines();
+}
+
+std::vector<std::string> changed_defaults(const Study& study) {
+  std::vector<std::string> changes;
+  for (const TomlDraft::Line& line : resolved_lines(study))
+    if (!line.fallback.empty() && line.value != line.fallback)
+      changes.push_back(fmt::format("{} = {} (default: {})", line.path, line.value, line.fallback));
+  return changes;
+}
+
+}  // namespace mpm

@@ -1,0 +1,139 @@
+// [methods], [assessment], [monitoring], [calibration]
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "analysis/study_files/study_file_parts.hpp"
+#include "scenarios/study/assessment_options.hpp"
+#include "scenarios/study/window_scan.hpp"
+#include "scenarios/toml/option_keys.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::int64_t kMaxCalibrationLoops = 1'000'000;  // of one kind
+constexpr std::int64_t kShortestMonitoringWindow = kShortestWindow + kFewestCorrelatedPairs;
+
+OptionKeys assessment_keys(AssessmentOptions& options) {
+  OptionKeys keys{
+      key::choice(
+          "setpoints", options.setpoints, {"controller", "optimizer"},
+          "setpoint of a CV that is held in a range. `\"controller\"`: none, as a range has none, so methods "
+          "that need setpoints do not apply. `\"optimizer\"`: the steady state that the target optimizer "
+          "computes (2.32), which chapter 2 of the thesis uses to show the consequences"),
+      key::choice("model", options.model, {"automatic", "nominal", "benchmark"},
+                  "what methods assume of the plant without a fault. `\"nominal\"`: it is exactly the model. "
+                  "`\"benchmark\"`: it differs from the model as the benchmark shows, and methods look for "
+                  "what is new since then. `\"automatic\"`: `\"benchmark\"` if the study has `[world]`, "
+                  "otherwise `\"nominal\"`, since the model of such a study is exact"),
+      key::number("model_error", options.model_error, NumberRule::positive(),
+                  "prior standard deviation of the gain and time constant of each channel, relative; of its "
+                  "dead time, as a fraction of the dead time or of a sample"),
+      key::number(
+          "bias", options.bias, NumberRule::at_least(0),
+          "prior standard deviation of a constant error of each CV, in standard deviations of its noise"),
+      key::option(
+          "washout", "number",
+          "of a CV that integrates: time constant of the high-pass filter through which methods see it "
+          "and its model, since a simulation of a level drifts without end",
+          "time")
+          .otherwise("the prediction horizon")
+          .allow("> 0")
+          .read([&options](const TomlTable& table, const std::string& key) {
+            options.washout = read_number(table, key, NumberRule::positive());
+          })};
+  for (const MethodOptionTable& table : method_option_tables())
+    keys.push_back(key::table(
+        table.name, [&options, of_method = table.keys] { return of_method(options); }, table.meaning));
+  return keys;
+}
+
+OptionKeys methods_keys(std::vector<std::string>& names) {
+  return {key::texts(
+              "names", names, "names of methods of assessment, or \"all\" alone",
+              "methods of assessment that see every loop of the study (`mpmbench compare --help` lists "
+              "them), or `[\"all\"]`. `botelho` is the chain of the thesis. `run --methods A,B` takes others")
+              .allow("names of methods, each once")};
+}
+
+/// A table that turns on what only a study of random experiments has.
+template <class Options>
+OptionKey random_part(const char* name, Study& study, std::optional<Options> Study::*part,
+                      OptionKeys (*keys)(Options&, const Study&), const char* meaning) {
+  const auto below = [keys] {
+    const Study no_study;
+    Options options;
+    return keys(options, no_study);
+  };
+  const auto read = [&study, part, keys](const TomlTable& document, const std::string& key) {
+    Options options;
+    const OptionKeys of_part = keys(options, study);
+    const TomlTable table = document.table(key, key_names(of_part));
+    if (study.names_scenarios())
+      table.refuse("", key + " of a study of named scenarios", "only in a study of random experiments");
+    read_keys(table, of_part);
+    study.*part = options;
+  };
+  return key::option(name, "table", meaning).with("", below).read(read);
+}
+
+OptionKeys monitoring_keys(MonitoringOptions& options, const Study& study) {
+  const std::int64_t samples = study.simulation.samples;
+  options.window = static_cast<int>(std::min<std::int64_t>(options.window, samples));
+  options.stride = static_cast<int>(std::min<std::int64_t>(options.stride, samples));
+  return {
+      key::whole(
+          "window", options.window, std::min(kShortestMonitoringWindow, samples), samples,
+          "number of samples that a verdict covers. Methods that filter or simulate the loop start at the "
+          "beginning of the record and judge these samples. A longer window sees smaller faults, but later")
+          .otherwise("200, or the whole record where it is shorter")
+          .allow("24 to `simulation.samples`"),
+      key::whole("stride", options.stride, 1, samples, "number of samples from one verdict to the next")
+          .allow("1 to `simulation.samples`")};
+}
+
+OptionKeys calibration_keys(CalibrationOptions& options, const Study& study) {
+  // Loops of the same seed would be those that the thresholds are tried on.
+  const auto read_seed = [&](const TomlTable& table, const std::string& key) {
+    options.seed =
+        static_cast<std::uint64_t>(read_whole(table, key, 0, std::numeric_limits<std::int64_t>::max()));
+    if (*options.seed == study.seed)
+      table.refuse(key, fmt::format("{}, the seed of the study", *options.seed), "another one");
+  };
+  return {key::number("false_alarms", options.false_alarms, NumberRule::inside(0, 1),
+                      "largest share of healthy loops that the threshold of the rate "
+                      "`false_alarm_calibrated` may flag; the other thresholds are at 1 % and 5 %"),
+          key::whole("healthy", options.healthy, 1, kMaxCalibrationLoops,
+                     "number of loops without a fault. A threshold at 1 % needs 99, one at 5 % needs 19; "
+                     "with 200 the rate at 5 % lies within 2.4 and 8.4 %"),
+          key::whole("ud", options.ud, 0, kMaxCalibrationLoops,
+                     "number of loops with an unmeasured disturbance alone, for the thresholds of a monitor "
+                     "of the model, which should not flag them"),
+          key::option("seed", "whole number", "seed of these loops")
+              .otherwise("that of the study with the bits of 0x63616c6962726174 (\"calibrat\") flipped")
+              .allow("not that of the study, nor of `run --seed`")
+              .read(read_seed)};
+}
+
+}  // namespace
+
+OptionKeys method_keys(Study& study) {
+  return {
+      key::table(
+          "methods", [&study] { return methods_keys(study.methods); }, "the methods that assess the loops"),
+      key::table(
+          "assessment", [&study] { return assessment_keys(study.assessment); },
+          "the open choices of the methods of the literature"),
+      random_part("monitoring", study, &Study::monitoring, monitoring_keys,
+                  "methods on a window that moves over the record: delay of detection, false alarms per day")
+          .otherwise("none: methods see whole records only"),
+      random_part("calibration", study, &Study::calibration, calibration_keys,
+                  "loops of another seed on which the thresholds of the methods are calibrated")
+          .otherwise("none: no calibrated thresholds")};
+}
+
+}  // namespace mpm

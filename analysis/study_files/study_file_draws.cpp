@@ -1,0 +1,311 @@
+// [experiments] and what random experiments are drawn from.
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "analysis/study_files/study_file_parts.hpp"
+#include "base/non_finite.hpp"
+#include "scenarios/loop/fault_draw.hpp"
+#include "scenarios/toml/option_keys.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::int64_t kMaxExperiments = 10'000'000;  // of one kind; the sum still is an int
+
+/// A table that only a study of random experiments has.
+OptionKey random_table(const char* name, std::function<OptionKeys()> below, const char* meaning) {
+  OptionKey made = key::table(name, std::move(below), meaning);
+  made.reader = [read = std::move(made.reader)](const TomlTable& document, const OptionKey& key) {
+    if (!document.has("scenario"))
+      read(document, key);
+  };
+  return made;
+}
+
+/// The size of an effect (FaultScales).
+OptionKey impact_key(std::optional<Distribution>& impact, const char* meaning, const char* unit) {
+  return key::option("impact", "distribution", meaning, unit)
+      .otherwise("none: sizes as drawn")
+      .allow("draws > 0")
+      .read([&impact](const TomlTable& table, const std::string& key) {
+        impact = read_distribution(table, key, NumberRule::positive());
+      });
+}
+
+/// Relative frequencies of the values of `of`, each with its meaning; those after the first `required` may be
+/// left out.
+template <std::size_t n, class Enum>
+OptionKey weights_key(const char* name, const std::array<Enum, n>& of, std::size_t required,
+                      std::array<double, n>& weights, const std::vector<const char*>& meanings,
+                      const char* meaning) {
+  OptionKeys keys;
+  for (std::size_t i = 0; i < n; ++i)
+    keys.push_back(key::option(std::string(to_string(of[i])), "number", meanings[i]));
+  return key::weights(name, std::move(keys), required, weights.data(), meaning);
+}
+
+bool all_zero(std::span<const double> weights) {
+  return std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; });
+}
+
+/// Refuses the table of weights under `key` when all of them are 0.
+OptionKey refuse_no_weight(const char* key, std::span<const double> weights) {
+  return key::check([key, weights](const TomlTable& table) {
+    if (all_zero(weights))
+      table.refuse(key, "weights that are all 0", "at least one > 0");
+  });
+}
+
+OptionKeys experiments_keys(ExperimentCounts& counts) {
+  const auto count = [](const char* name, int& value, const char* meaning) {
+    return key::whole(name, value, 0, kMaxExperiments, meaning);
+  };
+  return {
+      count("mpm", counts.mpm,
+            "experiments with a model-plant mismatch; a nonlinear plant needs `mismatch.plant_parameter` for "
+            "them")
+          .required(),
+      count("ud", counts.ud, "experiments with an unmeasured disturbance").required(),
+      count("mpm_ud", counts.mpm_ud, "experiments with both on one CV").required(),
+      count("healthy", counts.healthy,
+            "experiments in which nothing is wrong: each has its own noise and the excitation of all others"),
+      count("tuning", counts.tuning,
+            "experiments in which model and plant agree and one weight of the controller is changed"),
+      count("other", counts.other,
+            "experiments with a fault around the model: a sensor, a valve, a limit, an operator (`other`); "
+            "not all counts 0"),
+      key::check([&counts](const TomlTable& table) {
+        if (counts.total() == 0)
+          table.refuse("", "no experiment", "at least one of any kind");
+      })};
+}
+
+/// Smallest dead time of the channels that a mismatch can change.
+double shortest_dead_time(const PlantModel& plant) {
+  double shortest = kInfinity;
+  for (Eigen::Index row = 0; row < plant.G.rows(); ++row) {
+    for (std::size_t mv = 0; mv < plant.mvs.size(); ++mv) {
+      const TransferFunction& channel = plant.G(row, static_cast<Eigen::Index>(mv));
+      if (!channel.is_zero()) {
+        shortest = std::min(shortest, channel.dead_time());
+      }
+    }
+  }
+  return shortest;
+}
+
+/// In each channel some draw must leave a dead time >= 0, since draws are confined to those that do.
+void refuse_impossible_shift(const TomlTable& mismatch, const Distribution& shift, const PlantModel& plant) {
+  const double lowest = -shortest_dead_time(plant);
+  const bool constant = shift.kind() == Distribution::Kind::constant;
+  if (constant ? shift.maximum() < lowest : shift.maximum() <= lowest) {
+    mismatch.refuse("dead_time_shift", fmt::format("draws of at most {}", shift.maximum()),
+                    fmt::format("draws that can be {} {}: the shortest dead time is {}",
+                                constant ? ">=" : ">", lowest, -lowest));
+  }
+}
+
+OptionKeys mismatch_ranges_keys(Study& study) {
+  MismatchRanges& ranges = study.mismatch;
+  constexpr std::size_t kClassic = 3;  // those of table 6.4, without which the others do not stand
+  const NumberRule positive = NumberRule::positive();
+  return {weights_key("parameter_weights", kRandomMismatchParameters, kClassic, ranges.parameter_weight,
+                      {"relative frequency; they need not sum to 1", "the same", "the same",
+                       "of a further lag", "of a right-half-plane zero", "of a gain with the other sign"},
+                      "relative frequencies of the changed parameters")
+              .otherwise("1 for the three of table 6.4"),
+          refuse_no_weight("parameter_weights", ranges.parameter_weight),
+          weights_key("extent_weights", kMismatchExtents, 0, ranges.extent_weight,
+                      {"relative frequency of one parameter of one channel",
+                       "of gain, time constant and dead time of one channel, each drawn",
+                       "of one parameter of every channel from an MV to one CV, each by its own amount",
+                       "of the gain of every channel of an MV, all by one factor: its actuator",
+                       "of one parameter of every channel from an MV, each by its own amount: a drift"},
+                      "relative frequencies of the extents of a mismatch")
+              .otherwise("`parameter` alone"),
+          refuse_no_weight("extent_weights", ranges.extent_weight),
+          key::distribution(
+              "gain_factor", ranges.gain_factor, positive,
+              "factor of the gain; one of 0 would remove the channel, a negative one reverse the loop", "1"),
+          key::distribution("time_constant_factor", ranges.time_constant_factor, positive,
+                            "factor of the time constants", "1"),
+          key::distribution("dead_time_shift", ranges.dead_time_shift, NumberRule::finite(),
+                            "added to the dead time; draws are confined to those that leave it >= 0", "time")
+              .allow("draws that can be above minus the shortest dead time"),
+          key::check([&study](const TomlTable& table) {
+            refuse_impossible_shift(table, study.mismatch.dead_time_shift, study.plant);
+          }),
+          key::distribution("second_order", ranges.second_order, positive,
+                            "time constant T of a further lag, G / (T s + 1), over the residence time of the "
+                            "channel (of a first-order one its time constant; at least a sample)",
+                            "1"),
+          key::distribution("inverse_response", ranges.inverse_response, positive,
+                            "T of a right-half-plane zero, G (1 - T s) / (1 + T s), over the same", "1"),
+          impact_key(ranges.impact, "effect to which every mismatch is scaled: see below", "1"),
+          plant_parameters_key(ranges.plant_parameters, study)};
+}
+
+OptionKeys disturbance_ranges_keys(DisturbanceRanges& ranges) {
+  const NumberRule positive = NumberRule::positive();
+  return {
+      key::distribution("gain", ranges.gain, positive,
+                        "static gain; its sign would change nothing, v being symmetric", "CV"),
+      key::distribution("time_constant", ranges.time_constant, positive, "time constant", "time"),
+      key::number("v_standard_deviation", ranges.v_standard_deviation, positive,
+                  "of v, which is held over a sample. Open; 1 gives the share of infeasible experiments that "
+                  "the thesis has",
+                  "1"),
+      sequence_key(
+          ranges.sequence,
+          "whether every experiment draws the random numbers of its v, or all have the same, drawn once for "
+          "the study, as a random block with a fixed seed does. Open: table 6.4 draws the CV and G_d, not v"),
+      weights_key(
+          "signal_weights", kDisturbanceShapes, 0, ranges.signal_weight,
+          {"relative frequency of white noise: y_d is slow or fast filtered noise, as `time_constant` has it",
+           "of one step, up or down, between 10 and 60 % of the record",
+           "of a ramp to the end of the record, which begins in the same part of it", "of summed white noise",
+           "of a sine with a period of 8 samples to a quarter of the record: another loop that oscillates",
+           "of white noise in bursts of 20 samples with 80 samples between them, on the average"},
+          "relative frequencies of the shapes of v")
+          .otherwise("`white` alone"),
+      refuse_no_weight("signal_weights", ranges.signal_weight),
+      weights_key("place_weights", kDisturbancePlaces, 0, ranges.place_weight,
+                  {"relative frequency of one CV; with a mismatch, its CV",
+                   "of an MV on its way to the plant, invisible to controller and record; `gain` is that of "
+                   "the CV with the largest gain from it",
+                   "of two or three CVs, each through its own G_d from the same v"},
+                  "relative frequencies of the places where a disturbance acts")
+          .otherwise("`cv` alone"),
+      refuse_no_weight("place_weights", ranges.place_weight),
+      impact_key(ranges.impact, "effect to which every disturbance is scaled, as for a mismatch", "1")};
+}
+
+OptionKeys tuning_keys(Study& study) {
+  TuningRanges& ranges = study.tuning;
+  const auto refuse_no_tuning = [&study](const TomlTable& table) {
+    if (study.experiments.tuning > 0 && all_zero(study.tuning.weights_for(study.controller)))
+      table.refuse("parameter_weights", "a weight of 0 for everything that the controller has",
+                   "at least one > 0");
+  };
+  return {
+      weights_key("parameter_weights", kTuningParameters, kTuningParameters.size(), ranges.parameter_weight,
+                  {"relative frequency, of MVs; the four need not sum to 1", "the same, of MVs with a target",
+                   "the same, of CVs with a soft limit", "the same, of CVs with a setpoint"},
+                  "relative frequencies of the changed parameters")
+          .otherwise("all 1")
+          .allow("above 0 for something that the controller has, where there are bad tunings"),
+      key::distribution("factor", ranges.factor, NumberRule::positive(),
+                        "factor of the weight as the study writes it, whatever `weight_convention` says",
+                        "1"),
+      key::choice(
+          "sensitivity", ranges.sensitivity, {"current", "design"},
+          "the controller whose S0 diagnoses the experiment. `\"current\"`: the one that runs, since S0 "
+          "belongs to the controller and is determined again when its tuning changes (appendix A2, scenario "
+          "4 of chapter 4). `\"design\"`: that of the study, as if nobody had noticed the change"),
+      key::check(refuse_no_tuning)};
+}
+
+OptionKeys other_keys(Study& study) {
+  OtherRanges& ranges = study.other;
+  const NumberRule positive = NumberRule::positive();
+  const auto refuse_no_fault = [&study](const TomlTable& table) {
+    if (study.experiments.other > 0 && all_zero(other_weights(study)))
+      table.refuse("weights", "a weight of 0 for everything that the loops can have", "at least one > 0");
+  };
+  return {
+      weights_key("weights", kOtherFaultKinds, 0, ranges.weight,
+                  {"relative frequency of a sensor with a bias",
+                   "of a sensor whose error grows linearly from the onset to the end of the record",
+                   "of a valve with the two parameters S and J of Choudhury, Thornhill and Shah (2005)",
+                   "of a valve with J = 0", "of an MD whose measurement has a wrong gain",
+                   "of an MD whose measurement is noisy", "of a soft range that was moved in the controller",
+                   "of an MV that an operator holds where it is, without the controller being told"},
+                  "relative frequencies of the kinds")
+          .otherwise("all 1")
+          .allow("some kind > 0 that the loops can have"),
+      key::distribution("sensor", ranges.sensor, positive,
+                        "bias, or drift at the end of the record, over the standard deviation of the noise "
+                        "(1 without noise); either sign",
+                        "1"),
+      key::distribution("valve", ranges.valve, positive,
+                        "S of a valve over the range of the hard limits of its MV (1 without them)", "1"),
+      key::distribution("jump", ranges.jump, positive, "J of a sticking valve over its S", "1"),
+      key::distribution("md_gain", ranges.md_gain, positive, "factor of the measurement of an MD", "1"),
+      key::distribution("md_noise", ranges.md_noise, positive, "standard deviation of white noise on it",
+                        "MD"),
+      key::distribution(
+          "limit", ranges.limit, positive,
+          "shift of both soft limits of a CV over its range (1 where a side has none); either sign", "1"),
+      impact_key(ranges.impact,
+                 "effect to which every fault is scaled, as for a mismatch; an MV that is held has no size",
+                 "1"),
+      key::check(refuse_no_fault)};
+}
+
+OptionKeys onset_keys(Study& study) {
+  OnsetRanges& ranges = study.onset;
+  const auto check_onset = [&study](const TomlTable& table) {
+    if (study.onset.sample.maximum() >= study.simulation.samples)
+      table.refuse("sample", fmt::format("draws up to {}", study.onset.sample.maximum()),
+                   fmt::format("draws below {}, the samples of the record", study.simulation.samples));
+    if (study.nonlinear && study.onset.growth.maximum() > 0.0)
+      table.refuse("growth", "a gradual onset",
+                   "{constant = 0}: the parameters of a nonlinear plant change at once");
+  };
+  return {key::distribution("sample", ranges.sample, NumberRule::at_least(0),
+                            "sample at which they begin, rounded down", "samples")
+              .allow("draws >= 0 and below `simulation.samples`"),
+          key::distribution("growth", ranges.growth, NumberRule::at_least(0),
+                            "number of samples over which they grow linearly; as long as the record: a "
+                            "drift. Valves, limits and held MVs change at once",
+                            "samples")
+              .allow("draws >= 0; `{constant = 0}` for a nonlinear plant"),
+          key::check(check_onset)};
+}
+
+}  // namespace
+
+OptionKey sequence_key(SignalSequence& sequence, std::string meaning) {
+  return key::choice("sequence", sequence, {"each", "shared"}, std::move(meaning));
+}
+
+OptionKey experiments_key(Study& study) {
+  const auto refuse_beside_scenarios = [](const TomlTable& document) {
+    for (const char* random : {"experiments", "mismatch", "tuning"})
+      if (document.has("scenario") && document.has(random))
+        document.refuse(random, "random experiments beside named scenarios", "one of the two");
+  };
+  return random_table(
+             "experiments", [&study] { return experiments_keys(study.experiments); },
+             "how many random experiments of each kind")
+      .required()
+      .otherwise("required, unless there are scenarios")
+      .after(refuse_beside_scenarios);
+}
+
+OptionKeys fault_keys(Study& study) {
+  return {random_table(
+              "mismatch", [&study] { return mismatch_ranges_keys(study); },
+              "ranges of the random model-plant mismatches"),
+          key::table(
+              "disturbance", [&study] { return disturbance_ranges_keys(study.disturbance); },
+              "ranges of the random unmeasured disturbances"),
+          random_table(
+              "tuning", [&study] { return tuning_keys(study); }, "ranges of the random bad tunings"),
+          random_table(
+              "other", [&study] { return other_keys(study); },
+              "ranges of the random faults of instruments, valves, limits and operators"),
+          random_table(
+              "onset", [&study] { return onset_keys(study); }, "when the faults of a random experiment begin")
+              .otherwise("from the start")};
+}
+
+}  // namespace mpm

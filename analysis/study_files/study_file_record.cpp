@@ -1,0 +1,100 @@
+// [record]
+
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "analysis/study_files/study_file_parts.hpp"
+#include "scenarios/toml/option_keys.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double kMostOutliers = 0.5;  // beyond it the others are the outliers
+
+OptionKeys outliers_keys(RecordOptions& options) {
+  return {
+      key::number("share", options.outlier_share, {.low = 0, .high = kMostOutliers, .high_included = true},
+                  "probability that a sample of a CV is an outlier", "1")
+          .required(),
+      key::distribution("size", options.outlier_size, NumberRule::positive(),
+                        "deviation added to the sample, up or down", "noise standard deviations")};
+}
+
+OptionKeys missing_keys(RecordOptions& options) {
+  // A gap begins with a probability of at most 1 after each sample that is there.
+  const auto check_share = [&options](const TomlTable& table) {
+    if (const double largest = options.missing_length / (options.missing_length + 1.0);
+        options.missing_share > largest)
+      table.refuse("share", fmt::format("{}", options.missing_share),
+                   fmt::format("at most {:.3g} with gaps of {} samples: a sample stands between two gaps",
+                               largest, options.missing_length));
+  };
+  return {key::number("share", options.missing_share, NumberRule::inside(0, 1),
+                      "long-run share of the samples of each CV that is missing", "1")
+              .required()
+              .allow("above 0, at most `length` / (`length` + 1)"),
+          key::number("length", options.missing_length, NumberRule::at_least(1),
+                      "mean length of a gap; lengths are geometrically distributed", "samples"),
+          key::check(check_share),
+          fill_key(options.fill,
+                   "what fills a gap: nothing (NaN; methods that need every sample do not apply), the last "
+                   "value, or a straight line")};
+}
+
+OptionKeys candidates_keys(RecordOptions& options) {
+  return {key::whole("count", options.candidates, 1, RecordOptions::kMostCandidates,
+                     "number of signals in each loop", "signals")
+              .required(),
+          key::number("share", options.candidate_share, NumberRule::share(),
+                      "probability that one of them is the signal v that drives the first disturbance of an "
+                      "experiment. All others are decoys: of the form of v, with random numbers of their own",
+                      "1")};
+}
+
+/// Sizes are in standard deviations of the noise: without noise they would all be 0.
+void refuse_without_noise(const TomlTable& record, const Study& study) {
+  const Eigen::VectorXd& noise = study.simulation.noise_standard_deviation;
+  for (const char* key : {"outliers", "quantisation", "compression"})
+    for (Eigen::Index cv = 0; cv < noise.size(); ++cv)
+      if (record.has(key) && noise(cv) == 0.0)
+        record.refuse(key,
+                      fmt::format("sizes in standard deviations of the noise, which is 0 for {}",
+                                  study.plant.cvs[static_cast<std::size_t>(cv)].name),
+                      "simulation.noise_standard_deviation > 0 for every CV");
+}
+
+OptionKeys record_keys(Study& study) {
+  RecordOptions& options = study.record;
+  return {key::optional_table(
+              "outliers", [&options] { return outliers_keys(options); }, "single samples that are far off"),
+          key::number("quantisation", options.quantisation, NumberRule::at_least(0),
+                      "step between two values", "noise standard deviations")
+              .otherwise("0: none"),
+          key::optional_table(
+              "missing", [&options] { return missing_keys(options); }, "gaps, each CV with its own"),
+          key::number("compression", options.compression, NumberRule::at_least(0),
+                      "tolerance of the swinging-door compression. The reader interpolates between archived "
+                      "points, so no sample is off by more",
+                      "noise standard deviations")
+              .otherwise("0: every sample is kept"),
+          key::optional_table(
+              "candidates", [&options] { return candidates_keys(options); },
+              "further signals that the model does not have: some drive a disturbance, others are decoys"),
+          key::check([&study](const TomlTable& table) { refuse_without_noise(table, study); })};
+}
+
+}  // namespace
+
+OptionKey fill_key(GapFill& fill, std::string meaning) {
+  return key::choice("fill", fill, {"none", "hold", "linear"}, std::move(meaning));
+}
+
+OptionKey record_key(Study& study) {
+  return key::optional_table(
+             "record", [&study] { return record_keys(study); },
+             "how the historian degrades the record that the methods see")
+      .otherwise("none: every sample as it was measured");
+}
+
+}  // namespace mpm

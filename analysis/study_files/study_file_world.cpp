@@ -1,0 +1,161 @@
+// [world]
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "analysis/study_files/study_file_parts.hpp"
+#include "scenarios/toml/option_keys.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr std::int64_t kMostWorlds = 10'000, kMostCostLoops = 10'000;
+constexpr std::size_t kMostParameters = 200;
+
+/// Sizes are parts of what must be there.
+void refuse_sizes_of_nothing(const TomlTable& background, const BackgroundRanges& ranges,
+                             const Study& study) {
+  const Eigen::VectorXd& noise = study.simulation.noise_standard_deviation;
+  if (ranges.cv_size.maximum() > 0.0 && (noise.array() == 0.0).any())
+    background.refuse("cv_size", "sizes in standard deviations of the noise, which is 0 for a CV",
+                      "simulation.noise_standard_deviation > 0 for every CV");
+  const Limits& hard = study.controller.mv_hard;
+  if (ranges.mv_size.maximum() > 0.0 && !(hard.upper - hard.lower).allFinite())
+    background.refuse("mv_size", "sizes in parts of the hard limits, which an MV has not",
+                      "controller.mv.NAME.hard with two numbers for every MV");
+}
+
+OptionKeys background_keys(BackgroundRanges& ranges, const Study& study) {
+  const NumberRule rule = NumberRule::at_least(0);
+  return {key::distribution("cv_size", ranges.cv_size, rule,
+                            "standard deviation of the disturbance that is added to a CV",
+                            "noise standard deviations"),
+          key::distribution(
+              "mv_size", ranges.mv_size, rule,
+              "standard deviation of the disturbance that is added to an MV on its way to the plant",
+              "width of the hard limits"),
+          key::distribution("time_constant", ranges.time_constant, rule,
+                            "of the autocorrelation exp(-k / `time_constant`) of both; 0: white", "samples"),
+          key::check(
+              [&ranges, &study](const TomlTable& table) { refuse_sizes_of_nothing(table, ranges, study); })};
+}
+
+OptionKeys parameter_keys(WorldParameter& parameter, const Study& study) {
+  const auto names = [&study] {
+    std::vector<std::string> all;
+    if (study.nonlinear)
+      for (const NonlinearModel::Parameter& each : study.nonlinear->model.parameters)
+        all.push_back(each.name);
+    return all;
+  };
+  const auto read_name = [&parameter, names](const TomlTable& table, const std::string& key) {
+    const std::vector<std::string> all = names();
+    parameter.name = all[read_one_of(table, key, all)];
+  };
+  const auto check_ends = [&parameter, &study](const TomlTable& table) {
+    for (const NonlinearModel::Parameter& each : study.nonlinear->model.parameters)
+      for (const double end : {parameter.factor.minimum(), parameter.factor.maximum()})
+        if (each.name == parameter.name)
+          table.located("factor", [&] { study.nonlinear->model.check({{each.name, end * each.nominal}}); });
+  };
+  return {key::option("name", "text", "which one")
+              .required()
+              .allow("a parameter of the nonlinear plant, each once")
+              .read(read_name),
+          key::distribution("factor", parameter.factor, NumberRule::positive(), "factor of its nominal value",
+                            "1")
+              .required()
+              .also("both ends must be possible"),
+          key::check(check_ends)};
+}
+
+OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
+  const NumberRule positive = NumberRule::positive(), rule = NumberRule::at_least(0);
+  // A resolved study has the defaults of channels beside parameters of the plant.
+  const auto refuse_channels = [&ranges, &study](const TomlTable& world) {
+    const WorldRanges none;
+    for (const auto& [key, range] : {std::pair("gain_factor", &WorldRanges::gain_factor),
+                                     {"time_constant_factor", &WorldRanges::time_constant_factor},
+                                     {"dead_time_factor", &WorldRanges::dead_time_factor},
+                                     {"dead_time_shift", &WorldRanges::dead_time_shift},
+                                     {"extra_lag", &WorldRanges::extra_lag}})
+      if (study.nonlinear && !(ranges.*range == none.*range))
+        world.refuse(key, "errors of channels of a plant that is not simulated by its linear model",
+                     "plant_parameter");
+  };
+  const auto refuse_parameters = [&study](const TomlTable& world) {
+    if (!study.nonlinear && world.has("plant_parameter"))
+      world.refuse("plant_parameter", "parameters of a plant that is simulated by its linear model",
+                   "the keys of channels, or a nonlinear plant, a program or an FMU");
+  };
+  const auto take = [&ranges](const TomlTable& table, const WorldParameter& parameter) {
+    for (const WorldParameter& other : ranges.plant_parameters)
+      if (other.name == parameter.name)
+        table.refuse("name", fmt::format("'{}' a second time", parameter.name), "every parameter once");
+    ranges.plant_parameters.push_back(parameter);
+  };
+  return {
+      key::whole("count", ranges.count, 1, kMostWorlds,
+                 "how many worlds there are; the experiments of each kind go to them in turn. Calibration "
+                 "loops have "
+                 "as many of their own"),
+      key::distribution("gain_factor", ranges.gain_factor, positive,
+                        "factor of the gain of a channel of the plant, in each channel another one", "1"),
+      key::distribution("time_constant_factor", ranges.time_constant_factor, positive,
+                        "factor of its time constants", "1"),
+      key::distribution("dead_time_factor", ranges.dead_time_factor, rule, "factor of its dead time", "1"),
+      key::distribution("dead_time_shift", ranges.dead_time_shift, NumberRule::finite(),
+                        "added to its dead time; what comes out below 0 is 0", "time"),
+      key::distribution("extra_lag", ranges.extra_lag, rule,
+                        "time constant of a further lag, over the residence time of the channel", "1"),
+      key::distribution("noise_factor", ranges.noise_factor, rule,
+                        "factor of the measurement noise of a CV, in the benchmark as well", "1"),
+      key::whole(
+          "cost_loops", ranges.cost_loops, 1, kMostCostLoops,
+          "pairs of loops, with the fault and without it, over whose noise its cost is an expectation"),
+      key::whole(
+          "repair_loops", ranges.repair_loops, 0, kMostCostLoops,
+          "loops over whose noise the gain of repairing a channel is an expectation, each run once for "
+          "every channel that differs from the model; 0: `repair_gain` is not computed"),
+      key::list<WorldParameter>(
+          "plant_parameter", kMostParameters,
+          [&study](WorldParameter& parameter) { return parameter_keys(parameter, study); }, take,
+          "parameters of a nonlinear plant, a program or an FMU that differ, in the place of the keys of "
+          "channels")
+          .allow("one or more")
+          .after(refuse_parameters),
+      key::check(refuse_channels),
+      key::table(
+          "background", [&ranges, &study] { return background_keys(ranges.background, study); },
+          "disturbances that are always there: first-order noise of its own on every CV and every MV, other "
+          "numbers in each loop")};
+}
+
+}  // namespace
+
+OptionKey world_key(Study& study) {
+  // The keys refer to both, and so do those of the tables below them.
+  const auto below = [no_study = std::make_shared<Study>(), ranges = std::make_shared<WorldRanges>()] {
+    return world_keys(*ranges, *no_study);
+  };
+  const auto read = [&study](const TomlTable& document, const std::string& key) {
+    WorldRanges ranges;
+    const OptionKeys keys = world_keys(ranges, study);
+    read_keys(document.table(key, key_names(keys)), keys);
+    study.world = std::move(ranges);
+  };
+  return key::option(
+             "world", "table",
+             "worlds in which every model is a little wrong; controller and methods know the model and the "
+             "benchmark of their world")
+      .otherwise("none: the model is exact but for the fault")
+      .with("", below)
+      .read(read);
+}
+
+}  // namespace mpm

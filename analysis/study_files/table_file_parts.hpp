@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/study_files/table_file.hpp"
+#include "scenarios/toml/toml_table.hpp"
+
+// The parts of the reader of table files, one source file each. All refuse what they cannot take as TomlTable
+// does.
+
+namespace mpm {
+
+/// The name under which a row refers to the study without a variant, where it names a benchmark.
+inline constexpr std::string_view kStudyItself = "study";
+
+/// What a column says of all its cells; empty: the row says it.
+struct TableColumn {
+  std::string head, cv, mv, quantity;
+};
+
+/// [[rule]] (table_file_rules.cpp)
+std::vector<VerdictRule> read_table_rules(const TomlTable& document,
+                                          const std::vector<TableQuantity>& quantities);
+
+/// [[column]] (table_file_rows.cpp), as the next one.
+std::vector<TableColumn> read_table_columns(const TomlTable& document, const Study& study);
+
+/// [[row]]; `table` has the studies and the rules.
+std::vector<TableRow> read_table_rows(const TomlTable& document, const std::vector<TableColumn>& columns,
+                                      const ThesisTable& table, const std::vector<TableQuantity>& quantities);
+
+/// The names of the quantities, in their order.
+std::vector<std::string> quantity_names(const std::vector<TableQuantity>& quantities);
+
+}  // namespace mpm

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "base/system/forked_service.hpp"
+
+namespace mpm {
+
+/// A process that makes processes, so that threads can have some: a fork copies the memory of a process as it
+/// is, with the locks that its other threads hold at that moment, which nobody opens in the copy. This one is
+/// forked once, while no other thread is at work, has one thread itself, and forks whenever it is asked to.
+///
+/// Each service has two processes, both of its making: one that does the work, and one that waits for it,
+/// ends it when it takes too long or its user is gone, and says how it ended (ForkedService). Whatever the
+/// first one has started, in whatever session, ends with its service: the other one is its reaper, and the
+/// server that of one that was killed.
+class ForkServer {
+ public:
+  /// What a service does that is made with this setting; called in its process.
+  using MakeService = std::function<ForkedService::Serve(const std::vector<double>& setting)>;
+
+  /// Forks: to be called before threads are at work. Errors: std::system_error when no process can be made.
+  explicit ForkServer(const MakeService& make);
+  ForkServer(const ForkServer&) = delete;
+  ForkServer& operator=(const ForkServer&) = delete;
+  /// Ends its services, and whatever they have started.
+  ~ForkServer();
+
+ private:
+  friend class ServedProcess;
+
+  pid_t owner_, pid_ = -1;
+  int socket_ = -1;
+};
+
+/// A service of a ForkServer, which may be used by any thread, and in any process that was forked after the
+/// server: one at a time.
+class ServedProcess {
+ public:
+  /// An answer that takes longer than `time_limit` seconds counts as none. Errors: std::system_error when
+  /// there is no socket, ForeignFailure when the server is gone.
+  ServedProcess(const ForkServer& server, const std::vector<double>& setting, double time_limit);
+  ServedProcess(const ServedProcess&) = delete;
+  ServedProcess& operator=(const ServedProcess&) = delete;
+  ~ServedProcess();
+
+  /// The answer. Errors: ForeignFailure as ForkedService::ask().
+  std::vector<double> ask(const std::vector<double>& request);
+
+ private:
+  double time_limit_;
+  int socket_ = -1;
+};
+
+}  // namespace mpm

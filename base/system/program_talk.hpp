@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "base/system/child_process.hpp"
+
+namespace mpm {
+
+/// A program that answers each message, a JSON object, by another one with the number of the message
+/// ("number"). An answer with the number of an earlier message is passed over: the first one counts.
+///
+/// As ChildProcess an object belongs to one thread, and to the process that made it.
+class ProgramTalk {
+ public:
+  /// Starts the program. `place` is its name in messages; `time_limit`: seconds that an answer may take.
+  /// Throws ChildFailure.
+  ProgramTalk(std::string place, const std::vector<std::string>& command, double time_limit);
+
+  /// The answer to a message, without its number. What the program computes meanwhile is processor time of
+  /// the thread (thread_clock.hpp). Throws ChildFailure; and InputError for a line that is no answer. After
+  /// both the talk is out of step and over.
+  nlohmann::ordered_json ask(nlohmann::ordered_json message);
+
+  /// Is it a talk of this process? Not in one that was forked off: there it cannot be gone on with.
+  bool is_ours() const { return child_.is_ours(); }
+
+ private:
+  std::optional<nlohmann::ordered_json> answer_in(const std::string& line) const;
+
+  std::string place_;
+  double time_limit_;
+  ChildProcess child_;
+  std::int64_t number_ = 0;
+};
+
+}  // namespace mpm

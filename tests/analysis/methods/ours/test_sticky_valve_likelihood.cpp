@@ -1,0 +1,71 @@
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/basis/basis_case.hpp"
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/method_panel.hpp"
+#include "analysis/methods/ours/fault_posterior.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "tests/solvers/active_set_factory.hpp"
+
+// A valve that sticks is neither a mismatch nor a disturbance.
+
+namespace mpm {
+namespace {
+
+/// wood-berry, whose methods learn the errors of the model.
+Study learning_study() {
+  Study study = find_study("wood-berry");
+  study.assessment.model = AssessmentModel::benchmark;
+  return study;
+}
+
+ExperimentDraw draw_of(ExperimentKind kind, std::int64_t index) {
+  ExperimentDraw draw;
+  draw.kind = kind;
+  draw.index = index;
+  return draw;
+}
+
+}  // namespace
+
+TEST_CASE("the likelihood names a valve that sticks, and only such a one", "[valve]") {
+  const Study study = learning_study();
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  MethodPanel panel(study, assessment_context(study, basis, testing::kFactory), {"likelihood"});
+  const auto said = [&](const ExperimentDraw& draw) {
+    return panel
+        .assess(assessed_loop(study, basis.point, simulate_experiment(study, draw, testing::kFactory)),
+                nullptr)
+        .front();
+  };
+  const double range = study.controller.mv_hard.upper(0) - study.controller.mv_hard.lower(0);
+  REQUIRE(std::isfinite(range));
+  for (const Eigen::Index mv : {0, 1})
+    for (const double jump : {0.0, 0.7}) {
+      ExperimentDraw sticks = draw_of(ExperimentKind::other, 3);
+      sticks.other = OtherFault{jump > 0.0 ? OtherFaultKind::stiction : OtherFaultKind::deadband, mv,
+                                0.1 * range, jump * 0.1 * range};
+      const AssessmentRecord answer = said(sticks);
+      INFO("MV " << mv << ", J " << jump);
+      CHECK(answer.flagged);
+      CHECK(answer.number("p_other") > 0.9);
+      CHECK(answer.number("valve_mv") == static_cast<double>(mv));
+      CHECK(answer.predicted_source == FaultSource::other);
+      CHECK(answer.number("p_healthy") + answer.number("p_mpm") + answer.number("p_ud") +
+                answer.number("p_both") + answer.number("p_other") ==
+            Approx(1.0));
+    }
+  ExperimentDraw mismatch = draw_of(ExperimentKind::mpm, 4);
+  mismatch.mismatches = {{0, 0, MismatchParameter::gain, 0.6}};
+  CHECK(said(mismatch).predicted_source == FaultSource::mpm);
+  CHECK(said(mismatch).number("p_other") < 0.01);
+  ExperimentDraw disturbance = draw_of(ExperimentKind::ud, 5);
+  disturbance.disturbances = {{0, 0.5, 20.0}};
+  CHECK(said(disturbance).predicted_source == FaultSource::ud);
+  CHECK_FALSE(said(draw_of(ExperimentKind::healthy, 6)).flagged);
+}
+
+}  // namespace mpm
