@@ -9,6 +9,7 @@
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/fault_scale.hpp"
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/thesis/chain_numbers.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/analyser.hpp"

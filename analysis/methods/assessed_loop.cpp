@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/methods/ours/model_errors.hpp"
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/washout.hpp"
@@ -104,15 +103,6 @@ void hold(const AnalyserTiming& timing, Eigen::Index delay,
     y(k) = is_known ? taken(last) : kNaN;
     y_sim(k) = simulated(last);
   }
-}
-
-/// Samples of a CV, a round number: fewer hardly tell the noise from a dozen errors.
-constexpr Eigen::Index kFewestLearnt = 30;
-
-/// Does it have enough samples, and every input?
-bool learns_from(const AssessedLoop& benchmark) {
-  return model_inputs(benchmark.from_start()).allFinite() &&
-         ((!benchmark.y.array().isNaN()).rowwise().count() >= kFewestLearnt).all();
 }
 
 }  // namespace
@@ -239,27 +229,6 @@ AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, An
 
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context) {
   return recorded(context.study, basis_index(context.basis.world), context.basis.trajectory).y;
-}
-
-std::shared_ptr<const LearntModel> learnt_model(const Study& study, const OperatingPoint& point,
-                                                const AssessedLoop& benchmark) {
-  const AssessmentOptions& options = study.assessment;
-  const bool learns = options.model == AssessmentModel::automatic
-                          ? study.world.has_value()
-                          : options.model == AssessmentModel::benchmark;
-  if (!learns || !learns_from(benchmark))
-    return nullptr;
-  return std::make_shared<const LearntModel>(study, point.u, benchmark, options.model_error, options.bias);
-}
-
-AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory) {
-  const std::int64_t index = basis_index(basis.world);
-  AssessmentContext context{study, basis, std::move(factory),
-                            assessed_loop(study, basis.point, recorded(study, index, basis.trajectory))};
-  if (study.simulation.excitation == SignalSequence::each)
-    context.benchmark_study = std::make_shared<const Study>(with_excitation(study, index));
-  context.learnt = learnt_model(study, basis.point, *context.benchmark);
-  return context;
 }
 
 }  // namespace mpm

@@ -14,8 +14,6 @@
 
 namespace mpm {
 
-class LearntModel;
-
 /// The records of one closed loop as a method sees them: what the plant's historian keeps, and what the
 /// nominal model makes of it.
 ///
@@ -98,6 +96,19 @@ enum class AnalysesHeld { from_taken, from_shown };
 AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, AnalysesHeld from,
                                 AssessedLoop& whole);
 
+/// What is known of the errors of the model where nothing is wrong.
+class ModelCorrection {
+ public:
+  ModelCorrection() = default;
+  ModelCorrection(const ModelCorrection&) = default;
+  ModelCorrection& operator=(const ModelCorrection&) = default;
+  virtual ~ModelCorrection() = default;
+
+  /// The loop with what these errors explain of y - y_sim added to y_sim: what is left is new. `whole` is
+  /// where the record of a window is kept; it must outlive the loop.
+  virtual AssessedLoop corrected(const AssessedLoop& loop, AssessedLoop& whole) const = 0;
+};
+
 /// What a method may know besides the records of the loop. `study` and `basis` must outlive it.
 struct AssessmentContext {
   const Study& study;      ///< the nominal model, the controller and the options of the methods
@@ -108,21 +119,12 @@ struct AssessmentContext {
   /// The study of the loop of the benchmark, where its excitation is another one; null: `study`.
   std::shared_ptr<const Study> benchmark_study = {};
   /// What the benchmark shows of the errors of the model; null: the model is taken for exact.
-  std::shared_ptr<const LearntModel> learnt = {};
+  std::shared_ptr<const ModelCorrection> correction = {};
 
   const Study& study_of_benchmark() const { return benchmark_study ? *benchmark_study : study; }
 };
 
 /// The CVs of the basis case as the historian keeps them, ny x N; a method knows no others.
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context);
-
-/// What the benchmark shows of the errors of the model, where the study wants it (AssessmentModel); null
-/// where it does not, or the benchmark has too few samples of a CV or lacks some of an input.
-std::shared_ptr<const LearntModel> learnt_model(const Study& study, const OperatingPoint& point,
-                                                const AssessedLoop& benchmark);
-
-/// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault;
-/// errors of the model are learnt from it where the study has worlds.
-AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory);
 
 }  // namespace mpm

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/ours/model_errors.hpp"
 #include "base/error.hpp"
 
 namespace mpm {
@@ -62,7 +61,7 @@ std::optional<std::string> unmet_requirement(const AssessmentRequirements& requi
 Assessor::Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context)
     : requirements_(info.requirements),
       locates_cvs_(info.locates_cvs),
-      relative_(info.relative && context.learnt),
+      relative_(info.relative && context.correction),
       context_(context),
       make_(info.make),
       holds_analyses_(requirements_.complete_record && has_analysers(context.study.controller.analysers)) {
@@ -88,11 +87,11 @@ Assessment Assessor::assess_seen(const AssessedLoop& loop) {
     return Assessment::not_applicable(*unmet);
   if (!method_) {
     if (relative_ && seen_->benchmark)
-      seen_->benchmark = context_.learnt->corrected(*seen_->benchmark, benchmark_);
+      seen_->benchmark = context_.correction->corrected(*seen_->benchmark, benchmark_);
     method_ = make_(seen());
   }
   try {
-    Assessment assessment = method_->assess(relative_ ? context_.learnt->corrected(loop, whole_) : loop);
+    Assessment assessment = method_->assess(relative_ ? context_.correction->corrected(loop, whole_) : loop);
     assert(assessment.cvs.empty() || static_cast<Eigen::Index>(assessment.cvs.size()) == loop.y.rows());
     if (assessment.status == AssessmentStatus::ok && assessment.flagged && locates_cvs_ &&
         !assessment.worst_cv())

@@ -78,7 +78,7 @@ struct MethodDescription {
   bool names_mismatches = false;  ///< Assessment::named_mismatch
   bool names_candidates = false;  ///< Assessment::named_candidate
   /// The method is shown what is new since the benchmark, where errors of the model are learnt from it
-  /// (AssessmentContext::learnt).
+  /// (AssessmentContext::correction).
   bool relative = false;
   /// The share of healthy loops that the method states it flags; none if it states no share.
   std::optional<double> stated_false_alarms = {};

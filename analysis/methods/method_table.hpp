@@ -28,4 +28,7 @@ std::vector<std::string> known_methods(const std::vector<std::string>& names, co
 /// The names of all methods, in their order.
 std::vector<std::string> assessment_method_names();
 
+/// The tables [assessment.NAME] of all methods that have options, in their order.
+std::vector<MethodOptionTable> method_option_tables();
+
 }  // namespace mpm

@@ -8,6 +8,7 @@
 #include <Eigen/SVD>
 
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/validation/benchmark_period.hpp"
 #include "base/error.hpp"
@@ -152,10 +153,10 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
       AssessmentContext context{study, frame_.basis, frame_.factory,
                                 of_benchmark != nullptr ? window_of(*of_benchmark, first, count)
                                                         : nominal_benchmark(study, frame_.basis)};
-      context.learnt = of_benchmark != nullptr
-                           ? learnt_model(study, frame_.basis.point, *context.benchmark)
-                           : learnt_model(study, frame_.basis.point,
-                                          without_moves(*context.benchmark, frame_.basis.point));
+      context.correction = of_benchmark != nullptr
+                               ? learnt_model(study, frame_.basis.point, *context.benchmark)
+                               : learnt_model(study, frame_.basis.point,
+                                              without_moves(*context.benchmark, frame_.basis.point));
       return std::make_unique<MethodPanel>(study, std::move(context), std::vector{name});
     };
     if (has_benchmark) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/method_table.hpp"
 #include "analysis/study_files/study_file_parts.hpp"
 #include "scenarios/study/assessment_options.hpp"
 #include "scenarios/study/window_scan.hpp"

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "base/error.hpp"
 #include "base/system/program_trust.hpp"
 #include "bench/campaign/campaign_loops.hpp"

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "base/error.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"

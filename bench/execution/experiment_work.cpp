@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "base/system/thread_clock.hpp"
 
 namespace mpm {

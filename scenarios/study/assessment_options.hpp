@@ -55,10 +55,6 @@ struct MethodOptionTable {
   std::string name = {};
 };
 
-/// The tables of all methods, in their order. The room that has the methods defines it
-/// (analysis/methods/method_table.cpp), so that the reader of study files can refuse what no method takes.
-std::vector<MethodOptionTable> method_option_tables();
-
 /// What stands for the setpoint of a CV that the controller holds in a range.
 enum class AssessmentSetpoints : std::int8_t {
   controller = 0,  ///< nothing: a method that needs setpoints does not apply

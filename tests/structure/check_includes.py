@@ -50,17 +50,21 @@ def room_complaint(root, room, name, quoted):
 
 
 def folder_complaint(relative, name):
-    """What is wrong with including `name` from the file `relative` of the same room, or None."""
-    room = relative.parts[0]
-    order = tree.FOLDERS.get(room, [])
+    """What is wrong with including `name` from the file `relative` of the same room or folder, or None."""
     target = name.split("/")
-    if target[0] != room or len(relative.parts) == 2 or not order:
-        return None
-    for folder in (relative.parts[1], target[1]):
-        if folder not in order:
-            return f"{room}/{folder} is no folder of tree.FOLDERS"
-    if order.index(target[1]) > order.index(relative.parts[1]):
-        return f'{room}/{relative.parts[1]} must not include {room}/{target[1]}: "{name}"'
+    for above, order in tree.FOLDERS.items():
+        depth = len(above.split("/"))
+        if target[:depth] != above.split("/") or list(relative.parts[:depth]) != target[:depth]:
+            continue
+        own_is_file = "" in order  # else a file of the folder itself may include all of its folders
+        places = [parts[depth] if len(parts) > depth + 1 or not own_is_file else "" for parts in (relative.parts, target)]
+        if len(relative.parts) == depth + 1 and not own_is_file:
+            continue
+        for place in places:
+            if place not in order:
+                return f"{above}/{place} is no folder of tree.FOLDERS"
+        if order.index(places[1]) > order.index(places[0]):
+            return f'{above}/{places[0]} must not include {above}/{places[1]}: "{name}"'
     return None
 
 

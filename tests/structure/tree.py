@@ -5,18 +5,21 @@ import sys
 from pathlib import Path
 
 # From left to right: a file includes only its own room and rooms to its left.
-ROOMS = ["plants", "solvers", "scenarios", "analysis", "results", "bench"]
+ROOMS = ["base", "plants", "solvers", "scenarios", "analysis", "results", "bench"]
 # Beside the rooms: may include every room, and no room includes them.
 ABOVE_THE_ROOMS = ["tests", "examples", "python", "octave"]
 
 # The folders of a room, in the same way: a file includes only its own folder and folders to its left. A header of
 # the room itself that its folders may include stands here by its name.
 FOLDERS = {
-    "plants": ["error.hpp", "non_finite.hpp", "row_major.hpp", "same_members.hpp", "system", "plant.hpp", "linear",
+    "base": ["error.hpp", "non_finite.hpp", "row_major.hpp", "same_members.hpp", "system"],
+    "plants": ["plant.hpp", "linear",
                "nonlinear", "outside", "models"],
-    "scenarios": ["random", "toml", "faults", "controller", "study", "loop", "files"],
-    "analysis": ["statistics", "identification", "sensitivity", "indicators", "basis", "methods", "experiment",
+    "scenarios": ["random", "toml", "faults", "controller", "study", "loop"],
+    "analysis": ["statistics", "identification", "sensitivity", "indicators", "basis", "methods", "study_files", "experiment",
                  "findings", "reproduction", "validation", "records"],
+    # The files of the folder itself come first: the protocol that every method speaks knows no method.
+    "analysis/methods": ["", "shared", "thesis", "literature", "ours"],
     "results": ["files", "archive", "records", "blind", "text", "plot", "document", "summary", "gates", "report", "assess",
                 "reproduction", "suite"],
     "bench": ["version.hpp", "files", "outcome", "execution", "shards", "parts", "campaign", "console", "commands", "perf"],

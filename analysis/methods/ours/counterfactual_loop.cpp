@@ -8,7 +8,7 @@
 
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
-#include "analysis/methods/ours/model_errors.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "analysis/statistics/washout.hpp"
 #include "base/non_finite.hpp"
@@ -31,7 +31,7 @@ Eigen::MatrixXd errors_of(const Study& study, const AssessedLoop& whole) {
 
 CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
     : study_(context.study),
-      learnt_(context.learnt),
+      learnt_(learnt_model(context)),
       plant_(learnt_ ? learnt_->plant() : context.study.plant.G),
       factory_(context.factory),
       y_set_(setpoints(context.study)),

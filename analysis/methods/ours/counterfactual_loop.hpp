@@ -10,6 +10,7 @@
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 
 namespace mpm {
@@ -37,7 +38,7 @@ struct CounterfactualOptions {
 ///   Ivar = var y / (var y0 + v),   Ivar_diag = var y_i / (var y0_diag,i + v_i),   v = var y_b - var y0_b
 ///
 /// and G0 in the place of the plant corrected by what the benchmark shows of its errors
-/// (AssessmentContext::learnt), as in (3.24) and (4.14), but exact also where the loop leaves limits and
+/// (learnt_model()), as in (3.24) and (4.14), but exact also where the loop leaves limits and
 /// reaches them again, for which no linear S0 exists: with the errors of all CVs added, the loop returns y. y
 /// contains noise and y0 does not; v is what noise adds to the variance, taken from the basis case y_b of the
 /// same controller (NoiseVariance has other choices). Gaps of e are filled by linear interpolation. For

@@ -7,6 +7,7 @@
 
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/input_disturbance.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/sticky_valve_likelihood.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "base/error.hpp"
@@ -116,6 +117,7 @@ std::vector<ModelErrors> learnt_models(const AssessmentContext& context, FaultPr
   const Study& study = context.study;
   const AssessedLoop& benchmark = *context.benchmark;
   const bool drawn = priors == FaultPriors::study;
+  const std::shared_ptr<const LearntModel> learnt = drawn ? nullptr : learnt_model(context);
   std::vector<ModelErrors> models;
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
     std::optional<BaseNoise> known;
@@ -124,8 +126,8 @@ std::vector<ModelErrors> learnt_models(const AssessmentContext& context, FaultPr
     const double least = least_noise(benchmark.y_sim.row(cv));
     const Eigen::RowVectorXd e = without_outliers(benchmark.y.row(cv) - benchmark.y_sim.row(cv));
     const ModelErrorPrior errors = drawn ? drawn_errors(study, cv) : ModelErrorPrior{};
-    if (!drawn && context.learnt)
-      models.push_back(context.learnt->of(cv));
+    if (learnt)
+      models.push_back(learnt->of(cv));
     else if (errors.channels.empty())
       models.emplace_back(study, cv, known ? *known : fitted_base_noise(e, least));
     else
@@ -199,16 +201,16 @@ class FaultPosterior final : public AssessmentMethod {
       : study_(context.study),
         initial_(initial_inputs(context)),
         models_(learnt_models(context, priors)),
-        priors_(fault_priors(context.study, priors,
-                             context.study.assessment.of<LikelihoodOptions>().fault_probability,
-                             deviations(models_, context.learnt != nullptr), context.learnt != nullptr)) {
+        priors_(fault_priors(
+            context.study, priors, context.study.assessment.of<LikelihoodOptions>().fault_probability,
+            deviations(models_, context.correction != nullptr), context.correction != nullptr)) {
     if (priors == FaultPriors::study && !noise_is_known(study_))
       priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
-    if (priors != FaultPriors::study && context.learnt)
-      discount_false_faults(context);
+    if (const auto learnt = learnt_model(context); priors != FaultPriors::study && learnt)
+      discount_false_faults(*learnt, *context.benchmark);
     const FaultHypotheses asked = study_.assessment.of<LikelihoodOptions>().hypotheses;
     asks_more_ = priors != FaultPriors::study &&
-                 (asked == FaultHypotheses::all || (asked == FaultHypotheses::learnt && context.learnt));
+                 (asked == FaultHypotheses::all || (asked == FaultHypotheses::learnt && context.correction));
     for_scores_ = priors == FaultPriors::study ? of_equal_kinds(study_, priors_) : priors_;
     if (priors == FaultPriors::study && !draws_known_faults(study_))
       priors_ = for_scores_;
@@ -318,19 +320,18 @@ class FaultPosterior final : public AssessmentMethod {
   /// A fault must be more probable than the false ones that one half of the benchmark shows under what the
   /// other half teaches, in a record of the length of both: there the model of the errors is wrong (a
   /// nonlinear plant). Where it is right, the halves show none, and the priors stay.
-  void discount_false_faults(const AssessmentContext& context) {
-    const AssessedLoop& benchmark = *context.benchmark;
+  void discount_false_faults(const LearntModel& learnt, const AssessedLoop& benchmark) {
     const Eigen::MatrixXd inputs = model_inputs(benchmark.from_start());
     const Eigen::Index middle = benchmark.first + benchmark.samples() / 2;
     for (std::size_t i = 0; i < priors_.cvs.size(); ++i) {
       CvPrior& prior = priors_.cvs[i];
       const auto cv = static_cast<Eigen::Index>(i);
-      if (!context.learnt->of(cv).are_doubtful())
+      if (!learnt.of(cv).are_doubtful())
         continue;
       double false_odds = 0.0;
       for (const bool first : {true, false}) {
         const auto learns = [&](Eigen::Index k) { return (k < middle) == first; };
-        const std::optional<ModelErrors> half = context.learnt->of_part(study_, benchmark, cv, learns);
+        const std::optional<ModelErrors> half = learnt.of_part(study_, benchmark, cv, learns);
         Eigen::RowVectorXd other = errors_in_window(benchmark, cv);
         for (Eigen::Index k = 0; k < other.size(); ++k)
           if (learns(k))

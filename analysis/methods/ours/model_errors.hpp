@@ -130,7 +130,7 @@ class ModelErrors {
 };
 
 /// The model of all CVs with its errors, as the benchmark of a loop shows them.
-class LearntModel {
+class LearntModel final : public ModelCorrection {
  public:
   /// Priors of relative_errors(). Throws InputError as ModelErrors.
   LearntModel(const Study& study, const Eigen::Ref<const Eigen::VectorXd>& initial_u,
@@ -142,10 +142,8 @@ class LearntModel {
                                      const std::function<bool(Eigen::Index)>& uses) const;
   /// The model with the mean of its errors: the plant without a fault, as far as the benchmark shows it.
   TransferMatrix plant() const;
-  /// The loop with what the errors of the model explain of y - y_sim added to y_sim: by their mean, and by
-  /// what of the rest is most probable given the loop. What is left is new since the benchmark. `whole` is
-  /// where the record of a window is kept; it must outlive the loop.
-  AssessedLoop corrected(const AssessedLoop& loop, AssessedLoop& whole) const;
+  /// By the mean of the errors, and by what of the rest is most probable given the loop.
+  AssessedLoop corrected(const AssessedLoop& loop, AssessedLoop& whole) const override;
 
  private:
   Eigen::MatrixXd explained(const AssessedLoop& loop) const;

@@ -7,6 +7,7 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/counterfactual_loop.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/model_errors.hpp"
 
 namespace mpm {
@@ -43,7 +44,7 @@ constexpr double kMuchMore = 0.5;
 class Mpmbench final : public AssessmentMethod {
  public:
   explicit Mpmbench(const AssessmentContext& context)
-      : learnt_(context.learnt),
+      : learnt_(learnt_model(context)),
         nominal_(context),
         posterior_(assessment_method("likelihood"), context),
         order_(assessment_method("order"), context) {}

@@ -2,6 +2,7 @@
 
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/sensitivity/loop_stability.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/calibration.hpp"

@@ -7,6 +7,7 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"

@@ -6,6 +6,7 @@
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_panel.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
 #include "analysis/study_files/study_library.hpp"

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
 #include "tests/solvers/active_set_factory.hpp"

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/resolved_study.hpp"
 #include "analysis/study_files/study_change.hpp"
 #include "analysis/study_files/study_file.hpp"

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/controller_check.hpp"

@@ -7,6 +7,7 @@
 
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_change.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "tests/analysis/signals.hpp"

@@ -8,6 +8,7 @@
 
 #include "analysis/methods/literature/loop_autocovariance.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/signals.hpp"

@@ -5,6 +5,7 @@
 
 #include "analysis/methods/literature/badwe2009.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "solvers/qp_solver.hpp"

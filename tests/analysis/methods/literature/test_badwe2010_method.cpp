@@ -6,6 +6,7 @@
 
 #include "analysis/methods/literature/designed_output.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "analysis/study_files/study_change.hpp"
 #include "analysis/study_files/study_library.hpp"

@@ -6,6 +6,7 @@
 
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -9,6 +9,7 @@
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/literature/plant_model_ratio.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "tests/analysis/exact_interval.hpp"

@@ -5,6 +5,7 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/literature/model_quality.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "solvers/qp_solver.hpp"

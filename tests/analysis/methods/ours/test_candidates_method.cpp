@@ -8,6 +8,7 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_change.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"

@@ -5,6 +5,7 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/counterfactual_loop.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "analysis/study_files/study_library.hpp"

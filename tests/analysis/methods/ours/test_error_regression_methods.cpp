@@ -11,6 +11,7 @@
 #include "analysis/identification/prewhitened_test.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/shared/error_regression.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"

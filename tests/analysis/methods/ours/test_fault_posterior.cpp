@@ -9,6 +9,7 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/fault_posterior.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "analysis/study_files/study_library.hpp"

@@ -6,6 +6,7 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_panel.hpp"
 #include "analysis/methods/ours/fault_posterior.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "tests/solvers/active_set_factory.hpp"

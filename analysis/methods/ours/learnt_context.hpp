@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+
+#include "analysis/basis/basis_case.hpp"
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/study/study.hpp"
+#include "solvers/qp_solver.hpp"
+
+// What methods learn before they see a loop.
+
+namespace mpm {
+
+/// What the benchmark shows of the errors of the model, where the study wants it (AssessmentModel); null
+/// where it does not, or the benchmark has too few samples of a CV or lacks some of an input.
+std::shared_ptr<const LearntModel> learnt_model(const Study& study, const OperatingPoint& point,
+                                                const AssessedLoop& benchmark);
+
+/// The same of a context; null where nothing was learnt.
+std::shared_ptr<const LearntModel> learnt_model(const AssessmentContext& context);
+
+/// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault;
+/// errors of the model are learnt from it where the study has worlds.
+AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory);
+
+}  // namespace mpm
