@@ -2,8 +2,6 @@
 
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "solvers/lanes/lane_program.hpp"
 #include "solvers/qp.hpp"
@@ -87,11 +85,5 @@ struct SolvedQp {
 
 /// Makes a solver for a structure: how a controller is given its back end.
 using QpSolverFactory = std::function<std::unique_ptr<QpSolver>(std::shared_ptr<const QpStructure>)>;
-
-/// The factory of the back end with this name; an unknown name throws InputError that lists the known ones.
-QpSolverFactory qp_solver_factory(const std::string& name);
-
-/// Names that `qp_solver_factory` knows.
-std::vector<std::string> qp_solver_names();
 
 }  // namespace mpm

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/basis/basis_runs.hpp"
+
 namespace mpm {
 
 struct BasisCases::Entry {

@@ -9,6 +9,7 @@
 
 #include "base/non_finite.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 
 namespace mpm {
 namespace {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "base/error.hpp"
+#include "scenarios/loop/draw.hpp"
 
 namespace mpm {
 namespace {

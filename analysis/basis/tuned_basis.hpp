@@ -4,7 +4,7 @@
 
 #include "analysis/basis/basis_case.hpp"
 #include "scenarios/loop/closed_loop.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/fault_scale.hpp"
 #include "analysis/experiment/judgement.hpp"
@@ -14,6 +15,7 @@
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "plants/analyser.hpp"
 #include "scenarios/loop/candidates.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/historian.hpp"
 
@@ -46,38 +48,6 @@ AssessmentRecord* chain_verdict(std::vector<AssessmentRecord>& assessments) {
 }
 
 }  // namespace
-
-std::string_view to_string(ExperimentStatus status) {
-  switch (status) {
-    case ExperimentStatus::ok:
-      return "ok";
-    case ExperimentStatus::infeasible:
-      return "infeasible";
-    case ExperimentStatus::failed:
-      return "failed";
-    case ExperimentStatus::unstable:
-      return "unstable";
-  }
-  return "unknown";
-}
-
-const AssessmentRecord* ExperimentRecord::by(std::string_view method) const {
-  const auto found = std::find_if(assessments.begin(), assessments.end(), [method](const auto& assessment) {
-    return assessment.form->method().name == method;
-  });
-  return found == assessments.end() ? nullptr : &*found;
-}
-
-const AssessmentRecord* ExperimentRecord::diagnosed() const {
-  const auto found = std::find_if(assessments.begin(), assessments.end(),
-                                  [](const auto& assessment) { return diagnoses(*assessment.form); });
-  return found == assessments.end() ? nullptr : &*found;
-}
-
-Diagnosis ExperimentRecord::chain() const {
-  const AssessmentRecord* const said = diagnosed();
-  return said == nullptr ? Diagnosis{} : diagnosis_of(*said);
-}
 
 ExperimentRunner::ExperimentRunner(const Study& study, AssessmentContext context,
                                    const std::vector<std::string>& methods)

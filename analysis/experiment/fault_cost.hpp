@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "analysis/indicators/loop_cost.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "analysis/indicators/diagnosis.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/fault_draw.hpp"
 #include "scenarios/random/random_stream.hpp"
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "scenarios/loop/closed_loop.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 
 // What is right and what is wrong: the one place where the answer of a method is held against the truth.
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 
 namespace mpm {
 

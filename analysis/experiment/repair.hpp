@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include "analysis/experiment/experiment.hpp"
 #include "analysis/methods/ours/channel_fit.hpp"
 #include "analysis/methods/ours/repair_prospects.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 
 // What an engineer does with a named channel: correct it, and put it into the controller.
 

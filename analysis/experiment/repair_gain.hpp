@@ -6,7 +6,7 @@
 
 #include "analysis/methods/assessment.hpp"
 #include "scenarios/loop/closed_loop.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 

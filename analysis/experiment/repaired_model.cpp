@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/world.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "plants/linear/transfer_matrix.hpp"
 #include "scenarios/loop/closed_loop.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/experiment/record_range.hpp"
 
 // Thresholds that give every method the same rate of false alarms, so that methods can be compared by what

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/statistics/interval.hpp"
 
 namespace mpm {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/findings/calibration.hpp"
 #include "analysis/findings/world_counts.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "base/non_finite.hpp"
 
 // What comes of a method that watches a loop through a moving window.

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
-#include "plants/nonlinear/nonlinear_model.hpp"
+#include "plants/nonlinear/nonlinear_plant.hpp"
 #include "scenarios/loop/signals.hpp"
 
 namespace mpm {

@@ -10,8 +10,8 @@
 #include "base/non_finite.hpp"
 #include "plants/analyser.hpp"
 #include "plants/linear/settling_time.hpp"
-#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/historian.hpp"
 #include "scenarios/loop/signals.hpp"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/records/record_panel.hpp"
 
 // Simulated records like that of a plant: what nobody knows of the record, nobody knows of them.

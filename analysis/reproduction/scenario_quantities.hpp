@@ -10,7 +10,7 @@
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/sensitivity/loop_interaction.hpp"
-#include "analysis/study_files/table_file.hpp"
+#include "analysis/study_files/thesis_table.hpp"
 
 namespace mpm {
 

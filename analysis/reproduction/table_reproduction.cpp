@@ -12,6 +12,7 @@
 #include "analysis/reproduction/scenario_quantities.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/loop/draw.hpp"
 
 namespace mpm {
 namespace {

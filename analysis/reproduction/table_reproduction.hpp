@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/basis/basis_cases.hpp"
-#include "analysis/study_files/table_file.hpp"
+#include "analysis/study_files/thesis_table.hpp"
 #include "solvers/qp_solver.hpp"
 
 // The tables of the thesis, cell by cell: our number, the thesis's, and whether the same is concluded.

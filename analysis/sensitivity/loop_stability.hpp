@@ -6,7 +6,7 @@
 
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
 #include "plants/linear/transfer_matrix.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {

@@ -20,7 +20,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kMostMoves = 10000;
+constexpr std::size_t kMostRecordedMoves = 10000;
 constexpr double kFirstTolerance = 0.01;  // of the standard deviation of an MD
 constexpr double kFewestMissing = 0.001;
 constexpr double kMostBackground = 0.5;      // standard deviations of the noise
@@ -32,7 +32,7 @@ toml::table& table_in(toml::table& owner, std::string_view key) {
   return *owner.insert(key, toml::table()).first->second.as_table();
 }
 
-const std::string& name_of(const std::vector<PlantModel::Variable>& variables, Eigen::Index i) {
+const std::string& name_at(const std::vector<PlantModel::Variable>& variables, Eigen::Index i) {
   return variables[static_cast<std::size_t>(i)].name;
 }
 
@@ -60,12 +60,12 @@ void add_md_steps(const Study& study, const Eigen::MatrixXd& d, toml::array& ste
       of_md = moves_of(d.row(md), 0.0, tolerance * deviations(md));
       count += of_md.size();
     }
-    if (count <= kMostMoves)
+    if (count <= kMostRecordedMoves)
       break;
   }
   for (Eigen::Index md = 0; md < d.rows(); ++md)
     for (const Eigen::Index k : moves[static_cast<std::size_t>(md)])
-      steps.push_back(toml::table{{"md", name_of(study.plant.mds, md)}, {"sample", k}, {"level", d(md, k)}});
+      steps.push_back(toml::table{{"md", name_at(study.plant.mds, md)}, {"sample", k}, {"level", d(md, k)}});
 }
 
 /// Setpoints that were recorded: the first one is that of the controller, the others are steps.
@@ -73,7 +73,7 @@ void add_setpoints(const Study& study, const Eigen::MatrixXd& y_set, toml::table
   for (Eigen::Index cv = 0; cv < y_set.rows(); ++cv) {
     if (!study.controller.has_setpoint(cv) || std::isnan(y_set(cv, 0)))
       continue;
-    const std::string& name = name_of(study.plant.cvs, cv);
+    const std::string& name = name_at(study.plant.cvs, cv);
     table_in(table_in(table_in(text, "controller"), "cv"), name).insert_or_assign("setpoint", y_set(cv, 0));
     for (const Eigen::Index k : moves_of(y_set.row(cv), y_set(cv, 0), 0.0))
       steps.push_back(toml::table{{"cv", name}, {"sample", k}, {"level", y_set(cv, k)}});
@@ -93,7 +93,7 @@ toml::array limit_steps(const Study& study, const PlantRecord& record) {
     for (Eigen::Index k = 0; k < record.samples(); ++k) {
       const std::pair limits{at(record.lower, lower, k), at(record.upper, upper, k)};
       if (limits != in_force)
-        steps.push_back(toml::table{{"cv", name_of(study.plant.cvs, cv)},
+        steps.push_back(toml::table{{"cv", name_at(study.plant.cvs, cv)},
                                     {"sample", k},
                                     {"soft", toml::array{limits.first, limits.second}}});
       in_force = limits;
@@ -115,7 +115,7 @@ toml::array off_spells(const Study& study, const PlantRecord& record) {
         ++end;
       if (end == k)
         continue;
-      add("mv", name_of(study.plant.mvs, mv), k, end);
+      add("mv", name_at(study.plant.mvs, mv), k, end);
       spells.back().as_table()->insert("level", record.u(mv, k));
     }
   for (Eigen::Index cv = 0; cv < record.y_off.rows(); ++cv)
@@ -123,7 +123,7 @@ toml::array off_spells(const Study& study, const PlantRecord& record) {
       for (end = k; end < record.samples() && record.has_cv_off(cv, end);)
         ++end;
       if (end > k)
-        add("cv", name_of(study.plant.cvs, cv), k, end);
+        add("cv", name_at(study.plant.cvs, cv), k, end);
     }
   return spells;
 }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/study_files/table_file.hpp"
+#include "analysis/study_files/thesis_table.hpp"
 #include "scenarios/study/study.hpp"
 
 // One key of a study with another value, from a command line.

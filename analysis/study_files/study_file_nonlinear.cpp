@@ -10,6 +10,7 @@
 
 #include "analysis/study_files/study_file_parts.hpp"
 #include "plants/models/catalogue.hpp"
+#include "plants/nonlinear/ode_integrator.hpp"
 #include "scenarios/toml/option_keys.hpp"
 #include "scenarios/toml/toml_text.hpp"
 

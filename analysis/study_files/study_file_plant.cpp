@@ -26,11 +26,11 @@ OptionKeys variable_keys(PlantModel::Variable& variable) {
 }
 
 /// A channel from an MV or MD to a CV.
-struct Channel {
+struct ChannelEntry {
   Eigen::Index cv, input;
 };
 
-OptionKeys channel_keys(Channel& channel, const PlantModel& model) {
+OptionKeys channel_keys(ChannelEntry& channel, const PlantModel& model) {
   OptionKeys keys{key::one_of(
                       "cv", channel.cv, [&] { return variable_names(model.cvs); }, "output of the channel")
                       .allow("name of a CV"),
@@ -65,7 +65,7 @@ OptionKeys own_plant_keys(PlantModel& model) {
                              static_cast<Eigen::Index>(model.mvs.size() + model.mds.size()));
   };
   const auto take = [&model, listed = std::make_shared<std::set<std::pair<Eigen::Index, Eigen::Index>>>()](
-                        const TomlTable& table, Channel& at) {
+                        const TomlTable& table, ChannelEntry& at) {
     const auto [channel, step_error] = read_transfer_function(table);
     refuse_unstable(table, channel, PolesAtOrigin::one);
     if (!listed->emplace(at.cv, at.input).second)
@@ -82,9 +82,10 @@ OptionKeys own_plant_keys(PlantModel& model) {
       variables("mv", model.mvs, "manipulated variables, in the order of the columns").required(),
       variables("md", model.mds, "measured disturbances, in the order of the columns after those of the MVs"),
       key::check([sized](const TomlTable&) { sized(); }),
-      key::list<Channel>(
-          "channel", kMaxVariables * kMaxVariables, [&model](Channel& at) { return channel_keys(at, model); },
-          take, "channels of `G0`; those not listed are zero")
+      key::list<ChannelEntry>(
+          "channel", kMaxVariables * kMaxVariables,
+          [&model](ChannelEntry& at) { return channel_keys(at, model); }, take,
+          "channels of `G0`; those not listed are zero")
           .allow("one or more")
           .required()};
 }

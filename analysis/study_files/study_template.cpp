@@ -108,11 +108,13 @@ std::string channel_name(const PlantModel& plant, Eigen::Index input) {
 }
 
 TomlDraft& below(TomlDraft& parent, std::string_view key, std::string_view table) {
-  return parent.table(key, key_names(study_file_keys(table))).explain(study_file_keys(table));
+  const OptionKeys& keys = study_file_keys(table);
+  return parent.table(key, key_names(keys)).explain(table, plain_meanings(keys));
 }
 
 TomlDraft& entry_of(TomlDraft& parent, std::string_view list, std::size_t place, std::string_view table) {
-  return parent.table_in_list(list, place, key_names(study_file_keys(table))).explain(study_file_keys(table));
+  const OptionKeys& keys = study_file_keys(table);
+  return parent.table_in_list(list, place, key_names(keys)).explain(table, plain_meanings(keys));
 }
 
 void write_variables(TomlDraft& plant, const std::string& group,
@@ -315,7 +317,7 @@ std::string study_template(const StudySketch& sketch) {
   require(sketch);
   const Guess guess(sketch);
   TomlDraft document(key_names(study_file_keys("")));
-  document.explain(study_file_keys(""));
+  document.explain("", plain_meanings(study_file_keys("")));
   TomlDraft& heading = below(document, "study", "study");
   heading.set("name", sketch.plant.name);
   heading.set("title", fmt::format("{}: random mismatches and disturbances", sketch.plant.title));

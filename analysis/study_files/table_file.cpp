@@ -76,21 +76,6 @@ std::vector<ThesisTable> all_tables(const std::vector<TableQuantity>& quantities
 
 }  // namespace
 
-const VerdictRule* ThesisTable::rule_for(const std::string& quantity) const {
-  for (const VerdictRule& rule : rules)
-    if (std::find(rule.quantities.begin(), rule.quantities.end(), quantity) != rule.quantities.end())
-      return &rule;
-  return nullptr;
-}
-
-std::string ThesisTable::label() const {
-  return fmt::format("{} {}", figure ? "Figure" : "Table", number);
-}
-
-std::string ThesisTable::name() const {
-  return (figure ? "figure" : "") + number;
-}
-
 ThesisTable load_table(const fs::path& path, const std::vector<TableQuantity>& quantities) {
   const std::string file_name = path.string();
   const toml::table toml = parse_toml(read_toml_file(path, "a table file"), file_name);

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/study_files/table_file.hpp"
+#include "analysis/study_files/thesis_table.hpp"
 #include "scenarios/toml/toml_table.hpp"
 
 // The parts of the reader of table files, one source file each. All refuse what they cannot take as TomlTable

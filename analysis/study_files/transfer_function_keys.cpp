@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/non_finite.hpp"
+#include "plants/linear/in_series.hpp"
 #include "plants/linear/step_response_fit.hpp"
 #include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_values.hpp"

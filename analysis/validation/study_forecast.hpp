@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/validation/study_warnings.hpp"
 

@@ -15,7 +15,7 @@
 #include "bench/execution/experiment_work.hpp"
 #include "results/archive/columns.hpp"
 #include "scenarios/loop/calibration.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

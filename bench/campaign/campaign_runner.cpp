@@ -8,11 +8,13 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

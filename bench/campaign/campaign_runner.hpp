@@ -2,33 +2,15 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
-#include <string>
 
 #include "base/error.hpp"
+#include "bench/campaign/campaign_hooks.hpp"
 #include "bench/execution/run_options.hpp"
-#include "bench/execution/stop_request.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "results/archive/campaign.hpp"
 
 namespace mpm {
-
-/// How a campaign is watched and stopped; each may be empty.
-struct CampaignHooks {
-  /// Asked at each step of the basis case, and before each experiment.
-  StopRequest stop = {};
-  /// Called once the basis case is there, before it is checked.
-  std::function<void(const Study&, const BasisCase&)> on_basis = {};
-  /// Called once before the first experiment: an earlier run has left `done` of the `count` experiments.
-  std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
-  /// Called after each experiment that is done, in the order of completion, and whether it failed.
-  std::function<void(bool failed)> on_done = {};
-  /// Called with a text that the user must see.
-  std::function<void(const std::string&)> on_warning = {};
-  /// Called with the whole campaign while its shards are still locked: the place to write its archive.
-  std::function<void(Campaign&)> on_end = {};
-};
 
 /// The basis case of the study failed its self-check: its verdicts would mean nothing.
 class UnhealthyBasis : public InputError {

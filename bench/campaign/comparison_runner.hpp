@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analysis/methods/assessed_loop.hpp"
+#include "bench/campaign/campaign_hooks.hpp"
 #include "bench/campaign/campaign_loops.hpp"
-#include "bench/campaign/campaign_runner.hpp"
 #include "bench/parts/launcher.hpp"
 #include "bench/shards/shard_store.hpp"
 #include "results/archive/campaign.hpp"

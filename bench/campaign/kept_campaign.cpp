@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "analysis/methods/method_table.hpp"
+#include "bench/campaign/campaign_runner.hpp"
+#include "bench/execution/run_options.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/campaign_hooks.hpp"
 
 // Campaigns whose archive is kept for the next time, and read as stream_archive() reads it.
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/campaign/campaign_runner.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_identity.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/campaign/campaign_hooks.hpp"
 #include "bench/campaign/campaign_loops.hpp"
-#include "bench/campaign/campaign_runner.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard_store.hpp"
 

@@ -20,6 +20,7 @@
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_identity.hpp"
 #include "results/files/byte_stream.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -13,7 +13,7 @@
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "results/archive/record_bytes.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

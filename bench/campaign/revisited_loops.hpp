@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/experiment/experiment.hpp"
-#include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/campaign_hooks.hpp"
 #include "bench/campaign/loop_farm.hpp"
 #include "results/archive/campaign.hpp"
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bench/campaign/campaign_loops.hpp"
+#include "bench/campaign/campaign_runner.hpp"
 
 namespace mpm {
 

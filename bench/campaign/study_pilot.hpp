@@ -3,7 +3,8 @@
 #include <cstdint>
 
 #include "analysis/validation/study_forecast.hpp"
-#include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/campaign_hooks.hpp"
+#include "bench/execution/run_options.hpp"
 
 namespace mpm {
 

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/experiment/repair.hpp"
 #include "analysis/findings/trial_findings.hpp"
@@ -44,6 +45,7 @@
 #include "results/document/document_text.hpp"
 #include "results/records/plant_record_file.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -16,7 +16,7 @@
 #include "base/system/program_trust.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/files/outside_files.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

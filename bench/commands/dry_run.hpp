@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/campaign_hooks.hpp"
 #include "bench/commands/study_series.hpp"
 #include "bench/parts/part_folder.hpp"
 

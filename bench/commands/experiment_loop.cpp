@@ -6,6 +6,7 @@
 #include "analysis/basis/tuned_basis.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "bench/commands/common_options.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 

@@ -27,6 +27,7 @@
 #include "bench/shards/shard_store.hpp"
 #include "results/archive/csv_table.hpp"
 #include "results/blind/blind_loops.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_template.hpp"
 #include "base/error.hpp"
@@ -24,7 +25,7 @@
 #include "bench/files/new_file.hpp"
 #include "results/records/data_sketch.hpp"
 #include "results/records/record_file.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

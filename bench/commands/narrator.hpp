@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-#include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/campaign_hooks.hpp"
 #include "bench/console/progress.hpp"
 
 namespace mpm {

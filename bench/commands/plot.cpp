@@ -13,7 +13,7 @@
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/trajectory_figure.hpp"
-#include "results/text/experiment_text.hpp"
+#include "results/text/experiment_heading.hpp"
 
 namespace mpm {
 namespace {

@@ -28,6 +28,7 @@
 #include "results/text/experiment_text.hpp"
 #include "results/text/number_json.hpp"
 #include "scenarios/loop/historian.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
@@ -15,7 +16,9 @@
 #include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "results/text/experiment_heading.hpp"
 #include "results/text/experiment_text.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -13,6 +13,7 @@
 #include "analysis/reproduction/scenario_quantities.hpp"
 #include "analysis/reproduction/seeded_reproduction.hpp"
 #include "analysis/study_files/study_change.hpp"
+#include "analysis/study_files/table_file.hpp"
 #include "base/error.hpp"
 #include "bench/campaign/reproduction_runs.hpp"
 #include "bench/commands/commands.hpp"

@@ -15,6 +15,7 @@
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
+#include "bench/execution/run_options.hpp"
 #include "results/text/number_json.hpp"
 
 namespace mpm {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "bench/campaign/campaign_runner.hpp"
+#include "bench/campaign/campaign_hooks.hpp"
 #include "bench/console/stop_signals.hpp"
 #include "bench/execution/stop_request.hpp"
 

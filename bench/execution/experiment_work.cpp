@@ -8,6 +8,8 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "base/system/thread_clock.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 ExperimentWork::ExperimentWork(const Study& study, const Study& basis_study, const BasisCase& basis,

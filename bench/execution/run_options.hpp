@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/records/trial_record.hpp"
 
 namespace mpm {

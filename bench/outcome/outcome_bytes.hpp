@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "scenarios/loop/audit.hpp"
 

@@ -10,8 +10,11 @@
 #include "bench/perf/benchmarks.hpp"
 #include "bench/perf/timed_plant.hpp"
 #include "plants/linear/linear_plant.hpp"
+#include "plants/nonlinear/nonlinear_plant.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "bench/perf/benchmarks.hpp"
 #include "bench/perf/qp_timing.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

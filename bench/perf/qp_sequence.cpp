@@ -6,9 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "analysis/experiment/experiment.hpp"
 #include "base/error.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 

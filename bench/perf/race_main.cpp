@@ -14,6 +14,7 @@
 #include "bench/perf/daqp_rival.hpp"
 #include "bench/perf/qp_timing.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

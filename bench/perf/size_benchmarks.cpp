@@ -9,6 +9,7 @@
 #include "analysis/statistics/quantile.hpp"
 #include "bench/perf/benchmarks.hpp"
 #include "bench/perf/sparse_loop.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

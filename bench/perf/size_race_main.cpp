@@ -18,6 +18,7 @@
 #include "bench/perf/hpipm_rival.hpp"
 #include "bench/perf/sparse_loop.hpp"
 #include "solvers/lanes/kernel_choice.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -10,6 +10,7 @@
 #include "base/system/thread_clock.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "scenarios/random/random_stream.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -5,9 +5,11 @@
 #include <sys/resource.h>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "base/error.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/perf/benchmarks.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -3,9 +3,12 @@
 #include <cstdio>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 int main() {
   const mpm::Study study = mpm::load_study(WOOD_BERRY);

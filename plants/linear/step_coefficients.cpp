@@ -8,16 +8,11 @@
 
 #include "base/error.hpp"
 #include "base/same_members.hpp"
-#include "plants/linear/linear_plant.hpp"
-#include "plants/linear/settling_time.hpp"
-#include "plants/linear/transfer_function.hpp"
-#include "plants/linear/transfer_matrix.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr double kRoundingOfPlace = 1e-9;  // of an interval
-constexpr double kTimesToSettle = 21.0;    // sums of time constants: e^-21 = 1e-9
 
 /// x, or the whole number that it is but for rounding.
 double snapped(double x) {
@@ -84,22 +79,6 @@ StepCoefficients StepCoefficients::with_dead_time_shifted(double delta) const {
   StepCoefficients changed = *this;
   changed.start_ += delta;
   return changed;
-}
-
-/// S' is constant between coefficients: H S' / s is that of a held input.
-StepCoefficients StepCoefficients::followed_by(const TransferFunction& H) const {
-  const Eigen::VectorXd values = sampled(interval_);
-  const Eigen::Index n = values.size();
-  const double settled = H.dead_time() + kTimesToSettle * sum_of_time_constants(H);
-  const Eigen::Index count = n + static_cast<Eigen::Index>(std::ceil(settled / interval_));
-  Eigen::RowVectorXd slopes = Eigen::RowVectorXd::Constant(count + 1, rate());
-  slopes.head(n) = values.transpose() / interval_;
-  slopes.segment(1, n - 1) -= values.head(n - 1).transpose() / interval_;
-  Eigen::VectorXd over_s = Eigen::VectorXd::Zero(H.denominator().size() + 1);
-  over_s.head(H.denominator().size()) = H.denominator();
-  const TransferMatrix integrated{{TransferFunction(H.numerator(), over_s, H.dead_time())}};
-  return {simulate(integrated, interval_, slopes).row(0).tail(count).transpose(), interval_,
-          ramps_ || H.is_integrating()};
 }
 
 bool operator==(const StepCoefficients& a, const StepCoefficients& b) {

@@ -6,8 +6,6 @@
 
 namespace mpm {
 
-class TransferFunction;
-
 /// A step response S(t) by its coefficients, as dynamic matrix control has it: S(0) = 0, S(T) = s_1, ...,
 /// S(n T) = s_n, straight lines in between. After the last coefficient it stays there, or, of a channel that
 /// integrates, goes on with the last slope, (s_n - s_(n-1)) / T.
@@ -41,9 +39,6 @@ class StepCoefficients {
   StepCoefficients with_time_scaled(double factor, double about) const;
   /// S(t - delta).
   StepCoefficients with_dead_time_shifted(double delta) const;
-  /// The response of H(s), which has no coefficients, to S(t): exact at multiples of T, and long enough for H
-  /// to settle.
-  StepCoefficients followed_by(const TransferFunction& H) const;
 
   friend bool operator==(const StepCoefficients& a, const StepCoefficients& b);
 

@@ -51,14 +51,6 @@ std::complex<double> evaluate(const Eigen::VectorXd& coefficients, std::complex<
   return value;
 }
 
-/// p(s) q(s).
-Eigen::VectorXd product(const Eigen::VectorXd& p, const Eigen::VectorXd& q) {
-  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(p.size() + q.size() - 1);
-  for (Eigen::Index i = 0; i < p.size(); ++i)
-    coefficients.segment(i, q.size()) += p(i) * q;
-  return coefficients;
-}
-
 /// p(s) / s^n, n the number of roots at the origin.
 Eigen::VectorXd without_roots_at_origin(const Eigen::VectorXd& p) {
   Eigen::Index size = p.size();
@@ -191,8 +183,8 @@ TransferFunction TransferFunction::behind_washout(double time_constant) const {
   if (!std::isfinite(time_constant) || time_constant <= 0)
     throw InputError("time constant of a washout", fmt::format("{}", time_constant), "a finite number > 0");
   const TransferFunction G = without_washout();
-  TransferFunction washed(product(G.numerator_, Eigen::Vector2d(time_constant, 0)),
-                          product(G.denominator_, Eigen::Vector2d(time_constant, 1)), dead_time_);
+  TransferFunction washed(polynomial_product(G.numerator_, Eigen::Vector2d(time_constant, 0)),
+                          polynomial_product(G.denominator_, Eigen::Vector2d(time_constant, 1)), dead_time_);
   washed.washout_ = time_constant;
   washed.own_numerator_ = G.numerator_;
   washed.own_denominator_ = G.denominator_;
@@ -210,8 +202,12 @@ TransferFunction TransferFunction::without_washout() const {
 
 TransferFunction TransferFunction::with_step_coefficients(const Eigen::VectorXd& values,
                                                           double interval) const {
+  return with_step_coefficients(StepCoefficients(values, interval, without_washout().is_integrating()));
+}
+
+TransferFunction TransferFunction::with_step_coefficients(StepCoefficients step) const {
   TransferFunction G = *this;
-  G.step_ = StepCoefficients(values, interval, without_washout().is_integrating());
+  G.step_ = std::move(step);
   return G;
 }
 
@@ -229,16 +225,11 @@ TransferFunction TransferFunction::with_rational_part(Eigen::VectorXd numerator,
   return washout_ > 0 ? G.behind_washout(washout_) : G;
 }
 
-TransferFunction in_series(const TransferFunction& first, const TransferFunction& second) {
-  const TransferFunction G = first.without_washout(), H = second.without_washout();
-  TransferFunction both(product(G.numerator(), H.numerator()), product(G.denominator(), H.denominator()),
-                        G.dead_time() + H.dead_time());
-  if (H.step_)
-    both.step_ = H.step_->followed_by(G.without_step_coefficients());
-  else if (G.step_)
-    both.step_ = G.step_->followed_by(H);
-  const double washout = second.washout() > 0 ? second.washout() : first.washout();
-  return washout > 0 ? both.behind_washout(washout) : both;
+Eigen::VectorXd polynomial_product(const Eigen::VectorXd& p, const Eigen::VectorXd& q) {
+  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(p.size() + q.size() - 1);
+  for (Eigen::Index i = 0; i < p.size(); ++i)
+    coefficients.segment(i, q.size()) += p(i) * q;
+  return coefficients;
 }
 
 bool operator==(const TransferFunction& a, const TransferFunction& b) {

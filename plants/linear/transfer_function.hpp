@@ -97,6 +97,7 @@ class TransferFunction {
   /// The same parameters, but simulated by the coefficients of a step response, which ramps where this
   /// integrates. Errors: InputError as StepCoefficients.
   TransferFunction with_step_coefficients(const Eigen::VectorXd& values, double interval) const;
+  TransferFunction with_step_coefficients(StepCoefficients step) const;
   /// The rational form alone.
   TransferFunction without_step_coefficients() const;
   const std::optional<StepCoefficients>& step_coefficients() const { return step_; }
@@ -108,8 +109,6 @@ class TransferFunction {
   friend bool operator==(const TransferFunction& a, const TransferFunction& b);
 
  private:
-  friend TransferFunction in_series(const TransferFunction& first, const TransferFunction& second);
-
   /// The same washout, if any, of another function.
   TransferFunction with_rational_part(Eigen::VectorXd numerator, Eigen::VectorXd denominator,
                                       double dead_time, std::optional<StepCoefficients> step) const;
@@ -122,9 +121,7 @@ class TransferFunction {
   std::optional<StepCoefficients> step_ = {};                  ///< of G
 };
 
-/// G_1(s) G_2(s): the output of the one is the input of the other. A washout stays, of the second if both
-/// have one. So do the coefficients of a step response; of two that have them the first is taken as its
-/// rational form.
-TransferFunction in_series(const TransferFunction& first, const TransferFunction& second);
+/// p(s) q(s), coefficients in descending powers.
+Eigen::VectorXd polynomial_product(const Eigen::VectorXd& p, const Eigen::VectorXd& q);
 
 }  // namespace mpm

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <tuple>
-#include <utility>
 
 #include "base/same_members.hpp"
-#include "plants/nonlinear/deviation_plant.hpp"
-#include "plants/nonlinear/foreign_plant.hpp"
 
 namespace mpm {
 namespace {
@@ -42,17 +39,6 @@ NonlinearModel with_parameters(NonlinearModel model, const std::vector<Parameter
       return make(later);
     };
   return model;
-}
-
-std::unique_ptr<Plant> nonlinear_plant(const NonlinearModel& model, double sample_time,
-                                       const OdeOptions& options, const std::vector<ParameterChange>& changes,
-                                       Eigen::Index onset) {
-  if (model.foreign)
-    return std::make_unique<ForeignPlant>(model, sample_time, changes, onset);
-  std::shared_ptr<const OdeSystem> at_rest = model.make_system({});
-  auto plant = std::make_unique<OdePlant>(changes.empty() ? at_rest : model.make_system(changes), sample_time,
-                                          options, at_rest, changes.empty() ? 0 : onset);
-  return std::make_unique<DeviationPlant>(std::move(plant), model.operating_input);
 }
 
 bool operator==(const NonlinearModel& a, const NonlinearModel& b) {

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include "plants/nonlinear/foreign_model.hpp"
-#include "plants/nonlinear/ode_plant.hpp"
 #include "plants/nonlinear/ode_system.hpp"
 
 namespace mpm {
@@ -53,16 +52,5 @@ struct NonlinearModel {
 /// The same plant, which has always had these parameters: they are its nominal ones, and its operating point
 /// is its own steady state under `operating_input`. Errors: InputError as make_system.
 NonlinearModel with_parameters(NonlinearModel model, const std::vector<ParameterChange>& changes);
-
-/// The plant of a closed loop, in deviations from the operating point of the nominal plant, with some
-/// parameters changed.
-///
-/// reset() puts it where the nominal plant rests: the parameters change at `onset`, the first sample unless
-/// it is said. A plant that had always been different might have no steady state worth the name there: with
-/// exp3 = 0.1 (table 3.9) the third tank would stand at 2370 cm. The options are those of our equations.
-/// Errors: InputError as OdePlant and `make_system`, or as ForeignPlant.
-std::unique_ptr<Plant> nonlinear_plant(const NonlinearModel& model, double sample_time,
-                                       const OdeOptions& options, const std::vector<ParameterChange>& changes,
-                                       Eigen::Index onset = 0);
 
 }  // namespace mpm

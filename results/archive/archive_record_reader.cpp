@@ -11,6 +11,7 @@
 #include "results/archive/archive_groups.hpp"
 #include "results/archive/columns.hpp"
 #include "results/files/archive_error.hpp"
+#include "scenarios/loop/draw.hpp"
 
 namespace mpm {
 namespace {

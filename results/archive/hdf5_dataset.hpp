@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "results/archive/hdf5_file.hpp"
+#include "results/archive/hdf5_attributes.hpp"
 #include "results/archive/hdf5_values.hpp"
 
 // Attributes and variables of a group. T is a type of Hdf5Group, or of an attribute.

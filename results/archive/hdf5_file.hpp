@@ -8,21 +8,15 @@
 #include <span>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
+
+#include "results/archive/hdf5_attributes.hpp"
 
 namespace mpm {
 
-/// What an attribute can hold: a text, a number, or a list of one of these.
-using AttributeValue =
-    std::variant<std::string, double, std::int32_t, std::int64_t, std::uint64_t, std::vector<std::int8_t>,
-                 std::vector<std::int32_t>, std::vector<std::string>>;
-
-/// Attributes in the order in which they are written.
-using Attributes = std::vector<std::pair<std::string, AttributeValue>>;
-
-/// A large variable is stored in chunks of whole rows with about so many values.
-inline constexpr std::size_t kChunkValues = 16384;
+namespace hdf5 {
+struct GroupState;
+}
 
 /// A variable that is written row by row, a row being its values at one place of the first dimension, and
 /// goes to the file in blocks: what waits is a chunk at most. Errors: as Hdf5Group.
@@ -134,7 +128,7 @@ class Hdf5Group {
 
  private:
   friend class Hdf5File;
-  struct State;
+  using State = hdf5::GroupState;
   struct Scales;
 
   explicit Hdf5Group(std::shared_ptr<const State> state) : state_(std::move(state)) {}

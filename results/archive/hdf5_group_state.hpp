@@ -5,26 +5,25 @@
 #include <utility>
 
 #include "results/archive/disk_file.hpp"
-#include "results/archive/hdf5_file.hpp"
 #include "results/archive/hdf5_handle.hpp"
 
-namespace mpm {
+namespace mpm::hdf5 {
 
 /// The library keeps a file open while a group of it is, so that the root group stands for the file.
-struct Hdf5Group::State {
+struct GroupState {
   DiskError disk;  ///< of a file that is made on the disk; it is closed with the last group
-  hdf5::Handle group;
+  Handle group;
   std::string file;
   std::string path;  ///< ends with "/"
 
-  hdf5::Place place(const char* what, const std::string& name) const { return {file, what, path, name}; }
+  Place place(const char* what, const std::string& name) const { return {file, what, path, name}; }
 
-  static std::shared_ptr<const State> root_of(const hdf5::Handle& file, const hdf5::Place& place,
-                                              DiskError disk = {}) {
-    return std::make_shared<const State>(State{
+  static std::shared_ptr<const GroupState> root_of(const Handle& file, const Place& place,
+                                                   DiskError disk = {}) {
+    return std::make_shared<const GroupState>(GroupState{
         std::move(disk), place.own(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose, "open the root group"),
         place.file, place.parent});
   }
 };
 
-}  // namespace mpm
+}  // namespace mpm::hdf5

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "results/files/byte_stream.hpp"
+#include "scenarios/loop/draw.hpp"
 
 namespace mpm {
 namespace {

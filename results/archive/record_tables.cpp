@@ -13,6 +13,7 @@
 #include "base/row_major.hpp"
 #include "results/archive/columns.hpp"
 #include "scenarios/loop/candidates.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/world.hpp"
 
 namespace mpm {

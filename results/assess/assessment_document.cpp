@@ -15,6 +15,7 @@
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/plot/trajectory_figure.hpp"
+#include "results/text/experiment_heading.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {

@@ -8,6 +8,7 @@
 #include "analysis/experiment/judgement.hpp"
 #include "results/assess/record_assessment.hpp"
 #include "results/assess/repair_form.hpp"
+#include "results/text/experiment_heading.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {

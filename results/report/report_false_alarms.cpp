@@ -8,6 +8,7 @@
 #include "results/plot/plot_text.hpp"
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
+#include "results/text/experiment_heading.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {

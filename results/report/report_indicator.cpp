@@ -9,6 +9,7 @@
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/summary/summary_sections.hpp"
+#include "results/text/experiment_heading.hpp"
 #include "results/text/experiment_text.hpp"
 
 namespace mpm {

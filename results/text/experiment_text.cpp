@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "results/archive/variable_text.hpp"
-#include "results/text/scenario_text.hpp"
 
 namespace mpm {
 namespace {
@@ -228,19 +227,6 @@ std::string experiment_title(const Study& study, const ExperimentDraw& draw) {
   return fmt::format("experiment {} ({}): {}", draw.index, kind_name(draw.kind), fault_text(study, draw));
 }
 
-std::string verdict_text(const Study& study, const ExperimentRecord& record) {
-  if (record.status != ExperimentStatus::ok)
-    return std::string(to_string(record.status));
-  const Diagnosis chain = record.chain();
-  if (record.draw.named)
-    return fmt::format("flagged {}; {}", flagged_text(study, chain), scenario_verdict_text(study, record));
-  if (chain.ivar.size() == 0)
-    return "not assessed by the chain";
-  return fmt::format("{}located {}, I_MPM {:.3f}: {}", chain.impactful ? "" : "no impact, ",
-                     cv_name(study, chain.predicted_cv), chain.indicator.i_mpm,
-                     source_name(chain.predicted_source));
-}
-
 std::string estimate_text(double value, double lower, double upper, SizeBound bound) {
   const auto number = [](double of) {
     return fmt::format("{:.3g}", std::abs(of) < kPrintedAsZero ? 0.0 : of);
@@ -278,28 +264,6 @@ std::string conditions_text(const ExperimentRecord& record) {
                         text.empty() ? "" : "; ", 100.0 * conditions.other_cv_active,
                         100.0 * conditions.mv_at_limit);
   return text;
-}
-
-std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record) {
-  constexpr std::size_t kLongest = 100;
-  std::vector<std::string> lines;
-  std::string rest = experiment_title(study, record.draw);
-  while (rest.size() > kLongest) {
-    const std::size_t blank = rest.rfind("; ", kLongest - 1);
-    if (blank == std::string::npos)
-      break;
-    lines.push_back(rest.substr(0, blank + 1));
-    rest.erase(0, blank + 2);
-  }
-  lines.push_back(rest);
-  lines.push_back(verdict_text(study, record));
-  if (std::string conditions = conditions_text(record); !conditions.empty())
-    lines.push_back(std::move(conditions));
-  return lines;
-}
-
-std::string experiment_line(const Study& study, const ExperimentRecord& record) {
-  return experiment_title(study, record.draw) + "; " + verdict_text(study, record);
 }
 
 }  // namespace mpm

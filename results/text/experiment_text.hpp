@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {
@@ -36,10 +36,6 @@ std::string fault_text(const Study& study, const ExperimentDraw& draw);
 /// "experiment 12 (MPM): gain of y1/u2 x 0.45"; a named scenario has its name in place of the number.
 std::string experiment_title(const Study& study, const ExperimentDraw& draw);
 
-/// What the chain says of it: "located y1, I_MPM 0.123: MPM", with "no impact, " before it where there is
-/// none; of a named scenario "flagged y1 (MPM); right"; how it ended when there is no verdict.
-std::string verdict_text(const Study& study, const ExperimentRecord& record);
-
 /// "0.62 (0.55 to 0.7)", without the brackets where the ends are not known; "at least 8 (7.1 to 8)" of an
 /// estimate at the end of its search. What differs from 0 by rounding is 0.
 std::string estimate_text(double value, double lower, double upper, SizeBound bound);
@@ -52,11 +48,5 @@ std::string dead_time_text(double shift, double lower, double upper, SizeBound b
 /// stable (spectral radius 0.982); another CV at a limit in 2 % of the samples, an MV in 0 %". Empty when
 /// nothing is known.
 std::string conditions_text(const ExperimentRecord& record);
-
-/// Title, verdict and conditions in lines that fit above a figure, however many faults there are.
-std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record);
-
-/// Title and verdict in one line.
-std::string experiment_line(const Study& study, const ExperimentRecord& record);
 
 }  // namespace mpm

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "base/same_members.hpp"
+#include "plants/linear/in_series.hpp"
 
 namespace mpm {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 
 // Signals that a historian keeps beside those of the loop, of which neither controller nor model know

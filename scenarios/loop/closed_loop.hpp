@@ -11,7 +11,7 @@
 
 #include "plants/linear/transfer_matrix.hpp"
 #include "plants/plant.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 #include "solvers/controller.hpp"
 

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.hpp"
 #include "scenarios/loop/fault_draw.hpp"
+#include "scenarios/loop/kind_sequence.hpp"
 #include "scenarios/loop/world.hpp"
 #include "scenarios/random/random_stream.hpp"
 
@@ -69,102 +67,6 @@ ExperimentDraw named_experiment(const Study& study, std::int64_t index) {
 }
 
 }  // namespace
-
-std::vector<AffectedCv> ExperimentDraw::affected() const {
-  std::map<Eigen::Index, std::pair<bool, bool>> faults;  // CV -> mismatch, disturbance
-  for (const Mismatch& mismatch : mismatches)
-    faults[mismatch.cv].first = true;
-  for (const Disturbance& disturbance : disturbances)
-    if (disturbance.is_on_cv())
-      faults[disturbance.cv].second = true;
-  if (affected_cvs) {
-    const auto own = std::exchange(faults, {});
-    for (const Eigen::Index cv : *affected_cvs)
-      faults[cv] = own.contains(cv)
-                       ? own.at(cv)
-                       : std::pair(!mismatches.empty() || !parameters.empty(), !disturbances.empty());
-  }
-  std::vector<AffectedCv> list;
-  for (const auto& [cv, fault] : faults)
-    list.push_back({cv, fault.first && fault.second ? FaultSource::mpm_ud
-                        : fault.first               ? FaultSource::mpm
-                        : fault.second              ? FaultSource::ud
-                                                    : FaultSource::none});
-  return list;
-}
-
-Eigen::Index ExperimentDraw::true_cv() const {
-  const std::vector<AffectedCv> list = affected();
-  return list.size() == 1 ? list.front().cv : -1;
-}
-
-ExperimentDraw ExperimentDraw::mismatch_alone() const {
-  ExperimentDraw alone = *this;
-  alone.disturbances.clear();
-  alone.kind = kind_of(alone.mismatches, alone.parameters, alone.disturbances);
-  return alone;
-}
-
-ExperimentDraw ExperimentDraw::disturbance_alone() const {
-  ExperimentDraw alone = *this;
-  alone.mismatches.clear();
-  alone.parameters.clear();
-  alone.kind = kind_of(alone.mismatches, alone.parameters, alone.disturbances);
-  return alone;
-}
-
-ExperimentDraw ExperimentDraw::without_faults() const {
-  ExperimentDraw healthy;
-  healthy.index = index;
-  healthy.noise_index = noise_index;
-  healthy.noise_factor = noise_factor;
-  healthy.world = world;
-  return healthy;
-}
-
-KindSequence::KindSequence(const ExperimentCounts& counts) {
-  // A kind without experiments is never behind, so that adding one to the list changes no other study.
-  constexpr std::array kinds{ExperimentKind::mpm,     ExperimentKind::ud,     ExperimentKind::mpm_ud,
-                             ExperimentKind::healthy, ExperimentKind::tuning, ExperimentKind::other};
-  std::array<std::pair<ExperimentKind, int>, kinds.size()> wanted;
-  for (std::size_t k = 0; k < kinds.size(); ++k)
-    wanted[k] = {kinds[k], counts.of(kinds[k])};
-  for (const auto& [kind, count] : wanted)
-    if (count < 0)
-      throw InputError("experiments", fmt::format("{}", count), "counts >= 0");
-  if (counts.total() == 0)
-    throw InputError("experiments", "no experiment at all", "at least one");
-
-  int divisor = 0;
-  for (const auto& [kind, count] : wanted)
-    divisor = std::gcd(divisor, count);
-  const int length = counts.total() / divisor;
-  std::array<int, kinds.size()> placed{};
-  for (int i = 0; i < length; ++i) {
-    // The kind that is furthest behind its share of the first i + 1 experiments; ties go in order of kind.
-    std::size_t next = 0;
-    std::array<std::int64_t, kinds.size()> behind{};
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      behind[k] = std::int64_t{wanted[k].second / divisor} * (i + 1) - std::int64_t{placed[k]} * length;
-      if (behind[k] > behind[next])
-        next = k;
-    }
-    ++placed[next];
-    period_.push_back(wanted[next].first);
-  }
-}
-
-ExperimentKind KindSequence::operator[](std::int64_t index) const {
-  return period_[static_cast<std::size_t>(index) % period_.size()];
-}
-
-std::int64_t KindSequence::earlier(std::int64_t index) const {
-  const auto length = static_cast<std::int64_t>(period_.size());
-  const ExperimentKind kind = (*this)[index];
-  const auto within = period_.begin() + static_cast<std::ptrdiff_t>(index % length);
-  return index / length * std::count(period_.begin(), period_.end(), kind) +
-         std::count(period_.begin(), within, kind);
-}
 
 ExperimentDraw draw_experiment(const Study& study, std::int64_t index) {
   if (index < 0)

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "scenarios/study/study.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "scenarios/study/study.hpp"
 #include "solvers/mpc_options.hpp"

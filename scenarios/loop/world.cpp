@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "plants/linear/settling_time.hpp"
-#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/fault_draw.hpp"
+#include "scenarios/loop/kind_sequence.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/random/random_stream.hpp"
 

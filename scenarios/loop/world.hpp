@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "scenarios/faults/fault.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {

@@ -10,6 +10,7 @@
 
 #include "plants/linear/plant_model.hpp"
 #include "plants/nonlinear/nonlinear_model.hpp"
+#include "plants/nonlinear/ode_integrator.hpp"
 #include "scenarios/controller/controller_program.hpp"
 #include "scenarios/faults/fault.hpp"
 #include "scenarios/faults/fault_ranges.hpp"

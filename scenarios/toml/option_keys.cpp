@@ -171,6 +171,13 @@ std::string plain_meaning(const OptionKey& key) {
   return plain(text);
 }
 
+std::map<std::string, std::string> plain_meanings(const OptionKeys& keys) {
+  std::map<std::string, std::string> meanings;
+  for (const OptionKey& key : keys)
+    meanings.emplace(key.name, plain_meaning(key));
+  return meanings;
+}
+
 namespace key {
 
 OptionKey option(std::string name, std::string type, std::string meaning, std::string unit) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -91,6 +92,8 @@ std::string manual_table(const OptionKeys& keys);
 
 /// What the manual says of a key, as plain text on one line: meaning, unit, what is allowed.
 std::string plain_meaning(const OptionKey& key);
+/// The same of every key, by its name.
+std::map<std::string, std::string> plain_meanings(const OptionKeys& keys);
 
 }  // namespace mpm
 

@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "scenarios/toml/option_keys.hpp"
-
 namespace mpm {
 namespace {
 
@@ -51,22 +49,20 @@ bool TomlDraft::has_values() const {
                      [](const auto& entry) { return !entry.second.value.empty(); });
 }
 
-TomlDraft& TomlDraft::explain(const std::vector<OptionKey>& keys) {
-  keys_ = &keys;
+TomlDraft& TomlDraft::explain(std::string_view kind, std::map<std::string, std::string> meanings) {
+  kind_ = kind;
+  meanings_ = std::move(meanings);
   return *this;
 }
 
 /// The comment above a key; empty for one that has its comment, or has none.
 std::string TomlDraft::explanation(const std::string& key, Explained& explained) const {
   constexpr std::size_t kWidth = 100;
-  const auto found = keys_ == nullptr
-                         ? std::vector<OptionKey>::const_iterator()
-                         : std::find_if(keys_->begin(), keys_->end(),
-                                        [&key](const OptionKey& each) { return each.name == key; });
-  if (keys_ == nullptr || found == keys_->end() || !explained.insert(&*found).second)
+  const auto found = meanings_.find(key);
+  if (found == meanings_.end() || !explained.emplace(kind_, key).second)
     return "";
   std::string comment, line = "#";
-  std::istringstream words(plain_meaning(*found));
+  std::istringstream words(found->second);
   for (std::string word; words >> word; line += ' ' + word)
     if (line.size() > 1 && line.size() + 1 + word.size() > kWidth) {
       comment += line + '\n';

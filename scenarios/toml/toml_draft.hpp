@@ -13,8 +13,6 @@
 
 namespace mpm {
 
-struct OptionKey;
-
 /// One table of a TOML text that is being written, with its tables below it. Keys come out in the order given
 /// when the table is made, whatever the order in which they are set.
 class TomlDraft {
@@ -37,9 +35,9 @@ class TomlDraft {
   };
   /// All values, with those that comment() has put in their place, in the order of text().
   std::vector<Line> lines() const;
-  /// Writes what the manual says of each key of this table above it; of tables with the same `keys`, which
-  /// must outlive the draft, above the first. Returns this table.
-  TomlDraft& explain(const std::vector<OptionKey>& keys);
+  /// Writes the meaning of each key above it, on lines of its own; of several tables of one kind above the
+  /// first. Returns this table.
+  TomlDraft& explain(std::string_view kind, std::map<std::string, std::string> meanings);
   /// "# KEY: TEXT" in place of a value that TOML cannot have. The text has no line break.
   void comment(std::string_view key, std::string_view text);
   /// The table under `key`, made when it is not there.
@@ -62,14 +60,15 @@ class TomlDraft {
   };
 
   Entry& entry(std::string_view key);
-  using Explained = std::set<const OptionKey*>;
+  using Explained = std::set<std::pair<std::string, std::string>>;  // kind of table, key
   void write(std::string& text, const std::string& path, Explained& explained) const;
   std::string explanation(const std::string& key, Explained& explained) const;
   void add_lines(std::vector<Line>& lines, const std::string& path) const;
   bool has_values() const;
 
   std::vector<std::string> key_order_;
-  const std::vector<OptionKey>* keys_ = nullptr;  ///< null: nothing is explained
+  std::string kind_;
+  std::map<std::string, std::string> meanings_;  ///< of keys; none: nothing is explained
   std::map<std::string, Entry, std::less<>> entries_;
 };
 

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "scenarios/toml/toml_text.hpp"
-
 namespace mpm {
 namespace {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -13,6 +14,12 @@
 // Values as they stand in a TOML text. Each one comes back as it was, a number to the last bit.
 
 namespace mpm {
+
+/// Most dots that one key of a TOML text may have. The parser builds, and destroys by recursion, one table a
+/// part of a dotted key, without a limit of its own up to version 3.3: some 50 000 dots overflow the stack.
+/// The limit here, together with the parser's own one on nested values (256), keeps a factor of several away
+/// from that.
+inline constexpr std::ptrdiff_t kMaxDotsInKey = 64;
 
 /// "0.1", "2.0", "1e-09", "-inf": never a whole number.
 std::string toml_literal(double value);

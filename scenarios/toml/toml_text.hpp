@@ -11,12 +11,6 @@ namespace mpm {
 /// Largest TOML text that is read, in bytes. Study files have some thousand.
 inline constexpr std::size_t kMaxTomlBytes = std::size_t{1} << 20;
 
-/// Most dots that one key of a TOML text may have. The parser builds, and destroys by recursion, one table a
-/// part of a dotted key, without a limit of its own up to version 3.3: some 50 000 dots overflow the stack.
-/// The limit here, together with the parser's own one on nested values (256), keeps a factor of several away
-/// from that.
-inline constexpr std::ptrdiff_t kMaxDotsInKey = 64;
-
 /// Parses `text`; `file_name` is for messages.
 ///
 /// Errors: InputError "FILE:LINE: TOML: found ...; allowed: ..." for a text that is no TOML (with the

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/thesis/chain_numbers.hpp"
 #include "analysis/study_files/study_library.hpp"

@@ -4,11 +4,13 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm::testing {
 

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <string>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 using namespace mpm;

@@ -13,6 +13,7 @@
 #include "analysis/methods/thesis/chain_numbers.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm::testing {

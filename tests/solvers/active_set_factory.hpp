@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm::testing {
 

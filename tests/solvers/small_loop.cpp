@@ -1,5 +1,7 @@
 #include "tests/solvers/small_loop.hpp"
 
+#include "solvers/qp_solver_factory.hpp"
+
 namespace mpm::samples {
 
 TransferMatrix small_model() {

@@ -7,6 +7,7 @@
 #include "base/non_finite.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/solvers/qp_builder.hpp"
 #include "tests/solvers/qp_collection.hpp"
 

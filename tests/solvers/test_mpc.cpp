@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/solvers/small_loop.hpp"
 
 // How the controller behaves in a closed loop, and what it refuses.

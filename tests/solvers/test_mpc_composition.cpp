@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "solvers/prediction.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/solvers/small_loop.hpp"
 
 // One controller, composed of terms: setpoints, ranges, both at once, with and without targets.

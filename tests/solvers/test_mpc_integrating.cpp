@@ -6,6 +6,7 @@
 #include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "solvers/mpc.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 // The controller of a CV that integrates.
 

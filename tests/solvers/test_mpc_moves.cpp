@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/solvers/small_loop.hpp"
 
 // Moves against closed forms that are put together here from the definition of the cost.

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/solvers/small_loop.hpp"
 
 // MVs and CVs that operators take from the controller for a while.

@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "solvers/prediction.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/plants/plant_samples.hpp"
 #include "tests/solvers/small_loop.hpp"
 

@@ -5,6 +5,7 @@
 #include "plants/models/catalogue.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "solvers/mpc.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/solvers/p1_controller.hpp"
 
 // The problems of a closed loop of P1 through every back end: full size, as they occur.

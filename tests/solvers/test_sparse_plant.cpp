@@ -7,6 +7,7 @@
 #include "plants/models/catalogue.hpp"
 #include "solvers/lanes/row_band.hpp"
 #include "solvers/mpc.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/plants/allocation_counter.hpp"
 #include "tests/solvers/p1_controller.hpp"
 

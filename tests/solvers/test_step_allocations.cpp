@@ -5,6 +5,7 @@
 #include "plants/linear/linear_plant.hpp"
 #include "plants/models/catalogue.hpp"
 #include "solvers/mpc.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/plants/allocation_counter.hpp"
 #include "tests/solvers/p1_controller.hpp"
 

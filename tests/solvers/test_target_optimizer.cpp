@@ -2,6 +2,7 @@
 
 #include "plants/models/catalogue.hpp"
 #include "scenarios/random/random_stream.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "solvers/target_optimizer.hpp"
 #include "tests/solvers/p1_controller.hpp"
 #include "tests/solvers/vertex_search.hpp"

@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "analysis/identification/kalman_whitening.hpp"
 #include "analysis/statistics/sample_spacing.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "base/error.hpp"

@@ -4,10 +4,17 @@
 
 #include <Eigen/Core>
 
-#include "analysis/methods/ours/disturbance_scan.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
+
+/// The measurement noise of a CV in its own standard deviations: white, or with an autocorrelation phi, or as
+/// the benchmark has it, an AR(1) state (a, b) under white noise, as where the plant is not quite its model.
+struct BaseNoise {
+  double deviation = 1.0;  ///< of the noise, CV unit
+  double phi = 0.0;
+  double a = 0.0, b = 0.0;
+};
 
 /// Samples of a record from which a noise can be fitted.
 inline constexpr Eigen::Index kFewestNoiseSamples = 10;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "analysis/identification/kalman_whitening.hpp"
+#include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/fault_priors.hpp"
 
 namespace mpm {
@@ -22,14 +23,6 @@ struct ScaleLikelihood {
   double operator()(double log_determinant, double squares) const;
   /// The inverse variance of the noise that this sum of squares speaks for: -2 d log L / d SSE.
   double precision(double squares) const;
-};
-
-/// The measurement noise of a CV in its own standard deviations: white, or with an autocorrelation phi, or as
-/// the benchmark has it, an AR(1) state (a, b) under white noise, as where the plant is not quite its model.
-struct BaseNoise {
-  double deviation = 1.0;  ///< of the noise, CV unit
-  double phi = 0.0;
-  double a = 0.0, b = 0.0;
 };
 
 /// Models of disturbance and noise with what they weigh, beside the prior probability that there is one.

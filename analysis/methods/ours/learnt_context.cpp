@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/historian.hpp"
 
 namespace mpm {

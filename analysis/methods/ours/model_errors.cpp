@@ -8,7 +8,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "analysis/identification/kalman_whitening.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
+#include "analysis/methods/ours/disturbance_scan.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "base/non_finite.hpp"
 

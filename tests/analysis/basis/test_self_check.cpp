@@ -4,9 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/study_files/study_change.hpp"
 #include "analysis/study_files/study_library.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace {
 

@@ -2,12 +2,15 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/same_members.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // One pass: the loop is run once, and each method of the study says what it sees in it.

@@ -3,7 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"

@@ -4,6 +4,7 @@
 
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/study_files/study_library.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/world.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -3,9 +3,12 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/experiment/fault_scale.hpp"
 #include "analysis/study_files/study_library.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace {

@@ -4,7 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "tests/solvers/active_set_factory.hpp"

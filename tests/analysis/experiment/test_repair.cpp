@@ -3,9 +3,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/repair.hpp"
 #include "analysis/findings/repair_findings.hpp"
+#include "analysis/methods/assessment_method.hpp"
+#include "analysis/methods/assessment_record.hpp"
 #include "analysis/study_files/study_library.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/historian.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

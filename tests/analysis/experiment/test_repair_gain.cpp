@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/repair_gain.hpp"
 #include "analysis/experiment/repaired_model.hpp"

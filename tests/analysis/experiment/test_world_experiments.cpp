@@ -1,11 +1,14 @@
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/sensitivity/loop_stability.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/calibration.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // Experiments in worlds, whose plant is not the model, and with an excitation of their own.

@@ -7,13 +7,15 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/calibration.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
 namespace mpm {

@@ -1,11 +1,15 @@
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/basis/tuned_basis.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/false_alarms.hpp"
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "analysis/study_files/study_library.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
 namespace {

@@ -3,7 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/method_table.hpp"

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_library.hpp"

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/column_lags.hpp"
@@ -22,8 +22,9 @@
 #include "scenarios/faults/fault.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/signals.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 // A record of the plant is judged for what it is: of this controller, explained by the model or not.
 

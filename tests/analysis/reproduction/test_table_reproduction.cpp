@@ -7,11 +7,15 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_cases.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/reproduction/scenario_quantities.hpp"
 #include "analysis/reproduction/table_reproduction.hpp"
 #include "analysis/study_files/study_library.hpp"
+#include "analysis/study_files/table_file.hpp"
 #include "base/error.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

@@ -8,6 +8,7 @@
 #include "analysis/sensitivity/nominal_estimator.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 // Which constraints a controller works at, and y0 by the S0 of each (assumptions A, B and C of 3.3.3).

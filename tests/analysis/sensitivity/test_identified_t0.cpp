@@ -10,6 +10,7 @@
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 using namespace mpm;
 

@@ -10,6 +10,7 @@
 #include "base/non_finite.hpp"
 #include "scenarios/controller/controller_program.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

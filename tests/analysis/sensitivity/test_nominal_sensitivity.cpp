@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
 #include "analysis/study_files/study_library.hpp"

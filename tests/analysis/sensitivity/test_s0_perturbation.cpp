@@ -4,7 +4,9 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/basis/s0_perturbation_structure.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "analysis/findings/s0_perturbation_curves.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/sensitivity/s0_perturbation.hpp"
@@ -12,6 +14,7 @@
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/random/random_stream.hpp"
 #include "tests/analysis/made_up_record.hpp"
 #include "tests/solvers/active_set_factory.hpp"

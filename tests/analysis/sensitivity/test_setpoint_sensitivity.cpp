@@ -4,10 +4,12 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/analysis/sensitivity/unsettled.hpp"
 #include "tests/solvers/active_set_factory.hpp"

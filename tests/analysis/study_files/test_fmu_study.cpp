@@ -5,6 +5,8 @@
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
 // Studies whose plant is an FMU: that of tests/plants/fmu.

@@ -6,9 +6,12 @@
 #include "analysis/study_files/study_library.hpp"
 #include "plants/models/catalogue.hpp"
 #include "plants/nonlinear/deviation_plant.hpp"
+#include "plants/nonlinear/ode_plant.hpp"
 #include "plants/nonlinear/quadruple_tank.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
 // Studies whose loops run on a nonlinear plant.

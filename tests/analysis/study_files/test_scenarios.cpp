@@ -5,6 +5,7 @@
 #include "analysis/study_files/study_file.hpp"
 #include "base/error.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
 namespace mpm {

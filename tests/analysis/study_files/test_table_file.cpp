@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "analysis/study_files/table_file.hpp"
+#include "analysis/study_files/thesis_table.hpp"
 #include "base/error.hpp"
 #include "tests/scenarios/study_texts.hpp"
 

@@ -4,7 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "analysis/experiment/experiment.hpp"
+#include "analysis/basis/basis_runs.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "analysis/validation/benchmark_period.hpp"
 #include "analysis/validation/study_forecast.hpp"

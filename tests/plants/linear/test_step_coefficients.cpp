@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "plants/linear/in_series.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/zero_order_hold.hpp"
 #include "tests/plants/plant_samples.hpp"

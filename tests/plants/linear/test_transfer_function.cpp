@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "plants/linear/in_series.hpp"
 #include "plants/linear/transfer_function.hpp"
 #include "tests/plants/plant_samples.hpp"
 

@@ -14,6 +14,7 @@
 
 #include "base/error.hpp"
 #include "plants/nonlinear/foreign_plant.hpp"
+#include "plants/nonlinear/nonlinear_plant.hpp"
 #include "plants/nonlinear/quadruple_tank.hpp"
 #include "plants/outside/fmu_instance.hpp"
 #include "plants/outside/fmu_model.hpp"

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/nonlinear/foreign_plant.hpp"
+#include "plants/nonlinear/nonlinear_plant.hpp"
 #include "plants/outside/program_model.hpp"
 
 // The program tests/plants/first_order.py against the transfer functions that it computes.

@@ -15,6 +15,7 @@
 #include "results/document/document_text.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {

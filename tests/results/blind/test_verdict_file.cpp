@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "results/blind/blind_loops.hpp"
 #include "results/blind/verdict_file.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 // Files of verdicts: every line comes to the loop or the window that it is of, and what is no verdict is

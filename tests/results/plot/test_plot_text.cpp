@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "results/plot/figure_format.hpp"
 #include "results/plot/plot_text.hpp"
+#include "results/text/experiment_heading.hpp"
 #include "results/text/experiment_text.hpp"
 #include "tests/results/made_up_campaign.hpp"
 

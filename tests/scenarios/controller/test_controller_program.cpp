@@ -14,7 +14,7 @@
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/study/study_controller.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
 // The controller tests/scenarios/odd_controller.py, when it does what it should and when it does not.

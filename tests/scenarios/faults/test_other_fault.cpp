@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "scenarios/faults/other_fault.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/fault_draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"

@@ -10,8 +10,11 @@
 #include "base/error.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
+#include "scenarios/loop/kind_sequence.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "solvers/qp_solver.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
 namespace {

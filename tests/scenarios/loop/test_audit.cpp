@@ -6,6 +6,8 @@
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/audit.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/scenarios/study_texts.hpp"
 

@@ -11,6 +11,7 @@
 #include "plants/nonlinear/quadruple_tank.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/scenarios/study_texts.hpp"
 
 // The closed loop takes any plant.

@@ -6,7 +6,9 @@
 
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace {
 

@@ -7,6 +7,8 @@
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
+#include "scenarios/loop/kind_sequence.hpp"
 
 namespace {
 

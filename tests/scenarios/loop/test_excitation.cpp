@@ -7,6 +7,7 @@
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/scenarios/study_texts.hpp"
 #include "tests/solvers/active_set_factory.hpp"

@@ -12,6 +12,7 @@
 #include "plants/linear/linear_plant.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/scenarios/study_texts.hpp"
 #include "tests/solvers/active_set_factory.hpp"

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/study_files/study_file.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/historian.hpp"
 #include "tests/scenarios/study_texts.hpp"
 

@@ -10,9 +10,11 @@
 #include "analysis/study_files/study_library.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/scenarios/study_texts.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

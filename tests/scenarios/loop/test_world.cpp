@@ -12,6 +12,7 @@
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/loop/world.hpp"
 #include "tests/scenarios/study_texts.hpp"

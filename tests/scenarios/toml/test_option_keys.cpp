@@ -76,10 +76,10 @@ TEST_CASE("a draft explains a key where it comes first", "[option_keys]") {
   int hour = 0;
   const OptionKeys of_lamp = keys(lamp), of_hour = hour_keys(hour);
   TomlDraft draft(key_names(of_lamp));
-  draft.explain(of_lamp);
+  draft.explain("lamp", plain_meanings(of_lamp));
   draft.set("power", 0.25);
   for (std::size_t i = 0; i < 2; ++i)
-    draft.table_in_list("lit", i, key_names(of_hour)).explain(of_hour).set("hour", 4);
+    draft.table_in_list("lit", i, key_names(of_hour)).explain("lit", plain_meanings(of_hour)).set("hour", 4);
   CHECK(draft.text() ==
         "# of its bulb, P [kW]; allowed: 0 to below 1\npower = 0.25\n\n# the hours\n[[lit]]\n"
         "# when it is lit; allowed: 0 to 23\nhour = 4\n\n[[lit]]\nhour = 4\n");

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/literature/designed_output.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
@@ -13,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

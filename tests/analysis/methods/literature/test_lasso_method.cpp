@@ -2,11 +2,11 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_library.hpp"
-#include "scenarios/loop/draw.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/literature/noise_model.hpp"
 #include "analysis/methods/method_table.hpp"

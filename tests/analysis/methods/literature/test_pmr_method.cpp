@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/literature/plant_model_ratio.hpp"
 #include "analysis/methods/method_table.hpp"

@@ -2,12 +2,14 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/literature/model_quality.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "solvers/qp_solver.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -4,7 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_table.hpp"
@@ -13,6 +15,7 @@
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/candidates.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/analysis/exact_interval.hpp"
 #include "tests/solvers/active_set_factory.hpp"

@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
+#include "analysis/experiment/experiment_record.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/counterfactual_loop.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
@@ -11,6 +13,7 @@
 #include "analysis/study_files/study_library.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/identification/autoregression.hpp"
 #include "analysis/identification/prewhitened_test.hpp"
 #include "analysis/methods/assessed_loop.hpp"
@@ -16,6 +17,7 @@
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 

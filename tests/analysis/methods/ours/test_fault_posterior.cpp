@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/fault_posterior.hpp"
@@ -16,6 +17,7 @@
 #include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/transfer_matrix.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/signals.hpp"

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
+#include "analysis/identification/kalman_whitening.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/model_errors.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"

@@ -5,10 +5,12 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/ours/repair_prospects.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {

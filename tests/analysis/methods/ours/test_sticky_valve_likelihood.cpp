@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/method_panel.hpp"
 #include "analysis/methods/ours/fault_posterior.hpp"

@@ -9,6 +9,7 @@
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/analysis/signals.hpp"
 
 // The methods that compare a loop with a benchmark period, through the interface that all methods share.

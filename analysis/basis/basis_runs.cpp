@@ -1,4 +1,4 @@
-#include "analysis/basis/basis_case.hpp"
+#include "analysis/basis/basis_runs.hpp"
 
 #include <algorithm>
 
@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study_controller.hpp"
 
 namespace mpm {

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/experiment/fault_cost.hpp"
+#include "analysis/experiment/loop_conditions.hpp"
+#include "analysis/experiment/repair_gain.hpp"
+#include "analysis/indicators/diagnosis.hpp"
+#include "analysis/methods/assessment_record.hpp"
+#include "analysis/sensitivity/s0_perturbation.hpp"
+#include "scenarios/loop/closed_loop.hpp"
+#include "scenarios/loop/experiment_draw.hpp"
+
+namespace mpm {
+
+enum class ExperimentStatus : std::int8_t {
+  ok = 0,
+  infeasible = 1,  ///< some MPC problem had no solution; the experiment is left out, as in the thesis
+  failed = 2,      ///< the solver gave no answer, the plant could not be integrated or had no steady state to
+                   ///< begin at, or the process that ran the experiment died
+  unstable = 3,    ///< the loop is not stable, with its fault or as its world is without it, and the study
+                   ///< leaves such loops out (UnstableLoops)
+};
+
+/// "ok", "infeasible", "failed", "unstable"
+std::string_view to_string(ExperimentStatus status);
+
+/// Whose closed-loop data an archive keeps.
+/// Which loops are kept: none, those with a wrong verdict of the first method, all, or all with their
+/// LoopTruth.
+enum class StorePolicy { none, flagged, all, truth };
+
+/// The data of one closed loop as they are kept in an archive.
+struct LoopRecord {
+  Trajectory trajectory;
+  Eigen::MatrixXd y_sim;  ///< ny x N
+};
+
+/// What only a simulation knows of a loop, y = G(u, d) + y_d + v with the plant G: no method sees it.
+struct LoopTruth {
+  /// One of the loops with one of two faults alone; empty in an experiment with one fault or none, and where
+  /// the loop with both does not run to its end.
+  struct Alone {
+    Eigen::MatrixXd y, u;  ///< ny x N and nu x N, as in Trajectory
+  };
+
+  Eigen::MatrixXd v;    ///< measurement noise, ny x N
+  Eigen::MatrixXd y_d;  ///< what unmeasured disturbances and errors of sensors add to the CVs, ny x N
+  Alone mpm_alone = {}, ud_alone = {};
+};
+
+/// Everything that is known of one experiment: what was drawn, how it ended, the truth, and what each method
+/// of the study says of it.
+///
+/// In an experiment with mismatch and disturbance on one CV the loop is run three times: with both, with the
+/// mismatch alone and with the disturbance alone. The methods see the loop with both; of the other two the
+/// chain of the thesis says how much the mismatch dominates (FaultsAlone).
+///
+/// In an experiment with a changed tuning the methods know the S0 of tuned_basis(), and an experiment whose
+/// controller does not run on its own model is infeasible.
+struct ExperimentRecord {
+  ExperimentDraw draw;
+  ExperimentStatus status = ExperimentStatus::failed;
+  std::string message;        ///< why it failed, or that its world is not stable; empty otherwise
+  LoopConditions conditions;  ///< of the loop that was assessed
+  /// ny, basis_variance_indices(), in a world FaultCost::variance_ratio; empty unless the status is ok.
+  Eigen::VectorXd ivar_basis;
+  std::optional<FaultCost> cost = {};         ///< of the faults, of an experiment in a world with status ok
+  RepairGains repair = {};                    ///< of the channels, in a world; empty: not computed
+  std::vector<AssessmentRecord> assessments;  ///< by each method of the study, in their order
+  PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for, or
+                            ///< its record has gaps
+  SolverStatistics solver;  ///< of all loops of the experiment
+  /// The loop that was assessed, when it was asked for: as it was measured. recorded() gives what the methods
+  /// saw.
+  std::optional<LoopRecord> loop;
+  std::optional<LoopTruth> truth = {};  ///< of that loop, when it was asked for
+
+  /// What the method of this name says; null when it is not one of the study.
+  const AssessmentRecord* by(std::string_view method) const;
+  /// What the method that diagnoses says (diagnoses()); null when the study has none.
+  const AssessmentRecord* diagnosed() const;
+  /// The same as a Diagnosis; without vectors and without impact when it says nothing.
+  Diagnosis chain() const;
+};
+
+}  // namespace mpm

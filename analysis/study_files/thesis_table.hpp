@@ -1,0 +1,78 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/study/study.hpp"
+
+namespace mpm {
+
+/// How a number of a table becomes a verdict.
+enum class RuleKind {
+  outside,     ///< outside the band
+  any_above,   ///< some number of the row, of those that the rule is for, is above the threshold
+  any_within,  ///< some number of the row, of those that the rule is for, lies within the band
+  rank,        ///< its place among the rows, from the smallest number of the column on
+};
+
+/// What is concluded from the quantities of a table, and how it is called.
+struct VerdictRule {
+  std::vector<std::string> quantities;
+  RuleKind kind = RuleKind::outside;
+  double lower = 0.0, upper = 0.0;  ///< the band; of any_above the threshold is `lower`
+  std::string yes, no;              ///< the two verdicts, such as "flagged" and "not flagged"
+  std::string source;               ///< where the thesis says so
+};
+
+/// Of what a quantity is one.
+enum class QuantityScope { loop, cv, channel };
+
+/// A quantity that a cell may have.
+struct TableQuantity {
+  std::string name;
+  QuantityScope scope = QuantityScope::cv;
+};
+
+/// One cell of a table: a quantity in one scenario, and what the thesis has for it.
+struct TableCell {
+  std::string cv;  ///< empty for a quantity of the loop
+  std::string quantity;
+  std::optional<double> thesis = {};        ///< its number, or
+  std::optional<std::string> verdict = {};  ///< what it says in words; both none: an empty cell
+  std::string mv = {};                      ///< of a quantity of a channel
+};
+
+/// One row: the loop of one scenario under one variant of the study.
+struct TableRow {
+  std::string label;
+  std::string variant;   ///< empty: the study as it is
+  std::string scenario;  ///< the scenario of the study; empty: the basis case
+  std::vector<TableCell> cells;
+  /// The variant whose basis case is the benchmark of methods that need one; none: `variant`.
+  std::optional<std::string> benchmark = {};
+};
+
+/// A table of the thesis, or a figure that it describes in words, and the study that reproduces it.
+struct ThesisTable {
+  std::string number;   ///< "4.5"
+  bool figure = false;  ///< figures and tables have numbers of their own
+  int chapter = 0;
+  std::string title;
+  std::string note;                      ///< what was chosen where the thesis gives no numbers; may be empty
+  std::map<std::string, Study> studies;  ///< by the name of the variant; "" is the study as it is
+  std::vector<std::string> heads;        ///< of the columns
+  std::vector<TableRow> rows;
+  std::vector<VerdictRule> rules;
+
+  /// "Table 4.5", "Figure 2.8"
+  std::string label() const;
+  /// How it is called on the command line: "4.5", "figure2.8".
+  std::string name() const;
+
+  /// The rule for a quantity; none when its numbers are only compared.
+  const VerdictRule* rule_for(const std::string& quantity) const;
+};
+
+}  // namespace mpm

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "bench/execution/stop_request.hpp"
+#include "results/archive/campaign.hpp"
+
+namespace mpm {
+
+/// How a campaign is watched and stopped; each may be empty.
+struct CampaignHooks {
+  /// Asked at each step of the basis case, and before each experiment.
+  StopRequest stop = {};
+  /// Called once the basis case is there, before it is checked.
+  std::function<void(const Study&, const BasisCase&)> on_basis = {};
+  /// Called once before the first experiment: an earlier run has left `done` of the `count` experiments.
+  std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
+  /// Called after each experiment that is done, in the order of completion, and whether it failed.
+  std::function<void(bool failed)> on_done = {};
+  /// Called with a text that the user must see.
+  std::function<void(const std::string&)> on_warning = {};
+  /// Called with the whole campaign while its shards are still locked: the place to write its archive.
+  std::function<void(Campaign&)> on_end = {};
+};
+
+}  // namespace mpm

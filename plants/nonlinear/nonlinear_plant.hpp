@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plants/nonlinear/nonlinear_model.hpp"
+#include "plants/nonlinear/ode_plant.hpp"
+#include "plants/plant.hpp"
+
+namespace mpm {
+
+/// The plant of a closed loop, in deviations from the operating point of the nominal plant, with some
+/// parameters changed.
+///
+/// reset() puts it where the nominal plant rests: the parameters change at `onset`, the first sample unless
+/// it is said. A plant that had always been different might have no steady state worth the name there: with
+/// exp3 = 0.1 (table 3.9) the third tank would stand at 2370 cm. The options are those of our equations.
+/// Errors: InputError as OdePlant and `make_system`, or as ForeignPlant.
+std::unique_ptr<Plant> nonlinear_plant(const NonlinearModel& model, double sample_time,
+                                       const OdeOptions& options, const std::vector<ParameterChange>& changes,
+                                       Eigen::Index onset = 0);
+
+}  // namespace mpm

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scenarios/faults/fault.hpp"
+#include "scenarios/faults/other_fault.hpp"
+#include "scenarios/study/study.hpp"
+
+namespace mpm {
+
+/// The number of the world without errors of the model and without background (scenarios/loop/world.hpp):
+/// that of a study without [world], and of the nominal loop of one that has it.
+inline constexpr int kExactWorld = -1;
+
+/// A CV that an experiment affects, and by what.
+struct AffectedCv {
+  Eigen::Index cv;
+  FaultSource by;  ///< mpm, ud, or mpm_ud for both; none: another fault
+};
+
+/// By how much the faults of an experiment are larger than they were drawn, in a study that asks for faults
+/// of a given effect.
+///
+/// | member      | of                                  | what becomes of the drawn value x        |
+/// |-------------|-------------------------------------|------------------------------------------|
+/// | mismatch    | factors of gain, time constant and plant parameters | x^scale; that of a sign stays |
+/// |             | shifts of the dead time, further lags, inverse responses | scale x          |
+/// | disturbance | gain of G_d                         | scale x                                  |
+/// | other       | OtherFault::size and jump           | scale x; the factor of an MD: x^scale    |
+struct FaultScales {
+  double mismatch = 1.0;
+  double disturbance = 1.0;
+  double other = 1.0;
+
+  bool operator==(const FaultScales&) const = default;
+};
+
+/// What one experiment does to the loop: drawn at random, with a mismatch, a disturbance, both, another fault
+/// or a change of the tuning, or a named scenario of the study. A mismatch may reach over several channels
+/// and a disturbance over several CVs (MismatchExtent, DisturbancePlace).
+struct ExperimentDraw {
+  std::int64_t index = 0;
+  ExperimentKind kind = ExperimentKind::healthy;
+  std::vector<Mismatch> mismatches;
+  std::vector<Disturbance> disturbances;
+  bool named = false;  ///< the scenario number `index` of the study
+  /// The CVs that a diagnosis should find, when the study says it; otherwise those with a fault.
+  std::optional<std::vector<Eigen::Index>> affected_cvs = {};
+  std::vector<ParameterChange> parameters = {};  ///< of a nonlinear plant; a mismatch, too
+  std::optional<TuningChange> tuning = {};       ///< of the controller; no fault of model or plant
+  std::optional<OtherFault> other = {};          ///< around the model, which is right
+  Onset onset = {};                              ///< of all faults but that of the tuning
+  FaultScales scales = {};                       ///< those of the sizes above
+  double noise_factor = 1.0;  ///< of the measurement noise (NoiseOptions::factor); no fault either
+  /// Whose noise and background the loop has, in place of its own: of loops that differ in nothing else.
+  std::optional<std::int64_t> noise_index = {};
+  int world = kExactWorld;  ///< in which it takes place
+
+  /// The CVs that are affected, in their order. A CV that has no fault of its own is affected by what is
+  /// wrong in the experiment.
+  std::vector<AffectedCv> affected() const;
+  /// The CV that is affected; -1 when it is none, or more than one.
+  Eigen::Index true_cv() const;
+  /// The same experiment with the mismatches alone, and with the disturbances alone.
+  ExperimentDraw mismatch_alone() const;
+  ExperimentDraw disturbance_alone() const;
+  /// The same loop, under the same noise, in which nothing is wrong.
+  ExperimentDraw without_faults() const;
+};
+
+/// The index under which the basis case draws its noise: no experiment of a study has it.
+inline constexpr std::int64_t kBasisIndex = -1;
+/// The index of the basis case with other noise (SelfCheck::repeat).
+inline constexpr std::int64_t kRepeatIndex = -2;
+/// The index under which a sequence that all experiments share is drawn (SignalSequence::shared).
+inline constexpr std::int64_t kSharedIndex = -3;
+
+/// The index under which the benchmark of a world draws its noise; kBasisIndex for the exact one.
+constexpr std::int64_t basis_index(int world) {
+  return world == kExactWorld ? kBasisIndex : kSharedIndex - 1 - world;
+}
+
+}  // namespace mpm
